@@ -1,0 +1,132 @@
+"""An arena: a folder with its TOML, rules, field and bots, ready to be played.
+
+The TOML has `title`, a table [match] that every game shares, one [[seat]] for each
+seat, and a table [game] that is the game's own. The contest's file may override any
+entry (rules 1, "Where each number lives").
+"""
+
+import importlib
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+
+from lacoc_arenas.bot import BotFactory
+from lacoc_arenas.game import AnyGame
+from lacoc_shared import plugins
+from lacoc_shared.gait import Level
+from lacoc_shared.mistakes import UserError
+
+
+class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What every game shares (rules 4), each a setting of the arena file."""
+
+    duration_s: float = 180.0
+    """Workshop 5-1 rule 2, 5-2 rule 1; 0: without end."""
+    countdown_s: float = 3.0
+    """Before every start and every resume."""
+    restart_freeze_s: float = 5.0
+    """[x] and digits are refused for this long after [x]."""
+    levels: tuple[Literal["A", "B"], ...] = ("B",)
+    """Levels of control that are open; the first is the one a seat begins with."""
+    repeat: bool = True
+    """Sequences repeat while the command stands (4-2, "continuous control")."""
+    start: Literal["referee", "ready"] = "referee"
+    """Who starts: the referee, or every seat by saying ready."""
+
+    @property
+    def open_levels(self) -> tuple[Level, ...]:
+        """The levels as values."""
+        return tuple(Level("AB".index(level)) for level in self.levels)
+
+
+class SeatSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A seat and how its robot looks unless the team says otherwise."""
+
+    id: str
+    colour: str
+    pattern: Literal["plain", "stripes", "dots"] = "plain"
+
+
+class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    title: str
+    match: MatchSettings
+    seat: tuple[SeatSettings, ...]
+    game: dict[str, Any] = {}
+
+
+class Arena:
+    """An arena as played: its file with the contest's overrides, and its rules."""
+
+    def __init__(self, name: str, settings: dict[str, Any], module: str) -> None:
+        """Use `load` or `from_settings`.
+
+        Raises:
+            UserError: if a setting is wrong; the message names it.
+        """
+        self.name = name
+        self.settings = settings
+        """The whole file as plain values; with `name` it makes the same arena again."""
+        self._module = module
+        try:
+            file = msgspec.convert(settings, _File)
+            self.game: AnyGame = importlib.import_module(f"{module}.rules").make(file.game)
+        except (msgspec.ValidationError, ValueError) as error:
+            raise UserError(f"The settings of arena {name!r} are wrong: {error}.") from None
+        self.title = file.title
+        self.match = file.match
+        self.seats = file.seat
+
+    def build_field(self, spec: Any) -> None:
+        """Add floor, walls and markers to an `MjSpec`."""
+        importlib.import_module(f"{self._module}.field").build(spec, self.game)
+
+    @property
+    def bots(self) -> dict[str, BotFactory]:
+        """The game's own bots by name, the weakest first."""
+        bots: dict[str, BotFactory] = importlib.import_module(f"{self._module}.bots").BOTS
+        return bots
+
+
+def load(name: str, overrides: Mapping[str, Any] | None = None) -> Arena:
+    """Load an installed arena, or one in a folder.
+
+    Args:
+        name: an installed name such as "othello", or a folder's path.
+        overrides: nested entries that replace those of the arena's file.
+
+    Raises:
+        UserError: if there is no such arena or its file is wrong.
+    """
+    module = plugins.package("lacoc.arenas", "arena", name)
+    path = plugins.folder_of(module) / "arena.toml"
+    try:
+        settings = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, tomllib.TOMLDecodeError) as error:
+        raise UserError(f"The arena file {path} can't be read: {error}.") from None
+    return Arena(_canonical(name), merge(settings, overrides or {}), module.__name__)
+
+
+def from_settings(name: str, settings: dict[str, Any]) -> Arena:
+    """Make the arena of a record again, with the settings it was played with.
+
+    Raises:
+        UserError: if the arena is not installed here.
+    """
+    return Arena(name, settings, plugins.package("lacoc.arenas", "arena", name).__name__)
+
+
+def merge(settings: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """Replace entries of nested tables; a list or a value is replaced whole."""
+    merged = dict(settings)
+    for key, value in overrides.items():
+        old = merged.get(key)
+        both = isinstance(old, Mapping) and isinstance(value, Mapping)
+        merged[key] = merge(old, value) if both else value  # type: ignore[arg-type]
+    return merged
+
+
+def _canonical(name: str) -> str:
+    return name if name in plugins.installed("lacoc.arenas") else str(Path(name).resolve())

@@ -1,0 +1,1 @@
+"""Everyone but the court."""

@@ -1,0 +1,1 @@
+"""The court: the only authority of a match."""

@@ -1,0 +1,56 @@
+"""Bytes to messages and back: msgpack, typed and size-checked, one error family.
+
+`msgspec` reads and writes the same bytes as `msgpack`; it also checks every type, so
+nothing that arrives is used before it is known to be what it should be.
+"""
+
+from typing import Any, TypeVar
+
+import msgspec
+
+T = TypeVar("T")
+
+_encoder = msgspec.msgpack.Encoder()
+_decoders: dict[Any, msgspec.msgpack.Decoder[Any]] = {}
+
+encode = _encoder.encode
+"""Encode a message to msgpack bytes."""
+
+
+class BadMessage(ValueError):
+    """Bytes from outside that are not the message they should be: the sender's fault."""
+
+
+def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
+    """Decode one message.
+
+    Args:
+        data: the bytes as they arrived.
+        kind: the message they must be.
+        max_bytes: a longer payload is refused unread.
+
+    Raises:
+        BadMessage: if they are too many, not msgpack, or not that message.
+    """
+    if len(data) > max_bytes:
+        raise BadMessage(f"{len(data)} bytes, at most {max_bytes} are read")
+    decoder = _decoders.get(kind)
+    if decoder is None:
+        decoder = _decoders[kind] = msgspec.msgpack.Decoder(kind)
+    try:
+        return decoder.decode(data)  # type: ignore[no-any-return]
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise BadMessage(str(error)) from None
+
+
+def pack_states(states: tuple[int, ...]) -> bytes:
+    """Pack marker states, two bits each, the first in the lowest bits of the first byte."""
+    packed = bytearray((len(states) + 3) // 4)
+    for index, state in enumerate(states):
+        packed[index >> 2] |= state << (index & 3) * 2
+    return bytes(packed)
+
+
+def unpack_states(packed: bytes, count: int) -> tuple[int, ...]:
+    """Undo `pack_states`; `count` markers."""
+    return tuple(packed[index >> 2] >> (index & 3) * 2 & 3 for index in range(count))

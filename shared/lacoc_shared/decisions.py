@@ -1,0 +1,124 @@
+"""The referee's decisions (rules 4; workshop 5-1 rule 8, 5-2 rule 9), as small values.
+
+What each does and when it is legal is the court's to say (`lacoc_server.referee`);
+here is only what both ends must agree on: the names and the arguments. A seat is
+named by its id ("left"), a marker by its name ("c2r3", "corner0", "flag7").
+"""
+
+from typing import get_args
+
+import msgspec
+
+
+class _Decision(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    pass
+
+
+class Ready(_Decision, frozen=True, tag="ready"):
+    """Say ready in the place of a contestant who cannot."""
+
+    seat: str
+
+
+class Start(_Decision, tag="start"):
+    """Begin the countdown of the match."""
+
+
+class Halt(_Decision, tag="halt"):
+    """Stop everything now: physics and the clock stand still."""
+
+
+class Resume(_Decision, tag="resume"):
+    """Go on after a halt, with a countdown."""
+
+
+class Restart(_Decision, tag="restart"):
+    """Put a robot back at its start place."""
+
+    seat: str
+
+
+class Freeze(_Decision, tag="freeze"):
+    """Let a robot stand (key 0) and refuse its keys for a while of clock."""
+
+    seat: str
+    seconds: float
+
+
+class Unfreeze(_Decision, tag="unfreeze"):
+    """End a freeze."""
+
+    seat: str
+
+
+class Adjust(_Decision, tag="adjust"):
+    """Add points to a score (or take them away)."""
+
+    seat: str
+    points: int
+
+
+class Set(_Decision, tag="set"):
+    """Set a disc, corner or flag: neutral, left, right or down."""
+
+    marker: str
+    state: str
+
+
+class TakeBack(_Decision, frozen=True, tag="take-back"):
+    """Strike out one event and judge the match again without it."""
+
+    event: int
+    """Number of the event."""
+    dry_run: bool = False
+    """Only say what would change."""
+
+
+class Clock(_Decision, tag="clock"):
+    """Move the clock: a positive number leaves less time to play."""
+
+    seconds: float
+
+
+class Abort(_Decision, tag="abort"):
+    """Declare the match void."""
+
+
+class Declare(_Decision, tag="declare"):
+    """Name the winner, whatever was computed."""
+
+    winner: str
+    """A seat's id, or "draw"."""
+
+
+class Official(_Decision, tag="official"):
+    """Make the result official."""
+
+
+class Next(_Decision, tag="next"):
+    """Open the next match."""
+
+
+Decision = (
+    Ready
+    | Start
+    | Halt
+    | Resume
+    | Restart
+    | Freeze
+    | Unfreeze
+    | Adjust
+    | Set
+    | TakeBack
+    | Clock
+    | Abort
+    | Declare
+    | Official
+    | Next
+)
+"""Any decision; on the wire a map whose entry "type" is the decision's name."""
+
+DECISIONS: dict[str, type[Decision]] = {
+    str(kind.__struct_config__.tag): kind for kind in get_args(Decision)
+}
+"""Every decision by its name, in the order of a match."""

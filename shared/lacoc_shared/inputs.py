@@ -1,0 +1,73 @@
+"""What enters a match from outside, each at a beat: the record's inputs.
+
+A match is a pure function of its setup and of these, beat by beat: the same inputs
+give the same match, bit for bit, live or headless, at any speed (rules 4). They have
+passed the court's checks (token, session, sequence number); whether a match heeds
+them is the match's to say, and is a part of what is replayed.
+"""
+
+import msgspec
+
+from lacoc_shared.decisions import Decision
+from lacoc_shared.messages import SentFile
+
+
+class _Input(msgspec.Struct, frozen=True, array_like=True):
+    pass
+
+
+class JoinSeat(_Input, frozen=True, tag="join"):
+    """A controller with the seat's token took the seat (again)."""
+
+    seat: int
+    team: str
+    robot: SentFile
+    postures: SentFile | None
+    locomotion: SentFile | None
+    token_hash: str
+    """Salted hash of the token: lets a restarted court know its seats."""
+
+
+class ReadySeat(_Input, frozen=True, tag="ready"):
+    """A contestant said ready, or took it back."""
+
+    seat: int
+    ready: bool
+
+
+class LeaveSeat(_Input, frozen=True, tag="leave"):
+    """A contestant left."""
+
+    seat: int
+
+
+class KeySeat(_Input, frozen=True, tag="key"):
+    """A new command of a seat: a digit at a level, or `RESTART_KEY`."""
+
+    seat: int
+    seq: int
+    level: int
+    key: int
+
+
+class SilentSeat(_Input, frozen=True, tag="silent"):
+    """A seat's controller has not been heard for a second of wall time (rules 3)."""
+
+    seat: int
+
+
+class HeardSeat(_Input, frozen=True, tag="heard"):
+    """It was heard again."""
+
+    seat: int
+
+
+class Decide(_Input, frozen=True, tag="decide"):
+    """A referee decided."""
+
+    by: str
+    reason: str
+    decision: Decision
+
+
+Input = JoinSeat | ReadySeat | LeaveSeat | KeySeat | SilentSeat | HeardSeat | Decide

@@ -1,0 +1,72 @@
+"""The key expressions of a court (docs/protocol.md)."""
+
+import re
+from dataclasses import dataclass
+
+from lacoc_shared.mistakes import UserError
+
+_NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}")
+
+
+@dataclass(frozen=True)
+class Keys:
+    """The key expressions of one court.
+
+    Raises:
+        UserError: if the court's name is not made of a-z, 0-9 and hyphens.
+    """
+
+    court: str
+
+    def __post_init__(self) -> None:
+        if not _NAME.fullmatch(self.court):
+            raise UserError(
+                f"A court's name has 1-32 letters a-z, digits and hyphens; found {self.court!r}."
+            )
+
+    @property
+    def root(self) -> str:
+        """Everything of the court lies below this."""
+        return f"lacoc/{self.court}"
+
+    @property
+    def frame(self) -> str:
+        """Court to all, 50 Hz, the newest wins."""
+        return f"{self.root}/frame"
+
+    @property
+    def event(self) -> str:
+        """Court to all, numbered, must arrive."""
+        return f"{self.root}/event"
+
+    @property
+    def sheet(self) -> str:
+        """Court to all on change, and by query."""
+        return f"{self.root}/sheet"
+
+    @property
+    def scene(self) -> str:
+        """Court to all on change, and by query."""
+        return f"{self.root}/scene"
+
+    @property
+    def health(self) -> str:
+        """Court to all, 2 Hz, the newest wins."""
+        return f"{self.root}/health"
+
+    @property
+    def live(self) -> str:
+        """Liveliness tokens lie below this: who is connected."""
+        return f"{self.root}/live"
+
+    def command(self, seat: str) -> str:
+        """Controller to court: the seat's commands."""
+        return f"{self.root}/seat/{seat}/key"
+
+    def request(self, seat: str, what: str) -> str:
+        """Controller to court, with a reply: `what` is join, ready or leave."""
+        return f"{self.root}/seat/{seat}/{what}"
+
+    def decision(self, name: str) -> str:
+        """Referee to court, with a reply; `*` for all decisions."""
+        return f"{self.root}/referee/{name}"

@@ -1,0 +1,59 @@
+"""What is wrong with something a person gave us, said so that they can mend it.
+
+Two families. `FileRefused` carries every mistake of a file, each with its place: a
+file is refused whole (rules 2), so all its mistakes are listed at once.
+`UserError` is one sentence that says what was found and what to do; the command
+line prints it and exits with code 2.
+"""
+
+import msgspec
+
+
+class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """One mistake in a file, with its place."""
+
+    file: str
+    """Name of the file as the person knows it."""
+    found: str
+    """What stands there."""
+    expected: str
+    """What should stand there, or what to do."""
+    row: int | None = None
+    """Row (text file: line) counted from 1."""
+    column: int | None = None
+    """Cell in the row counted from 1."""
+    joint: int | None = None
+    """Joint id, 0-17 for six legs (rules 1)."""
+    leg: str | None = None
+    """Label of the joint's leg, such as "R,F"."""
+    field: str | None = None
+    """Name of the entry, where a file has named entries (a robot file)."""
+
+    @property
+    def place(self) -> str:
+        """The place in one phrase: "row 3, column 7, joint 5 (L,F)"."""
+        parts = [
+            f"row {self.row}" if self.row is not None else "",
+            f"column {self.column}" if self.column is not None else "",
+            self.field or "",
+            f"joint {self.joint}" + (f" ({self.leg})" if self.leg else "")
+            if self.joint is not None
+            else "",
+        ]
+        return ", ".join(part for part in parts if part)
+
+    def __str__(self) -> str:
+        place = f", {self.place}" if self.place else ""
+        return f"{self.file}{place}: found {self.found}, expected {self.expected}"
+
+
+class FileRefused(ValueError):
+    """A file is refused whole; `mistakes` lists everything that is wrong with it."""
+
+    def __init__(self, mistakes: list[Mistake]) -> None:
+        super().__init__("\n".join(map(str, mistakes)))
+        self.mistakes = mistakes
+
+
+class UserError(Exception):
+    """Something a person can put right; the message says how."""

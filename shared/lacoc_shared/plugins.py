@@ -1,0 +1,65 @@
+"""Games, robots, bots and commands that others bring: by entry point or by folder."""
+
+import hashlib
+import importlib.util
+import sys
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from types import ModuleType
+
+from lacoc_shared.mistakes import UserError
+
+
+def installed(group: str) -> dict[str, EntryPoint]:
+    """All entries of a group (such as "lacoc.arenas") by name, in alphabetical order."""
+    return {entry.name: entry for entry in sorted(entry_points(group=group), key=lambda e: e.name)}
+
+
+def package(group: str, what: str, name: str) -> ModuleType:
+    """Import the package that a name or a folder stands for.
+
+    Args:
+        group: the entry-point group.
+        what: what it is called in an error, such as "game".
+        name: an installed name, or the path of a folder (anything with a slash or a dot).
+
+    Raises:
+        UserError: if there is no such package; the message lists the ones there are.
+    """
+    entries = installed(group)
+    if name in entries:
+        module: ModuleType = entries[name].load()
+        return module
+    folder = Path(name).expanduser()
+    if folder.is_dir():
+        return package_of_folder(folder)
+    raise UserError(
+        f"There is no {what} {name!r}. Installed: {', '.join(entries)}. "
+        "A folder works too: give its path."
+    )
+
+
+def package_of_folder(folder: Path) -> ModuleType:
+    """Make a folder importable as a package of its own name, so that `.rules` works in it."""
+    folder = folder.resolve()
+    name = f"lacoc_folder_{hashlib.blake2b(str(folder).encode(), digest_size=6).hexdigest()}"
+    if name in sys.modules:
+        return sys.modules[name]
+    init = folder / "__init__.py"
+    spec = importlib.util.spec_from_file_location(
+        name, init if init.exists() else None, submodule_search_locations=[str(folder)]
+    )
+    if spec is None:
+        spec = importlib.util.spec_from_loader(name, loader=None, is_package=True)
+        assert spec is not None
+        spec.submodule_search_locations = [str(folder)]
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    if spec.loader is not None:
+        spec.loader.exec_module(module)
+    return module
+
+
+def folder_of(module: ModuleType) -> Path:
+    """The folder of a package."""
+    return Path(next(iter(module.__path__)))

@@ -1,0 +1,73 @@
+"""What a record holds beside inputs, events and frames."""
+
+from typing import Any
+
+import msgspec
+
+
+class Setup(msgspec.Struct, frozen=True, kw_only=True):
+    """All that a match is made from; with the inputs it gives the same match again."""
+
+    court: str
+    match: int
+    """Number of the match at its court, from 1."""
+    arena: str
+    settings: dict[str, Any]
+    """The arena file as played, contest's overrides included."""
+    limits: dict[str, float]
+    """Contest limits for robots (rules 1) that differ from the defaults."""
+
+
+class Header(msgspec.Struct, frozen=True, kw_only=True):
+    """The first message of every segment of a record."""
+
+    format: int
+    """`FORMAT` of the software that wrote it."""
+    match_id: str
+    """The same for all segments of a match; names its files."""
+    segment: int
+    """0, or how many segments came before."""
+    started: str
+    """Wall time of the segment's begin, ISO 8601, UTC."""
+    versions: dict[str, str]
+    """lacoc, protocol, mujoco, machine: a replay is exact only where they agree."""
+    setup: Setup
+
+
+class Touch(msgspec.Struct, frozen=True, array_like=True):
+    """What the rules saw in a tick beside the poses of its frame; only where there was any."""
+
+    touched: tuple[tuple[int, ...], ...]
+    """For each seat the markers it touched."""
+    placed: tuple[tuple[float, float, float] | None, ...]
+    """For each seat the start place it was put on in this tick: x, y [m], heading [rad]."""
+
+
+class Result(msgspec.Struct, frozen=True, kw_only=True):
+    """How a match ended. The computed result and the official one are both kept (rules 4)."""
+
+    match_id: str
+    court: str
+    match: int
+    arena: str
+    teams: tuple[str, ...]
+    scores: tuple[int, ...]
+    """With the referee's adjustments."""
+    computed: str
+    """Seat id of the winner by the rules, "draw", or "" if play never ended."""
+    official: str
+    """The same after the referee's word; "" until OFFICIAL, "void" for a void match."""
+    reason: str
+    """Why the match ended."""
+    clock_s: float
+    beats: int
+    digest: str
+    """Chained state hash at the last beat, hexadecimal."""
+    model: str
+    """Hash of the compiled model, hexadecimal."""
+    health: dict[str, Any] = {}
+    """Health verdict: slow beats, worst lateness, real-time factor, refused commands."""
+
+
+FORMAT = 1
+"""Version of the record's own layout."""

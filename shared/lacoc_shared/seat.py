@@ -1,0 +1,60 @@
+"""Seats, phases and the small numbers that frames carry."""
+
+from enum import IntEnum, IntFlag
+
+
+class Phase(IntEnum):
+    """The phases of a match (rules 4)."""
+
+    CREATED = 0
+    LOBBY = 1
+    READY = 2
+    COUNTDOWN = 3
+    PLAYING = 4
+    HALTED = 5
+    FINISHED = 6
+    OFFICIAL = 7
+    VOID = 8
+
+
+class SeatFlag(IntFlag):
+    """What is true of a seat at a beat."""
+
+    JOINED = 1
+    READY = 2
+    SILENT = 4
+    """Its controller has not been heard for a second: it stands (rules 3)."""
+    FROZEN = 8
+    """A referee froze it."""
+
+
+class No(IntEnum):
+    """Why a seat's command was refused; the sentence is in `NO_SENTENCES`."""
+
+    NONE = 0
+    NOT_PLAYING = 1
+    LEVEL_CLOSED = 2
+    NO_SUCH_KEY = 3
+    RESTARTED = 4
+    FROZEN = 5
+
+
+NO_SENTENCES: dict[No, str] = {
+    No.NONE: "",
+    No.NOT_PLAYING: "keys work only while the match is being played",
+    No.LEVEL_CLOSED: "this arena does not open that level of control",
+    No.NO_SUCH_KEY: "your gait file has no such key",
+    No.RESTARTED: "your robot was restarted a moment ago: wait until the pause is over",
+    No.FROZEN: "the referee has frozen your robot",
+}
+
+RESTART_KEY = 10
+"""The key number of [x] in a command; digits are 0-9."""
+
+NOBODY = -1
+"""In a place for a seat's index: no seat."""
+
+BEAT_S = 0.02
+"""A beat comes every 20 ms in every phase (rules 4)."""
+BEAT_US = 20_000
+BEATS_PER_S = 50
