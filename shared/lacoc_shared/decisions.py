@@ -20,45 +20,45 @@ class Ready(_Decision, frozen=True, tag="ready"):
     seat: str
 
 
-class Start(_Decision, tag="start"):
+class Start(_Decision, frozen=True, tag="start"):
     """Begin the countdown of the match."""
 
 
-class Halt(_Decision, tag="halt"):
+class Halt(_Decision, frozen=True, tag="halt"):
     """Stop everything now: physics and the clock stand still."""
 
 
-class Resume(_Decision, tag="resume"):
+class Resume(_Decision, frozen=True, tag="resume"):
     """Go on after a halt, with a countdown."""
 
 
-class Restart(_Decision, tag="restart"):
+class Restart(_Decision, frozen=True, tag="restart"):
     """Put a robot back at its start place."""
 
     seat: str
 
 
-class Freeze(_Decision, tag="freeze"):
+class Freeze(_Decision, frozen=True, tag="freeze"):
     """Let a robot stand (key 0) and refuse its keys for a while of clock."""
 
     seat: str
     seconds: float
 
 
-class Unfreeze(_Decision, tag="unfreeze"):
+class Unfreeze(_Decision, frozen=True, tag="unfreeze"):
     """End a freeze."""
 
     seat: str
 
 
-class Adjust(_Decision, tag="adjust"):
+class Adjust(_Decision, frozen=True, tag="adjust"):
     """Add points to a score (or take them away)."""
 
     seat: str
     points: int
 
 
-class Set(_Decision, tag="set"):
+class Set(_Decision, frozen=True, tag="set"):
     """Set a disc, corner or flag: neutral, left, right or down."""
 
     marker: str
@@ -74,28 +74,28 @@ class TakeBack(_Decision, frozen=True, tag="take-back"):
     """Only say what would change."""
 
 
-class Clock(_Decision, tag="clock"):
+class Clock(_Decision, frozen=True, tag="clock"):
     """Move the clock: a positive number leaves less time to play."""
 
     seconds: float
 
 
-class Abort(_Decision, tag="abort"):
+class Abort(_Decision, frozen=True, tag="abort"):
     """Declare the match void."""
 
 
-class Declare(_Decision, tag="declare"):
+class Declare(_Decision, frozen=True, tag="declare"):
     """Name the winner, whatever was computed."""
 
     winner: str
     """A seat's id, or "draw"."""
 
 
-class Official(_Decision, tag="official"):
+class Official(_Decision, frozen=True, tag="official"):
     """Make the result official."""
 
 
-class Next(_Decision, tag="next"):
+class Next(_Decision, frozen=True, tag="next"):
     """Open the next match."""
 
 
