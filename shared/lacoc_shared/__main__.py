@@ -1,0 +1,7 @@
+"""`python -m lacoc_shared` is `lacoc`, also where the command is not on the search path."""
+
+import sys
+
+from lacoc_shared.cli import main
+
+sys.exit(main())

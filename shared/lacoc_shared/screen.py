@@ -1,0 +1,97 @@
+"""What the command line shows: one pair of consoles, and the few things printed on them.
+
+Results go to standard output, everything said about them to standard error, so that a
+pipe carries results only. Colours and tables are for terminals; in a pipe a line is as
+long as it needs to be, because a program reads it.
+"""
+
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import msgspec
+from rich.console import Console, RenderableType
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+from rich.text import Text
+
+from lacoc_shared.mistakes import Mistake
+
+stdout = Console(highlight=False)
+stderr = Console(highlight=False, stderr=True)
+
+_UNLIMITED = 100_000  # characters in a line that nobody's eyes must follow
+
+
+def show(what: RenderableType, to: Console | None = None) -> None:
+    """Print a text or a table.
+
+    Args:
+        what: a plain string is printed as it is: square brackets are no markup.
+        to: the console; standard output if None.
+    """
+    console = stdout if to is None else to
+    console.print(
+        Text(what) if isinstance(what, str) else what,
+        width=None if console.is_terminal else _UNLIMITED,
+    )
+
+
+def note(text: str) -> None:
+    """Say something about the result, such as the name of a file that was written."""
+    show(Text(text, style="dim"), stderr)
+
+
+def warn(text: str) -> None:
+    """Say that something may not be as the person expects."""
+    show(Text.assemble(("Note: ", "bold yellow"), text), stderr)
+
+
+def error(text: str) -> None:
+    """Say in one line why the command stops."""
+    show(Text.assemble(("Error: ", "bold red"), (text, "red")), stderr)
+
+
+def refused(mistakes: Sequence[Mistake]) -> None:
+    """List everything that is wrong with a file (rules 2)."""
+    count = "1 mistake" if len(mistakes) == 1 else f"{len(mistakes)} mistakes"
+    error(f"{count}. Nothing of the file is used until it is right.")
+    show(mistakes_table(mistakes), stderr)
+
+
+def mistakes_table(mistakes: Sequence[Mistake]) -> Table:
+    """Make a table of mistakes; a column that no mistake fills is left out."""
+    columns: tuple[tuple[str, Callable[[Mistake], Any]], ...] = (
+        ("file", lambda m: m.file),
+        ("row", lambda m: m.row),
+        ("column", lambda m: m.column),
+        ("joint", lambda m: m.joint),
+        ("leg", lambda m: m.leg),
+        ("entry", lambda m: m.field),
+        ("found", lambda m: m.found),
+        ("expected", lambda m: m.expected),
+    )
+    used = [(title, get) for title, get in columns if any(get(m) is not None for m in mistakes)]
+    table = Table(*(title for title, _ in used))
+    for mistake in mistakes:
+        cells = (get(mistake) for _, get in used)
+        table.add_row(*(Text("" if cell is None else str(cell)) for cell in cells))
+    return table
+
+
+def print_json(value: Any) -> None:
+    """Print a value as one line of JSON: plain values, tuples and messages; bytes as base64."""
+    sys.stdout.write(msgspec.json.encode(value).decode() + "\n")
+    sys.stdout.flush()
+
+
+def progress() -> Progress:
+    """Make a progress bar on standard error; one task a bar, gone when it is closed."""
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+        console=stderr,
+        transient=True,
+    )
