@@ -8,6 +8,8 @@ import msgspec
 class Setup(msgspec.Struct, frozen=True, kw_only=True):
     """All that a match is made from; with the inputs it gives the same match again."""
 
+    match_id: str = ""
+    """Names the match's record."""
     court: str
     match: int
     """Number of the match at its court, from 1."""
@@ -27,6 +29,9 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
     """The same for all segments of a match; names its files."""
     segment: int
     """0, or how many segments came before."""
+    first_beat: int
+    """Beat the segment begins with. What earlier segments hold from it on was never answered: it
+    does not count (a court killed in the middle of a beat does that beat again)."""
     started: str
     """Wall time of the segment's begin, ISO 8601, UTC."""
     versions: dict[str, str]
@@ -71,3 +76,22 @@ class Result(msgspec.Struct, frozen=True, kw_only=True):
 
 FORMAT = 1
 """Version of the record's own layout."""
+
+PROFILE = "lacoc"
+"""MCAP profile of a record: tells it from the MCAP files of others."""
+
+BEAT_NS = 20_000_000
+"""A message's time in the file is its beat times this."""
+
+TOPICS = (
+    "/lacoc/header",
+    "/lacoc/input",
+    "/lacoc/event",
+    "/lacoc/frame",
+    "/lacoc/touch",
+    "/lacoc/snapshot",
+    "/lacoc/sheet",
+    "/lacoc/scene",
+    "/lacoc/result",
+)
+"""The channels of a record, all of msgpack; a channel's number is its place here, from 1."""

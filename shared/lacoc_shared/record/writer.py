@@ -1,0 +1,214 @@
+"""Writes the record of a running match: a journal that a killed court loses nothing of.
+
+The file is plain MCAP (https://mcap.dev/spec), unchunked and unbuffered: each message
+is one system call. `mcap.writer` puts a buffer before a raw file, which a kill would
+lose, and takes longer than the disk; so the one record that is written 50 times a
+second is packed here, and only the rest of the file is made of `mcap.records`.
+"""
+
+import os
+import struct
+import threading
+from pathlib import Path
+
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import Channel, DataEnd, Footer, McapRecord, Message, Statistics
+from mcap.records import Header as FileHeader
+from mcap.writer import MCAP0_MAGIC
+
+from lacoc_shared import __version__, codec
+from lacoc_shared.inputs import Input
+from lacoc_shared.messages import Event, Scene, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import files
+from lacoc_shared.record.schema import BEAT_NS, PROFILE, TOPICS, Header, Result, Touch
+
+SYNC_S = 1.0
+"""A power cut loses at most what this long has written."""
+
+_HEADER, _INPUT, _EVENT, _FRAME, _TOUCH, _SNAPSHOT, _SHEET, _SCENE, _RESULT = range(
+    1, len(TOPICS) + 1
+)
+_message_head = struct.Struct("<BQHIQQ").pack
+"""Opcode, length of what follows, channel, sequence, log time, publish time."""
+_HEAD_BYTES = 22
+"""What of a message's head its length counts."""
+
+
+class RecordWriter:
+    """One segment of a match's record, open for writing.
+
+    A disk that is full or broken does not stop a match: what can't be written waits in
+    memory, in order, and `trouble` says so until it could.
+
+    Args:
+        folder: where records lie; made if it is not there.
+        header: names the file and is its first message.
+
+    Raises:
+        UserError: if the file can't be made, or is there already.
+    """
+
+    def __init__(self, folder: Path, header: Header) -> None:
+        self.path = files.segment_path(folder, header.match_id, header.segment)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._file = self.path.open("xb", buffering=0)
+        except FileExistsError:
+            raise UserError(
+                f"The record {self.path} is there already, and a record is never overwritten."
+            ) from None
+        except OSError as error:
+            raise UserError(
+                f"No record can be written to {folder}: {error.strerror}. "
+                "Name a folder that this user may write to."
+            ) from None
+        self._backlog = bytearray()
+        self._write_error = ""
+        self._sync_error = ""
+        self._counts = [0] * (len(TOPICS) + 1)
+        self._first_ns = self._last_ns = header.first_beat * BEAT_NS
+        self._channels = [
+            Channel(id=number, topic=topic, message_encoding="msgpack", metadata={}, schema_id=0)
+            for number, topic in enumerate(TOPICS, start=1)
+        ]
+        self._counts[_HEADER] = 1
+        first = Message(_HEADER, self._first_ns, codec.encode(header), self._first_ns, 0)
+        # One system call: a file that has anything of a record has its header.
+        self._put(
+            MCAP0_MAGIC
+            + _bytes(FileHeader(PROFILE, f"lacoc {__version__}"), *self._channels, first)
+        )
+        self._dirty = True
+        self._closing = threading.Event()
+        self._syncer = threading.Thread(target=self._sync, name="record sync", daemon=True)
+        self._syncer.start()
+
+    @property
+    def trouble(self) -> str:
+        """What is wrong with the disk, as a sentence; "" while all is well."""
+        if self._backlog:
+            return (
+                f"The record {self.path} can't be written: {self._write_error}. "
+                f"{len(self._backlog)} bytes wait in memory: make room on its disk."
+            )
+        return self._sync_error
+
+    def input(self, beat: int, item: Input) -> None:
+        """Write what entered the match from outside."""
+        self._write(_INPUT, beat, codec.encode(item))
+
+    def event(self, event: Event) -> None:
+        """Write an event, at its own beat."""
+        self._write(_EVENT, event.beat, codec.encode(event))
+
+    def frame(self, beat: int, encoded: bytes) -> None:
+        """Write a frame, as it is published."""
+        self._write(_FRAME, beat, encoded)
+
+    def touch(self, beat: int, touch: Touch) -> None:
+        """Write what the rules saw beside the frame."""
+        self._write(_TOUCH, beat, codec.encode(touch))
+
+    def snapshot(self, beat: int, data: bytes) -> None:
+        """Write the whole state after a beat; `data` is the court's own."""
+        self._write(_SNAPSHOT, beat, data)
+
+    def sheet(self, beat: int, sheet: Sheet) -> None:
+        """Write a new sheet."""
+        self._write(_SHEET, beat, codec.encode(sheet))
+
+    def scene(self, beat: int, scene: Scene) -> None:
+        """Write a new scene."""
+        self._write(_SCENE, beat, codec.encode(scene))
+
+    def result(self, result: Result) -> None:
+        """Write the result; a later one replaces it."""
+        self._write(_RESULT, result.beats, codec.encode(result))
+
+    def close(self) -> None:
+        """Write the summary and bring everything to the disk. Closing twice is once."""
+        if self._closing.is_set():
+            return
+        self._put(self._ending())
+        self._closing.set()
+        self._syncer.join()
+        self._file.close()
+
+    def _write(self, channel: int, beat: int, data: bytes) -> None:
+        counts = self._counts
+        sequence = counts[channel]
+        counts[channel] = sequence + 1
+        self._last_ns = time_ns = beat * BEAT_NS
+        length = _HEAD_BYTES + len(data)
+        self._put(_message_head(Opcode.MESSAGE, length, channel, sequence, time_ns, time_ns) + data)
+        self._dirty = True
+
+    def _put(self, data: bytes) -> None:
+        """Append to the file; what the disk does not take is kept for the next time."""
+        waiting = self._backlog
+        if waiting:
+            waiting += data
+        try:
+            written = self._file.write(waiting or data)
+        except OSError as error:
+            written = 0
+            self._write_error = error.strerror or str(error)
+        if waiting:
+            del waiting[:written]
+        elif written != len(data):
+            waiting += data[written:]
+
+    def _sync(self) -> None:
+        """Bring the file to the disk once a second, beside the beat."""
+        try:
+            files.sync_folder(self.path.parent)
+        except OSError as error:
+            self._sync_failed(error)
+        while not self._closing.wait(SYNC_S):
+            self._sync_once()
+        self._sync_once()
+
+    def _sync_once(self) -> None:
+        if not self._dirty:
+            return
+        self._dirty = False
+        try:
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            self._sync_failed(error)
+
+    def _sync_failed(self, error: OSError) -> None:
+        # Stays: the system may have dropped what it could not write, and then says nothing more.
+        self._sync_error = (
+            f"The disk of the record {self.path} reports: {error.strerror}. "
+            "A power cut may lose a part of the record: check that disk."
+        )
+
+    def _ending(self) -> bytes:
+        """What a finished file has after its last message (without chunks: no index)."""
+        end = _bytes(DataEnd(data_section_crc=0))
+        start = self._file.tell() + len(self._backlog) + len(end)
+        statistics = Statistics(
+            attachment_count=0,
+            channel_count=len(self._channels),
+            channel_message_counts={
+                number: count for number, count in enumerate(self._counts) if count
+            },
+            chunk_count=0,
+            message_count=sum(self._counts),
+            message_end_time=self._last_ns,
+            message_start_time=self._first_ns,
+            metadata_count=0,
+            schema_count=0,
+        )
+        footer = Footer(summary_start=start, summary_offset_start=0, summary_crc=0)
+        return end + _bytes(*self._channels, statistics, footer) + MCAP0_MAGIC
+
+
+def _bytes(*records: McapRecord) -> bytes:
+    builder = RecordBuilder()
+    for record in records:
+        record.write(builder)
+    return bytes(builder.end())
