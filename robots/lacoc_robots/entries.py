@@ -1,0 +1,169 @@
+"""Taking entries out of a TOML table, with every mistake noted on the way.
+
+A number that could not be read becomes NaN. Every comparison with NaN is false, so a
+check that asks "is it too large?" finds no second mistake where there was a first.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from lacoc_shared.mistakes import Mistake
+
+
+class Entries:
+    """The entries of one table; all tables of a file share one list of mistakes."""
+
+    def __init__(self, table: dict[str, Any], place: str, file: str, book: list[Mistake]) -> None:
+        """Begin with nothing taken.
+
+        Args:
+            table: what stands in the file.
+            place: what goes before an entry's name, such as "body." or "leg 2 (R,B), ".
+            file: the file's name.
+            book: where mistakes are noted.
+        """
+        self.place = place
+        self._table = table
+        self._file = file
+        self._book = book
+        self._taken: set[str] = set()
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._table
+
+    def note(self, name: str, found: str, expected: str, **where: Any) -> None:
+        """Note a mistake of an entry."""
+        self._book.append(
+            Mistake(
+                file=self._file, field=self.place + name, found=found, expected=expected, **where
+            )
+        )
+
+    def number(
+        self, name: str, low: float, high: float, unit: str = "", default: float | None = None
+    ) -> float:
+        """Take a number between two bounds; NaN if it is wrong or missing."""
+        expected = f"a number {_bounds(low, high, unit)}"
+        value = self._take(name, expected, default)
+        return math.nan if value is None else self._check(name, value, low, high, expected)
+
+    def numbers(
+        self,
+        name: str,
+        bounds: Sequence[tuple[float, float]],
+        unit: str = "",
+        where: Sequence[Mapping[str, Any]] = (),
+    ) -> tuple[float, ...]:
+        """Take a list of numbers; NaN for those that are wrong or missing.
+
+        Args:
+            name: the entry.
+            bounds: lowest and highest value of each.
+            unit: of all of them.
+            where: the place of each within the entry, as fields of `Mistake`.
+        """
+        expected = f"{len(bounds)} numbers in [ ]"
+        value = self._take(name, expected)
+        if not isinstance(value, list) or len(value) != len(bounds):
+            if value is not None:
+                found = f"{len(value)} entries" if isinstance(value, list) else _shown(value)
+                self.note(name, found, expected)
+            return (math.nan,) * len(bounds)
+        places = where or [{"column": i + 1} for i in range(len(bounds))]
+        return tuple(
+            self._check(name, one, low, high, f"a number {_bounds(low, high, unit)}", **place)
+            for one, (low, high), place in zip(value, bounds, places, strict=True)
+        )
+
+    def text(self, name: str, longest: int) -> str:
+        """Take a word or a short text; "" if it is wrong or missing."""
+        expected = f"a text of 1 to {longest} characters"
+        value = self._take(name, expected)
+        if isinstance(value, str) and value.isprintable() and 1 <= len(value.strip()) <= longest:
+            return value.strip()
+        if value is not None:
+            self.note(name, _shown(value), expected)
+        return ""
+
+    def flag(self, name: str) -> bool:
+        """Take a switch that is off where it is missing."""
+        expected = "true or false"
+        value = self._take(name, expected, False)
+        if not isinstance(value, bool):
+            self.note(name, _shown(value), expected)
+            return False
+        return value
+
+    def choice(self, name: str, options: tuple[str, ...]) -> str:
+        """Take one of some words; the first where it is missing or wrong."""
+        expected = " or ".join(f'"{option}"' for option in options)
+        value = self._take(name, expected, options[0])
+        if value in options:
+            return str(value)
+        self.note(name, _shown(value), expected)
+        return options[0]
+
+    def table(self, name: str, *, optional: bool = False) -> "Entries":
+        """Take a table; an empty one where it is missing or wrong."""
+        expected = f"a table that begins with the line [{name}]"
+        value = self._take(name, expected, {} if optional else None)
+        if value is not None and not isinstance(value, dict):
+            self.note(name, _shown(value), expected)
+        return Entries(value if isinstance(value, dict) else {}, f"{name}.", self._file, self._book)
+
+    def tables(self, name: str, expected: str) -> list["Entries"]:
+        """Take tables, numbered from 0; none where they are missing or wrong."""
+        value = self._take(name, expected)
+        if value is None:
+            return []
+        if not value or not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
+            self.note(name, _shown(value), expected)
+            return []
+        return [
+            Entries(one, f"{name} {index}, ", self._file, self._book)
+            for index, one in enumerate(value)
+        ]
+
+    def ask(self, name: str) -> None:
+        """Say that an entry may stand here, without taking it."""
+        self._taken.add(name)
+
+    def finish(self) -> None:
+        """Note the entries that nobody has asked for."""
+        known = ", ".join(sorted(self._taken))
+        for name in self._table:
+            if name not in self._taken:
+                self.note(name, "an unknown entry", f"one of {known}")
+
+    def _take(self, name: str, expected: str, default: Any = None) -> Any:
+        self._taken.add(name)
+        value = self._table.get(name, default)
+        if value is None:
+            self.note(name, "nothing", expected)
+        return value
+
+    def _check(
+        self, name: str, value: Any, low: float, high: float, expected: str, **where: Any
+    ) -> float:
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if number and low <= value <= high:  # before float(): a long int has none
+            return float(value)
+        self.note(name, _shown(value), expected, **where)
+        return math.nan
+
+
+def _bounds(low: float, high: float, unit: str) -> str:
+    return f"from {low:g} to {high:g}" + (f" {unit}" if unit else "")
+
+
+def _shown(value: Any) -> str:
+    """Show a TOML value as it may stand in the file, cut short."""
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int) and abs(value) > 10**15:
+        return "a number of very many digits"
+    text = f'"{value}"' if isinstance(value, str) else str(value)
+    return text if len(text) <= 40 else text[:37] + "..."

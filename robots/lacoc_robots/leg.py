@@ -1,0 +1,101 @@
+"""A leg: three links on three hinges (workshop Fig. 3-2, rules 1).
+
+Frames: the body's is +x right, +y forward, +z up, with its origin in the middle of the
+body's box. A link is a capsule; its length is from hinge to hinge, tip to tip.
+"""
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import msgspec
+
+
+class Point(NamedTuple):
+    """A point in the body's frame [m]."""
+
+    x: float
+    y: float
+    z: float
+
+
+class Capsule(NamedTuple):
+    """All points within a radius of a segment, in the body's frame [m]."""
+
+    start: Point
+    end: Point
+    radius_m: float
+
+
+class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
+    """One leg as its robot file describes it."""
+
+    label: str
+    """How tables name the leg, such as "R,F"."""
+    position_m: Point
+    """The root hinge in the body's frame."""
+    outward_rad: float
+    """Direction that the leg points in at root angle 0: 0 = right, pi/2 = forward, pi = left."""
+    lengths_m: tuple[float, float, float]
+    """Root link (L0), 1st link (L1), 2nd link (L2), from hinge to hinge."""
+    radius_m: float
+    masses_kg: tuple[float, float, float]
+    """Root, 1st, 2nd link."""
+    range_rad: tuple[float, float]
+    """How far each of the three joints turns."""
+    accent: bool = False
+    """Drawn in another colour, to show where the front is (workshop 3-1)."""
+
+    @property
+    def side(self) -> int:
+        """+1 for a leg on the right, -1 for one on the left: the sign of its root axis.
+
+        With it a positive root angle swings the leg forward on both sides (rules 1).
+        """
+        return 1 if math.cos(self.outward_rad) > 0 else -1
+
+    def points(self, root: float, first: float, second: float) -> tuple[Point, Point, Point, Point]:
+        """Compute where the leg's hinges and its tip are.
+
+        Args:
+            root: angle [rad]; + swings the leg forward.
+            first: angle [rad]; + lifts the 1st link, 0 is horizontal.
+            second: angle [rad]; + swings the 2nd link outward and up, 0 is square to the 1st.
+
+        Returns:
+            Root hinge, 1st hinge, 2nd hinge and tip, in the body's frame.
+        """
+        heading = self.outward_rad + self.side * root
+        out_x, out_y = math.cos(heading), math.sin(heading)
+        shank = first + second
+        steps = (
+            (self.lengths_m[0], 0.0),
+            (self.lengths_m[1] * math.cos(first), self.lengths_m[1] * math.sin(first)),
+            (self.lengths_m[2] * math.sin(shank), -self.lengths_m[2] * math.cos(shank)),
+        )
+        points = [self.position_m]
+        for out, up in steps:
+            last = points[-1]
+            points.append(Point(last.x + out * out_x, last.y + out * out_y, last.z + up))
+        return points[0], points[1], points[2], points[3]
+
+    def capsules(self, root: float, first: float, second: float) -> tuple[Capsule, ...]:
+        """Compute the shapes of the three links, each from tip to tip of its length.
+
+        The root link begins with its middle on the root hinge, so that one of the
+        workshop's length, which is its radius, is a sphere there.
+        """
+        points = self.points(root, first, second)
+        shapes = []
+        for level, (start, end) in enumerate(pairwise(points)):
+            near = 0.0 if level == 0 else self.radius_m / self.lengths_m[level]
+            far = 1.0 - self.radius_m / self.lengths_m[level]
+            shapes.append(
+                Capsule(_between(start, end, near), _between(start, end, far), self.radius_m)
+            )
+        return tuple(shapes)
+
+
+def _between(start: Point, end: Point, part: float) -> Point:
+    x, y, z = (a + part * (b - a) for a, b in zip(start, end, strict=True))
+    return Point(x, y, z)

@@ -1,0 +1,72 @@
+"""Finding robots: installed samples, folders, and single robot files.
+
+A robot's folder holds `robot.toml`, and its sample gait as `Loco-data.txt` and
+`LocoTra-data.txt`. A third party's is installed under the entry-point group
+`lacoc.robots`, or given as a path.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from lacoc_shared import plugins
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import UserError
+
+GROUP = "lacoc.robots"
+
+
+class GaitFiles(NamedTuple):
+    """The gait files that lie beside a robot file."""
+
+    postures: SentFile | None
+    """Loco-data.txt"""
+    locomotion: SentFile | None
+    """LocoTra-data.txt"""
+
+
+def find_robot(name_or_path: str) -> tuple[str, bytes]:
+    """Read a robot's file.
+
+    Args:
+        name_or_path: an installed name such as "hexapod", a folder, or a .toml file.
+
+    Returns:
+        The file's name and its content, not looked at yet.
+
+    Raises:
+        UserError: if there is no such robot, or its file can't be read.
+    """
+    file = _robot_file(name_or_path)
+    return file.name, _content(file)
+
+
+def sample_gait_files(name_or_path: str) -> GaitFiles:
+    """Read the gait files beside a robot's file; None for one that is not there.
+
+    Raises:
+        UserError: if there is no such robot, or a file can't be read.
+    """
+    folder = _robot_file(name_or_path).parent
+    postures, locomotion = (
+        SentFile(file.name, _content(file)) if file.exists() else None
+        for file in (folder / "Loco-data.txt", folder / "LocoTra-data.txt")
+    )
+    return GaitFiles(postures, locomotion)
+
+
+def installed_robots() -> tuple[str, ...]:
+    """The names of the installed robots, in alphabetical order."""
+    return tuple(plugins.installed(GROUP))
+
+
+def _robot_file(name_or_path: str) -> Path:
+    if name_or_path.endswith(".toml"):
+        return Path(name_or_path).expanduser()
+    return plugins.folder_of(plugins.package(GROUP, "robot", name_or_path)) / "robot.toml"
+
+
+def _content(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError as error:
+        raise UserError(f"{file} can't be read: {error.strerror}.") from None

@@ -1,0 +1,111 @@
+"""A robot as numbers: a box with legs, its servos, and how it starts (rules 1, workshop 4-3)."""
+
+import math
+from typing import Literal
+
+import msgspec
+
+from lacoc_robots.leg import Capsule, LegSpec, Point
+from lacoc_shared.gait import JOINTS_PER_LEG, Posture
+
+
+class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
+    """A robot: a box with legs, its servos, and how it starts."""
+
+    name: str
+    size_m: tuple[float, float, float]
+    """Body: width (x), length (y), height (z)."""
+    body_mass_kg: float
+    legs: tuple[LegSpec, ...]
+    """Clockwise from the right front, seen from above."""
+    start_height_m: float
+    """Underside of the body above the floor at the start."""
+    start_posture: Posture
+    """(joints,) angles [rad], by joint id."""
+    ang_min_rad_s: float
+    """How fast a commanded angle moves toward the target posture: the workshop's AngMin."""
+    advance: Literal["reached", "time"]
+    """When a sequence goes on to its next posture (rules 3)."""
+    hold_us: int
+    """How long a posture is held once it is reached, or given, as `advance` says."""
+    kp: float
+    """Servo stiffness [N m/rad]."""
+    kv: float
+    """Servo damping [N m s/rad]."""
+    torque_n_m: float
+    """Strongest torque of a servo, either way."""
+    damping: float
+    """Joint damping [N m s/rad]."""
+    armature: float
+    """Inertia of a motor as its joint feels it [kg m2]."""
+    friction: float
+    """Coulomb friction between the robot and what it touches."""
+
+    @property
+    def joints(self) -> int:
+        """Number of joints; ids are leg + legs * level (rules 1)."""
+        return JOINTS_PER_LEG * len(self.legs)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """The legs' labels, in leg order."""
+        return tuple(leg.label for leg in self.legs)
+
+    @property
+    def ranges_rad(self) -> tuple[tuple[float, float], ...]:
+        """(joints,) lowest and highest angle, by joint id."""
+        return tuple(leg.range_rad for _ in range(JOINTS_PER_LEG) for leg in self.legs)
+
+    @property
+    def mass_kg(self) -> float:
+        """Mass of the whole robot."""
+        return self.body_mass_kg + sum(mass for leg in self.legs for mass in leg.masses_kg)
+
+    @property
+    def start_z_m(self) -> float:
+        """Height of the body's origin above the floor at the start."""
+        return self.start_height_m + self.size_m[2] / 2
+
+    @property
+    def radius_m(self) -> float:
+        """Largest horizontal distance of any part from the body's origin, as it starts."""
+        corner = math.hypot(self.size_m[0], self.size_m[1]) / 2
+        return max(
+            corner,
+            *(
+                math.hypot(end.x, end.y) + capsule.radius_m
+                for capsule in self.capsules(self.start_posture)
+                for end in (capsule.start, capsule.end)
+            ),
+        )
+
+    def points(self, posture: Posture) -> tuple[tuple[Point, Point, Point, Point], ...]:
+        """Compute where every leg's root hinge, 1st hinge, 2nd hinge and tip are.
+
+        Args:
+            posture: (joints,) angles [rad], by joint id.
+
+        Returns:
+            For each leg, in leg order, its four points in the body's frame [m].
+        """
+        legs = len(self.legs)
+        return tuple(leg.points(*posture[i::legs]) for i, leg in enumerate(self.legs))
+
+    def capsules(self, posture: Posture) -> tuple[Capsule, ...]:
+        """Compute the shapes of all links in a posture, leg by leg, in the body's frame."""
+        legs = len(self.legs)
+        return tuple(
+            capsule
+            for i, leg in enumerate(self.legs)
+            for capsule in leg.capsules(*posture[i::legs])
+        )
+
+    def bounds(self, posture: Posture) -> tuple[Point, Point]:
+        """Compute the lowest and the highest x, y and z of all parts in a posture."""
+        half = tuple(size / 2 for size in self.size_m)
+        lows, highs = [tuple(-h for h in half)], [half]
+        for capsule in self.capsules(posture):
+            for end in (capsule.start, capsule.end):
+                lows.append(tuple(at - capsule.radius_m for at in end))
+                highs.append(tuple(at + capsule.radius_m for at in end))
+        return Point(*map(min, zip(*lows, strict=True))), Point(*map(max, zip(*highs, strict=True)))
