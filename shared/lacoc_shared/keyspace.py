@@ -5,6 +5,13 @@ from dataclasses import dataclass
 
 from lacoc_shared.mistakes import UserError
 
+COMMAND_MAX_BYTES = 1024
+"""A longer command, ready or leave is not read."""
+DECISION_MAX_BYTES = 4096
+"""A longer decision of a referee is not read."""
+JOIN_MAX_BYTES = 65_536
+"""A longer join, with all its files, is not read."""
+
 _NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}")
 
 

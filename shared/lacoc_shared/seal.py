@@ -1,0 +1,77 @@
+"""Tokens, their hashes, and the seals that prove whose a command is.
+
+A token opens a seat (or the referee's desk) and travels once, with the join. Then the
+session's secret, 16 bytes from the court, seals every command: a keyed BLAKE2b of 8
+bytes over the key expression and the numbers as text, joined by spaces.
+"""
+
+import base64
+import hashlib
+import hmac
+import secrets
+
+MAC_BYTES = 8
+SECRET_BYTES = 16
+_SALT_BYTES = 16
+_HASH_BYTES = 32
+
+
+def new_token() -> str:
+    """Make a random token of 128 bits: 26 letters a-z and digits 2-7."""
+    return base64.b32encode(secrets.token_bytes(16)).decode().rstrip("=").lower()
+
+
+def new_secret() -> bytes:
+    """Make a session's secret."""
+    return secrets.token_bytes(SECRET_BYTES)
+
+
+def new_session() -> int:
+    """Make a session's number: random, so that a restarted court does not mistake an old one."""
+    return 1 + secrets.randbelow(2**32 - 1)
+
+
+def hash_token(token: str) -> str:
+    """Hash a token for keeping: "salt$hash", both hexadecimal.
+
+    The hash is a fast one, because a court verifies within a beat. That is right for the random
+    tokens of `new_token`; a short word that a person chose can be guessed by whoever gets hold of
+    the hash, so records are not to be published with such tokens in use.
+    """
+    salt = secrets.token_bytes(_SALT_BYTES)
+    return f"{salt.hex()}${_hash(token, salt).hex()}"
+
+
+def verify_token(token: str, token_hash: str) -> bool:
+    """Whether a token is the one that was hashed; takes the same time for every wrong one."""
+    salt, _, digest = token_hash.partition("$")
+    try:
+        return hmac.compare_digest(_hash(token, bytes.fromhex(salt)), bytes.fromhex(digest))
+    except ValueError:
+        return False
+
+
+def command_mac(
+    secret: bytes, key_expression: str, session: int, seq: int, level: int, key: int
+) -> bytes:
+    """The seal of a command."""
+    return _mac(secret, f"{key_expression} {session} {seq} {level} {key}")
+
+
+def request_mac(secret: bytes, key_expression: str, session: int, ready: bool) -> bytes:
+    """The seal of a ready or leave request."""
+    return _mac(secret, f"{key_expression} {session} {int(ready)}")
+
+
+def same(one: bytes, other: bytes) -> bool:
+    """Compare two seals in constant time."""
+    return hmac.compare_digest(one, other)
+
+
+def _mac(secret: bytes, text: str) -> bytes:
+    return hashlib.blake2b(text.encode(), key=secret, digest_size=MAC_BYTES).digest()
+
+
+def _hash(token: str, salt: bytes) -> bytes:
+    data = token.encode("utf-8", "surrogatepass")
+    return hashlib.blake2b(data, salt=salt, digest_size=_HASH_BYTES, person=b"lacoc token").digest()

@@ -1,0 +1,284 @@
+"""The one door to Zenoh: courts and clients talk in bytes here, with typed errors.
+
+A court polls: its subscribers and queryables are rings that are emptied once a beat,
+so no thread but the court's own ever runs its code and the order is its own. A client
+may wait: its mailboxes are filled by Zenoh's receiving thread. Nothing else in the
+project imports zenoh.
+"""
+
+import atexit
+import json
+import os
+import threading
+import time
+from collections import deque
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Self
+
+import zenoh
+import zenoh.ext
+from zenoh.handlers import Callback, RingChannel
+
+from lacoc_shared import address, network_config
+from lacoc_shared.mistakes import UserError
+
+
+class NoReply(Exception):
+    """Nobody answered: no such court, not allowed to ask, or too late."""
+
+
+class Refused(Exception):
+    """The answer was an error; `payload` is what it says."""
+
+    def __init__(self, payload: bytes) -> None:
+        super().__init__(f"refused with {len(payload)} bytes")
+        self.payload = payload
+
+
+class Publisher:
+    """Sends bytes under one key expression; a receiver too slow to take them misses some."""
+
+    def __init__(self, publisher: zenoh.Publisher | zenoh.ext.AdvancedPublisher) -> None:
+        self._publisher = publisher
+
+    def put(self, payload: bytes) -> None:
+        """Send; never waits for a receiver."""
+        self._publisher.put(payload)
+
+
+class Ring:
+    """The newest messages of a subscription, polled by its owner."""
+
+    def __init__(self, subscriber: "zenoh.Subscriber[zenoh.Handler[zenoh.Sample]]") -> None:
+        self._subscriber = subscriber
+
+    def take(self) -> bytes | None:
+        """The oldest message that waits, or None; never blocks."""
+        sample = self._subscriber.try_recv()
+        return None if sample is None else sample.payload.to_bytes()
+
+
+class Mail(NamedTuple):
+    """A message and when it arrived on this machine."""
+
+    payload: bytes
+    arrived_s: float
+    """`time.monotonic()`."""
+
+
+class Mailbox:
+    """The newest messages of a subscription, filled while its one reader does other things."""
+
+    def __init__(self, depth: int) -> None:
+        self._mails: deque[Mail] = deque(maxlen=depth)
+        self._arrived = threading.Event()
+
+    def deliver(self, sample: zenoh.Sample) -> None:
+        """Take a message in; runs on Zenoh's thread."""
+        self._mails.append(Mail(sample.payload.to_bytes(), time.monotonic()))
+        self._arrived.set()
+
+    def take(self) -> Mail | None:
+        """The oldest message that waits, or None."""
+        return self._mails.popleft() if self._mails else None
+
+    def wait(self, timeout_s: float) -> bool:
+        """Wait until a message is there; False if none came in time."""
+        self._arrived.clear()
+        return bool(self._mails) or self._arrived.wait(timeout_s)
+
+
+class Request:
+    """A request that waits for its answer; without one the asker sees `NoReply`."""
+
+    def __init__(self, query: zenoh.Query) -> None:
+        self._query = query
+        self.key = str(query.key_expr)
+        payload = query.payload
+        self.payload = b"" if payload is None else payload.to_bytes()
+
+    def reply(self, payload: bytes) -> None:
+        """Answer."""
+        with self._query as query:
+            query.reply(self.key, payload)
+
+    def refuse(self, payload: bytes) -> None:
+        """Answer with an error."""
+        with self._query as query:
+            query.reply_err(payload)
+
+
+class Desk:
+    """Where requests under one key expression wait, polled by its owner."""
+
+    def __init__(self, queryable: "zenoh.Queryable[zenoh.Handler[zenoh.Query]]") -> None:
+        self._queryable = queryable
+
+    def take(self) -> Request | None:
+        """The oldest request that waits, or None; never blocks."""
+        while (query := self._queryable.try_recv()) is not None:
+            request = Request(query)
+            if "*" not in request.key:  # a request is for one seat, one decision
+                return request
+        return None
+
+
+class Session:
+    """A connection to the network; made by `open_court` or `open_client`, closed by `with`."""
+
+    def __init__(self, session: zenoh.Session, endpoints: Sequence[str]) -> None:
+        self._session = session
+        self.endpoints = tuple(endpoints)
+        """The complete addresses it was opened with."""
+        self._announcements: list[zenoh.LivelinessToken] = []
+        # Zenoh's threads must be gone before the interpreter is: also when a program ends by an
+        # exception somewhere that no `with` surrounds.
+        atexit.register(self.close)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the connection and all that was declared with it."""
+        atexit.unregister(self.close)
+        if not self._session.is_closed():
+            self._session.close()  # type: ignore[no-untyped-call]
+
+    def publisher(self, key: str) -> Publisher:
+        """Declare that this session sends under a key expression."""
+        return Publisher(self._session.declare_publisher(key))
+
+    def history_publisher(self, key: str, depth: int) -> Publisher:
+        """Declare a publisher whose messages must arrive, also at those who come late.
+
+        Args:
+            key: key expression.
+            depth: number of messages that are kept for them.
+        """
+        return Publisher(
+            zenoh.ext.declare_advanced_publisher(
+                self._session,
+                key,
+                cache=zenoh.ext.CacheConfig(depth),
+                sample_miss_detection=zenoh.ext.MissDetectionConfig(
+                    heartbeat=0.5, sporadic_heartbeat=None
+                ),
+                publisher_detection=True,
+            )
+        )
+
+    def ring(self, key: str, depth: int) -> Ring:
+        """Subscribe; the owner polls, and the newest `depth` messages wait for it."""
+        channel: RingChannel[zenoh.Sample] = RingChannel(depth)
+        return Ring(self._session.declare_subscriber(key, channel))
+
+    def mailbox(self, key: str, depth: int) -> Mailbox:
+        """Subscribe; the owner may wait, and the newest `depth` messages wait for it."""
+        mailbox = Mailbox(depth)
+        self._session.declare_subscriber(key, Callback(mailbox.deliver, indirect=False))
+        return mailbox
+
+    def history_mailbox(self, key: str, depth: int) -> Mailbox:
+        """Subscribe to a `history_publisher`: what it sent before comes first, and nothing lacks.
+
+        A publisher that comes back (a restarted court) is noticed, and its history comes too.
+        """
+        mailbox = Mailbox(depth)
+        zenoh.ext.declare_advanced_subscriber(
+            self._session,
+            key,
+            Callback(mailbox.deliver, indirect=False),
+            history=zenoh.ext.HistoryConfig(max_samples=depth, detect_late_publishers=True),
+            recovery=zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+        )
+        return mailbox
+
+    def desk(self, key: str, depth: int) -> Desk:
+        """Declare that this session answers requests; the newest `depth` wait to be polled."""
+        channel: RingChannel[zenoh.Query] = RingChannel(depth)
+        return Desk(self._session.declare_queryable(key, channel))
+
+    def ask(self, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> bytes:
+        """Send a request and wait for its answer.
+
+        Raises:
+            NoReply: if nobody answered in time (or is allowed to).
+            Refused: if the answer is an error.
+        """
+        replies = self._session.get(
+            key, payload=payload, timeout=timeout_s, consolidation=zenoh.ConsolidationMode.NONE
+        )
+        for reply in replies:
+            if reply.ok is not None:
+                return reply.ok.payload.to_bytes()
+            assert reply.err is not None
+            error = reply.err.payload.to_bytes()
+            if error != b"Timeout":  # Zenoh's own word
+                raise Refused(error)
+        raise NoReply(key)
+
+    def announce(self, key: str) -> None:
+        """Let others see that this session is alive, until it closes."""
+        self._tokens = (
+            *getattr(self, "_tokens", ()),
+            self._session.liveliness().declare_token(key),
+        )
+
+    def present(self, key: str, timeout_s: float = 1.0) -> tuple[str, ...]:
+        """Key expressions of all live announcements under a key expression, sorted."""
+        replies = self._session.liveliness().get(key, timeout=timeout_s)
+        return tuple(sorted(str(r.ok.key_expr) for r in replies if r.ok is not None))
+
+    def locators(self) -> tuple[str, ...]:
+        """Addresses that a court's session listens on, with the ports it really got."""
+        zid = self._session.info.zid()
+        found: list[str] = []
+        for reply in self._session.get(f"@/{zid}/router"):
+            if reply.ok is not None:
+                found += json.loads(reply.ok.payload.to_bytes())["locators"]
+        return tuple(found)
+
+
+def open_court(listen: Sequence[str]) -> Session:
+    """Open a court's session: the router that everyone else connects to.
+
+    Args:
+        listen: addresses to listen on; port 0 takes a free one (see `Session.locators`).
+
+    Raises:
+        UserError: if one of them can't be listened on; the message says why.
+    """
+    os.environ.setdefault("ZENOH_RUNTIME", network_config.RUNTIME_POOLS)
+    endpoints = [address.endpoint(one) for one in listen]
+    try:
+        return Session(_open(network_config.court_config(endpoints)), endpoints)
+    except zenoh.ZError as error:
+        raise UserError(address.why_not_listening(endpoints, error)) from None
+
+
+def open_client(connect: Sequence[str], timeout_s: float = 2.0) -> Session:
+    """Open the session of a controller, referee, spectator or gateway.
+
+    It stays open when the court goes away, and connects again by itself.
+
+    Args:
+        connect: addresses of a court; the first that answers is taken.
+        timeout_s: how long to try.
+
+    Raises:
+        UserError: if there is no connection; the message says why.
+    """
+    endpoints = [address.endpoint(one) for one in connect]
+    address.check_names(endpoints)
+    try:
+        return Session(_open(network_config.client_config(endpoints, timeout_s)), endpoints)
+    except zenoh.ZError:
+        raise UserError(address.why_not_connected(endpoints)) from None
+
+
+def _open(config: dict[str, Any]) -> zenoh.Session:
+    zenoh.init_log_from_env_or("off")  # its words are for developers: RUST_LOG=warn shows them
+    return zenoh.open(zenoh.Config.from_json5(json.dumps(config)))
