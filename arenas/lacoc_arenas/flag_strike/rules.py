@@ -1,0 +1,233 @@
+"""The rules of Flag-Strike (workshop 5-2, rules 6).
+
+The markers are "corner0" to "corner3" (bottom left, bottom right, top left, top right)
+and then "flag0" to "flag19" in the order of the arena file. The board state of a flag:
+NEUTRAL stands, LEFT and RIGHT have fallen for that team, DOWN has fallen for nobody (a
+referee can set that).
+
+Struck out claims (rules 4, take-back): a robot that came into a corner is inside it
+without having taken it, until it leaves and comes again. A struck touch of a flag is
+void from that tick until the robot lets go of the pole: else the flag would fall again
+one tick later. A void touch counts as none, so the other robot can strike the flag.
+
+What happens in one tick happens at once. Events come in the order of the markers,
+which says nothing about the seats.
+"""
+
+from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
+from typing import Any
+
+import msgspec
+
+from lacoc_arenas.game import (
+    DOWN,
+    LEFT,
+    NEUTRAL,
+    RIGHT,
+    Claim,
+    GameEvent,
+    Observation,
+    Place,
+    RobotView,
+    leader,
+)
+from lacoc_arenas.layout import opposite
+from lacoc_shared.messages import MarkerInfo
+
+from .settings import Settings
+
+CORNERS = 4
+NO_CORNER = -1
+
+
+class State(msgspec.Struct, frozen=True):
+    """A match of Flag-Strike."""
+
+    board: tuple[int, ...]
+    """(24,) the state of each corner, then of each flag."""
+    inside: tuple[int, int]
+    """The corner that each robot's centre is in, or `NO_CORNER`."""
+    void: tuple[tuple[int, int], ...] = ()
+    """(seat, marker) of each touch that a referee struck out and that still goes on."""
+
+
+class FlagStrike:
+    """The game for one choice of settings."""
+
+    state_type = State
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self.size_m = settings.size_m
+        self.markers = (
+            *(
+                MarkerInfo(
+                    name=f"corner{number}",
+                    kind="corner",
+                    x_m=x_m,
+                    y_m=y_m,
+                    radius_m=settings.corner_radius_m,
+                    points=settings.corner_points,
+                )
+                for number, (x_m, y_m) in enumerate(settings.corners)
+            ),
+            *(
+                MarkerInfo(
+                    name=flag.name,
+                    kind="flag",
+                    x_m=flag.x_m,
+                    y_m=flag.y_m,
+                    radius_m=settings.pole_radius_m,
+                    points=flag.colour.points,
+                )
+                for flag in settings.flags
+            ),
+        )
+        self.starts = opposite(Place(x_m, y_m, 0.0) for x_m, y_m in settings.starts)
+        self._points = tuple(marker.points for marker in self.markers)
+        self._corner_x_m, self._corner_y_m = settings.corners[-1]
+        self._radius2_m2 = settings.corner_radius_m**2
+
+    def start(self) -> State:
+        """Everything is neutral and stands; the robots are on their start places."""
+        left, right = (self.corner_at(places[0].x_m, places[0].y_m) for places in self.starts)
+        return State((NEUTRAL,) * len(self.markers), (left, right))
+
+    def corner_at(self, x_m: float, y_m: float) -> int:
+        """The corner whose circle a point is in, or `NO_CORNER`."""
+        dx_m, dy_m = abs(x_m) - self._corner_x_m, abs(y_m) - self._corner_y_m
+        if dx_m * dx_m + dy_m * dy_m <= self._radius2_m2:
+            return (x_m > 0) + 2 * (y_m > 0)
+        return NO_CORNER
+
+    def step(
+        self,
+        state: State,
+        observation: Observation,
+        dt_s: float,
+        struck: AbstractSet[Claim] = frozenset(),
+    ) -> tuple[State, tuple[GameEvent, ...]]:
+        """Judge one tick; see `Game.step`."""
+        left, right = observation
+        inside = (self.corner_at(left.x_m, left.y_m), self.corner_at(right.x_m, right.y_m))
+        if (
+            inside == state.inside
+            and not (left.touched or right.touched or state.void)
+            and left.placed is right.placed is None
+        ):
+            return state, ()
+        captures = tuple(self._captures(state, observation, inside, struck))
+        void, strikes = self._strikes(state, observation, struck)
+        claims = sorted((*captures, *strikes))
+        board = list(state.board)
+        for marker, seat in claims:
+            board[marker] = seat + 1
+        after = State(tuple(board), inside, void)
+        return (
+            state if after == state else after,
+            tuple(self._event(marker, seat) for marker, seat in claims),
+        )
+
+    def _captures(
+        self,
+        state: State,
+        observation: Observation,
+        inside: tuple[int, int],
+        struck: AbstractSet[Claim],
+    ) -> Iterator[tuple[int, int]]:
+        """(corner, seat) of each capture: outside in the tick before, inside now."""
+        came = [
+            now if now != self._inside(was, robot) else NO_CORNER
+            for now, was, robot in zip(inside, state.inside, observation, strict=True)
+        ]
+        if came[0] == came[1]:  # both in one tick: it stays
+            return
+        for seat, corner in enumerate(came):
+            if (
+                corner != NO_CORNER
+                and state.board[corner] != seat + 1
+                and (seat, self.markers[corner].name) not in struck
+            ):
+                yield corner, seat
+
+    def _inside(self, was: int, robot: RobotView) -> int:
+        if robot.placed is None:
+            return was
+        return self.corner_at(robot.placed.x_m, robot.placed.y_m)
+
+    def _strikes(
+        self, state: State, observation: Observation, struck: AbstractSet[Claim]
+    ) -> tuple[tuple[tuple[int, int], ...], list[tuple[int, int]]]:
+        """Touches that are void after this tick, and (flag, seat) of each strike."""
+        void: list[tuple[int, int]] = []
+        touching: dict[int, list[int]] = {}
+        for seat, robot in enumerate(observation):
+            for marker in robot.touched:
+                if state.board[marker] != NEUTRAL:
+                    continue
+                if (seat, marker) in state.void or (seat, self.markers[marker].name) in struck:
+                    void.append((seat, marker))
+                else:
+                    touching.setdefault(marker, []).append(seat)
+        strikes = [(marker, seats[0]) for marker, seats in touching.items() if len(seats) == 1]
+        return tuple(sorted(void)), strikes
+
+    def _event(self, marker: int, seat: int) -> GameEvent:
+        info = self.markers[marker]
+        kind, does = ("capture", "takes") if marker < CORNERS else ("strike", "strikes")
+        return GameEvent(
+            kind=kind,
+            seat=seat,
+            marker=info.name,
+            points=info.points,
+            text=f"{{team}} {does} {info.name} for {info.points} points.",
+        )
+
+    def board(self, state: State) -> tuple[int, ...]:
+        """State of each corner, then of each flag."""
+        return state.board
+
+    def score(self, state: State) -> tuple[int, ...]:
+        """Rule 7: the points of the corners held and of the flags struck."""
+        left = right = 0
+        for owner, points in zip(state.board, self._points, strict=True):
+            if owner == LEFT:
+                left += points
+            elif owner == RIGHT:
+                right += points
+        return left, right
+
+    def over(self, state: State) -> str:
+        """Rule 4: at once when one robot holds all four corners."""
+        holder = self._holder(state)
+        return "" if holder is None else f"the {('left', 'right')[holder]} team holds all corners"
+
+    def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
+        """Rule 8: who has more points; with `all_corners_win`, who holds all four corners."""
+        if self.settings.all_corners_win:
+            holder = self._holder(state)
+            if holder is not None:
+                return holder
+        return leader(scores)
+
+    @staticmethod
+    def _holder(state: State) -> int | None:
+        first, *others = state.board[:CORNERS]
+        return first - 1 if first != NEUTRAL and others == [first] * len(others) else None
+
+    def set(self, state: State, marker: int, value: int) -> State:
+        """Give a corner or a flag a state, as a referee decides; see `Game.set`."""
+        if marker < CORNERS and value == DOWN:
+            raise ValueError("a corner is neutral, left or right")
+        board = (*state.board[:marker], value, *state.board[marker + 1 :])
+        return msgspec.structs.replace(state, board=board)
+
+
+def make(settings: dict[str, Any]) -> FlagStrike:
+    """The game of an arena file's table [game].
+
+    Raises:
+        msgspec.ValidationError: if a setting is wrong; the message names it.
+    """
+    return FlagStrike(msgspec.convert(settings, Settings))

@@ -1,0 +1,125 @@
+"""The table [game] of a Flag-Strike arena file, and what makes a layout fair (rules 6)."""
+
+import math
+from collections.abc import Iterator
+from typing import Annotated, NamedTuple
+
+import msgspec
+
+from lacoc_arenas.layout import Length, Point
+
+FLAGS, COLOURS = 20, 4
+"""Workshop 5-2 rule 6."""
+
+Points = Annotated[int, msgspec.Meta(ge=1, le=1000)]
+
+
+class FlagColour(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The flags of one colour; all are worth the same."""
+
+    name: str
+    rgb: Annotated[str, msgspec.Meta(pattern="^#[0-9a-fA-F]{6}$")]
+    points: Points
+    flags: tuple[Point, ...]
+
+
+class Flag(NamedTuple):
+    """One flag of a layout."""
+
+    name: str
+    colour: FlagColour
+    x_m: float
+    y_m: float
+
+    def __str__(self) -> str:
+        return f"{self.name} ({self.colour.name}, [{self.x_m}, {self.y_m}])"
+
+
+class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The table [game] of the arena file."""
+
+    size_m: tuple[Length, Length]
+    corner_radius_m: Length
+    corner_inset_m: Length
+    corner_points: Points
+    all_corners_win: bool
+    starts: Annotated[tuple[Point, ...], msgspec.Meta(min_length=1)]
+    """The left team's start places, the best first."""
+    pole_radius_m: Length
+    pole_height_m: Length
+    clearance_m: Annotated[float, msgspec.Meta(ge=0, le=20)]
+    """No flag is nearer to a corner's edge or to a start of either team."""
+    colour: tuple[FlagColour, ...]
+
+    def __post_init__(self) -> None:
+        reach_m = self.corner_inset_m + self.corner_radius_m
+        if 2 * reach_m > min(self.size_m):
+            raise ValueError(
+                f"corner_inset_m {self.corner_inset_m} and corner_radius_m {self.corner_radius_m} "
+                f"make the corners overlap in a field of {self.size_m[0]} x {self.size_m[1]} m"
+            )
+        for x_m, y_m in self.starts:
+            if not self._inside(x_m, y_m):
+                raise ValueError(f"the start [{x_m}, {y_m}] is outside the walls")
+        self._check_colours()
+        self._check_flags()
+
+    @property
+    def corners(self) -> tuple[tuple[float, float], ...]:
+        """Centres: bottom left, bottom right, top left, top right."""
+        x_m, y_m = (size / 2 - self.corner_inset_m for size in self.size_m)
+        return ((-x_m, -y_m), (x_m, -y_m), (-x_m, y_m), (x_m, y_m))
+
+    @property
+    def flags(self) -> tuple[Flag, ...]:
+        """All flags in the order of the file."""
+        places = [(colour, place) for colour in self.colour for place in colour.flags]
+        return tuple(
+            Flag(f"flag{number}", colour, x_m, y_m)
+            for number, (colour, (x_m, y_m)) in enumerate(places)
+        )
+
+    def _inside(self, x_m: float, y_m: float) -> bool:
+        return abs(x_m) < self.size_m[0] / 2 and abs(y_m) < self.size_m[1] / 2
+
+    def _check_colours(self) -> None:
+        if len(self.colour) != COLOURS:
+            raise ValueError(f"there are {len(self.colour)} colours of flags, expected {COLOURS}")
+        if len({colour.name for colour in self.colour}) != COLOURS:
+            raise ValueError("two colours of flags have the same name")
+        if len({colour.points for colour in self.colour}) != COLOURS:
+            raise ValueError("two colours of flags have the same points; each needs its own")
+        if len(self.flags) != FLAGS:
+            raise ValueError(f"there are {len(self.flags)} flags, expected {FLAGS}")
+
+    def _check_flags(self) -> None:
+        standing: dict[tuple[float, float], Flag] = {}
+        for flag in self.flags:
+            other = standing.setdefault((flag.x_m, flag.y_m), flag)
+            if other is not flag:
+                raise ValueError(f"{flag} stands where {other} stands")
+        for flag in self.flags:
+            for mistake in self._mistakes(flag, standing):
+                raise ValueError(f"{flag} {mistake}")
+
+    def _mistakes(self, flag: Flag, standing: dict[tuple[float, float], Flag]) -> Iterator[str]:
+        if not self._inside(flag.x_m, flag.y_m):
+            yield "stands outside the walls"
+        partner = standing.get((-flag.x_m, -flag.y_m))
+        if partner is None or partner is flag or partner.colour is not flag.colour:
+            yield (
+                f"has no partner: another {flag.colour.name} flag must stand at "
+                f"[{0.0 - flag.x_m}, {0.0 - flag.y_m}]"
+            )
+        for number, (x_m, y_m) in enumerate(self.corners):
+            gap_m = math.dist((flag.x_m, flag.y_m), (x_m, y_m)) - self.corner_radius_m
+            if gap_m < self.clearance_m:
+                yield self._near(gap_m, f"the edge of corner{number}")
+        for x_m, y_m in self.starts:
+            for team, sign in (("left", 1), ("right", -1)):
+                gap_m = math.dist((flag.x_m, flag.y_m), (sign * x_m, sign * y_m))
+                if gap_m < self.clearance_m:
+                    yield self._near(gap_m, f"the {team} start [{sign * x_m}, {sign * y_m}]")
+
+    def _near(self, gap_m: float, what: str) -> str:
+        return f"is {gap_m:.3f} m from {what}, nearer than clearance_m {self.clearance_m}"

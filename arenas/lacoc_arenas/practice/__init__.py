@@ -1,0 +1,1 @@
+"""Practice: one robot, an open field, no end (workshop 4-4)."""
