@@ -1,0 +1,66 @@
+"""A seat's entry: the robot and gait files, weighed in together (rules 1 and 2)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from lacoc_robots.spec import Limits, RobotSpec, read_robot
+from lacoc_shared.gait import Gait, LocomotionTable, PostureTable
+from lacoc_shared.gait_text import read_gait
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import FileRefused, Mistake
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A robot with its gait, admitted to a match."""
+
+    robot: RobotSpec
+    gait: Gait
+
+
+def weigh_in(
+    robot: SentFile,
+    postures: SentFile | None,
+    locomotion: SentFile | None,
+    limits: Mapping[str, float],
+) -> Entry:
+    """Read and check what a contestant brings.
+
+    Args:
+        robot: the robot file.
+        postures: a Loco-data file, or None.
+        locomotion: a LocoTra-data file, or None.
+        limits: contest limits that differ from the defaults of rules 1.
+
+    Raises:
+        FileRefused: with every mistake of every file.
+    """
+    spec = read_robot(robot.data, robot.name, Limits(**limits))
+    mistakes: list[Mistake] = []
+    tables: list[PostureTable | LocomotionTable] = []
+    for file, kind, what in (
+        (postures, PostureTable, "a Loco-data file (postures for [A])"),
+        (locomotion, LocomotionTable, "a LocoTra-data file (sequences for [B])"),
+    ):
+        if file is None:
+            continue
+        try:
+            table = read_gait(file.data, file.name, legs=spec.labels)
+        except FileRefused as refused:
+            mistakes += refused.mistakes
+            continue
+        if isinstance(table, kind):
+            tables.append(table)
+        else:
+            mistakes.append(Mistake(file=file.name, found="the other kind of table", expected=what))
+    if not (tables or mistakes):
+        mistakes.append(Mistake(file=robot.name, found="no gait file", expected="at least one"))
+    if mistakes:
+        raise FileRefused(mistakes)
+    return Entry(
+        spec,
+        Gait(
+            next((t for t in tables if isinstance(t, PostureTable)), None),
+            next((t for t in tables if isinstance(t, LocomotionTable)), None),
+        ),
+    )

@@ -1,0 +1,163 @@
+"""What the rules have seen and decided, so that one event can be taken back (rules 4).
+
+Nothing is edited away. A match keeps every observation; to take an event back, the
+game is folded again from that tick with that event's claim struck out. Paths, clock
+and all other decisions stay as they were.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from lacoc_arenas.game import AnyGame, Claim, GameEvent, Observation
+from lacoc_shared.seat import BEAT_S
+
+
+@dataclass(frozen=True, slots=True)
+class SetMarker:
+    """A referee set a marker between two ticks."""
+
+    marker: int
+    value: int
+    struck: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One thing that the rules judged, with what they made of it."""
+
+    ticks: int
+    """Ticks played when it was judged."""
+    seen: Observation | SetMarker
+    before: Any
+    """The game's state before it."""
+    events: tuple[GameEvent, ...] = ()
+    numbers: tuple[int, ...] = ()
+    """Numbers of those events in the match's log; of a `SetMarker`, its decision's."""
+    struck: frozenset[Claim] = frozenset()
+    over: str = ""
+    """Why the game was over after it; steps that come later are kept, but not judged."""
+
+
+@dataclass(frozen=True)
+class Fold:
+    """What a take-back would make of the match."""
+
+    steps: list[Step]
+    """The whole history as judged again."""
+    state: Any
+    over: str
+    """Why the game is over, "" if it is not."""
+    vanished: tuple[tuple[int, GameEvent], ...]
+    """Events that are no more, with their numbers."""
+    appeared: tuple[tuple[int, int, GameEvent], ...]
+    """New events, with the index of their step and their index in it."""
+
+
+class History:
+    """The judged ticks of a match and the state of its game."""
+
+    def __init__(self, game: AnyGame) -> None:
+        self._game = game
+        self.state: Any = game.start()
+        """The game's state now."""
+        self._steps: list[Step] = []
+        self._step_of: dict[int, int] = {}
+
+    def observe(self, ticks: int, observation: Observation, next_number: int) -> list[GameEvent]:
+        """Judge one tick; its events get the numbers from `next_number` on."""
+        before = self.state
+        self.state, events = self._game.step(before, observation, BEAT_S)
+        numbers = tuple(range(next_number, next_number + len(events)))
+        over = self._game.over(self.state)
+        self._append(Step(ticks, observation, before, events, numbers, over=over))
+        return list(events)
+
+    @property
+    def over(self) -> str:
+        """Why the game is over; "" while it is not."""
+        return self._steps[-1].over if self._steps else ""
+
+    def set(self, ticks: int, marker: int, value: int, number: int) -> None:
+        """Set a marker, as the decision with this event number says.
+
+        Raises:
+            ValueError: if the marker has no such state.
+        """
+        before = self.state
+        self.state = self._game.set(before, marker, value)
+        self._append(Step(ticks, SetMarker(marker, value), before, (), (number,)))
+
+    def knows(self, number: int) -> bool:
+        """Whether an event can be taken back: it stands, and the game or a `set` made it."""
+        return number in self._step_of
+
+    def without(self, number: int) -> Fold:
+        """Fold the game again without one event; changes nothing here.
+
+        Raises:
+            KeyError: if there is no such event.
+        """
+        first = self._step_of[number]
+        steps = self._steps[:first]
+        state = self._steps[first].before
+        over = self._steps[first - 1].over if first else ""
+        vanished: list[tuple[int, GameEvent]] = []
+        appeared: list[tuple[int, int, GameEvent]] = []
+        for index in range(first, len(self._steps)):
+            old = self._steps[index]
+            seen, struck = old.seen, old.struck
+            if index == first:
+                seen, struck = _strike(old, number)
+            after = state
+            events: tuple[GameEvent, ...] = ()
+            numbers: tuple[int, ...] = ()
+            if isinstance(seen, SetMarker):
+                numbers = old.numbers
+                if not seen.struck:
+                    after = self._game.set(state, seen.marker, seen.value)
+            elif not over:
+                after, events = self._game.step(state, seen, BEAT_S, struck)
+                over = self._game.over(after)
+                before = dict(zip(old.events, old.numbers, strict=True))
+                numbers = tuple(before.get(event, 0) for event in events)
+                appeared += [
+                    (index, place, event)
+                    for place, event in enumerate(events)
+                    if event not in before
+                ]
+            vanished += [
+                (old_number, event)
+                for event, old_number in zip(old.events, old.numbers, strict=False)
+                if event not in events
+            ]
+            steps.append(Step(old.ticks, seen, state, events, numbers, struck, over))
+            state = after
+        return Fold(steps, state, over, tuple(vanished), tuple(appeared))
+
+    def accept(self, fold: Fold, next_number: int) -> None:
+        """Take a fold as what happened; its new events get the numbers from `next_number` on."""
+        self._steps = list(fold.steps)
+        for number, (index, place, _) in enumerate(fold.appeared, next_number):
+            step = self._steps[index]
+            numbers = (*step.numbers[:place], number, *step.numbers[place + 1 :])
+            self._steps[index] = replace(step, numbers=numbers)
+        self.state = fold.state
+        self._step_of = {
+            number: index
+            for index, step in enumerate(self._steps)
+            for number in step.numbers
+            if not (isinstance(step.seen, SetMarker) and step.seen.struck)
+        }
+
+    def _append(self, step: Step) -> None:
+        for number in step.numbers:
+            self._step_of[number] = len(self._steps)
+        self._steps.append(step)
+
+
+def _strike(step: Step, number: int) -> tuple[Observation | SetMarker, frozenset[Claim]]:
+    """A step's observation and struck claims, without one of its events."""
+    if isinstance(step.seen, SetMarker):
+        return SetMarker(step.seen.marker, step.seen.value, struck=True), step.struck
+    event = step.events[step.numbers.index(number)]
+    return step.seen, step.struck | {(event.seat, event.marker)}

@@ -1,0 +1,575 @@
+"""A match: phases, seats, clock and score, one beat after another (rules 4).
+
+A match is a pure function of its setup and its inputs. It reads no clock, opens no
+socket and knows physics only as a protocol: live, headless and in a replay the same
+inputs give the same match, bit for bit.
+
+The order of a beat (design.md, "One beat") favours no seat: requests of contestants,
+silences, the referee's decisions, every seat's [x], every seat's digit, one tick of
+physics, the rules.
+"""
+
+import math
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.game import Observation, Place, RobotView
+from lacoc_server import referee
+from lacoc_server.drive import Drive
+from lacoc_server.entry import weigh_in
+from lacoc_server.history import History
+from lacoc_server.physics import Fault, MakePhysics, Physics
+from lacoc_server.seat_state import Seat
+from lacoc_shared import __version__
+from lacoc_shared.codec import pack_states
+from lacoc_shared.gait import Level
+from lacoc_shared.inputs import (
+    Decide,
+    HeardSeat,
+    Input,
+    JoinSeat,
+    KeySeat,
+    LeaveSeat,
+    ReadySeat,
+    SilentSeat,
+)
+from lacoc_shared.messages import (
+    PROTOCOL,
+    DecisionReply,
+    Done,
+    Event,
+    Frame,
+    Refusal,
+    Sheet,
+)
+from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.record.schema import Result, Setup, Touch
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, NOBODY, RESTART_KEY, No, Phase
+
+TRANSITIONS: dict[Phase, frozenset[Phase]] = {
+    Phase.CREATED: frozenset({Phase.LOBBY}),
+    Phase.LOBBY: frozenset({Phase.READY, Phase.VOID}),
+    Phase.READY: frozenset({Phase.LOBBY, Phase.COUNTDOWN, Phase.VOID}),
+    Phase.COUNTDOWN: frozenset({Phase.PLAYING, Phase.HALTED, Phase.VOID}),
+    Phase.PLAYING: frozenset({Phase.HALTED, Phase.FINISHED, Phase.VOID}),
+    Phase.HALTED: frozenset({Phase.COUNTDOWN, Phase.FINISHED, Phase.VOID}),
+    Phase.FINISHED: frozenset({Phase.HALTED, Phase.OFFICIAL, Phase.VOID}),
+    Phase.OFFICIAL: frozenset(),
+    Phase.VOID: frozenset(),
+}
+"""Where a match can go from each phase; `next` is a new match."""
+
+PHYSICS_RUNS = frozenset({Phase.READY, Phase.PLAYING})
+
+MIN_START_DISTANCE_M = 0.35
+"""A start place is free if the other robot's centre is at least this far, and both radii."""
+
+_BODY = struct.Struct("<7f")
+
+Outcome = Done | DecisionReply | Refusal
+"""What became of an input."""
+
+
+@dataclass(frozen=True)
+class Beat:
+    """What a beat made."""
+
+    frame: Frame
+    events: tuple[Event, ...]
+    outcomes: tuple[Outcome, ...]
+    """For each input, in the order they were given."""
+    ticked: bool
+    """Whether physics ran."""
+    touch: Touch | None
+    """What the rules saw beside the poses, if there was any."""
+    result: Result | None
+    """The result, in a beat that changed it."""
+    sheet_changed: bool
+
+
+class Match:
+    """One match, from CREATED to OFFICIAL or VOID.
+
+    Args:
+        setup: what it is made from.
+        make_physics: builds the robots on their field.
+
+    Raises:
+        UserError: if the arena is not installed or its settings are wrong.
+    """
+
+    def __init__(self, setup: Setup, make_physics: MakePhysics) -> None:
+        self.setup = setup
+        self.arena = arenas.from_settings(setup.arena, setup.settings)
+        self.game = self.arena.game
+        self.rules = self.arena.match
+        self.phase = Phase.CREATED
+        self.beats = -1
+        """Number of the beat; the first is 0."""
+        self.countdown_beats = 0
+        self.ticks = 0
+        """Ticks of PLAYING."""
+        self.clock_offset = 0
+        """Ticks that a referee added to the clock."""
+        self.seats = [
+            Seat(index, seat.id, seat.colour, seat.pattern)
+            for index, seat in enumerate(self.arena.seats)
+        ]
+        self.history = History(self.game)
+        self.adjustments: dict[int, tuple[int, int]] = {}
+        """Event number -> seat, points."""
+        self.declared: str | None = None
+        self.ended = ""
+        """Why play ended."""
+        self.next_wanted = False
+        self.make_physics = make_physics
+        self.physics: Physics = make_physics(self.arena, ())
+        self._poses = b""
+        self._views: tuple[RobotView, ...] = ()
+        self._pose_offsets: tuple[int, ...] = ()
+        self._placed: list[Place | None] = [None] * len(self.seats)
+        self._event_count = 0
+        self._events: list[Event] = []
+        self._touch: Touch | None = None
+        self._result_changed = False
+        self._sheet_changed = True
+
+    # What can be asked.
+
+    @property
+    def clock_ticks(self) -> int:
+        """Ticks of the clock that have been used."""
+        return self.ticks + self.clock_offset
+
+    @property
+    def duration_ticks(self) -> int:
+        """Ticks that the match lasts; 0: without end."""
+        return round(self.rules.duration_s * BEATS_PER_S)
+
+    @property
+    def next_number(self) -> int:
+        """Number that the next event will get."""
+        return self._event_count + 1
+
+    def scores(
+        self, state: Any = None, adjustments: dict[int, tuple[int, int]] | None = None
+    ) -> tuple[int, ...]:
+        """Points of each seat: the game's and the referee's."""
+        scores = list(self.game.score(self.history.state if state is None else state))
+        for seat, points in (self.adjustments if adjustments is None else adjustments).values():
+            scores[seat] += points
+        return tuple(scores)
+
+    def winner(self) -> str:
+        """Who wins by the rules if the match ends now: a seat's id, or "draw"."""
+        seat = self.game.winner(self.history.state, self.scores())
+        return "draw" if seat is None else self.seats[seat].id
+
+    def missing(self) -> list[str]:
+        """Why the match can't be READY: everything at once, in words."""
+        reasons = []
+        for seat in self.seats:
+            if seat.join is None:
+                reasons.append(f"nobody has joined {seat.id}")
+            elif not seat.ready:
+                reasons.append(f"{seat.id} ({seat.team}) has not said ready")
+        return reasons
+
+    def legality(self) -> dict[str, str]:
+        """Every decision: "" if it is legal now, else why not."""
+        return referee.legality(self)
+
+    def sheet(self) -> Sheet:
+        """Everything that frames leave out."""
+        return Sheet(
+            protocol=PROTOCOL,
+            version=__version__,
+            court=self.setup.court,
+            match=self.setup.match,
+            arena=self.arena.name,
+            title=self.arena.title,
+            duration_s=self.rules.duration_s,
+            levels=tuple(int(level) for level in self.rules.open_levels),
+            settings=self.arena.settings,
+            seats=tuple(seat.sheet() for seat in self.seats),
+            markers=self.game.markers,
+            scene=self.physics.scene_hash,
+        )
+
+    def result(self) -> Result:
+        """The result as it stands."""
+        official = {Phase.OFFICIAL: self.declared or self.winner(), Phase.VOID: "void"}
+        return Result(
+            match_id=self.setup.match_id,
+            court=self.setup.court,
+            match=self.setup.match,
+            arena=self.arena.name,
+            teams=tuple(seat.team for seat in self.seats),
+            scores=self.scores(),
+            computed=self.winner() if self.ended else "",
+            official=official.get(self.phase, ""),
+            reason=self.ended,
+            clock_s=self.clock_ticks * BEAT_S,
+            beats=self.beats + 1,
+            digest=self.physics.digest.hex(),
+            model=self.physics.model_hash,
+        )
+
+    # One beat.
+
+    def beat(self, inputs: Sequence[Input] = ()) -> Beat:
+        """Let one beat pass."""
+        self.beats += 1
+        self._events = []
+        self._touch = None
+        self._result_changed = False
+        if self.phase is Phase.CREATED:
+            self.enter(Phase.LOBBY)
+        outcomes: list[Outcome] = [Done()] * len(inputs)
+        for index in sorted(range(len(inputs)), key=lambda index: _rank(inputs[index])):
+            outcomes[index] = self._take(inputs[index])
+        self._put_back()
+        self._move_on()
+        ticked = self.phase in PHYSICS_RUNS and self._tick()
+        sheet_changed, self._sheet_changed = self._sheet_changed, False
+        return Beat(
+            self._frame(),
+            tuple(self._events),
+            tuple(outcomes),
+            ticked,
+            self._touch,
+            self.result() if self._result_changed else None,
+            sheet_changed,
+        )
+
+    def _take(self, item: Input) -> Outcome:
+        match item:
+            case JoinSeat():
+                return self._join(item)
+            case LeaveSeat():
+                return self._leave(self.seats[item.seat])
+            case ReadySeat():
+                return self.say_ready(self.seats[item.seat], item.ready)
+            case SilentSeat():
+                return self._silent(self.seats[item.seat])
+            case HeardSeat():
+                return self._heard(self.seats[item.seat])
+            case Decide():
+                return referee.decide(self, item)
+            case KeySeat():
+                return self._key(self.seats[item.seat], item)
+
+    def _move_on(self) -> None:
+        """Change phase where that needs nobody's word."""
+        if self.phase is Phase.LOBBY and not self.missing():
+            self._build()
+            self.enter(Phase.READY, model=self.physics.model_hash)
+        elif self.phase is Phase.READY and self.missing():
+            self.physics, self._poses, self._views = self.make_physics(self.arena, ()), b"", ()
+            self._sheet_changed = True
+            for seat in self.seats:
+                seat.drive = seat.state = None
+            self.enter(Phase.LOBBY)
+        elif self.phase is Phase.READY and self.rules.start == "ready":
+            self.begin_countdown()
+        elif self.phase is Phase.COUNTDOWN:
+            self.countdown_beats -= 1
+        if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
+            self.enter(Phase.PLAYING)
+
+    def _tick(self) -> bool:
+        """One tick of physics, judged by the rules while the match is played."""
+        states = [seat.drive.tick(seat.state) for seat in self.seats if seat.drive and seat.state]
+        fault = self.physics.step([state.angles for state in states])
+        if fault is not None:
+            self._fail(fault)
+            return False
+        for seat, state in zip(self.seats, states, strict=True):
+            seat.state = state
+        self._look()
+        if self.phase is Phase.PLAYING:
+            self._judge()
+        return True
+
+    def _judge(self) -> None:
+        self.ticks += 1
+        touched = self.physics.touched()
+        placed = self._placed
+        if any(touched) or any(placed):
+            self._touch = Touch(tuple(touched), tuple(placed))
+            observation: Observation = tuple(
+                view._replace(placed=place, touched=touch)
+                for view, place, touch in zip(self._views, placed, touched, strict=True)
+            )
+            self._placed = [None] * len(self.seats)
+        else:
+            observation = self._views
+        for event in self.history.observe(self.ticks, observation, self.next_number):
+            self.tell(
+                event.kind,
+                event.text.format(team=self.seats[event.seat].team),
+                seat=event.seat,
+                marker=event.marker,
+                also=event.also,
+                points=event.points,
+            )
+        if self.history.over:
+            self.finish(self.history.over)
+        elif 0 < self.duration_ticks <= self.clock_ticks:
+            self.finish("time is up")
+
+    def _fail(self, fault: Fault) -> None:
+        """MuJoCo's warning or reset: the state before the tick stands, and the match halts."""
+        self.tell("fault", f"Physics stopped: {fault.text}.", seat=fault.seat, words=fault.text)
+        if self.phase is Phase.PLAYING:
+            self.enter(Phase.HALTED)
+        else:
+            for seat in self.seats:
+                seat.ready = False
+
+    # What seats ask for.
+
+    def _join(self, join: JoinSeat) -> Outcome:
+        seat = self.seats[join.seat]
+        if self.phase in (Phase.LOBBY, Phase.READY):
+            try:
+                entry = weigh_in(join.robot, join.postures, join.locomotion, self.setup.limits)
+            except FileRefused as refused:
+                return Refusal("Your files have mistakes.", tuple(refused.mistakes))
+            same = seat.join is not None and _files(seat.join) == _files(join)
+            if not same:
+                seat.ready = False
+            seat.join, seat.entry, seat.silent = join, entry, False
+            self._sheet_changed = True
+            self.tell(
+                "join",
+                f"{join.team} takes the {seat.id} seat with {entry.robot.name}.",
+                seat=join.seat,
+            )
+            return Done()
+        if seat.join is None:
+            return Refusal(f"The match is on ({self.phase.name}): join when the next one opens.")
+        self.tell("join", f"{seat.team} is back.", seat=join.seat)
+        if _files(seat.join) == _files(join):
+            return Done()
+        return Done("The match is on: your robot keeps the files that it began with.")
+
+    def _leave(self, seat: Seat) -> Outcome:
+        if self.phase in (Phase.LOBBY, Phase.READY):
+            self.tell("leave", f"{seat.team} leaves the {seat.id} seat.", seat=seat.index)
+            seat.join = seat.entry = None
+            seat.ready = seat.silent = False
+            self._sheet_changed = True
+            return Done()
+        self.tell("leave", f"{seat.team} has left; the seat stays theirs.", seat=seat.index)
+        seat.silent = True
+        seat.stand()
+        if (
+            self.rules.start == "ready"
+            and self.phase in (Phase.PLAYING, Phase.HALTED)
+            and all(other.silent for other in self.seats)
+        ):
+            self.finish("everybody has left")
+        return Done("The seat stays yours.")
+
+    def say_ready(self, seat: Seat, ready: bool) -> Outcome:
+        """Take a contestant's ready, or take it back."""
+        if self.phase not in (Phase.LOBBY, Phase.READY):
+            return Refusal(f"The match is on ({self.phase.name}).")
+        if seat.join is None:
+            return Refusal(f"Nobody has joined the {seat.id} seat.")
+        if seat.ready != ready:
+            seat.ready = ready
+            word = "is ready" if ready else "is not ready after all"
+            self.tell("ready", f"{seat.team} {word}.", seat=seat.index, ready=ready)
+        return Done()
+
+    def _silent(self, seat: Seat) -> Outcome:
+        if not seat.silent:
+            seat.silent = True
+            seat.stand()
+            self.tell("silent", f"{seat.team} is not heard any more: it stands.", seat=seat.index)
+        return Done()
+
+    def _heard(self, seat: Seat) -> Outcome:
+        if seat.silent:
+            seat.silent = False
+            self.tell("heard", f"{seat.team} is heard again.", seat=seat.index)
+        return Done()
+
+    def _key(self, seat: Seat, key: KeySeat) -> Outcome:
+        if self.phase is not Phase.PLAYING:
+            why = No.NOT_PLAYING
+        else:
+            why = seat.why_not(key, self.ticks, self.rules.open_levels)
+        if why is not No.NONE:
+            seat.refused = (key.seq, why)
+            return Refusal(why.name)
+        seat.applied = (key.seq, self.beats)
+        if key.key == RESTART_KEY:
+            seat.restart()
+            seat.locked_until = self.ticks + round(self.rules.restart_freeze_s * BEATS_PER_S)
+            self.tell("restart", f"{seat.team} goes back to the start.", seat=seat.index)
+        elif seat.drive and seat.state:
+            seat.state = seat.drive.press(seat.state, Level(key.level), key.key)
+        return Done()
+
+    # What the match does.
+
+    def enter(self, phase: Phase, **data: Any) -> None:
+        """Change the phase."""
+        assert phase in TRANSITIONS[self.phase], f"{self.phase.name} to {phase.name}"
+        before, self.phase = self.phase, phase
+        self.tell(
+            "phase",
+            f"{phase.name}" + (f": {self.ended}." if phase is Phase.FINISHED else "."),
+            before=before.name,
+            after=phase.name,
+            **data,
+        )
+        if phase in (Phase.FINISHED, Phase.OFFICIAL, Phase.VOID):
+            self._result_changed = True
+
+    def begin_countdown(self) -> None:
+        """Start or resume: play begins after the countdown."""
+        self.countdown_beats = round(self.rules.countdown_s * BEATS_PER_S)
+        self.enter(Phase.COUNTDOWN)
+
+    def finish(self, reason: str) -> None:
+        """End play."""
+        self.ended = reason
+        self.enter(Phase.FINISHED)
+        winner = self.winner()
+        scores = " : ".join(map(str, self.scores()))
+        word = "a draw" if winner == "draw" else f"{self._team(winner)} wins"
+        self.tell("result", f"By the rules: {word}, {scores}.", winner=winner, scores=self.scores())
+
+    def tell(self, kind: str, text: str, seat: int = NOBODY, **data: Any) -> int:
+        """Log an event; returns its number."""
+        self._event_count += 1
+        self._events.append(
+            Event(
+                number=self._event_count,
+                match=self.setup.match,
+                beat=self.beats,
+                clock_ticks=self.clock_ticks,
+                kind=kind,
+                text=text,
+                seat=seat,
+                data=data,
+            )
+        )
+        return self._event_count
+
+    def result_changed(self) -> None:
+        """Have this beat carry the result."""
+        self._result_changed = self.phase in (Phase.FINISHED, Phase.OFFICIAL, Phase.VOID)
+
+    def _team(self, seat_id: str) -> str:
+        return next(seat.team for seat in self.seats if seat.id == seat_id)
+
+    def _build(self) -> None:
+        """Compile the model: once, before the match (design.md, "Robot and world")."""
+        entries = [seat.entry for seat in self.seats if seat.entry]
+        self.physics = self.make_physics(self.arena, entries)
+        offset, offsets = 0, []
+        for seat, entry in zip(self.seats, entries, strict=True):
+            robot = entry.robot
+            seat.drive = Drive(
+                entry.gait,
+                robot.start_posture,
+                robot.ang_min_rad_s,
+                robot.advance,
+                robot.hold_us,
+                self.rules.repeat,
+            )
+            seat.state = seat.drive.begin(self.rules.open_levels[0])
+            offsets.append(offset)
+            offset += 4 * (7 + robot.joints)
+        self._pose_offsets = tuple(offsets)
+        self._sheet_changed = True
+        self._look()
+
+    def _look(self) -> None:
+        """Take the robots' poses: exactly the numbers that everybody sees."""
+        self._poses = self.physics.poses()
+        self._views = tuple(
+            RobotView(*_BODY.unpack_from(self._poses, offset)) for offset in self._pose_offsets
+        )
+
+    def _put_back(self) -> None:
+        """Put the robots that restart in this beat at their start places."""
+        going = [seat for seat in self.seats if seat.restarting]
+        if not going:
+            return
+        for seat in going:
+            place = self._free_place(seat)
+            self.physics.place(seat.index, place)
+            self._placed[seat.index] = place
+        for seat in going:
+            seat.restarting = False
+        self._look()
+
+    def _free_place(self, seat: Seat) -> Place:
+        """The first start place that is far enough from the other robots (rules 4).
+
+        Robots that restart in the same beat are not in the way: each goes to its own side, and
+        so no seat comes first.
+        """
+        others = [other for other in self.seats if other is not seat and not other.restarting]
+
+        def room_m(place: Place) -> float:
+            return min(
+                (
+                    math.hypot(place.x_m - view.x_m, place.y_m - view.y_m)
+                    - max(MIN_START_DISTANCE_M, _radius_m(seat) + _radius_m(other))
+                    for other in others
+                    for view in (self._views[other.index],)
+                ),
+                default=math.inf,
+            )
+
+        places = self.game.starts[seat.index]
+        return next((place for place in places if room_m(place) >= 0), max(places, key=room_m))
+
+    def _frame(self) -> Frame:
+        scores = self.scores()
+        return Frame(
+            self.setup.match,
+            self.beats,
+            int(self.phase),
+            max(0, self.countdown_beats) if self.phase is Phase.COUNTDOWN else 0,
+            self.clock_ticks,
+            tuple(
+                seat.frame(score, self.ticks)
+                for seat, score in zip(self.seats, scores, strict=True)
+            ),
+            pack_states(self.game.board(self.history.state)),
+            self._poses,
+            self.physics.scene_hash,
+            self.physics.digest,
+        )
+
+
+def _rank(item: Input) -> int:
+    """Place of an input in the order of a beat; a seat's [x] comes before its digit."""
+    match item:
+        case JoinSeat() | LeaveSeat() | ReadySeat():
+            return 0
+        case SilentSeat() | HeardSeat():
+            return 1
+        case Decide():
+            return 2
+        case KeySeat():
+            return 3 if item.key == RESTART_KEY else 4
+
+
+def _files(join: JoinSeat) -> tuple[Any, ...]:
+    return join.robot, join.postures, join.locomotion
+
+
+def _radius_m(seat: Seat) -> float:
+    return seat.entry.robot.radius_m if seat.entry else 0.0

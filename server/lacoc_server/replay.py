@@ -1,0 +1,198 @@
+"""A record played again: verified by physics, or taken up where it ended.
+
+Both feed the recorded inputs to a new match. `verify` steps the physics again and
+compares every recorded frame, bit for bit. `resume` lets the recorded poses stand for
+physics up to the newest snapshot, and only from there on steps: the rules judge on
+exactly the poses that frames carry, so the match that comes out is the same.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import mujoco
+
+from lacoc_arenas.arena import Arena
+from lacoc_arenas.game import Place
+from lacoc_server.entry import Entry
+from lacoc_server.match import Match
+from lacoc_server.physics import Fault
+from lacoc_server.world import World
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.gait import Posture
+from lacoc_shared.messages import Event, Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import Touch
+
+_NAMES = (
+    "match",
+    "beat",
+    "phase",
+    "countdown",
+    "clock",
+    "seats",
+    "board",
+    "poses",
+    "scene",
+    "state hash",
+)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a verification found."""
+
+    beats: int
+    """Beats that were simulated again."""
+    frames: int
+    """Frames that were compared."""
+    differs_at: int | None = None
+    """First beat that differs; None: all are the same."""
+    text: str = "same"
+
+
+def verify(record: Record) -> Iterator[int | Verdict]:
+    """Simulate a record again and compare.
+
+    Yields:
+        The number of each beat (for a progress bar), and last the `Verdict`.
+
+    Raises:
+        UserError: if its arena is not installed, or another MuJoCo made it.
+    """
+    _same_physics(record)
+    match = Match(record.header.setup, World)
+    frames = dict(record.frames)
+    events: dict[int, list[Event]] = {}
+    for event in record.events:
+        events.setdefault(event.beat, []).append(event)
+    compared = 0
+    for number in range(record.last_beat + 1):
+        beat = match.beat(record.inputs.get(number, ()))
+        if (recorded := frames.get(number)) is not None:
+            compared += 1
+            if encode(beat.frame) != recorded:
+                what = _difference(decode(recorded, Frame), beat.frame)
+                yield Verdict(number + 1, compared, number, f"beat {number} differs: {what}")
+                return
+        whole = number < record.last_beat or not record.cut
+        if whole and encode(beat.events) != encode(events.get(number, [])):
+            yield Verdict(number + 1, compared, number, f"beat {number} differs: its events")
+            return
+        yield number
+    yield Verdict(record.last_beat + 1, compared)
+
+
+@dataclass
+class _Cursor:
+    """Where a re-judged match is in its record."""
+
+    record: Record
+    frames: dict[int, bytes]
+    faults: dict[int, Event]
+    beat: int = 0
+    live: bool = False
+    """From here on physics is stepped."""
+    frame: Frame | None = field(default=None)
+
+    def move(self, beat: int) -> None:
+        self.beat = beat
+        if (encoded := self.frames.get(beat)) is not None:
+            self.frame = decode(encoded, Frame)
+
+
+class _Recorded:
+    """Recorded poses behind the protocol of physics, until the cursor says live."""
+
+    def __init__(self, arena: Arena, entries: Sequence[Entry], cursor: _Cursor) -> None:
+        self.world = World(arena, entries)
+        self.scene, self.scene_hash = self.world.scene, self.world.scene_hash
+        self.model_hash = self.world.model_hash
+        self._cursor = cursor
+        self._seats = len(entries)
+
+    @property
+    def digest(self) -> bytes:
+        frame = self._cursor.frame
+        return self.world.digest if self._cursor.live or frame is None else frame.digest
+
+    def place(self, seat: int, place: Place) -> None:
+        if self._cursor.live:
+            self.world.place(seat, place)
+
+    def step(self, angles: Sequence[Posture]) -> Fault | None:
+        if self._cursor.live:
+            return self.world.step(angles)
+        fault = self._cursor.faults.get(self._cursor.beat)
+        return None if fault is None else Fault(fault.seat, str(fault.data["words"]))
+
+    def poses(self) -> bytes:
+        frame = self._cursor.frame
+        if self._cursor.live or frame is None or not frame.poses:
+            return self.world.poses()
+        return frame.poses
+
+    def touched(self) -> Sequence[tuple[int, ...]]:
+        if self._cursor.live:
+            return self.world.touched()
+        touch: Touch | None = self._cursor.record.touches.get(self._cursor.beat)
+        return touch.touched if touch else ((),) * self._seats
+
+
+def resume(record: Record, at: int | None = None) -> Match:
+    """Take a match up where its record ends.
+
+    Args:
+        record: of a court that was killed; may be cut anywhere.
+        at: take up physics from the newest snapshot at or before this beat; None: from the
+            newest that there is.
+
+    Returns:
+        The match after its last recorded beat, with its physics ready to go on.
+
+    Raises:
+        UserError: if its arena is not installed, or another MuJoCo made it.
+    """
+    _same_physics(record)
+    snapshots = {beat: saved for beat, saved in record.snapshots if at is None or beat <= at}
+    newest = max(snapshots, default=-1)
+    cursor = _Cursor(
+        record,
+        dict(record.frames),
+        {event.beat: event for event in record.events if event.kind == "fault"},
+        live=newest < 0,
+    )
+    match = Match(record.header.setup, lambda arena, entries: _Recorded(arena, entries, cursor))
+    for number in range(record.last_beat + 1):
+        cursor.move(number)
+        match.beat(record.inputs.get(number, ()))
+        if number == newest and isinstance(match.physics, _Recorded):
+            match.physics.world.load(snapshots[number])
+            cursor.live = True
+    if isinstance(match.physics, _Recorded):
+        match.physics = match.physics.world
+    match.make_physics = World
+    return match
+
+
+def _same_physics(record: Record) -> None:
+    here, there = mujoco.mj_versionString(), record.header.versions.get("mujoco", "?")
+    if here != there:
+        raise UserError(
+            f"This record was made with MuJoCo {there}, and here is {here}: a replay is exact only "
+            f"with the same. Install it: pip install mujoco=={there}"
+        )
+
+
+def _difference(recorded: Frame, again: Frame) -> str:
+    parts = [
+        name
+        for name, old, new in zip(
+            _NAMES,
+            (getattr(recorded, f) for f in recorded.__struct_fields__),
+            (getattr(again, f) for f in again.__struct_fields__),
+            strict=True,
+        )
+        if old != new
+    ]
+    return ", ".join(parts)

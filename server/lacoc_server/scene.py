@@ -1,0 +1,109 @@
+"""The drawable scene of a compiled model, for pages that have no MuJoCo."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from lacoc_arenas.game import AnyGame
+from lacoc_shared.messages import MARKER_STATES, Scene, SceneBody, SceneGeom
+from lacoc_shared.mistakes import UserError
+
+_TYPES = {
+    mujoco.mjtGeom.mjGEOM_PLANE: "plane",
+    mujoco.mjtGeom.mjGEOM_SPHERE: "sphere",
+    mujoco.mjtGeom.mjGEOM_CAPSULE: "capsule",
+    mujoco.mjtGeom.mjGEOM_CYLINDER: "cylinder",
+    mujoco.mjtGeom.mjGEOM_BOX: "box",
+    mujoco.mjtGeom.mjGEOM_ELLIPSOID: "ellipsoid",
+}
+
+
+def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
+    """Describe a model.
+
+    Args:
+        model: the compiled `MjModel`; a robot's names begin with its seat and a slash.
+        game: whose markers the geoms named `marker:NAME:STATE` show.
+        seats: ids of the seats.
+
+    Raises:
+        UserError: if a body has a joint that pages can't draw (they know free roots and one
+            hinge through a body's origin), or a geom is of another type.
+    """
+    markers = {marker.name: index for index, marker in enumerate(game.markers)}
+    bodies = tuple(_body(model, index, seats) for index in range(model.nbody))
+    geoms = []
+    for index in range(model.ngeom):
+        geom = model.geom(index)
+        if geom.rgba[3] == 0:  # walls and probes
+            continue
+        marker, state = _marker(geom.name, markers)
+        kind = _TYPES.get(mujoco.mjtGeom(int(geom.type[0])))
+        if kind is None:
+            raise UserError(f"Geom {geom.name!r} has a type that pages can't draw.")
+        body = int(geom.bodyid[0])
+        geoms.append(
+            SceneGeom(
+                body=body,
+                type=kind,
+                size=_floats(geom.size),
+                pos=_floats(geom.pos),
+                quat=_floats(geom.quat),
+                rgba=_floats(geom.rgba),
+                marker=marker,
+                state=state,
+                seat=_team_colour(model, index, seats),
+            )
+        )
+    return Scene(bodies=bodies, geoms=tuple(geoms))
+
+
+def _body(model: Any, index: int, seats: Sequence[str]) -> SceneBody:
+    body = model.body(index)
+    seat, joint, axis = -1, -1, (0.0, 0.0, 1.0)
+    for joint_index in range(int(body.jntadr[0]), int(body.jntadr[0]) + int(body.jntnum[0])):
+        described = model.joint(joint_index)
+        kind = mujoco.mjtJoint(int(described.type[0]))
+        if kind == mujoco.mjtJoint.mjJNT_FREE:
+            seat = _seat(body.name, seats)
+        elif kind == mujoco.mjtJoint.mjJNT_HINGE and not np.any(described.pos):
+            joint = int(described.name.rsplit("/j", 1)[1])
+            axis = _floats(described.axis)
+        else:
+            raise UserError(f"Joint {described.name!r} is of a kind that pages can't draw.")
+    return SceneBody(
+        name=body.name,
+        parent=int(body.parentid[0]) if index else -1,
+        pos=_floats(body.pos),
+        quat=_floats(body.quat),
+        seat=seat,
+        joint=joint,
+        axis=axis,
+    )
+
+
+def _marker(name: str, markers: dict[str, int]) -> tuple[int, int]:
+    kind, _, rest = name.partition(":")
+    if kind != "marker":
+        return -1, -1
+    marker, state = rest.split(":")[:2]
+    return markers[marker], MARKER_STATES.index(state)
+
+
+def _seat(name: str, seats: Sequence[str]) -> int:
+    prefix = name.partition("/")[0]
+    return seats.index(prefix) if "/" in name and prefix in seats else -1
+
+
+def _team_colour(model: Any, geom: int, seats: Sequence[str]) -> int:
+    """The seat whose colour a geom takes: of a robot's geoms those in its body's colour."""
+    body = model.geom_bodyid[geom]
+    root = model.body_rootid[body]
+    plain = model.geom_rgba[model.body_geomadr[root]]
+    return _seat(model.body(body).name, seats) if (model.geom_rgba[geom] == plain).all() else -1
+
+
+def _floats(array: Any) -> Any:
+    return tuple(float(value) for value in array)

@@ -1,0 +1,106 @@
+"""A seat as the match sees it: who sits there, with what, and what its keys do now."""
+
+from dataclasses import dataclass, field
+
+from lacoc_server.drive import Drive, DriveState
+from lacoc_server.entry import Entry
+from lacoc_shared.gait import Level
+from lacoc_shared.inputs import JoinSeat, KeySeat
+from lacoc_shared.messages import SeatFrame, SheetSeat
+from lacoc_shared.seat import RESTART_KEY, No, SeatFlag
+
+
+@dataclass
+class Seat:
+    """One seat of a match."""
+
+    index: int
+    id: str
+    colour: str
+    pattern: str
+    join: JoinSeat | None = None
+    entry: Entry | None = None
+    ready: bool = False
+    silent: bool = False
+    drive: Drive | None = None
+    """From READY on."""
+    state: DriveState | None = None
+    locked_until: int = 0
+    """Ticks played from which keys are taken again after a restart."""
+    frozen_until: int = 0
+    """The same, after a referee's freeze."""
+    applied: tuple[int, int] = (0, 0)
+    """Newest applied command: sequence number, beat."""
+    refused: tuple[int, No] = (0, No.NONE)
+    """Newest refused command: sequence number, reason."""
+    restarting: bool = field(default=False)
+    """It goes back to its start place in this beat."""
+
+    @property
+    def team(self) -> str:
+        """The team's name, or the seat's while nobody has joined."""
+        return self.join.team if self.join else self.id
+
+    def stand(self) -> None:
+        """Key 0 at the same level, as if pressed (silence, freeze)."""
+        if self.drive and self.state:
+            self.state = self.drive.press(self.state, self.state.level, 0)
+
+    def restart(self) -> None:
+        """Go back to the start in this beat, key 0 standing at the same level (rules 4, [x])."""
+        self.restarting = True
+        if self.drive and self.state:
+            self.state = self.drive.begin(self.state.level)
+
+    def why_not(self, key: KeySeat, ticks: int, levels: tuple[Level, ...]) -> No:
+        """Why a command is refused while the match is played; `No.NONE` if it is not."""
+        if ticks < self.frozen_until:
+            return No.FROZEN
+        if ticks < self.locked_until:
+            return No.RESTARTED
+        if key.key == RESTART_KEY:
+            return No.NONE
+        if key.level not in levels:
+            return No.LEVEL_CLOSED
+        if not (self.drive and self.drive.has(Level(key.level), key.key)):
+            return No.NO_SUCH_KEY
+        return No.NONE
+
+    def frame(self, score: int, ticks: int) -> SeatFrame:
+        """The seat as frames carry it."""
+        flags = (
+            (SeatFlag.JOINED if self.join else 0)
+            | (SeatFlag.READY if self.ready else 0)
+            | (SeatFlag.SILENT if self.silent else 0)
+            | (SeatFlag.FROZEN if ticks < self.frozen_until else 0)
+        )
+        level, digit, posture = (
+            (self.state.level, self.state.digit, self.state.posture) if self.state else (0, 0, 0)
+        )
+        return SeatFrame(
+            int(flags),
+            score,
+            int(level),
+            digit,
+            posture,
+            max(0, self.locked_until - ticks, self.frozen_until - ticks),
+            *self.applied,
+            self.refused[0],
+            int(self.refused[1]),
+        )
+
+    def sheet(self) -> SheetSeat:
+        """The seat as the sheet names it."""
+        if self.join is None or self.entry is None:
+            return SheetSeat(id=self.id, colour=self.colour, pattern=self.pattern)
+        gait = self.entry.gait
+        return SheetSeat(
+            id=self.id,
+            team=self.join.team,
+            colour=self.colour,
+            pattern=self.pattern,
+            robot=self.entry.robot.name,
+            legs=tuple(self.entry.robot.labels),
+            keys=(gait.keys(Level.POSTURE), gait.keys(Level.LOCOMOTION)),
+            postures=tuple(len(s) for s in gait.locomotion.sequences) if gait.locomotion else (),
+        )
