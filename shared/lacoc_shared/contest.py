@@ -1,0 +1,305 @@
+"""The contest file: courts, addresses, tokens, limits (rules 1, "Where each number lives").
+
+An organiser writes it once ('lacoc contest init'); a court is started from it, and a
+client that has it needs no address and no token. Every setting can also be said on the
+command line or in the environment, and goes before the file then: `options` has both,
+and what is still None is looked up here.
+"""
+
+import math
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import msgspec
+
+from lacoc_shared.address import endpoint
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seal import new_token
+
+T = TypeVar("T")
+
+MAIN = "main"
+"""Name of the court where nobody names one."""
+LOOPBACK = "tcp/127.0.0.1:7447"
+"""Where a court listens, and where a client looks for it, if nobody says otherwise."""
+
+_ANY_HOST = ("0.0.0.0", "[::]")  # "every address of this machine": to listen at, not to call
+
+Token = Annotated[str, msgspec.Meta(min_length=12, max_length=64)]
+
+
+class Holder(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Who holds a seat, or the referee's place: whoever knows the token."""
+
+    token: Token
+
+
+class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A court and all that is needed to start it, or to reach it."""
+
+    arena: str
+    """Name of an installed arena, or the path of an arena's folder."""
+    listen: Annotated[tuple[str, ...], msgspec.Meta(min_length=1)] = (LOOPBACK,)
+    """Where the court listens."""
+    connect: str = ""
+    """Where others reach it; "": the first of `listen`."""
+    seat: dict[str, Holder] = {}
+    """By the arena's name of the seat."""
+    referee: Holder
+    settings: dict[str, Any] = {}
+    """Entries that replace those of the arena's file."""
+
+    def address(self, any_host: str = "127.0.0.1") -> str:
+        """Where a client connects.
+
+        Args:
+            any_host: the host to name where the court listens at every address of its machine.
+        """
+        address = self.connect or self.listen[0]
+        for host in _ANY_HOST:
+            address = address.replace(f"/{host}:", f"/{any_host}:")
+        return address
+
+
+class Contest(msgspec.Struct, frozen=True, kw_only=True):
+    """A contest file, checked."""
+
+    name: str = "Contest"
+    recordings: Path = Path("recordings")
+    """Folder of the records."""
+    robot: str = "hexapod"
+    """For a team that sends no robot file: an installed robot's name, or a file."""
+    limits: dict[str, float] = {}
+    """Limits for robots that differ from the defaults of rules 1, by name."""
+    courts: dict[str, Court]
+
+    def court(self, name: str | None = None) -> tuple[str, Court]:
+        """Find a court with its name; without a name the only one.
+
+        Raises:
+            UserError: if there is no such court, or more than one to choose from.
+        """
+        if name is None and len(self.courts) == 1:
+            return next(iter(self.courts.items()))
+        if name not in self.courts:
+            found = "there is more than one court" if name is None else f"no court {name!r}"
+            raise UserError(
+                f"Contest {self.name!r}: {found}. Name one with --court: {', '.join(self.courts)}."
+            )
+        return name, self.courts[name]
+
+
+class Access(msgspec.Struct, frozen=True, kw_only=True):
+    """Where a client goes, and what proves who it is."""
+
+    court: str
+    connect: str
+    seat: str = ""
+    """The seat it holds; "" for a referee or a spectator."""
+    token: str = ""
+    """"" for a spectator."""
+
+
+def load(path: Path) -> Contest:
+    """Read a contest file; the paths in it start from its own folder.
+
+    Raises:
+        UserError: if it can't be read, or at the first wrong entry; the message names it.
+    """
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise UserError(
+            f"The contest file {path} can't be read: {reason}. 'lacoc contest init' writes one."
+        ) from None
+    try:
+        return _contest(table, path.resolve().parent)
+    except _Wrong as wrong:
+        raise UserError(f"Contest file {path}, {wrong}") from None
+
+
+def throwaway(
+    arena: str, seats: Iterable[str] = ("left", "right"), listen: tuple[str, ...] = (LOOPBACK,)
+) -> Contest:
+    """Make a contest of one court with fresh tokens, for a court started without a file."""
+    court = Court(
+        arena=arena,
+        listen=listen,
+        seat={seat: Holder(token=new_token()) for seat in seats},
+        referee=Holder(token=new_token()),
+    )
+    return Contest(name="throw-away", courts={MAIN: court})
+
+
+def spectator_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
+    """Find the way to a court for somebody who only watches.
+
+    Args:
+        contest: the contest file, if there is one: it says what the others leave open.
+        court: the court's name, or None.
+        connect: the court's address, or None.
+
+    Raises:
+        UserError: if the contest has no such court, or the address is none.
+    """
+    name, entry = _court_of(contest, court)
+    address = connect or (entry.address() if entry else LOOPBACK)
+    return Access(court=name, connect=endpoint(address))
+
+
+def seat_access(
+    contest: Contest | None,
+    court: str | None,
+    connect: str | None,
+    seat: str | None,
+    token: str | None,
+) -> Access:
+    """Find the way to a seat, for its contestant or a bot.
+
+    Args:
+        contest: the contest file, if there is one: it says what the others leave open.
+        court: the court's name, or None.
+        connect: the court's address, or None.
+        seat: the seat's name, or None: the only seat of the contest's court.
+        token: the seat's token, or None.
+
+    Raises:
+        UserError: if seat or token are neither given nor in the contest file.
+    """
+    access = spectator_access(contest, court, connect)
+    _, entry = _court_of(contest, court)
+    seats = entry.seat if entry else {}
+    if seat is None and len(seats) == 1:
+        seat = next(iter(seats))
+    if seat is None:
+        names = ", ".join(seats) or "left, right"
+        raise UserError(f"Which seat? Give --seat with the name of one: {names}.")
+    token = token or (seats[seat].token if seat in seats else None)
+    if token is None:
+        raise UserError(_no_token(f"seat {seat!r}"))
+    return msgspec.structs.replace(access, seat=seat, token=token)
+
+
+def referee_access(
+    contest: Contest | None, court: str | None, connect: str | None, token: str | None
+) -> Access:
+    """Find the way to a court for its referee; arguments as for a seat.
+
+    Raises:
+        UserError: if the token is neither given nor in the contest file.
+    """
+    access = spectator_access(contest, court, connect)
+    _, entry = _court_of(contest, court)
+    token = token or (entry.referee.token if entry else None)
+    if token is None:
+        raise UserError(_no_token("the referee"))
+    return msgspec.structs.replace(access, token=token)
+
+
+def join_lines(name: str, court: Court, any_host: str = "HOST") -> dict[str, str]:
+    """Write the command line for each person at a court: the seats, the referee, spectators.
+
+    Args:
+        name: the court's name.
+        court: its entry.
+        any_host: the host to name where the court listens at every address of its machine.
+    """
+    where = f"--court {name} --connect {court.address(any_host)}"
+    seats = {
+        seat: f"lacoc play {where} --seat {seat} --token {holder.token}"
+        for seat, holder in court.seat.items()
+    }
+    return {
+        **seats,
+        "referee": f"lacoc referee status {where} --token {court.referee.token}",
+        "spectators": f"lacoc watch {where}",
+    }
+
+
+def _court_of(contest: Contest | None, court: str | None) -> tuple[str, Court | None]:
+    return (court or MAIN, None) if contest is None else contest.court(court)
+
+
+def _no_token(whose: str) -> str:
+    return (
+        f"The token of {whose} is missing. Give --token or set LACOC_TOKEN; "
+        "the organiser has it ('lacoc contest show' prints it)."
+    )
+
+
+class _Wrong(Exception):
+    """What is wrong with a contest file, and where in it."""
+
+
+class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    name: str = "Contest"
+    recordings: str = "recordings"
+    robot: str = "hexapod"
+
+
+class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    contest: dict[str, Any] = {}
+    limits: dict[str, Any] = {}
+    court: Annotated[dict[str, Any], msgspec.Meta(min_length=1)]
+
+
+def _contest(table: dict[str, Any], folder: Path) -> Contest:
+    file = _convert(table, _File, "")
+    general = _convert(file.contest, _General, "contest")
+    return Contest(
+        name=general.name,
+        recordings=folder / general.recordings,
+        robot=_beside(folder, general.robot),
+        limits={name: _limit(name, value) for name, value in file.limits.items()},
+        courts={name: _court(name, entry, folder) for name, entry in file.court.items()},
+    )
+
+
+def _court(name: str, table: Any, folder: Path) -> Court:
+    where = f"court.{name}"
+    entries = _convert(table, dict[str, Any], where)
+    seats = _convert(entries.get("seat", {}), dict[str, Any], f"{where}.seat")
+    court = _convert({**entries, "seat": {}}, Court, where)
+    holders = {seat: _convert(seats[seat], Holder, f"{where}.seat.{seat}") for seat in seats}
+    tokens = [court.referee.token, *(holder.token for holder in holders.values())]
+    if len(set(tokens)) < len(tokens):
+        raise _Wrong(f"[{where}]: two places have the same token; each needs its own.")
+    try:
+        Keys(name)
+        return msgspec.structs.replace(
+            court,
+            arena=_beside(folder, court.arena),
+            listen=tuple(map(endpoint, court.listen)),
+            connect=court.connect and endpoint(court.connect),
+            seat=holders,
+        )
+    except UserError as error:
+        raise _Wrong(f"[{where}]: {error}") from None
+
+
+def _limit(name: str, value: Any) -> float:
+    number = _convert(value, float, f"limits.{name}")
+    if not math.isfinite(number):
+        raise _Wrong(f"[limits.{name}]: expected a finite number, found {number}.")
+    return number
+
+
+def _convert(value: Any, kind: type[T], where: str) -> T:
+    try:
+        return msgspec.convert(value, kind)
+    except msgspec.ValidationError as error:
+        what, _, place = str(error).partition(" - at `$")
+        at = f"{where}{place.rstrip('`')}".lstrip(".")
+        fields = getattr(kind, "__struct_fields__", ())
+        known = f" There can be: {', '.join(fields)}." if "field" in what else ""
+        raise _Wrong(f"{f'[{at}]: ' if at else ''}{what}.{known}") from None
+
+
+def _beside(folder: Path, name: str) -> str:
+    """A name of something installed as it is; a path as seen from the contest file's folder."""
+    is_path = "/" in name or "." in name or "\\" in name
+    return str((folder / Path(name).expanduser()).resolve()) if is_path else name

@@ -1,0 +1,56 @@
+"""Options that several commands share: the same name, variable and sentence in each.
+
+The order of precedence is made of two steps. The command line goes before the
+environment: typer's `envvar`. Both go before the contest file and the defaults: an
+option nobody gave is None, and `contest` looks further.
+"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+ContestFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--contest",
+        envvar="LACOC_CONTEST",
+        metavar="FILE",
+        help="Contest file: says what is left open here (see 'lacoc contest').",
+    ),
+]
+CourtName = Annotated[
+    str | None,
+    typer.Option(
+        "--court",
+        envvar="LACOC_COURT",
+        metavar="NAME",
+        help="Name of the court; by default the contest's only one, or 'main'.",
+    ),
+]
+Connect = Annotated[
+    str | None,
+    typer.Option(
+        "--connect",
+        envvar="LACOC_CONNECT",
+        metavar="ADDRESS",
+        help="Address of the court, such as tcp/192.168.1.20:7447; by default this machine.",
+    ),
+]
+SeatName = Annotated[
+    str | None,
+    typer.Option(
+        "--seat", envvar="LACOC_SEAT", metavar="SEAT", help="Your seat: 'left' or 'right'."
+    ),
+]
+Token = Annotated[
+    str | None,
+    typer.Option(
+        "--token",
+        envvar="LACOC_TOKEN",
+        metavar="TOKEN",
+        help="Your token, from the organiser. In the environment others on this machine "
+        "can't read it.",
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]

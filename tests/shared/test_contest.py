@@ -1,0 +1,221 @@
+"""The contest file and who goes before whom: command line, environment, file, default."""
+
+from pathlib import Path
+from typing import Annotated
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from lacoc_shared import contest as contests
+from lacoc_shared import options
+from lacoc_shared.mistakes import UserError
+
+GOOD = """
+[contest]
+name = "Spring"
+recordings = "records"
+robot = "robots/own.toml"
+[limits]
+legs_max = 6
+[court.main]
+arena = "othello"
+listen = ["0.0.0.0", "tcp/127.0.0.1:7450"]
+[court.main.seat.left]
+token = "left-token-of-main"
+[court.main.seat.right]
+token = "right-token-of-main"
+[court.main.referee]
+token = "referee-token-of-main"
+[court.main.settings.match]
+duration_s = 60.0
+"""
+SECOND = """
+[court.second]
+arena = "games/tag"
+connect = "court.example.org:7448"
+[court.second.seat.runner]
+token = "runner-token-of-second"
+[court.second.referee]
+token = "referee-token-of-second"
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "contest.toml"
+    path.write_text(GOOD)
+    return path
+
+
+def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
+    """Names stay names; paths start from the contest file's folder, not from where one stands."""
+    file.write_text(GOOD + SECOND)
+
+    contest = contests.load(file)
+
+    assert contest.name == "Spring"
+    assert contest.recordings == file.parent / "records"
+    assert contest.robot == str(file.parent / "robots/own.toml")
+    assert contest.limits == {"legs_max": 6.0}
+    assert contest.courts["main"].arena == "othello"
+    assert contest.courts["main"].listen == ("tcp/0.0.0.0:7447", "tcp/127.0.0.1:7450")
+    assert contest.courts["main"].settings == {"match": {"duration_s": 60.0}}
+    assert contest.courts["second"].arena == str(file.parent / "games/tag")
+    assert contest.courts["second"].connect == "tcp/court.example.org:7448"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('arena = "othello"', "arena = 3", r"court.main.arena.*Expected `str`, got `int`"),
+        ('arena = "othello"', "", r"\[court.main\].*missing required field `arena`"),
+        ("arena =", "aren =", r"unknown field `aren`.*There can be: arena, listen"),
+        ('token = "left-token-of-main"', "token = 5", r"court.main.seat.left.token"),
+        ('token = "left-token-of-main"', 'token = "short"', r"seat.left.token.*length >= 12"),
+        ("right-token-of-main", "left-token-of-main", r"court.main.*same token"),
+        ("referee-token-of-main", "left-token-of-main", r"court.main.*same token"),
+        ("legs_max = 6", 'legs_max = "6"', r"limits.legs_max.*Expected `float`, got `str`"),
+        ("legs_max = 6", "legs_max = nan", r"limits.legs_max.*finite number, found nan"),
+        ('"0.0.0.0"', '"http://x"', r"court.main.*'http://x' is not an address"),
+        ('listen = ["0.0.0.0", "tcp/127.0.0.1:7450"]', "listen = []", r"court.main.listen"),
+        ("[court.main", "[court.Main", r"court.Main.*'Main'"),
+        ("[contest]", "[contst]", r"unknown field `contst`.*contest, limits, court"),
+        ('name = "Spring"', "name = Spring", r"can't be read.*line 3"),
+        (GOOD, "[contest]\n", r"missing required field `court`"),
+        (GOOD, "court = 1\n", r"\[court\]: Expected `object`, got `int`"),
+        (GOOD, "[court]\nmain = 1\n", r"\[court.main\]: Expected `object`, got `int`"),
+        (GOOD, "[court]\n", r"\[court\]: Expected `object` of length >= 1"),
+    ],
+)
+def test_a_wrong_entry_is_named(file: Path, old: str, new: str, said: str) -> None:
+    """A wrong entry: one sentence with the file, the entry and what was expected."""
+    assert old in GOOD
+    file.write_text(GOOD.replace(old, new))
+
+    with pytest.raises(UserError, match=said) as caught:
+        contests.load(file)
+
+    assert str(file) in str(caught.value)
+
+
+def test_no_file_and_no_text_are_said(tmp_path: Path) -> None:
+    """A file that isn't there, or isn't text, is one sentence with the way out."""
+    with pytest.raises(UserError, match="No such file.*lacoc contest init"):
+        contests.load(tmp_path / "none.toml")
+    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(UserError, match="can't be read"):
+        contests.load(tmp_path / "bytes.toml")
+
+
+def test_a_file_saved_by_an_editor_that_writes_a_mark_loads(file: Path) -> None:
+    """Windows' Notepad begins a UTF-8 file with a byte order mark."""
+    file.write_bytes(b"\xef\xbb\xbf" + GOOD.encode())
+
+    assert contests.load(file).name == "Spring"
+
+
+def test_a_throwaway_contest_has_fresh_tokens(file: Path) -> None:
+    """Without a file: one court, every place with its own token, never the same twice."""
+    one, other = contests.throwaway("othello"), contests.throwaway("othello")
+    tokens = [
+        token
+        for contest in (one, other)
+        for court in contest.courts.values()
+        for token in (court.referee.token, *(holder.token for holder in court.seat.values()))
+    ]
+
+    assert list(one.courts) == ["main"]
+    assert len(set(tokens)) == 6
+
+
+def test_the_only_court_needs_no_name(file: Path) -> None:
+    """A court is found by name, or because it is the only one; else the names are listed."""
+    assert contests.load(file).court()[0] == "main"
+    file.write_text(GOOD + SECOND)
+    contest = contests.load(file)
+    assert contest.court("second")[0] == "second"
+    for name in (None, "third"):
+        with pytest.raises(UserError, match="main, second"):
+            contest.court(name)
+
+
+def test_access_without_a_file(file: Path) -> None:
+    """Without a contest file everything comes from the options; a missing token is said."""
+    access = contests.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
+
+    assert access == contests.Access(
+        court="main", connect="tcp/10.0.0.7:7447", seat="left", token="t" * 20
+    )
+    assert contests.spectator_access(None, None, None).connect == "tcp/127.0.0.1:7447"
+    with pytest.raises(UserError, match=r"seat 'left'.*--token.*LACOC_TOKEN"):
+        contests.seat_access(None, None, None, "left", None)
+    with pytest.raises(UserError, match="--seat"):
+        contests.seat_access(None, None, None, None, "t" * 20)
+    with pytest.raises(UserError, match="referee"):
+        contests.referee_access(None, None, None, None)
+    with pytest.raises(UserError, match="not an address"):
+        contests.spectator_access(None, None, "http://x")
+
+
+def test_access_from_a_file(file: Path) -> None:
+    """The file fills what was not given; what was given goes before it."""
+    file.write_text(GOOD + SECOND)
+    contest = contests.load(file)
+
+    left = contests.seat_access(contest, "main", None, "left", None)
+    assert (left.connect, left.token) == ("tcp/127.0.0.1:7447", "left-token-of-main")
+    runner = contests.seat_access(contest, "second", None, None, None)
+    assert (runner.connect, runner.seat) == ("tcp/court.example.org:7448", "runner")
+    given = contests.seat_access(contest, "main", "10.0.0.7", "left", "another-token-here")
+    assert (given.connect, given.token) == ("tcp/10.0.0.7:7447", "another-token-here")
+    assert contests.referee_access(contest, "main", None, None).token == "referee-token-of-main"
+    with pytest.raises(UserError, match="middle"):
+        contests.seat_access(contest, "main", None, "middle", None)
+
+
+def test_join_lines_name_the_host(file: Path) -> None:
+    """The lines to hand out never tell anybody to connect to 0.0.0.0."""
+    file.write_text(GOOD + SECOND)
+    contest = contests.load(file)
+
+    main = contests.join_lines("main", contest.courts["main"])
+    second = contests.join_lines("second", contest.courts["second"])
+
+    assert main["left"] == (
+        "lacoc play --court main --connect tcp/HOST:7447 --seat left --token left-token-of-main"
+    )
+    assert "referee-token-of-main" in main["referee"]
+    assert "token" not in main["spectators"]
+    assert "tcp/court.example.org:7448" in second["runner"]
+
+
+@pytest.mark.parametrize(
+    ("line", "environment", "expected"),
+    [
+        (["--connect", "1.1.1.1"], {"LACOC_CONNECT": "2.2.2.2"}, "tcp/1.1.1.1:7447"),
+        ([], {"LACOC_CONNECT": "2.2.2.2"}, "tcp/2.2.2.2:7447"),
+        ([], {"LACOC_CONNECT": ""}, "tcp/127.0.0.1:9999"),
+        ([], {}, "tcp/127.0.0.1:9999"),
+        (["--no-file"], {}, "tcp/127.0.0.1:7447"),
+    ],
+)
+def test_precedence(
+    file: Path, line: list[str], environment: dict[str, str], expected: str
+) -> None:
+    """Command line over environment over the contest's TOML over defaults."""
+    file.write_text(GOOD.replace('"0.0.0.0"', '"127.0.0.1:9999"'))
+    app = typer.Typer()
+
+    @app.command()
+    def command(
+        connect: options.Connect = None,
+        contest: options.ContestFile = None,
+        no_file: Annotated[bool, typer.Option("--no-file")] = False,
+    ) -> None:
+        found = contests.load(contest) if contest and not no_file else None
+        print(contests.spectator_access(found, None, connect).connect)
+
+    result = CliRunner().invoke(app, line, env={"LACOC_CONTEST": str(file), **environment})
+
+    assert result.output.strip() == expected
