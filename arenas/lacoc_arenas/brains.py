@@ -1,0 +1,116 @@
+"""Finding a brain: a game's own bot, another's, a file's, or the ghost of a record."""
+
+import importlib.util
+from collections import deque
+from pathlib import Path
+from typing import Any
+
+from lacoc_arenas.arena import Arena
+from lacoc_arenas.bot import BotFactory, Brain, Key
+from lacoc_shared import plugins
+from lacoc_shared.codec import decode
+from lacoc_shared.gait import Level
+from lacoc_shared.inputs import JoinSeat, KeySeat
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import Phase
+
+GROUP = "lacoc.bots"
+GHOST = "ghost:"
+
+
+def find(arena: Arena, name: str) -> BotFactory:
+    """Find a bot for an arena.
+
+    Args:
+        arena: the arena, with bots of its own.
+        name: one of those; an installed bot (entry-point group `lacoc.bots`); a Python file with
+            a function `bot(sheet, seat)`; or "ghost:RECORD.mcap:SEAT", which presses the keys of
+            a recorded match again.
+
+    Raises:
+        UserError: if there is no such bot; the message lists the ones there are.
+    """
+    if name.startswith(GHOST):
+        record, seat = open_ghost(name)
+        return lambda sheet, index: ghost(record, seat)
+    if name in arena.bots:
+        return arena.bots[name]
+    installed = plugins.installed(GROUP)
+    if name in installed:
+        factory: BotFactory = installed[name].load()
+        return factory
+    if name.endswith(".py"):
+        return _from_file(Path(name).expanduser())
+    raise UserError(
+        f"There is no bot {name!r} for {arena.name}. Its own: {', '.join(arena.bots)}. "
+        f"Installed: {', '.join(installed) or 'none'}. A file works too: my_bot.py."
+    )
+
+
+def open_ghost(name: str) -> tuple[Record, int]:
+    """Read the record of a ghost and find its seat.
+
+    Args:
+        name: "ghost:RECORD.mcap", with ":SEAT" after it where the record has two seats.
+
+    Raises:
+        UserError: if there is no such record or seat.
+    """
+    path, _, seat = name.removeprefix(GHOST).partition(".mcap:")
+    record = Record.read(Path(path if not seat else f"{path}.mcap"))
+    seats = [entry["id"] for entry in record.header.setup.settings["seat"]]
+    if not seat and len(seats) == 1:
+        return record, 0
+    if seat not in seats:
+        raise UserError(f"{name}: whose ghost? Add :SEAT with one of {', '.join(seats)}.")
+    return record, seats.index(seat)
+
+
+def ghost_join(record: Record, seat: int) -> JoinSeat:
+    """What a ghost brought to its match: team, robot and gait files.
+
+    Raises:
+        UserError: if nobody sat there.
+    """
+    joins = [
+        item
+        for items in record.inputs.values()
+        for item in items
+        if isinstance(item, JoinSeat) and item.seat == seat
+    ]
+    if not joins:
+        raise UserError(f"Nobody sat in seat {seat} of that record.")
+    return joins[-1]
+
+
+def ghost(record: Record, seat: int) -> Brain:
+    """A brain that presses the keys of a record again, each at the same time of the clock."""
+    keys: deque[tuple[int, Key]] = deque()
+    clock_of = {beat: decode(encoded, Frame) for beat, encoded in record.frames}
+    for beat in sorted(record.inputs):
+        frame = clock_of.get(beat)
+        for item in record.inputs[beat]:
+            if isinstance(item, KeySeat) and item.seat == seat and frame is not None:
+                keys.append((frame.clock_ticks, Key(Level(item.level), item.key)))
+
+    def brain(frame: Frame) -> Key | None:
+        # A key that is answered to this frame takes effect in the next tick.
+        if keys and frame.phase == Phase.PLAYING and frame.clock_ticks + 1 >= keys[0][0]:
+            return keys.popleft()[1]
+        return None
+
+    return brain
+
+
+def _from_file(path: Path) -> BotFactory:
+    spec = importlib.util.spec_from_file_location(f"lacoc_bot_{path.stem}", path)
+    if spec is None or spec.loader is None or not path.exists():
+        raise UserError(f"There is no bot file {path}.")
+    module: Any = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    if not callable(getattr(module, "bot", None)):
+        raise UserError(f"{path} has no function bot(sheet, seat).")
+    factory: BotFactory = module.bot
+    return factory

@@ -1,0 +1,135 @@
+"""A match as fast as the machine can: the same match, beat by beat, with brains in the seats."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas import brains
+from lacoc_arenas.bot import BotFactory
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.journal import Journal
+from lacoc_server.match import Beat, Match
+from lacoc_server.world import World
+from lacoc_shared.decisions import Official, Start
+from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
+from lacoc_shared.messages import Frame, Refusal, SentFile
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.record.pack import pack
+from lacoc_shared.record.schema import Result, Setup
+from lacoc_shared.seat import BEATS_PER_S, Phase
+
+SETTLE_BEATS = BEATS_PER_S
+"""Robots stand in READY for this long before the start."""
+
+
+@dataclass(frozen=True)
+class Player:
+    """Who sits in a seat: files and a brain."""
+
+    join: JoinSeat
+    """Its `seat` is where the player sits."""
+    bot: BotFactory
+    late_ticks: int = 0
+    """The brain sees its first frame this much later; another moment makes another match."""
+
+
+def player(
+    arena: arenas.Arena,
+    seat: int,
+    bot: str,
+    robot: str = "hexapod",
+    team: str | None = None,
+    late_ticks: int = 0,
+) -> Player:
+    """Seat a bot, or the ghost of a record with the files that it played with.
+
+    Args:
+        arena: the arena.
+        seat: index of the seat.
+        bot: as `brains.find` takes it.
+        robot: an installed robot or a file, with its sample gait; a ghost brings its own.
+        team: name of the team; None: the bot's.
+        late_ticks: see `Player`.
+
+    Raises:
+        UserError: if there is no such bot, robot or record.
+    """
+    if bot.startswith(brains.GHOST):
+        was = brains.ghost_join(*brains.open_ghost(bot))
+        files = (was.robot, was.postures, was.locomotion)
+        team = team or f"{was.team}'s ghost"
+    else:
+        files = (SentFile(*find_robot(robot)), *sample_gait_files(robot))
+    join = JoinSeat(seat, team or Path(bot).stem, *files, token_hash="")
+    return Player(join, brains.find(arena, bot), late_ticks)
+
+
+def simulate(
+    setup: Setup,
+    players: Sequence[Player],
+    folder: Path | None = None,
+    watch: Callable[[Frame], None] | None = None,
+) -> Result:
+    """Play one match to its end.
+
+    Args:
+        setup: the match.
+        players: one for each seat.
+        folder: where its record goes; None: no record.
+        watch: sees every frame.
+
+    Returns:
+        The official result.
+
+    Raises:
+        UserError: if the arena has no end of time, or a record can't be written.
+        FileRefused: if a player's files have mistakes.
+    """
+    match = Match(setup, World)
+    if not match.duration_ticks:
+        raise UserError(f"A match of {setup.arena} has no end of its own: give --seconds.")
+    journal = Journal(match, folder)
+    try:
+        for beat in _play(match, journal, players):
+            if watch is not None:
+                watch(beat.frame)
+    finally:
+        journal.close()
+    if journal.writer is not None and folder is not None:
+        pack([journal.writer.path], folder / f"{setup.match_id}.mcap")
+    return match.result()
+
+
+def _play(match: Match, journal: Journal, players: Sequence[Player]) -> Iterator[Beat]:
+    beat = _beat(journal, [player.join for player in players])
+    for outcome in beat.outcomes:
+        if isinstance(outcome, Refusal):
+            raise FileRefused(list(outcome.mistakes))
+    yield beat
+    yield _beat(journal, [ReadySeat(player.join.seat, True) for player in players])
+    sheet = match.sheet()
+    minds = [player.bot(sheet, player.join.seat) for player in players]
+    seqs = [0] * len(players)
+    while match.phase is Phase.READY and match.beats < SETTLE_BEATS:
+        yield _beat(journal)
+    if match.phase is Phase.READY:
+        yield _beat(journal, [Decide("simulate", "", Start())])
+    keys: list[Input] = []
+    while match.phase not in (Phase.FINISHED, Phase.HALTED):
+        beat = _beat(journal, keys)
+        yield beat
+        keys = []
+        if match.phase is not Phase.PLAYING:
+            continue
+        for index, (player, mind) in enumerate(zip(players, minds, strict=True)):
+            key = mind(beat.frame) if match.ticks > player.late_ticks else None
+            if key is not None:
+                seqs[index] += 1
+                keys.append(KeySeat(player.join.seat, seqs[index], int(key.level), key.key))
+    if match.phase is Phase.FINISHED:
+        yield _beat(journal, [Decide("simulate", "", Official())])
+
+
+def _beat(journal: Journal, inputs: Sequence[Input] = ()) -> Beat:
+    return journal.beat(inputs)[0]
