@@ -1,43 +1,19 @@
 """Reads a record: from its packed file or its segments, whole or cut anywhere."""
 
-import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from io import BytesIO
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-import msgspec
-import zstandard
-from mcap.exceptions import McapError
-from mcap.records import Channel, DataEnd, Message
-from mcap.records import Header as FileHeader
-from mcap.stream_reader import StreamReader
-from mcap.writer import MCAP0_MAGIC
-
-from lacoc_shared import codec
 from lacoc_shared.inputs import Input
 from lacoc_shared.messages import Event, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
-from lacoc_shared.record.schema import BEAT_NS, FORMAT, PROFILE, Header, Result, Touch
+from lacoc_shared.record.schema import Header, Result, Touch
+from lacoc_shared.record.stream import walk
 
 V = TypeVar("V")
-
-_MAX_BYTES = 1 << 26
-"""A message that is longer is not a record's (a scene has some 100 kB)."""
-
-_DAMAGE = (
-    McapError,
-    codec.BadMessage,
-    struct.error,
-    zstandard.ZstdError,
-    ValueError,
-    KeyError,
-    MemoryError,
-    OverflowError,
-)
-"""What bytes that are no MCAP raise in its reader."""
 
 
 @dataclass
@@ -97,74 +73,40 @@ class Record:
         return record
 
     def _read_file(self, path: Path) -> None:
-        try:
-            data = path.read_bytes()
-        except OSError as error:
-            raise UserError(f"The record {path} can't be read: {error.strerror}.") from None
-        if data[: len(MCAP0_MAGIC)] != MCAP0_MAGIC[: len(data)]:
-            raise UserError(
-                f"{path} is not a LACOC record: it is no MCAP file. Give the .mcap of a match."
-            )
-        ended = False
-        try:
-            for record in _records(data):
-                if isinstance(record, DataEnd):
-                    ended = True
-                elif isinstance(record, FileHeader) and record.profile != PROFILE:
-                    raise UserError(
-                        f"{path} is an MCAP file, but not a LACOC record. Give the .mcap of a "
-                        "match (an MCAP exported for Foxglove can't be read back)."
-                    )
-                elif isinstance(record, tuple):
-                    self._take(path, *record)
-        except _DAMAGE as error:
-            if data[len(MCAP0_MAGIC) :].endswith(MCAP0_MAGIC):
-                raise UserError(
-                    f"The record {path} is damaged after beat {self.last_beat} ({error}). "
-                    "Copy it again from where it was made."
-                ) from None
+        ended = walk(path, partial(self._take, path))
         self.cut = (
             ""
             if ended
-            else (
-                f"{path} stops after beat {self.last_beat} without an end: it was never closed, or "
-                "not copied whole."
-            )
+            else f"{path} stops after beat {self.last_beat} without an end: it was never closed, "
+            "or not copied whole."
         )
 
-    def _take(self, path: Path, topic: str, beat: int, data: bytes) -> None:
+    def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
         """Add one message."""
         match topic:
             case "/lacoc/header":
-                self._begin_segment(path, data)
+                self._begin_segment(path, message)
                 return
             case "/lacoc/result":
-                self.result = _decode(data, Result)
+                self.result = message
                 return
             case "/lacoc/input":
-                self.inputs[beat] = (*self.inputs.get(beat, ()), _decode(data, Input))
+                self.inputs[beat] = (*self.inputs.get(beat, ()), message)
             case "/lacoc/event":
-                self.events.append(_decode(data, Event))
+                self.events.append(message)
             case "/lacoc/frame":
                 self.frames.append((beat, data))
             case "/lacoc/touch":
-                self.touches[beat] = _decode(data, Touch)
+                self.touches[beat] = message
             case "/lacoc/snapshot":
-                self.snapshots.append((beat, data))
+                self.snapshots.append((beat, message))
             case "/lacoc/sheet":
-                self.sheets.append((beat, _decode(data, Sheet)))
+                self.sheets.append((beat, message))
             case "/lacoc/scene":
-                self.scenes.append((beat, _decode(data, Scene)))
+                self.scenes.append((beat, message))
         self.last_beat = max(self.last_beat, beat)
 
-    def _begin_segment(self, path: Path, data: bytes) -> None:
-        found = _decode(data, _Format).format
-        if found != FORMAT:
-            raise UserError(
-                f"The record {path} has format {found}, and this software reads format {FORMAT}. "
-                "Install the version of lacoc that wrote it."
-            )
-        header = _decode(data, Header)
+    def _begin_segment(self, path: Path, header: Header) -> None:
         if self.headers and header.match_id != self.header.match_id:
             raise UserError(
                 f"{path} belongs to match {header.match_id}, the files before it to "
@@ -190,29 +132,6 @@ class Record:
         self.snapshots = _before(beat, self.snapshots)
         self.sheets = _before(beat, self.sheets)
         self.scenes = _before(beat, self.scenes)
-
-
-class _Format(msgspec.Struct):
-    """The one entry of a header that every format has."""
-
-    format: int
-
-
-def _records(data: bytes) -> Iterator[FileHeader | DataEnd | tuple[str, int, bytes]]:
-    """Walk through a file: its own header, each message as (topic, beat, data), its end."""
-    topics: dict[int, str] = {}
-    reader = StreamReader(BytesIO(data), validate_crcs=True, record_size_limit=len(data))
-    for record in reader.records:
-        if isinstance(record, Message):
-            yield topics[record.channel_id], record.log_time // BEAT_NS, record.data
-        elif isinstance(record, Channel):
-            topics[record.id] = record.topic
-        elif isinstance(record, FileHeader | DataEnd):
-            yield record
-
-
-def _decode(data: bytes, kind: Any) -> Any:
-    return codec.decode(data, kind, _MAX_BYTES)
 
 
 def _before(beat: int, items: list[tuple[int, V]]) -> list[tuple[int, V]]:

@@ -4,6 +4,9 @@ from typing import Any
 
 import msgspec
 
+from lacoc_shared.inputs import Input
+from lacoc_shared.messages import Event, Frame, Scene, Sheet
+
 
 class Setup(msgspec.Struct, frozen=True, kw_only=True):
     """All that a match is made from; with the inputs it gives the same match again."""
@@ -83,15 +86,16 @@ PROFILE = "lacoc"
 BEAT_NS = 20_000_000
 """A message's time in the file is its beat times this."""
 
-TOPICS = (
-    "/lacoc/header",
-    "/lacoc/input",
-    "/lacoc/event",
-    "/lacoc/frame",
-    "/lacoc/touch",
-    "/lacoc/snapshot",
-    "/lacoc/sheet",
-    "/lacoc/scene",
-    "/lacoc/result",
-)
-"""The channels of a record, all of msgpack; a channel's number is its place here, from 1."""
+KINDS: dict[str, Any] = {
+    "/lacoc/header": Header,
+    "/lacoc/input": Input,
+    "/lacoc/event": Event,
+    "/lacoc/frame": Frame,
+    "/lacoc/touch": Touch,
+    "/lacoc/snapshot": None,
+    "/lacoc/sheet": Sheet,
+    "/lacoc/scene": Scene,
+    "/lacoc/result": Result,
+}
+"""The channels of a record by topic, and the message of each in msgpack; None: bytes that only
+the court understands. A channel's number is its place here, from 1."""

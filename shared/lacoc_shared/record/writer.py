@@ -22,13 +22,13 @@ from lacoc_shared.inputs import Input
 from lacoc_shared.messages import Event, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
-from lacoc_shared.record.schema import BEAT_NS, PROFILE, TOPICS, Header, Result, Touch
+from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header, Result, Touch
 
 SYNC_S = 1.0
 """A power cut loses at most what this long has written."""
 
 _HEADER, _INPUT, _EVENT, _FRAME, _TOUCH, _SNAPSHOT, _SHEET, _SCENE, _RESULT = range(
-    1, len(TOPICS) + 1
+    1, len(KINDS) + 1
 )
 _message_head = struct.Struct("<BQHIQQ").pack
 """Opcode, length of what follows, channel, sequence, log time, publish time."""
@@ -67,11 +67,17 @@ class RecordWriter:
         self._backlog = bytearray()
         self._write_error = ""
         self._sync_error = ""
-        self._counts = [0] * (len(TOPICS) + 1)
+        self._counts = [0] * (len(KINDS) + 1)
         self._first_ns = self._last_ns = header.first_beat * BEAT_NS
         self._channels = [
-            Channel(id=number, topic=topic, message_encoding="msgpack", metadata={}, schema_id=0)
-            for number, topic in enumerate(TOPICS, start=1)
+            Channel(
+                id=number,
+                topic=topic,
+                message_encoding="msgpack" if kind else "",
+                metadata={},
+                schema_id=0,
+            )
+            for number, (topic, kind) in enumerate(KINDS.items(), start=1)
         ]
         self._counts[_HEADER] = 1
         first = Message(_HEADER, self._first_ns, codec.encode(header), self._first_ns, 0)

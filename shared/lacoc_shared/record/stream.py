@@ -1,0 +1,109 @@
+"""Reads one file of a record, message by message, in the order they were written."""
+
+import struct
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import zstandard
+from mcap.exceptions import McapError
+from mcap.records import Channel, DataEnd, Message
+from mcap.records import Header as FileHeader
+from mcap.stream_reader import StreamReader
+from mcap.writer import MCAP0_MAGIC
+
+from lacoc_shared import codec
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE
+
+_DAMAGE = (
+    McapError,
+    codec.BadMessage,
+    struct.error,
+    zstandard.ZstdError,
+    ValueError,
+    KeyError,
+    MemoryError,
+    OverflowError,
+)
+"""What bytes that are no record raise where they are read."""
+
+
+_MAX_BYTES = 1 << 26
+"""A longer message is no record's: the longest, a scene, has some 30 kB."""
+
+Take = Callable[[str, int, bytes, Any], None]
+"""Called with a message's topic, beat, bytes, and what they mean (a snapshot's: the bytes)."""
+
+
+class _Format(msgspec.Struct):
+    """The one entry that a header of any format has."""
+
+    format: int
+
+
+def walk(path: Path, take: Take) -> bool:
+    """Give every whole message of a file to `take`.
+
+    A file that was never closed is had up to where it stops, or stops making sense: after a
+    power cut its last second may be anything.
+
+    Args:
+        path: a segment, or a packed file.
+        take: gets the messages.
+
+    Returns:
+        Whether the file was closed; False: it may have held more.
+
+    Raises:
+        UserError: if it can't be read, is not a record, is of another format, or was closed
+            and is damaged.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise UserError(f"The record {path} can't be read: {error.strerror}.") from None
+    if data[: len(MCAP0_MAGIC)] != MCAP0_MAGIC[: len(data)]:
+        raise UserError(
+            f"{path} is not a LACOC record: it is no MCAP file. Give the .mcap of a match."
+        )
+    beat = -1
+    topics: dict[int, str] = {}
+    reader = StreamReader(BytesIO(data), validate_crcs=True, record_size_limit=len(data))
+    try:
+        for record in reader.records:
+            if isinstance(record, Message):
+                beat = record.log_time // BEAT_NS
+                topic = topics[record.channel_id]
+                take(topic, beat, record.data, _decode(path, topic, record.data))
+            elif isinstance(record, Channel):
+                topics[record.id] = record.topic
+            elif isinstance(record, DataEnd):
+                return True
+            elif isinstance(record, FileHeader) and record.profile != PROFILE:
+                raise UserError(
+                    f"{path} is an MCAP file, but not a LACOC record. Give the .mcap of a match "
+                    "(one that was exported for Foxglove can't be read back)."
+                )
+    except _DAMAGE as error:
+        if data[len(MCAP0_MAGIC) :].endswith(MCAP0_MAGIC):
+            place = f"at beat {beat}" if beat >= 0 else "at its beginning"
+            raise UserError(
+                f"The record {path} is damaged {place} ({error}). "
+                "Copy it again from where it was made."
+            ) from None
+    return False
+
+
+def _decode(path: Path, topic: str, data: bytes) -> Any:
+    if topic == "/lacoc/header":
+        found = codec.decode(data, _Format, _MAX_BYTES).format
+        if found != FORMAT:
+            raise UserError(
+                f"The record {path} has format {found}, and this software reads format {FORMAT}. "
+                "Install the version of lacoc that wrote it."
+            )
+    kind = KINDS[topic]
+    return data if kind is None else codec.decode(data, kind, _MAX_BYTES)
