@@ -39,6 +39,9 @@ Range = float | Sequence[tuple[float, float]]
 """Range of the angles [deg]: the same bound both ways for every joint, or (lowest, highest) of
 each joint id."""
 
+# Full-width forms (what a Japanese input method types) to ASCII, the ideographic space
+# to a space, the minus sign U+2212 to a hyphen. U+FF0D is among the full-width forms.
+_NARROW = {0xFF01 + i: 0x21 + i for i in range(94)} | {0x3000: " ", 0x2212: "-"}
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
 _KEY = re.compile(r"(\d)\s*key", re.IGNORECASE | re.ASCII)
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
@@ -121,6 +124,11 @@ def degrees_of(angle_rad: float) -> float:
 def number_text(value: float) -> str:
     """A number as short as it can be without loss: "45", "-22.5"."""
     return repr(float(value)).removesuffix(".0")
+
+
+def narrow(text: str) -> str:
+    """Full-width characters, and the minus sign that is no hyphen, as their ASCII forms."""
+    return text.translate(_NARROW)
 
 
 def number_of(cell: str) -> float | None:

@@ -11,6 +11,7 @@ from lacoc_shared.gait_cells import (
     Range,
     Row,
     locomotion_cells,
+    narrow,
     number_text,
     posture_cells,
     read_cells,
@@ -24,9 +25,6 @@ _BOMS = (
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
-# Full-width forms (what a Japanese input method types) to ASCII, the ideographic space
-# to a space, the minus sign U+2212 to a hyphen. U+FF0D is among the full-width forms.
-_NARROW = {0xFF01 + i: 0x21 + i for i in range(94)} | {0x3000: " ", 0x2212: "-"}
 _LINE_END = re.compile(r"\r\n|\r|\n")
 # A row without a tab: labels that hold spaces, quoted cells, and then what spaces part.
 _SPACED_CELL = re.compile(
@@ -104,7 +102,7 @@ def _decoded(data: bytes, encoding: str, name: str) -> str:
 
 
 def _cells(line: str) -> list[str]:
-    line = line.translate(_NARROW)
+    line = narrow(line)
     cells = line.split("\t") if "\t" in line else _SPACED_CELL.findall(line)
     return [_unquoted(cell.strip()) for cell in cells]
 

@@ -1,0 +1,72 @@
+"""Files that are written without losing the ones before them (workshop 4-1, rules 2)."""
+
+import itertools
+import os
+from pathlib import Path
+
+from lacoc_shared.mistakes import UserError
+
+
+def save(path: Path, data: bytes) -> Path | None:
+    """Write a file; an older one of that name is kept with a number.
+
+    Returns:
+        Where the older file is now ("Loco-data.1.txt"), or None if there was none.
+
+    Raises:
+        UserError: if the file can't be written.
+    """
+    kept = None
+    while True:
+        kept = make_room(path) or kept
+        try:
+            with path.open("xb") as file:
+                file.write(data)
+            return kept
+        except FileExistsError:
+            continue  # made by another program meanwhile: it is kept too
+        except OSError as error:
+            raise _cannot_write(path, error) from error
+
+
+def make_room(path: Path) -> Path | None:
+    """Give a file the first free number, so that its own name is free for a new file.
+
+    Returns:
+        Where the file is now ("Loco-data.1.txt"), or None if there is none of that name.
+
+    Raises:
+        UserError: if it can't be renamed, or is a folder.
+    """
+    if path.is_dir():
+        raise UserError(f"Cannot write {path}: a folder has this name.")
+    if not os.path.lexists(path):
+        return None
+    try:
+        kept = _claimed(path)
+        try:
+            os.replace(path, kept)
+        except OSError:
+            kept.unlink()
+            raise
+    except FileNotFoundError:
+        return None  # another program renamed it first
+    except OSError as error:
+        raise _cannot_write(path, error) from error
+    return kept
+
+
+def _claimed(path: Path) -> Path:
+    """Make an empty file of the first free number, so that no other program takes that number."""
+    for number in itertools.count(1):
+        numbered = path.with_name(f"{path.stem}.{number}{path.suffix}")
+        try:
+            numbered.open("xb").close()
+        except FileExistsError:
+            continue
+        return numbered
+    raise AssertionError("numbers do not end")
+
+
+def _cannot_write(path: Path, error: OSError) -> UserError:
+    return UserError(f"Cannot write {path}: {error.strerror or error}.")
