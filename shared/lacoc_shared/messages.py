@@ -281,6 +281,9 @@ class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
 
     id: str
     joined: bool
+    session: int = 0
+    """Number of the session that holds the seat (a controller sees whether it is its own); 0: none,
+    as after a restart of the court."""
     heard_ms: float | None
     """Since the last command; None: nobody."""
     commands_hz: float

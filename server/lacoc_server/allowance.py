@@ -1,0 +1,20 @@
+"""How much of something may pass: a flood never costs more than a fixed amount."""
+
+
+class Allowance:
+    """Lets `rate_hz` through in the long run, and `burst` at once."""
+
+    def __init__(self, rate_hz: float, burst: int) -> None:
+        self._rate_hz = rate_hz
+        self._burst = burst
+        self._left = float(burst)
+        self._last_s = 0.0
+
+    def take(self, wanted: int, now_s: float) -> int:
+        """How many of those wanted may pass now."""
+        grown = max(0.0, now_s - self._last_s) * self._rate_hz
+        self._left = min(self._burst, self._left + grown)
+        self._last_s = now_s
+        allowed = min(wanted, int(self._left))
+        self._left -= allowed
+        return allowed

@@ -1,0 +1,290 @@
+"""What a court believes of what arrives: tokens, sessions, sequence numbers, seals, floods.
+
+Pure: bytes and the time come in, inputs and refusals come out. Whatever the network
+lets through, nothing passes here that is not proven to be the seat's own, and nothing
+that arrives ever raises or costs more than a fixed amount of a beat.
+"""
+
+from collections import Counter, deque
+from collections.abc import Callable, Collection, Mapping, Sequence
+
+import msgspec
+
+from lacoc_server.allowance import Allowance
+from lacoc_server.sessions import Sessions, Why
+from lacoc_shared import codec, seal
+from lacoc_shared.gait import Level
+from lacoc_shared.inputs import (
+    HeardSeat,
+    Input,
+    JoinSeat,
+    KeySeat,
+    LeaveSeat,
+    ReadySeat,
+    SilentSeat,
+)
+from lacoc_shared.keyspace import COMMAND_MAX_BYTES, JOIN_MAX_BYTES, Keys
+from lacoc_shared.messages import (
+    PROTOCOL,
+    Command,
+    Join,
+    Joined,
+    Refusal,
+    SeatHealth,
+    SeatRequest,
+)
+from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.seat import RESTART_KEY
+
+SILENT_AFTER_S = 1.0
+"""A joined seat without a valid command for longer than this is silent (rules 3)."""
+COMMANDS_PER_BEAT = 16
+"""More of a seat's commands are not looked at in one beat: the newest count."""
+COMMANDS_HZ = 100.0
+"""Nor more than this in the long run; a controller sends 10 and what is pressed."""
+NAME_MAX = 24
+
+_JOINS_HZ, _JOINS_BURST = 1.0, 5  # each may cost the reading of three files
+_RATE_WINDOW_S = 2.0
+
+_SESSION_SENTENCES = {
+    Why.UNKNOWN_SESSION: "The court does not know this session: join seat {seat} again.",
+    Why.REPLACED: "Seat {seat} was joined again from another window or machine.",
+    Why.LEFT: "This session has left seat {seat}: join again.",
+    Why.NOT_YOUR_SEAT: "This session holds another seat than {seat}.",
+}
+
+
+class _Seat:
+    def __init__(self, index: int, name: str, last_seq: int, joined: bool) -> None:
+        self.index = index
+        self.name = name
+        self.last_seq = last_seq
+        self.joined = joined
+        self.heard_s: float | None = None
+        self.silent = False
+        self.refused: Counter[str] = Counter()
+        self.valid_s: deque[float] = deque(maxlen=int(2 * COMMANDS_HZ * _RATE_WINDOW_S))
+        self.commands = Allowance(COMMANDS_HZ, COMMANDS_PER_BEAT)
+        self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
+
+    def refuse(self, why: Why, reason: str) -> Refusal:
+        self.refused[why] += 1
+        return Refusal(reason)
+
+
+class _Version(msgspec.Struct):
+    protocol: int
+
+
+class Inbox:
+    """The seats of a court and who holds them.
+
+    Args:
+        keys: key expressions of the court; seals are over them.
+        seats: the seats' names, in the arena's order.
+        token_hashes: hash of the token that opens a seat, by the seat's name; a seat without one
+            can't be joined.
+        check_files: weighs a join's files in; returns the join with the robot file filled in, or
+            raises `FileRefused`.
+        last_seqs: for a restarted court, the newest sequence numbers of its record, by seat.
+        joined: for a restarted court, the seats that are held.
+    """
+
+    def __init__(
+        self,
+        keys: Keys,
+        seats: Sequence[str],
+        token_hashes: Mapping[str, str],
+        check_files: Callable[[Join], Join],
+        *,
+        last_seqs: Mapping[str, int] | None = None,
+        joined: Collection[str] = (),
+    ) -> None:
+        self._keys = keys
+        self._token_hashes = dict(token_hashes)
+        self._check_files = check_files
+        self._seats = [
+            _Seat(index, name, (last_seqs or {}).get(name, 0), name in joined)
+            for index, name in enumerate(seats)
+        ]
+        self._sessions = Sessions()
+        self._now_s = 0.0
+
+    def commands(self, now_s: float, arrived: Sequence[Sequence[bytes]]) -> list[Input]:
+        """Take a beat's commands in.
+
+        Args:
+            now_s: monotonic time.
+            arrived: for each seat the payloads on its key expression, the newest last.
+
+        Returns:
+            For each seat: that it fell silent or is heard again, then its newest [x], then its
+            newest digit (rules 3).
+        """
+        self._now_s = now_s
+        inputs: list[Input] = []
+        for seat, payloads in zip(self._seats, arrived, strict=True):
+            allowed = seat.commands.take(min(len(payloads), COMMANDS_PER_BEAT), now_s)
+            if allowed < len(payloads):
+                seat.refused[Why.FLOOD] += len(payloads) - allowed
+            keys = self._newest(seat, payloads[len(payloads) - allowed :])
+            inputs += self._presence(seat)
+            inputs += keys
+        return inputs
+
+    def join(self, index: int, payload: bytes) -> JoinSeat | Refusal:
+        """Judge a join; it takes effect with `seated`, once the match has taken it in."""
+        seat = self._seats[index]
+        try:
+            protocol = codec.decode(payload, _Version, JOIN_MAX_BYTES).protocol
+            if protocol != PROTOCOL:
+                return seat.refuse(
+                    Why.WRONG_VERSION,
+                    f"This court speaks version {PROTOCOL} of the protocol, your program version "
+                    f"{protocol}: install the version of lacoc that the organiser uses.",
+                )
+            join = codec.decode(payload, Join, JOIN_MAX_BYTES)
+        except codec.BadMessage as error:
+            return seat.refuse(Why.BAD_BYTES, f"The join was not understood: {error}.")
+        token_hash = self._token_hashes.get(seat.name, "")
+        if not seal.verify_token(join.token, token_hash):
+            return seat.refuse(
+                Why.WRONG_TOKEN,
+                f"This token does not open seat {seat.name}. "
+                "Check the seat and the token that the organiser gave you.",
+            )
+        if not seat.joins.take(1, self._now_s):
+            return seat.refuse(Why.FLOOD, "Too many joins at once: wait a few seconds.")
+        name = join.name.strip()
+        if not (0 < len(name) <= NAME_MAX and name.isprintable()):
+            return seat.refuse(
+                Why.BAD_NAME,
+                f"A team's name has 1-{NAME_MAX} printable characters; found {join.name!r:.60}.",
+            )
+        try:
+            checked = self._check_files(join)
+        except FileRefused as refused:
+            seat.refused[Why.BAD_FILES] += 1
+            return Refusal("Your files have mistakes.", tuple(refused.mistakes))
+        assert checked.robot is not None, "check_files fills the robot file in"
+        return JoinSeat(
+            seat=index,
+            team=name,
+            robot=checked.robot,
+            postures=checked.postures,
+            locomotion=checked.locomotion,
+            token_hash=token_hash,
+        )
+
+    def seated(self, index: int, notes: tuple[str, ...] = ()) -> Joined:
+        """Give a seat to whoever's join was taken in; an older session of it ends."""
+        seat = self._seats[index]
+        number, secret = self._sessions.begin(index)
+        seat.joined = True
+        seat.heard_s = self._now_s
+        return Joined(session=number, secret=secret, last_seq=seat.last_seq, notes=notes)
+
+    def ready(self, index: int, payload: bytes) -> ReadySeat | Refusal:
+        """Judge a ready request."""
+        request = self._request(index, payload, "ready")
+        return request if isinstance(request, Refusal) else ReadySeat(index, request.ready)
+
+    def leave(self, index: int, payload: bytes) -> LeaveSeat | Refusal:
+        """Judge a leave request; it takes effect with `left`."""
+        request = self._request(index, payload, "leave")
+        return request if isinstance(request, Refusal) else LeaveSeat(index)
+
+    def left(self, index: int) -> None:
+        """Free a seat whose leaving was taken in."""
+        seat = self._seats[index]
+        self._sessions.end(index, Why.LEFT)
+        seat.joined = seat.silent = False
+        seat.heard_s = None
+
+    def health(self, now_s: float) -> tuple[SeatHealth, ...]:
+        """How each seat's link is."""
+        return tuple(self._health(seat, now_s) for seat in self._seats)
+
+    def _health(self, seat: _Seat, now_s: float) -> SeatHealth:
+        recent = sum(at_s > now_s - _RATE_WINDOW_S for at_s in seat.valid_s)
+        return SeatHealth(
+            id=seat.name,
+            joined=seat.joined,
+            session=self._sessions.holder(seat.index),
+            heard_ms=None if seat.heard_s is None else (now_s - seat.heard_s) * 1000,
+            commands_hz=recent / _RATE_WINDOW_S,
+            refused=dict(seat.refused),
+        )
+
+    def _newest(self, seat: _Seat, payloads: Sequence[bytes]) -> list[Input]:
+        key_expression = self._keys.command(seat.name)
+        restart: Command | None = None
+        digit: Command | None = None
+        for payload in payloads:
+            command = self._command(seat, key_expression, payload)
+            if isinstance(command, Why):
+                seat.refused[command] += 1
+                continue
+            seat.heard_s = self._now_s
+            seat.valid_s.append(self._now_s)
+            if command.seq <= seat.last_seq:  # its last one again, or no key yet: a sign of life
+                continue
+            seat.last_seq = command.seq
+            if command.key == RESTART_KEY:
+                restart = command
+            else:
+                digit = command
+        newest = (command for command in (restart, digit) if command is not None)
+        return [KeySeat(seat.index, c.seq, c.level, c.key) for c in newest]
+
+    def _command(self, seat: _Seat, key_expression: str, payload: bytes) -> Command | Why:
+        if len(payload) > COMMAND_MAX_BYTES:
+            return Why.TOO_LONG
+        try:
+            command = codec.decode(payload, Command)
+        except codec.BadMessage:
+            return Why.BAD_BYTES
+        secret = self._sessions.secret(seat.index, command.session)
+        if isinstance(secret, Why):
+            return secret
+        expected = seal.command_mac(
+            secret, key_expression, command.session, command.seq, command.level, command.key
+        )
+        if not seal.same(command.mac, expected):
+            return Why.BAD_SEAL
+        if command.level not in (Level.POSTURE, Level.LOCOMOTION):
+            return Why.OUT_OF_RANGE
+        if not (0 <= command.key <= RESTART_KEY and 0 <= command.seq < 2**53):
+            return Why.OUT_OF_RANGE
+        if 0 < command.seq < seat.last_seq:
+            return Why.OLD
+        return command
+
+    def _request(self, index: int, payload: bytes, what: str) -> SeatRequest | Refusal:
+        seat = self._seats[index]
+        try:
+            request = codec.decode(payload, SeatRequest, COMMAND_MAX_BYTES)
+        except codec.BadMessage as error:
+            return seat.refuse(Why.BAD_BYTES, f"The request was not understood: {error}.")
+        secret = self._sessions.secret(index, request.session)
+        if isinstance(secret, Why):
+            return seat.refuse(secret, _SESSION_SENTENCES[secret].format(seat=seat.name))
+        key_expression = self._keys.request(seat.name, what)
+        expected = seal.request_mac(secret, key_expression, request.session, request.ready)
+        if not seal.same(request.mac, expected):
+            return seat.refuse(
+                Why.BAD_SEAL, f"The request's seal is not that of seat {seat.name}: join again."
+            )
+        return request
+
+    def _presence(self, seat: _Seat) -> list[Input]:
+        if not seat.joined:
+            return []
+        if seat.heard_s is None:  # held since before a restart of the court
+            seat.heard_s = self._now_s
+        silent = self._now_s - seat.heard_s > SILENT_AFTER_S
+        if silent == seat.silent:
+            return []
+        seat.silent = silent
+        return [SilentSeat(seat.index) if silent else HeardSeat(seat.index)]

@@ -1,0 +1,353 @@
+"""The court's inbox, with a time that the test gives."""
+
+from typing import Any
+
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_server.inbox import COMMANDS_PER_BEAT, Inbox
+from lacoc_shared import seal
+from lacoc_shared.codec import encode
+from lacoc_shared.inputs import HeardSeat, JoinSeat, KeySeat, LeaveSeat, ReadySeat, SilentSeat
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import (
+    PROTOCOL,
+    Command,
+    Join,
+    Joined,
+    Refusal,
+    SeatRequest,
+    SentFile,
+)
+from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.seat import RESTART_KEY
+
+KEYS = Keys("main")
+SEATS = ("left", "right")
+TOKENS = {"left": "token of left", "right": "token of right"}
+HASHES = {seat: seal.hash_token(token) for seat, token in TOKENS.items()}
+LEFT, RIGHT = 0, 1
+CONTEST_ROBOT = SentFile("hexapod.toml", b"the contest's robot")
+
+
+def check_files(join: Join) -> Join:
+    if join.postures is not None and join.postures.data == b"wrong":
+        mistake = Mistake(file=join.postures.name, found="wrong", expected="right", row=1)
+        raise FileRefused([mistake, mistake])
+    return msgspec.structs.replace(join, robot=join.robot or CONTEST_ROBOT)
+
+
+def make(**more: Any) -> Inbox:
+    return Inbox(KEYS, SEATS, HASHES, check_files, **more)
+
+
+def join_bytes(seat: int = LEFT, **changes: Any) -> bytes:
+    fields = {"protocol": PROTOCOL, "token": TOKENS[SEATS[seat]], "name": "Blue"} | changes
+    return encode(Join(**fields))
+
+
+def take_seat(inbox: Inbox, seat: int = LEFT) -> Joined:
+    assert isinstance(inbox.join(seat, join_bytes(seat)), JoinSeat)
+    return inbox.seated(seat)
+
+
+def command(joined: Joined, seq: int, key: int = 2, level: int = 1, seat: int = LEFT) -> bytes:
+    mac = seal.command_mac(
+        joined.secret, KEYS.command(SEATS[seat]), joined.session, seq, level, key
+    )
+    return encode(Command(joined.session, seq, level, key, mac))
+
+
+def request(joined: Joined, what: str, ready: bool = True, seat: int = LEFT) -> bytes:
+    key = KEYS.request(SEATS[seat], what)
+    mac = seal.request_mac(joined.secret, key, joined.session, ready)
+    return encode(SeatRequest(session=joined.session, ready=ready, mac=mac))
+
+
+def refusals(inbox: Inbox, seat: int = LEFT) -> dict[str, int]:
+    return inbox.health(0.0)[seat].refused
+
+
+def test_a_join_gives_a_session_only_when_the_match_has_taken_it_in() -> None:
+    """A session starts with `seated`: once the join is applied and on disk."""
+    inbox = make()
+    taken = inbox.join(LEFT, join_bytes(name="  Blue ", postures=SentFile("a.txt", b"x")))
+    assert taken == JoinSeat(
+        LEFT, "Blue", CONTEST_ROBOT, SentFile("a.txt", b"x"), None, HASHES["left"]
+    )
+    assert inbox.health(0.0)[LEFT].session == 0
+    joined = inbox.seated(LEFT, ("welcome",))
+    assert joined.last_seq == 0
+    assert joined.notes == ("welcome",)
+    assert inbox.health(0.0)[LEFT].session == joined.session
+    assert inbox.health(0.0)[RIGHT].session == 0
+
+
+@pytest.mark.parametrize(
+    ("payload", "words", "why"),
+    [
+        (join_bytes(token="guess"), "does not open seat left", "wrong token"),
+        (join_bytes(token=TOKENS["right"]), "does not open seat left", "wrong token"),
+        (join_bytes(protocol=PROTOCOL + 1), "install the version", "wrong version"),
+        (encode({"protocol": 99, "something": "new"}), "install the version", "wrong version"),
+        (join_bytes(name="   "), "1-24 printable", "bad name"),
+        (join_bytes(name="x" * 25), "1-24 printable", "bad name"),
+        (join_bytes(name="a\x1b[31m"), "1-24 printable", "bad name"),
+        (join_bytes(postures=SentFile("a.txt", b"wrong")), "mistakes", "bad files"),
+        (b"\xc1", "not understood", "bad bytes"),
+        (b"x" * 70_000, "at most", "bad bytes"),
+    ],
+)
+def test_a_join_is_refused_with_its_reason(payload: bytes, words: str, why: str) -> None:
+    """A wrong file, token or version: one clear sentence, counted, and nothing else disturbed."""
+    inbox = make()
+    holder = take_seat(inbox)
+    refusal = inbox.join(LEFT, payload)
+    assert isinstance(refusal, Refusal)
+    assert words in refusal.reason
+    assert len(refusal.mistakes) == (2 if why == "bad files" else 0)
+    assert refusals(inbox) == {why: 1}
+    assert inbox.commands(0.1, [[command(holder, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
+
+
+def test_a_seat_without_a_token_is_closed() -> None:
+    """No token was given out for it, so none opens it."""
+    inbox = Inbox(KEYS, SEATS, {}, check_files)
+    assert isinstance(inbox.join(LEFT, join_bytes(token="")), Refusal)
+
+
+def test_joins_can_not_flood_the_reading_of_files() -> None:
+    """A join may cost a lot, so even the right token gets only so many of them a second."""
+    inbox = make()
+    inbox.commands(10.0, [[], []])
+    answers = [inbox.join(LEFT, join_bytes()) for _ in range(50)]
+    assert sum(isinstance(answer, JoinSeat) for answer in answers) == 5
+    inbox.commands(12.0, [[], []])
+    assert isinstance(inbox.join(LEFT, join_bytes()), JoinSeat)
+
+
+def test_the_same_token_takes_the_seat_over() -> None:
+    """The same person's new window: the old session is refused from then on as replaced."""
+    inbox = make()
+    old = take_seat(inbox)
+    inbox.commands(0.1, [[command(old, 5)], []])
+    new = take_seat(inbox)
+    assert new.last_seq == 5
+    assert inbox.commands(0.2, [[command(old, 6), command(new, 6, key=3)], []]) == [
+        KeySeat(LEFT, 6, 1, 3)
+    ]
+    assert refusals(inbox) == {"replaced": 1}
+    refusal = inbox.ready(LEFT, request(old, "ready"))
+    assert isinstance(refusal, Refusal)
+    assert "another window" in refusal.reason
+
+
+def test_a_command_counts_once_and_its_repetition_is_a_sign_of_life() -> None:
+    """Rules 3: repetition with the same sequence number is retransmission and heartbeat in one."""
+    inbox = make()
+    joined = take_seat(inbox)
+    assert inbox.commands(0.1, [[command(joined, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
+    for beat in range(200):
+        assert inbox.commands(0.2 + beat * 0.02, [[command(joined, 1)], []]) == []
+    assert refusals(inbox) == {}
+    assert inbox.health(4.2)[LEFT].commands_hz == pytest.approx(50, abs=1)
+
+
+def test_the_newest_restart_comes_before_the_newest_digit() -> None:
+    """Rules 3: in one tick a seat's newest [x] is applied first, then its newest digit."""
+    inbox = make()
+    joined = take_seat(inbox)
+    keys = (3, RESTART_KEY, 1, RESTART_KEY, 4)
+    sent = [command(joined, seq, key) for seq, key in enumerate(keys, 1)]
+    assert inbox.commands(0.1, [sent, []]) == [
+        KeySeat(LEFT, 4, 1, RESTART_KEY),
+        KeySeat(LEFT, 5, 1, 4),
+    ]
+    later = [command(joined, 6, 7), command(joined, 7, RESTART_KEY)]
+    assert inbox.commands(0.2, [later, []]) == [
+        KeySeat(LEFT, 7, 1, RESTART_KEY),
+        KeySeat(LEFT, 6, 1, 7),
+    ]
+
+
+def altered(payload: bytes, field: str, value: object) -> bytes:
+    whole = msgspec.msgpack.decode(payload, type=Command)
+    return encode(msgspec.structs.replace(whole, **{field: value}))
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "why"),
+    [
+        ("session", 1, "unknown session"),
+        ("seq", 11, "bad seal"),
+        ("level", 0, "bad seal"),
+        ("key", 3, "bad seal"),
+        ("mac", b"12345678", "bad seal"),
+        ("mac", b"", "bad seal"),
+        ("key", "2", "bad bytes"),
+    ],
+)
+def test_an_altered_command_is_refused(field: str, value: object, why: str) -> None:
+    """A seal covers every number of a command."""
+    inbox = make()
+    joined = take_seat(inbox)
+    assert inbox.commands(0.1, [[altered(command(joined, 10), field, value)], []]) == []
+    assert refusals(inbox) == {why: 1}
+
+
+@pytest.mark.parametrize(
+    ("seq", "level", "key", "why"),
+    [
+        (9, 1, 2, "old"),
+        (1, 1, 2, "old"),
+        (11, 2, 2, "out of range"),
+        (11, 1, 11, "out of range"),
+        (11, 1, -1, "out of range"),
+        (-1, 1, 2, "out of range"),
+        (2**60, 1, 2, "out of range"),
+    ],
+)
+def test_a_sealed_command_that_makes_no_sense_is_refused(
+    seq: int, level: int, key: int, why: str
+) -> None:
+    """Old and impossible commands have no effect and are counted by reason."""
+    inbox = make()
+    joined = take_seat(inbox)
+    inbox.commands(0.1, [[command(joined, 10)], []])
+    assert inbox.commands(0.2, [[command(joined, seq, key, level)], []]) == []
+    assert refusals(inbox) == {why: 1}
+
+
+def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
+    """Failure policy: refused with the reason, counted; the seat is not disturbed."""
+    inbox = make()
+    left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
+    forged = command(left, 1, seat=RIGHT)
+    stolen = command(left, 1, seat=LEFT)
+    assert inbox.commands(0.1, [[], [forged, stolen, command(right, 1, seat=RIGHT)]]) == [
+        KeySeat(RIGHT, 1, 1, 2)
+    ]
+    assert refusals(inbox, RIGHT) == {"not your seat": 2}
+    assert refusals(inbox, LEFT) == {}
+
+
+def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
+    """Failure policy: the newest wins; the other seat and the beat's time are untouched."""
+    inbox = make()
+    left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
+    inbox.commands(0.0, [[], []])
+    seq = heeded = 0
+    for beat in range(1, 101):  # 2 s
+        flood = [command(left, seq + n, key=n % 10) for n in range(1, 65)]
+        seq += 64
+        taken = inbox.commands(beat * 0.02, [flood, [command(right, beat, seat=RIGHT)]])
+        assert taken == [KeySeat(LEFT, seq, 1, 64 % 10), KeySeat(RIGHT, beat, 1, 2)]
+    health = inbox.health(2.0)[LEFT]
+    heeded = 6400 - health.refused["flood"]
+    assert 200 <= heeded <= 200 + COMMANDS_PER_BEAT
+    assert refusals(inbox, RIGHT) == {}
+
+
+def test_a_flood_of_rubbish_costs_a_fixed_amount() -> None:
+    """Bytes beyond the allowance are not even read."""
+    inbox = make()
+    inbox.commands(5.0, [[b"rubbish"] * 1000, []])
+    assert refusals(inbox) == {"flood": 1000 - COMMANDS_PER_BEAT, "bad bytes": COMMANDS_PER_BEAT}
+
+
+def test_a_seat_is_silent_after_a_second_and_heard_again() -> None:
+    """Rules 3: silent for 1 s of wall time gets "silent" as an input."""
+    inbox = make()
+    joined = take_seat(inbox)
+    assert inbox.commands(1.0, [[], []]) == []
+    assert inbox.commands(1.02, [[], []]) == [SilentSeat(LEFT)]
+    assert inbox.commands(1.04, [[], []]) == []
+    assert inbox.commands(5.0, [[command(joined, 0)], []]) == [HeardSeat(LEFT)]
+    assert inbox.commands(6.02, [[], []]) == [SilentSeat(LEFT)]
+    assert inbox.commands(7.0, [[command(joined, 1)], []]) == [
+        HeardSeat(LEFT),
+        KeySeat(LEFT, 1, 1, 2),
+    ]
+
+
+def test_refused_commands_are_no_sign_of_life() -> None:
+    """Nobody else can keep a seat from falling silent."""
+    inbox = make()
+    joined = take_seat(inbox)
+    bad = altered(command(joined, 1), "key", 5)
+    assert inbox.commands(1.02, [[bad], []]) == [SilentSeat(LEFT)]
+
+
+def test_a_late_beat_makes_nobody_silent() -> None:
+    """After a stall of the court the commands that waited are read before silence is judged."""
+    inbox = make()
+    joined = take_seat(inbox)
+    inbox.commands(0.5, [[command(joined, 1)], []])
+    assert inbox.commands(9.0, [[command(joined, 1)], []]) == []
+
+
+def test_ready_and_leave_are_proven_by_the_session() -> None:
+    """The token travels once; after that the session's secret proves who asks."""
+    inbox = make()
+    joined = take_seat(inbox)
+    assert inbox.ready(LEFT, request(joined, "ready")) == ReadySeat(LEFT, True)
+    assert inbox.ready(LEFT, request(joined, "ready", False)) == ReadySeat(LEFT, False)
+    assert isinstance(inbox.ready(LEFT, request(joined, "leave")), Refusal)  # another key
+    assert isinstance(inbox.ready(RIGHT, request(joined, "ready", seat=RIGHT)), Refusal)
+    assert isinstance(inbox.leave(LEFT, b""), Refusal)
+    assert inbox.leave(LEFT, request(joined, "leave")) == LeaveSeat(LEFT)
+    inbox.left(LEFT)
+    assert inbox.commands(9.0, [[command(joined, 1)], []]) == []
+    assert refusals(inbox) == {"bad seal": 1, "bad bytes": 1, "left": 1}
+    assert not inbox.health(9.0)[LEFT].joined
+
+
+def test_a_restarted_court_knows_its_seats() -> None:
+    """Sequence numbers go on, an unheard seat falls silent, and the old session is unknown."""
+    before = make()
+    old = take_seat(before)
+    after = make(last_seqs={"left": 41}, joined=("left",))
+    assert after.commands(100.0, [[command(old, 42)], []]) == []
+    assert refusals(after) == {"unknown session": 1}
+    assert after.commands(101.1, [[], []]) == [SilentSeat(LEFT)]
+    assert after.health(101.1)[LEFT].joined
+    assert after.health(101.1)[LEFT].session == 0
+    new = take_seat(after)
+    assert new.last_seq == 41
+    assert after.commands(101.2, [[command(new, 41), command(new, 42)], []]) == [
+        HeardSeat(LEFT),
+        KeySeat(LEFT, 42, 1, 2),
+    ]
+
+
+ARBITRARY = st.binary(max_size=200) | st.recursive(
+    st.none() | st.booleans() | st.integers(-(2**63), 2**64 - 1) | st.floats() | st.text()
+    | st.binary(),
+    lambda inner: st.lists(inner, max_size=5) | st.dictionaries(st.text(max_size=8), inner),
+    max_leaves=8,
+).map(encode)  # fmt: skip
+
+
+@given(st.lists(ARBITRARY, max_size=20))
+def test_no_bytes_ever_raise(payloads: list[bytes]) -> None:
+    """Failure policy: never an exception in the loop, and nothing enters the match."""
+    inbox = make()
+    assert inbox.commands(0.0, [payloads, payloads]) == []
+    for payload in payloads:
+        for judge in (inbox.join, inbox.ready, inbox.leave):
+            assert isinstance(judge(LEFT, payload), Refusal)
+
+
+@given(
+    st.tuples(
+        st.integers(-(2**63), 2**63), st.integers(-(2**63), 2**63), st.integers(-(2**63), 2**63)
+    ),
+    st.binary(max_size=40),
+)
+def test_no_numbers_ever_raise(numbers: tuple[int, int, int], mac: bytes) -> None:
+    """Well-formed commands with any numbers and any seal have no effect."""
+    inbox = make()
+    joined = take_seat(inbox)
+    assert inbox.commands(0.0, [[encode(Command(joined.session, *numbers, mac))], []]) == []
