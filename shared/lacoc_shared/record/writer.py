@@ -55,13 +55,11 @@ class RecordWriter:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("xb", buffering=0)
-        except FileExistsError:
-            raise UserError(
-                f"The record {self.path} is there already, and a record is never overwritten."
-            ) from None
         except OSError as error:
             raise UserError(
-                f"No record can be written to {folder}: {error.strerror}. "
+                f"The record {self.path} is there already, and a record is never overwritten."
+                if self.path.exists()
+                else f"No record can be written to {folder}: {error.strerror}. "
                 "Name a folder that this user may write to."
             ) from None
         self._backlog = bytearray()

@@ -1,0 +1,384 @@
+"""The journal's promise: whatever happens to the process or the file, whole messages stay."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+import msgspec
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from mcap.reader import make_reader
+from mcap.writer import Writer
+
+from lacoc_shared import codec
+from lacoc_shared.inputs import KeySeat
+from lacoc_shared.messages import Frame, Scene, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import files, pack
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import BEAT_NS, KINDS, Header, Result, Touch
+from lacoc_shared.record.writer import RecordWriter
+
+WriteMatch = Callable[..., Path]
+MakeHeader = Callable[..., Header]
+MakeFrame = Callable[..., Frame]
+
+
+@pytest.fixture(scope="module")
+def segment(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
+    return write_match(tmp_path_factory.mktemp("segment"))
+
+
+@pytest.fixture(scope="module")
+def packed(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) -> Path:
+    folder = tmp_path_factory.mktemp("packed")
+    pack.pack([write_match(folder)], folder / "m.mcap")
+    return folder / "m.mcap"
+
+
+def test_what_is_written_is_read(
+    segment: Path, header: MakeHeader, sheet: Sheet, scene: Scene, result: Result, frame: MakeFrame
+) -> None:
+    """Everything comes back, typed, by its beat and in its order."""
+    record = Record.read(segment)
+    assert record.headers == [header()]
+    assert record.sheets == [(0, sheet)]
+    assert record.scenes == [(0, scene)]
+    assert record.result == result
+    assert [beat for beat, _ in record.frames] == list(range(40))
+    assert codec.decode(record.frames[12][1], Frame) == frame(12)
+    assert record.inputs[13] == (KeySeat(0, 14, 1, 2), KeySeat(1, 14, 1, 3))
+    assert [event.beat for event in record.events] == [3, 13, 23, 33]
+    assert record.touches[3] == Touch(((1,), ()), (None, (0.1, 0.2, 0.3)))
+    assert record.snapshots == [(5, bytes(range(256)) * 4), (25, bytes(range(256)) * 4)]
+    assert (record.last_beat, record.cut) == (39, "")
+
+
+def test_a_segment_is_plain_mcap(segment: Path) -> None:
+    """Mcap's own reader agrees: channels, counts and times; nothing is a private dialect."""
+    with segment.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        summary = reader.get_summary()
+        messages = list(reader.iter_messages())
+    assert summary is not None
+    assert summary.statistics is not None
+    assert summary.statistics.message_count == len(messages)
+    assert {channel.topic for channel in summary.channels.values()} == set(KINDS)
+    counted = {
+        summary.channels[number].topic: count
+        for number, count in summary.statistics.channel_message_counts.items()
+    }
+    assert (counted["/lacoc/frame"], counted["/lacoc/input"]) == (40, 10)
+    frames = [m for _, channel, m in messages if channel.topic == "/lacoc/frame"]
+    assert [m.log_time for m in frames] == [beat * BEAT_NS for beat in range(40)]
+    assert [m.sequence for m in frames] == list(range(40))
+
+
+@given(share=st.floats(0, 1))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+def test_a_segment_cut_anywhere_gives_every_whole_message(
+    tmp_path: Path, segment: Path, share: float
+) -> None:
+    """A killed court or a broken copy: the messages before the cut, and a sentence about it."""
+    data = segment.read_bytes()
+    cut = data[: round(share * len(data))]
+    path = tmp_path / "m.000.live.mcap"
+    path.write_bytes(cut)
+    whole = _messages(cut)
+    if not whole:
+        with pytest.raises(UserError, match="There is no match in"):
+            Record.read(path)
+        return
+    record = Record.read(path)
+    assert [data for _, data in record.frames] == whole.get("/lacoc/frame", [])
+    assert [codec.encode(i) for items in record.inputs.values() for i in items] == whole.get(
+        "/lacoc/input", []
+    )
+    assert [codec.encode(event) for event in record.events] == whole.get("/lacoc/event", [])
+    assert [codec.encode(touch) for touch in record.touches.values()] == whole.get(
+        "/lacoc/touch", []
+    )
+    assert [data for _, data in record.snapshots] == whole.get("/lacoc/snapshot", [])
+    assert (record.result is not None) == ("/lacoc/result" in whole)
+    assert ("without an end" in record.cut) == (b"\x0f\x04\0\0\0\0\0\0\0" not in cut)
+
+
+def test_a_packed_file_cut_anywhere_is_read_or_refused(tmp_path: Path, packed: Path) -> None:
+    """A download that broke off: no bytes of it raise anything but UserError."""
+    data = packed.read_bytes()
+    path = tmp_path / "m.mcap"
+    for size in range(0, len(data), 7):
+        path.write_bytes(data[:size])
+        try:
+            record = Record.read(path)
+        except UserError:
+            continue
+        assert len(record.frames) in (0, 40)
+        assert record.frames or record.cut
+
+
+@given(place=st.floats(0, 1, exclude_max=True), byte=st.integers(0, 255), closed=st.booleans())
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+def test_a_wrong_byte_anywhere_is_read_or_refused(
+    tmp_path: Path, segment: Path, packed: Path, place: float, byte: int, closed: bool
+) -> None:
+    """A broken disk: nothing raises but UserError, whatever byte it changed."""
+    data = bytearray((packed if closed else segment).read_bytes())
+    data[int(place * len(data))] = byte
+    path = tmp_path / "m.mcap"
+    path.write_bytes(data)
+    with suppress(UserError):
+        Record.read(path)
+
+
+def test_a_damaged_packed_file_is_refused(tmp_path: Path, packed: Path) -> None:
+    """A closed file that is damaged says so; it is not taken for a short match."""
+    data = bytearray(packed.read_bytes())
+    data[len(data) // 2] ^= 0xFF
+    path = tmp_path / "m.mcap"
+    path.write_bytes(data)
+    with pytest.raises(UserError, match=r"is damaged .* Copy it again"):
+        Record.read(path)
+
+
+def test_an_unfinished_segment_ends_where_it_stops_making_sense(
+    tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
+) -> None:
+    """A power cut may leave anything in the last second; a packed record is right all the same."""
+    path = write_match(tmp_path, close=False)
+    with path.open("ab") as file:
+        file.write(bytes(4096))
+    assert len(Record.read(path).frames) == 40
+    data = path.read_bytes()
+    start = data.rindex(codec.encode(frame(38, markers=b"\x16")))
+    path.write_bytes(data[:start] + bytes(100) + data[start + 100 :])
+    before = Record.read(path)
+    assert [beat for beat, _ in before.frames] == list(range(38))
+    assert "stops after beat 37" in before.cut
+    with_next = RecordWriter(tmp_path, header(segment=1, first_beat=38))
+    with_next.frame(38, codec.encode(frame(38)))
+    with_next.close()
+    segments = files.segment_paths(tmp_path, "m")
+    expected = Record.read(segments)
+    pack.pack(segments, tmp_path / "m.mcap")
+    assert Record.read(tmp_path / "m.mcap") == expected
+    assert [beat for beat, _ in expected.frames] == list(range(39))
+
+
+_VICTIM = """
+import os, sys
+from pathlib import Path
+import msgspec
+from lacoc_shared import codec
+from lacoc_shared.messages import Frame
+from lacoc_shared.record.schema import Header
+from lacoc_shared.record.writer import RecordWriter
+
+header = msgspec.json.decode(sys.argv[2], type=Header)
+frame = msgspec.json.decode(sys.argv[3], type=Frame)
+writer = RecordWriter(Path(sys.argv[1]), header)
+for beat in range(10**9):
+    writer.frame(beat, codec.encode(msgspec.structs.replace(frame, beat=beat)))
+    os.write(1, b"%d\\n" % beat)
+"""
+
+
+def test_kill_9_loses_nothing_that_was_answered(
+    tmp_path: Path, header: MakeHeader, frame: MakeFrame
+) -> None:
+    """design.md, "Record": every beat that the victim told of is in its file."""
+    victim = subprocess.Popen(
+        [
+            sys.executable,
+            "-c",
+            _VICTIM,
+            str(tmp_path),
+            msgspec.json.encode(header()),
+            msgspec.json.encode(frame(0)),
+        ],
+        stdout=subprocess.PIPE,
+    )
+    assert victim.stdout is not None
+    while victim.stdout.readline() != b"500\n":
+        assert victim.poll() is None
+    victim.send_signal(signal.SIGKILL)
+    told = [int(line) for line in victim.stdout.read().split(b"\n")[:-1]]
+    victim.wait()
+    record = Record.read(tmp_path / "m.000.live.mcap")
+    beats = [beat for beat, _ in record.frames]
+    assert beats == list(range(len(beats)))
+    assert beats[-1] >= max([500, *told])
+    assert record.cut
+
+
+def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) -> None:
+    """The packed file says what its segments said, indexed and smaller; then they are gone."""
+    path = write_match(tmp_path)
+    size, record = path.stat().st_size, Record.read(path)
+    pack.pack([path], tmp_path / "m.mcap")
+    assert [p.name for p in tmp_path.iterdir()] == ["m.mcap"]
+    assert Record.read(tmp_path / "m.mcap") == record
+    assert (tmp_path / "m.mcap").stat().st_size < size / 2
+    with (tmp_path / "m.mcap").open("rb") as file:
+        summary = make_reader(file, validate_crcs=True).get_summary()
+    assert summary is not None
+    assert summary.chunk_indexes[0].compression == "zstd"
+
+
+def test_packing_that_was_interrupted_is_repeated(tmp_path: Path, write_match: WriteMatch) -> None:
+    """A half-written packed file is no record; a finished one is kept and its segments go."""
+    path = write_match(tmp_path)
+    record, data = Record.read(path), path.read_bytes()
+    (tmp_path / "m.mcap.part").write_bytes(b"half")
+    pack.pack([path], tmp_path / "m.mcap")
+    path.write_bytes(data[:100])
+    pack.pack([path], tmp_path / "m.mcap")
+    assert Record.read(tmp_path / "m.mcap") == record
+    assert [p.name for p in tmp_path.iterdir()] == ["m.mcap"]
+
+
+@pytest.mark.slow
+def test_packing_in_the_background(tmp_path: Path, write_match: WriteMatch) -> None:
+    """A court packs in a process of its own; of a match without segments it says so."""
+    record = Record.read(write_match(tmp_path))
+    assert pack.pack_in_background(tmp_path, "m").wait(60) == 0
+    assert Record.read(tmp_path / "m.mcap") == record
+    again = subprocess.run(
+        [sys.executable, "-m", "lacoc_shared.record.pack", str(tmp_path), "m"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert again.returncode == 2
+    assert again.stderr == f"There are no segments of match m in {tmp_path}.\n"
+
+
+def test_a_restarted_court_goes_on_in_a_new_segment(
+    tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
+) -> None:
+    """What the killed court had of a beat that it did not finish does not count."""
+    write_match(tmp_path, close=False)
+    second = RecordWriter(tmp_path, header(segment=1, first_beat=33))
+    second.input(33, KeySeat(1, 99, 1, 0))
+    second.frame(33, codec.encode(frame(33)))
+    second.close()
+    record = Record.read(tmp_path / "m.001.live.mcap")
+    assert [header.segment for header in record.headers] == [0, 1]
+    assert [beat for beat, _ in record.frames] == list(range(34))
+    assert record.inputs[33] == (KeySeat(1, 99, 1, 0),)
+    assert 39 not in record.inputs
+    assert [event.beat for event in record.events] == [3, 13, 23]
+    assert list(record.touches) == [3, 13, 23]
+    assert (record.last_beat, record.cut) == (33, "")
+    pack.pack(files.segment_paths(tmp_path, "m"), tmp_path / "m.mcap")
+    assert Record.read(tmp_path / "m.mcap") == record
+
+
+def test_files_that_are_no_record_of_one_match_are_refused(
+    tmp_path: Path, write_match: WriteMatch, header: MakeHeader
+) -> None:
+    """Each with a sentence that names the file and says what to do."""
+    table = tmp_path / "table.txt"
+    table.write_text("1\t2\n")
+    foreign = tmp_path / "foreign.mcap"
+    with foreign.open("wb") as file:
+        writer = Writer(file)
+        writer.start(profile="ros2")
+        writer.finish()
+    newer = RecordWriter(tmp_path, msgspec.structs.replace(header(match_id="newer"), format=7))
+    newer.close()
+    late = RecordWriter(tmp_path, header(segment=1, match_id="late"))
+    late.close()
+    mine = write_match(tmp_path)
+    for paths, sentence in (
+        (tmp_path / "none.mcap", "There is no record"),
+        (table, "it is no MCAP file"),
+        (foreign, "but not a LACOC record"),
+        (newer.path, "has format 7, and this software reads format 1"),
+        (late.path, "segment 0 comes next"),
+        ([mine, late.path], "belongs to match late"),
+        ([], "There is no match in no files"),
+    ):
+        with pytest.raises(UserError, match=sentence):
+            Record.read(paths)
+
+
+def test_a_record_is_never_overwritten(tmp_path: Path, header: MakeHeader) -> None:
+    """A second record of the same name is refused, and so is a folder that can't be made."""
+    RecordWriter(tmp_path, header()).close()
+    with pytest.raises(UserError, match="never overwritten"):
+        RecordWriter(tmp_path, header())
+    (tmp_path / "file").touch()
+    with pytest.raises(UserError, match="No record can be written to"):
+        RecordWriter(tmp_path / "file", header())
+
+
+def test_a_full_disk_stops_no_match(tmp_path: Path, header: MakeHeader, frame: MakeFrame) -> None:
+    """What the disk does not take waits in memory, `trouble` says so, and nothing is lost."""
+    resource = pytest.importorskip("resource")
+    unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
+    writer = RecordWriter(tmp_path, header())
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (5000, unlimited[1]))
+        for beat in range(100):
+            writer.frame(beat, codec.encode(frame(beat)))
+        assert "can't be written: File too large" in writer.trouble
+        assert "make room" in writer.trouble
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
+    assert writer.path.stat().st_size == 5000
+    writer.frame(100, codec.encode(frame(100)))
+    assert writer.trouble == ""
+    writer.close()
+    record = Record.read(writer.path)
+    assert [beat for beat, _ in record.frames] == list(range(101))
+    assert record.cut == ""
+
+
+def test_a_disk_that_reports_errors_later_is_heard(
+    tmp_path: Path, header: MakeHeader, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The disk's answer comes a second after the write; it stays in `trouble`."""
+    writer = RecordWriter(tmp_path, header())
+    asked = threading.Event()
+
+    def refuse(descriptor: int) -> None:
+        asked.set()
+        raise OSError(5, "Input/output error")
+
+    monkeypatch.setattr(os, "fsync", refuse)
+    writer.frame(0, b"")
+    writer.close()
+    assert asked.is_set()
+    assert "reports: Input/output error" in writer.trouble
+
+
+def test_closing_twice_is_once(tmp_path: Path, header: MakeHeader) -> None:
+    """A court may close in its ordinary course and again on its way out."""
+    writer = RecordWriter(tmp_path, header())
+    writer.close()
+    data = writer.path.read_bytes()
+    writer.close()
+    assert writer.path.read_bytes() == data
+
+
+def _messages(data: bytes) -> dict[str, list[bytes]]:
+    """The whole messages of a cut file by topic, found by their announced lengths alone."""
+    topics = list(KINDS)
+    found: dict[str, list[bytes]] = {}
+    at = 8
+    while at + 9 <= len(data):
+        length = int.from_bytes(data[at + 1 : at + 9], "little")
+        if at + 9 + length > len(data):
+            break
+        if data[at] == 5:
+            channel = int.from_bytes(data[at + 9 : at + 11], "little")
+            found.setdefault(topics[channel - 1], []).append(data[at + 31 : at + 9 + length])
+        at += 9 + length
+    return found
