@@ -1,4 +1,4 @@
-"""The MuJoCo model of a robot, built in code (docs/physics.md has the measurements behind it)."""
+"""The MuJoCo model of a robot, built in code, with the settings that physics.md 7 recommends."""
 
 import math
 from collections.abc import Sequence

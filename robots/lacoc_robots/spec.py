@@ -36,7 +36,7 @@ class _Link(NamedTuple):
 
 
 def read_robot(text: str | bytes, file: str, limits: Limits | None = None) -> RobotSpec:
-    """Read a robot file (TOML; docs/robots.md explains every entry).
+    """Read a robot file (TOML; the sample `hexapod` explains every entry).
 
     Args:
         text: the file's content.

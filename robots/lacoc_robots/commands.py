@@ -1,0 +1,115 @@
+"""`lacoc robot`: check a robot file, export it as MJCF, list the robots there are."""
+
+import math
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.table import Table
+
+from lacoc_robots.library import find_robot, installed_robots
+from lacoc_robots.limits import Limits
+from lacoc_robots.robot import RobotSpec
+from lacoc_robots.spec import read_robot
+from lacoc_shared import contest as contests
+from lacoc_shared import options, screen
+from lacoc_shared.keep import save
+
+app = typer.Typer(
+    help="Check a robot file, export it as MJCF, list the robots there are.",
+    no_args_is_help=True,
+)
+
+_Robot = Annotated[
+    str,
+    typer.Argument(
+        metavar="ROBOT", help="A robot file (.toml), a robot's folder, or an installed name."
+    ),
+]
+
+
+@app.command()
+def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json = False) -> None:
+    """Weigh a robot in: name every mistake in its file, or say what it is.
+
+    With --contest the contest's limits count, else those of the rules.
+    """
+    spec = _read(robot, contest)
+    facts = _facts(spec)
+    if json:
+        screen.print_json(facts)
+        return
+    width_m, length_m, height_m = facts["footprint_m"]
+    table = Table(title=f"{spec.name} is right", title_justify="left", show_header=False)
+    for what, value in (
+        ("legs", f"{facts['legs']} ({'  '.join(facts['labels'])})"),
+        ("joints", f"{facts['joints']}"),
+        ("mass", f"{facts['mass_kg']:.3f} kg"),
+        ("footprint", f"{width_m:.3f} x {length_m:.3f} x {height_m:.3f} m with every angle 0"),
+        ("AngMin", f"{facts['ang_min_deg_s']:g} degrees/s"),
+        ("next posture", _advance(spec)),
+    ):
+        table.add_row(what, value)
+    screen.show(table)
+
+
+@app.command()
+def export(
+    robot: _Robot,
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="The MJCF file to write (.xml).")],
+    contest: options.ContestFile = None,
+) -> None:
+    """Write a robot as plain MJCF, which any MuJoCo opens; an older file is kept.
+
+    It stands on a floor: take the keyframe "stand". Needs the extra "server".
+    """
+    spec = _read(robot, contest)
+    from lacoc_robots.model import export_mjcf  # a contestant's machine may have no MuJoCo
+
+    kept = save(out, export_mjcf(spec).encode())
+    if kept is not None:
+        screen.note(f"{out} was there: it is {kept} now.")
+    screen.note(f'{out} written. Look at it with: python -m mujoco.viewer --mjcf="{out}"')
+
+
+@app.command("list")
+def list_robots(json: options.Json = False) -> None:
+    """List the installed robots; each name can stand where a robot file can."""
+    robots = {name: _facts(_read(name, None)) for name in installed_robots()}
+    if json:
+        screen.print_json(robots)
+        return
+    table = Table("robot", "legs", "mass [kg]", "AngMin [degrees/s]")
+    for name, facts in robots.items():
+        table.add_row(
+            name, f"{facts['legs']}", f"{facts['mass_kg']:.3f}", f"{facts['ang_min_deg_s']:g}"
+        )
+    screen.show(table)
+
+
+def _read(robot: str, contest: Path | None) -> RobotSpec:
+    name, data = find_robot(robot)
+    limits = Limits.of(contests.load(contest).limits) if contest else Limits()
+    return read_robot(data, name, limits)
+
+
+def _facts(spec: RobotSpec) -> dict[str, Any]:
+    low, high = spec.bounds((0.0,) * spec.joints)
+    return {
+        "name": spec.name,
+        "legs": len(spec.legs),
+        "labels": spec.labels,
+        "joints": spec.joints,
+        "mass_kg": round(spec.mass_kg, 6),
+        "footprint_m": [round(b - a, 6) for a, b in zip(low, high, strict=True)],
+        "ang_min_deg_s": round(math.degrees(spec.ang_min_rad_s), 6),
+        "advance": spec.advance,
+        "hold_s": spec.hold_us / 1e6,
+    }
+
+
+def _advance(spec: RobotSpec) -> str:
+    hold_s = spec.hold_us / 1e6
+    if spec.advance == "time":
+        return f"every {hold_s:g} s"
+    return "when the last one is reached" + (f" and held for {hold_s:g} s" if hold_s else "")

@@ -1,0 +1,1 @@
+"""A six-legged robot with long legs."""

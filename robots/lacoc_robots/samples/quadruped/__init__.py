@@ -1,0 +1,1 @@
+"""A robot with four legs."""
