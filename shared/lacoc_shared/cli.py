@@ -17,6 +17,7 @@ from importlib.metadata import EntryPoint
 from typing import Annotated, Any, ClassVar
 
 import typer
+from rich.markup import escape
 from typer.core import TyperCommand, TyperGroup
 
 from lacoc_shared import __version__, plugins, screen
@@ -113,7 +114,7 @@ def _broken(error: Exception) -> TyperCommand:
     return TyperCommand(
         None,
         callback=fail,
-        help=_missing_extra(error) or f"Can't be loaded: {error}",
+        help=escape(_missing_extra(error) or f"Can't be loaded: {error}"),
         add_help_option=False,
         context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
     )

@@ -17,10 +17,18 @@ from rich.text import Text
 
 from lacoc_shared.mistakes import Mistake
 
-stdout = Console(highlight=False)
-stderr = Console(highlight=False, stderr=True)
+_UNLIMITED = 10_000  # characters in a line that no eye must follow
 
-_UNLIMITED = 100_000  # characters in a line that nobody's eyes must follow
+
+def _console(stderr: bool) -> Console:
+    console = Console(highlight=False, stderr=stderr)
+    if not console.is_terminal:
+        console.width = _UNLIMITED
+    return console
+
+
+stdout = _console(stderr=False)
+stderr = _console(stderr=True)
 
 
 def show(what: RenderableType, to: Console | None = None) -> None:
@@ -30,11 +38,7 @@ def show(what: RenderableType, to: Console | None = None) -> None:
         what: a plain string is printed as it is: square brackets are no markup.
         to: the console; standard output if None.
     """
-    console = stdout if to is None else to
-    console.print(
-        Text(what) if isinstance(what, str) else what,
-        width=None if console.is_terminal else _UNLIMITED,
-    )
+    (to or stdout).print(Text(what) if isinstance(what, str) else what)
 
 
 def note(text: str) -> None:

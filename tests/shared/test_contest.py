@@ -101,7 +101,7 @@ def test_a_wrong_entry_is_named(file: Path, old: str, new: str, said: str) -> No
 
 def test_no_file_and_no_text_are_said(tmp_path: Path) -> None:
     """A file that isn't there, or isn't text, is one sentence with the way out."""
-    with pytest.raises(UserError, match="No such file.*lacoc contest init"):
+    with pytest.raises(UserError, match=r"No such file.*lacoc contest init"):
         contests.load(tmp_path / "none.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(UserError, match="can't be read"):

@@ -1,0 +1,92 @@
+"""`lacoc contest`: what it writes loads, is private, and is checked to the last setting."""
+
+import json
+import stat
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from lacoc_server.contest_commands import app
+from lacoc_shared import contest as contests
+from lacoc_shared.mistakes import UserError
+
+
+def run(*args: str) -> str:
+    result = CliRunner().invoke(app, args)
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arena", "seats"),
+    [
+        ("othello", ["left", "right"]),
+        ("flag-strike", ["left", "right"]),
+        ("practice", ["solo"]),
+    ],
+)
+def test_a_new_file_is_right_for_every_arena(tmp_path: Path, arena: str, seats: list[str]) -> None:
+    """The file that init writes passes its own check and has a token for every seat."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file), "--arena", arena)
+
+    assert "is right" in run("check", str(file))
+    court = contests.load(file).courts["main"]
+    assert court.arena == arena
+    assert list(court.seat) == seats
+
+
+def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> None:
+    """Mode 0600, because it holds tokens; an older file is kept with a number (rules 2)."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file))
+    first = file.read_text()
+    run("init", str(file))
+
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert (tmp_path / "contest.1.toml").read_text() == first
+    assert file.read_text() != first
+
+
+def test_show_as_json(tmp_path: Path) -> None:
+    """A program that hands out the tokens reads them by court and person."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file), "--court", "hall")
+    lines = json.loads(run("show", str(file), "--json", "--host", "10.0.0.1"))
+
+    left = contests.load(file).courts["hall"].seat["left"].token
+    assert list(lines["hall"]) == ["left", "right", "referee", "spectators"]
+    assert lines["hall"]["left"] == (
+        f"lacoc play --court hall --connect tcp/10.0.0.1:7447 --seat left --token {left}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('arena = "othello"', 'arena = "chess"', "no arena 'chess'"),
+        ("# duration_s = 120.0", 'duration_s = "long"', "duration_s"),
+        ("# duration_s = 120.0", "duratoin_s = 1.0", "duratoin_s"),
+        ("# legs_max = 8", "legs_maxx = 8", "legs_maxx"),
+        ("[court.main.seat.left]", "[court.main.seat.middle]", "left, right.*middle, right"),
+    ],
+)
+def test_check_looks_into_arena_and_limits(tmp_path: Path, old: str, new: str, said: str) -> None:
+    """A wrong setting, limit or seat is found before a court starts."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file))
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new))
+
+    with pytest.raises(UserError, match=said):
+        run("check", str(file))
+
+
+def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
+    """A name that can't be a key expression is refused, and nothing is written."""
+    with pytest.raises(UserError, match="Main Hall"):
+        run("init", str(tmp_path / "contest.toml"), "--court", "Main Hall")
+    assert list(tmp_path.iterdir()) == []

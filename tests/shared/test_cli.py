@@ -1,0 +1,278 @@
+"""The command `lacoc`: how it finds its commands and what it makes of their errors."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import pytest
+
+from lacoc_shared import __version__, cli, plugins
+
+COMMANDS = {
+    "play": """
+        import typer
+        app = typer.Typer()
+        @app.command()
+        def run(name: str = typer.Option("x", help="A name.")) -> None:
+            '''Take your seat.'''
+            print("playing as", name)
+    """,
+    "serve": """
+        import mujoco, typer
+        app = typer.Typer()
+    """,
+    "tag": """
+        import typer
+        app = typer.Typer(help="Brought by another package.")
+        @app.command()
+        def hide() -> None:
+            '''Hide.'''
+        @app.command()
+        def seek() -> None:
+            '''Seek.'''
+            print("found")
+    """,
+    "late": """
+        import typer
+        app = typer.Typer()
+        @app.command()
+        def run() -> None:
+            '''Import late.'''
+            import mujoco
+    """,
+    "wrong": """
+        raise RuntimeError("no such planet")
+    """,
+    "fails": """
+        import typer
+        from lacoc_shared.mistakes import FileRefused, Mistake, UserError
+        app = typer.Typer()
+        @app.command()
+        def run(how: str) -> None:
+            '''Fail in some way.'''
+            if how == "user":
+                raise UserError("No [court] here: start one with 'lacoc serve'.")
+            if how == "file":
+                raise FileRefused([
+                    Mistake(file="a.txt", row=3, column=7, joint=5, leg="L,F", found="[x]",
+                            expected="a number"),
+                    Mistake(file="a.txt", row=9, found="12 angles", expected="18 angles"),
+                ])
+            if how == "stop":
+                raise KeyboardInterrupt
+            raise ZeroDivisionError(how)
+    """,
+    "many": """
+        from lacoc_shared.cli import lazy_group
+        app = lazy_group("lacoc.commands.many", help="Many things.")
+        @app.command()
+        def own() -> None:
+            '''One of its own.'''
+    """,
+}
+
+
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Replace what is installed by the commands above."""
+    import textwrap
+
+    for name, source in COMMANDS.items():
+        (tmp_path / f"fake_{name}.py").write_text(textwrap.dedent(source))
+        monkeypatch.delitem(sys.modules, f"fake_{name}", raising=False)
+    groups = {
+        "lacoc.commands": COMMANDS,
+        "lacoc.commands.many": {"tag": ""},
+    }
+
+    def entry_points(group: str) -> list[EntryPoint]:
+        return [EntryPoint(name, f"fake_{name}:app", group) for name in groups.get(group, {})]
+
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(plugins, "entry_points", entry_points)
+    monkeypatch.setitem(sys.modules, "mujoco", None)  # as if it were not installed
+
+
+@pytest.fixture
+def lacoc(
+    installed: None, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str, str]]:
+    """Run the command line; returns its exit code, standard output and standard error."""
+
+    def run(*args: str) -> tuple[int, str, str]:
+        try:
+            code: object = cli.main(args)
+        except SystemExit as stop:
+            code = stop.code
+        out, err = capsys.readouterr()
+        assert isinstance(code, int)
+        return code, out, err
+
+    return run
+
+
+Lacoc = Callable[..., tuple[int, str, str]]
+
+
+def test_help_lists_every_command_what_a_contestant_needs_first(lacoc: Lacoc) -> None:
+    """Help shows each command's line under its heading, those of other packages last."""
+    code, out, _ = lacoc("--help")
+
+    assert code == 0
+    order = ["Play", "play", "Take your seat.", "Run a contest", "serve", "other packages", "tag"]
+    places = [out.index(word) for word in order]
+    assert places == sorted(places)
+    assert 'pip install "lacoc[server]"' in out
+    assert "no such planet" in out
+
+
+def test_a_command_is_imported_when_it_is_asked_for(lacoc: Lacoc) -> None:
+    """A contestant's machine needs nothing that other commands need."""
+    assert lacoc("play", "--name", "Ant") == (0, "playing as Ant\n", "")
+    assert "fake_play" in sys.modules
+    assert "fake_tag" not in sys.modules
+
+
+def test_groups_and_lazy_groups_nest(lacoc: Lacoc) -> None:
+    """An entry with several commands is a group; a lazy group finds its own entries."""
+    assert lacoc("tag", "seek") == (0, "found\n", "")
+    assert lacoc("many", "tag", "seek") == (0, "found\n", "")
+    assert lacoc("many", "own") == (0, "", "")
+    _, out, _ = lacoc("many", "--help")
+    assert "One of its own." in out
+    assert "Brought by another package." in out
+    assert "--install-completion" not in out
+
+
+def test_a_wrong_command_suggests_the_nearest(lacoc: Lacoc) -> None:
+    """'pley' is answered with 'play', code 2."""
+    code, out, err = lacoc("pley")
+
+    assert code == 2
+    assert out == ""
+    assert "pley" in err
+    assert "'play'" in err
+
+
+@pytest.mark.parametrize("args", [("serve",), ("serve", "--court", "x"), ("serve", "--help")])
+def test_a_missing_extra_is_one_line(lacoc: Lacoc, args: tuple[str, ...]) -> None:
+    """A command that needs MuJoCo says so in one line, whatever was asked of it."""
+    code, out, err = lacoc(*args)
+
+    assert (code, out) == (2, "")
+    assert err == 'Error: Needs mujoco, which is not installed: pip install "lacoc[server]"\n'
+
+
+def test_a_missing_extra_found_late_is_the_same_line(lacoc: Lacoc) -> None:
+    """A command that imports MuJoCo only when it runs says the same."""
+    code, _, err = lacoc("late")
+
+    assert code == 2
+    assert 'pip install "lacoc[server]"' in err
+    assert err.count("\n") == 1
+
+
+def test_a_user_error_is_one_line_and_code_2(lacoc: Lacoc) -> None:
+    """The sentence as it is, on standard error; square brackets are no markup."""
+    assert lacoc("fails", "user") == (
+        2,
+        "",
+        "Error: No [court] here: start one with 'lacoc serve'.\n",
+    )
+
+
+def test_a_refused_file_is_a_table_and_code_2(lacoc: Lacoc) -> None:
+    """Every mistake is a row with its place, what was found and what was expected (rules 2)."""
+    code, out, err = lacoc("fails", "file")
+
+    assert (code, out) == (2, "")
+    assert "2 mistakes" in err
+    first = next(line for line in err.splitlines() if "[x]" in line)
+    cells = [cell.strip() for cell in first.strip("│").split("│")]
+    assert cells == ["a.txt", "3", "7", "5", "L,F", "[x]", "a number"]
+    assert "18 angles" in err
+    assert "entry" not in err  # no mistake has one
+
+
+def test_ctrl_c_is_silent(lacoc: Lacoc) -> None:
+    """Ctrl-C ends with the shell's own code and says nothing."""
+    assert lacoc("fails", "stop") == (130, "", "")
+
+
+def test_what_nobody_foresaw_is_a_traceback(lacoc: Lacoc) -> None:
+    """A bug is not dressed up as the user's mistake; nor is a broken package."""
+    with pytest.raises(ZeroDivisionError):
+        lacoc("fails", "bug")
+    with pytest.raises(RuntimeError, match="no such planet"):
+        lacoc("wrong", "--any", "thing")
+
+
+def test_version(lacoc: Lacoc) -> None:
+    """The version, and no command is imported for it."""
+    assert lacoc("--version") == (0, f"lacoc {__version__}\n", "")
+    assert not any(name in sys.modules for name in ("fake_play", "fake_tag", "fake_many"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("lacoc cont", "contest"),
+        ("lacoc contest in", "init"),
+        ("lacoc contest init --ar", "--arena"),
+    ],
+)
+def test_the_shell_completes(words: str, expected: str) -> None:
+    """Commands, their own commands and options complete, through the lazy group."""
+    environment = {
+        **os.environ,
+        "_LACOC_COMPLETE": "complete_bash",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(words.count(" ")),
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", "lacoc_shared"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert expected in done.stdout.split()
+
+
+@pytest.mark.slow
+def test_a_reader_who_has_gone_is_no_error() -> None:
+    """`lacoc ... | head -1` ends without a word."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "lacoc_shared", "--version"],
+            stdout=writer,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    finally:
+        os.close(writer)
+
+    assert done.stderr == ""
+
+
+@pytest.mark.slow
+def test_no_colours_in_a_pipe() -> None:
+    """What a program reads has no escape sequences."""
+    done = subprocess.run(
+        [sys.executable, "-m", "lacoc_shared", "contest", "check", "none.toml"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert done.returncode == 2
+    assert "none.toml" in done.stderr
+    assert "\x1b" not in done.stderr
