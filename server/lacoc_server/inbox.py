@@ -111,6 +111,11 @@ class Inbox:
         self._sessions = Sessions()
         self._now_s = 0.0
 
+    @property
+    def seats(self) -> tuple[str, ...]:
+        """The seats' names, in the arena's order."""
+        return tuple(seat.name for seat in self._seats)
+
     def commands(self, now_s: float, arrived: Sequence[Sequence[bytes]]) -> list[Input]:
         """Take a beat's commands in.
 

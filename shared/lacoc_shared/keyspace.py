@@ -53,7 +53,7 @@ class Keys:
 
     @property
     def scene(self) -> str:
-        """Court to all on change, and by query."""
+        """By query; a frame's scene hash tells that it changed."""
         return f"{self.root}/scene"
 
     @property

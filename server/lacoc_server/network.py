@@ -1,0 +1,190 @@
+"""A court's place on the network: what arrives in a beat, what goes out after it.
+
+Nothing here runs on a thread of its own: rings and desks are emptied by `poll`, once a
+beat, in the same order every time. What it may believe is the inbox's to say; a request
+is answered when the match has taken it in and the record is written.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import NamedTuple, Self
+
+from lacoc_server.decision_desk import DecisionDesk
+from lacoc_server.inbox import COMMANDS_PER_BEAT, Inbox
+from lacoc_shared.codec import encode
+from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import (
+    DecisionReply,
+    Done,
+    Event,
+    Health,
+    Joined,
+    Refusal,
+    Scene,
+    SeatHealth,
+    Sheet,
+)
+from lacoc_shared.session import Desk, Request, Ring, open_court
+
+Outcome = Done | DecisionReply | Refusal
+"""What a match makes of an input."""
+
+_RING = 4 * COMMANDS_PER_BEAT
+_DESK = 16
+_FETCH_DESK = 256  # a crowd may arrive at once
+_REQUESTS_PER_BEAT = 4  # that are refused; of one desk at most one enters a beat
+_FETCHES_PER_BEAT = 8
+_EVENTS_KEPT = 1024
+
+
+_Judge = Callable[[Request], Input | Refusal]
+
+
+class Arrival(NamedTuple):
+    """An input for the match, and where its outcome goes."""
+
+    input: Input
+    answer: Callable[[Outcome], None] | None
+    """To be called once the outcome is on disk; None: nobody waits for it."""
+
+
+class CourtNetwork:
+    """Opens a court to the network; used as a context manager.
+
+    Args:
+        keys: the court's key expressions.
+        listen: addresses to listen on; port 0 takes a free one.
+        inbox: judges what comes for the seats.
+        decision_desk: judges what comes from referees.
+
+    Raises:
+        UserError: if an address can't be listened on.
+    """
+
+    def __init__(
+        self, keys: Keys, listen: Sequence[str], inbox: Inbox, decision_desk: DecisionDesk
+    ) -> None:
+        self._inbox = inbox
+        self._decision_desk = decision_desk
+        self._session = session = open_court(listen)
+        self._frame = session.publisher(keys.frame)
+        self._event = session.history_publisher(keys.event, _EVENTS_KEPT)
+        self._sheet = session.publisher(keys.sheet)
+        self._health = session.publisher(keys.health)
+        self._commands = [session.ring(keys.command(seat), _RING) for seat in inbox.seats]
+        self._desks: list[tuple[Desk, _Judge]] = [
+            (session.desk(keys.request(seat, what), _DESK), _seat_judge(judge, index))
+            for what, judge in (
+                ("join", inbox.join),
+                ("ready", inbox.ready),
+                ("leave", inbox.leave),
+            )
+            for index, seat in enumerate(inbox.seats)
+        ]
+        self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
+        self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
+        self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
+        self._sheet_bytes = self._scene_bytes = b""
+        session.announce(f"{keys.live}/court")
+        self.locators = session.locators()
+        """Addresses to connect to, with the port it really got."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._session.close()
+
+    def poll(self, now_s: float) -> list[Arrival]:
+        """Take in what arrived since the last beat.
+
+        What is refused at the door is answered at once and is not among the arrivals.
+
+        Args:
+            now_s: monotonic time.
+        """
+        inputs = self._inbox.commands(now_s, [_empty(ring) for ring in self._commands])
+        arrivals = [Arrival(one, None) for one in inputs]
+        for desk, judge in self._desks:
+            arrivals += self._let_in(desk, judge)
+        _serve(self._sheet_desk, self._sheet_bytes)
+        _serve(self._scene_desk, self._scene_bytes)
+        return arrivals
+
+    def publish_frame(self, frame: bytes) -> None:
+        """Send an encoded frame; a slow receiver misses it."""
+        self._frame.put(frame)
+
+    def publish_event(self, event: Event) -> None:
+        """Send an event that must arrive; those who come late get it too."""
+        self._event.put(encode(event))
+
+    def publish_sheet(self, sheet: Sheet) -> None:
+        """Send a changed sheet, and keep it for those who ask."""
+        self._sheet_bytes = encode(sheet)
+        self._sheet.put(self._sheet_bytes)
+
+    def publish_scene(self, scene: Scene) -> None:
+        """Keep a changed scene for those who ask: frames tell by its hash that it changed."""
+        self._scene_bytes = encode(scene)
+
+    def publish_health(self, health: Health) -> None:
+        """Send the court's health."""
+        self._health.put(encode(health))
+
+    def seat_health(self, now_s: float) -> tuple[SeatHealth, ...]:
+        """How each seat's link is, in the arena's order."""
+        return self._inbox.health(now_s)
+
+    @property
+    def dropped(self) -> dict[str, int]:
+        """Refusals that belong to no seat, by reason."""
+        return dict(self._decision_desk.refused)
+
+    def _let_in(self, desk: Desk, judge: _Judge) -> Iterator[Arrival]:
+        for _ in range(_REQUESTS_PER_BEAT):
+            request = desk.take()
+            if request is None:
+                return
+            judged = judge(request)
+            if isinstance(judged, Refusal):
+                request.refuse(encode(judged))
+            else:
+                yield Arrival(judged, partial(self._answer, request, judged))
+                return
+
+    def _answer(self, request: Request, judged: Input, outcome: Outcome) -> None:
+        if isinstance(outcome, Refusal):
+            request.refuse(encode(outcome))
+            return
+        reply: Outcome | Joined = outcome
+        if isinstance(judged, JoinSeat):
+            notes = outcome.text.splitlines()
+            reply = self._inbox.seated(judged.seat, tuple(notes))
+        elif isinstance(judged, LeaveSeat):
+            self._inbox.left(judged.seat)
+        request.reply(encode(reply))
+
+    def _judge_decision(self, request: Request) -> Decide | Refusal:
+        return self._decision_desk.decision(request.key.rpartition("/")[2], request.payload)
+
+
+def _seat_judge(judge: Callable[[int, bytes], Input | Refusal], seat: int) -> _Judge:
+    return lambda request: judge(seat, request.payload)
+
+
+def _empty(ring: Ring) -> list[bytes]:
+    waiting: list[bytes] = []
+    while len(waiting) < _RING and (payload := ring.take()) is not None:
+        waiting.append(payload)
+    return waiting
+
+
+def _serve(desk: Desk, payload: bytes) -> None:
+    """Answer those who fetch something; those who ask too early or in a crowd wait their turn."""
+    for _ in range(_FETCHES_PER_BEAT if payload else 0):
+        request = desk.take()
+        if request is None:
+            return
+        request.reply(payload)
