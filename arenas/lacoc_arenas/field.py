@@ -23,11 +23,11 @@ def rgba(colour: str, alpha: float = 1.0) -> Rgba:
     return red, green, blue, alpha
 
 
-FLOOR = rgba("#e9e5dc")
-PANEL = rgba("#dcd6c9")
-LINE = rgba("#c6beae")
-RIM = rgba("#b3aa98")
-WALL = rgba("#8c7f6c")
+FLOOR = rgba("#ece8df")
+PANEL = rgba("#d3ccbd")
+LINE = rgba("#cbc4b5")
+RIM = rgba("#9a907d")
+WALL = rgba("#85765f")
 POLE = rgba("#5b5347")
 
 TINTS: dict[str, Rgba] = {

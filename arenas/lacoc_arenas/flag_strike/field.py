@@ -71,7 +71,7 @@ def _standing(spec: mujoco.MjSpec, flag: Flag, radius_m: float, height_m: float)
         spec,
         field.marker_geom(flag.name, NEUTRAL, "cloth"),
         field.BOX,
-        [length_m, _THIN_M, depth_m],
+        [length_m, 2 * _THIN_M, depth_m],
         [
             flag.x_m + reach_m * math.cos(along),
             flag.y_m + reach_m * math.sin(along),

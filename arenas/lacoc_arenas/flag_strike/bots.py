@@ -1,0 +1,173 @@
+"""Bots for Flag-Strike: straight ahead, to the nearest flag, and by a plan."""
+
+import math
+from abc import ABC, abstractmethod
+from typing import NamedTuple
+
+from lacoc_arenas.bot import BotFactory, Brain, Key
+from lacoc_arenas.game import NEUTRAL
+from lacoc_arenas.steering import Eyes, Pilot, Pose, straight
+from lacoc_shared.codec import unpack_states
+from lacoc_shared.messages import Frame, Sheet
+from lacoc_shared.seat import BEATS_PER_S
+
+from .rules import CORNERS, State, make
+
+_NOWHERE = -1
+_FLAG_REACH_M, _CORNER_REACH_M = 0.13, 0.12
+"""How far from the centre a leg strikes a flag, and how far from its middle a corner counts."""
+
+_DEPTH, _BEAM = 4, 14
+"""How many targets a plan looks ahead, and how many plans are kept at each."""
+_PATIENCE_S = 30.0
+"""A point this much later is worth 1 / e of one now: much can happen until then."""
+_RIVAL = 0.5
+"""What is left of a target's worth where the other robot will be there first."""
+_DECISIVE = 100.0
+"""Worth of the corner that ends the match with a win."""
+_REPLAN_TICKS = 4 * BEATS_PER_S
+
+
+class _Hunter(ABC):
+    """A brain that walks from target to target; what differs is how it chooses the next one."""
+
+    def __init__(self, sheet: Sheet, seat: int) -> None:
+        self.game = make(sheet.settings["game"])
+        self.seat = seat
+        self.places = [(marker.x_m, marker.y_m) for marker in self.game.markers]
+        self._eyes = Eyes(sheet)
+        self._pilot = Pilot(seat, self.game.size_m)
+        self._seen: tuple[int, bytes] | None = None
+        self._target = _NOWHERE
+
+    def __call__(self, frame: Frame) -> Key | None:
+        poses = self._eyes.poses(frame)
+        seen = (frame.clock_ticks // _REPLAN_TICKS, frame.markers)
+        if seen != self._seen:
+            self._seen = seen
+            board = unpack_states(frame.markers, len(self.places))
+            scores = tuple(seat.score for seat in frame.seats)
+            self._target = self.choose(board, scores, poses)
+        target_m = None if self._target == _NOWHERE else self.places[self._target]
+        return self._pilot.toward(frame, poses, target_m)
+
+    def open(self, board: tuple[int, ...], marker: int) -> bool:
+        """Is there something to gain: a standing flag, or a corner that is not one's own?"""
+        return board[marker] == NEUTRAL or (marker < CORNERS and board[marker] != self.seat + 1)
+
+    @abstractmethod
+    def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
+        """The marker to go to, or `_NOWHERE`.
+
+        Args:
+            board: the state of each marker.
+            scores: points of each seat.
+            poses: where all robots are.
+        """
+
+
+class Nearest(_Hunter):
+    """Goes to the nearest standing flag; when all have fallen, to the nearest corner."""
+
+    def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
+        """The nearest flag or corner."""
+        pose = poses[self.seat]
+        targets = [marker for marker in range(len(board)) if self.open(board, marker)]
+        flags = [marker for marker in targets if marker >= CORNERS]
+        return min(
+            flags or targets, key=lambda m: pose.distance_m(*self.places[m]), default=_NOWHERE
+        )
+
+
+class _Plan(NamedTuple):
+    worth: float
+    """Points gained, the later the less."""
+    time_s: float
+    pose: Pose
+    route: tuple[int, ...]
+
+
+class Planner(_Hunter):
+    """Weighs the points of a route over flags and corners against its time."""
+
+    def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
+        """The first target of the best route found."""
+        pose = poses[self.seat]
+        worths = self._worths(board, scores, poses)
+        beam = [_Plan(0.0, 0.0, pose, ())]
+        best = beam[0]
+        for _ in range(_DEPTH):
+            beam = [grown for plan in beam for grown in self._grow(plan, worths)]
+            if not beam:
+                break
+            beam.sort(key=lambda plan: (-plan.worth, plan.time_s))
+            del beam[_BEAM:]
+            best = max(best, beam[0], key=lambda plan: plan.worth)
+        return best.route[0] if best.route else _NOWHERE
+
+    def _worths(
+        self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]
+    ) -> dict[int, float]:
+        """What each open target is worth to this seat."""
+        pose, other = poses[self.seat], poses[1 - self.seat]
+        worths = {}
+        for marker, info in enumerate(self.game.markers):
+            if not self.open(board, marker):
+                continue
+            worth = float(info.points if board[marker] == NEUTRAL else 2 * info.points)
+            place_m = self.places[marker]
+            if marker < CORNERS and self._ends(board, marker):
+                worth = self._decisive(board, scores, marker)
+            elif marker >= CORNERS and other.travel_s(*place_m) < pose.travel_s(*place_m):
+                worth *= _RIVAL
+            if worth > 0:
+                worths[marker] = worth
+        return worths
+
+    def _ends(self, board: tuple[int, ...], corner: int) -> bool:
+        """Would taking this corner end the match (workshop 5-2 rule 4)?"""
+        own = self.seat + 1
+        return all(board[other] == own for other in range(CORNERS) if other != corner)
+
+    def _decisive(self, board: tuple[int, ...], scores: tuple[int, ...], corner: int) -> float:
+        """All four corners end the match at once: good for who would win, else to be left."""
+        points = self.game.markers[corner].points
+        lost = points if board[corner] != NEUTRAL else 0
+        finals = tuple(
+            score + points if seat == self.seat else score - lost
+            for seat, score in enumerate(scores)
+        )
+        after = State((*board[:corner], self.seat + 1, *board[corner + 1 :]), (-1, -1))
+        return _DECISIVE if self.game.winner(after, finals) == self.seat else 0.0
+
+    def _grow(self, plan: _Plan, worths: dict[int, float]) -> list[_Plan]:
+        grown = []
+        for marker, worth in worths.items():
+            if marker in plan.route:
+                continue
+            x_m, y_m = self.places[marker]
+            reach_m = _CORNER_REACH_M if marker < CORNERS else _FLAG_REACH_M
+            time_s = plan.time_s + plan.pose.travel_s(x_m, y_m, reach_m)
+            heading_rad = math.atan2(y_m - plan.pose.y_m, x_m - plan.pose.x_m)
+            grown.append(
+                _Plan(
+                    plan.worth + worth * math.exp(-time_s / _PATIENCE_S),
+                    time_s,
+                    Pose(x_m, y_m, heading_rad, 1.0),
+                    (*plan.route, marker),
+                )
+            )
+        return grown
+
+
+def nearest(sheet: Sheet, seat: int) -> Brain:
+    """Make a `Nearest`."""
+    return Nearest(sheet, seat)
+
+
+def planner(sheet: Sheet, seat: int) -> Brain:
+    """Make a `Planner`."""
+    return Planner(sheet, seat)
+
+
+BOTS: dict[str, BotFactory] = {"straight": straight, "nearest": nearest, "planner": planner}

@@ -1,0 +1,148 @@
+"""Bots for Robot-Othello: straight ahead, to the nearest disc, and by a plan."""
+
+import math
+from abc import ABC, abstractmethod
+from typing import NamedTuple
+
+from lacoc_arenas.bot import BotFactory, Brain, Key
+from lacoc_arenas.game import NEUTRAL
+from lacoc_arenas.steering import Eyes, Pilot, Pose, straight
+from lacoc_shared.codec import unpack_states
+from lacoc_shared.messages import Frame, Sheet
+
+from .rules import NO_CELL, SIDE, make
+
+_DEPTH, _BEAM = 7, 20
+"""How many cells a plan looks ahead, and how many plans are kept at each."""
+_PATIENCE_S = 25.0
+"""A disc this much later is worth 1 / e of one now: much can happen until then."""
+_BLOCKED_M, _BLOCKED_S = 0.35, 6.0
+"""What it costs to enter a cell with the other robot so near to it."""
+
+
+class _Walker(ABC):
+    """A brain that walks from cell to cell; what differs is how it chooses the next one."""
+
+    def __init__(self, sheet: Sheet, seat: int) -> None:
+        self.game = make(sheet.settings["game"])
+        self.seat = seat
+        self.discs = [(disc.x_m, disc.y_m) for disc in self.game.markers]
+        self._eyes = Eyes(sheet)
+        self._pilot = Pilot(seat, self.game.size_m)
+        self._last = self.game.start().last[seat]
+        self._seen: tuple[int, bytes] | None = None
+        self._target = NO_CELL
+
+    def __call__(self, frame: Frame) -> Key | None:
+        poses = self._eyes.poses(frame)
+        pose = poses[self.seat]
+        cell = self.game.cell_at(pose.x_m, pose.y_m)
+        if cell != NO_CELL:
+            self._last = cell
+        seen = (self._last, frame.markers)
+        if seen != self._seen:
+            self._seen = seen
+            cells = unpack_states(frame.markers, len(self.discs))
+            self._target = self.choose(cells, self._last, poses)
+        target_m = None if self._target == NO_CELL else self.discs[self._target]
+        return self._pilot.toward(frame, poses, target_m)
+
+    @abstractmethod
+    def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
+        """The cell to go to, or `NO_CELL`.
+
+        Args:
+            cells: the board.
+            last: this robot's last cell.
+            poses: where all robots are.
+        """
+
+
+class Nearest(_Walker):
+    """Goes to the nearest disc that flips; where none does, to a disc of its own beside one."""
+
+    def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
+        """The nearest useful cell."""
+        own, pose = self.seat + 1, poses[self.seat]
+        useful = [n for n in self.game.neighbours[last] if cells[n] != own == cells[last]] or [
+            cell
+            for cell, colour in enumerate(cells)
+            if colour == own
+            and cell != last
+            and any(cells[n] != own for n in self.game.neighbours[cell])
+        ]
+        return min(useful, key=lambda c: pose.distance_m(*self.discs[c]), default=NO_CELL)
+
+
+class _Plan(NamedTuple):
+    worth: float
+    """Discs gained, the later the less."""
+    time_s: float
+    pose: Pose
+    cell: int
+    cells: tuple[int, ...]
+    first: int
+    """The cell it begins with."""
+
+
+class Planner(_Walker):
+    """Looks several cells ahead and weighs the discs of a route against its time."""
+
+    def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
+        """The first cell of the best route found."""
+        pose = poses[self.seat]
+        others = [other for other in poses if other is not pose]
+        beam = [_Plan(0.0, 0.0, pose, last, cells, NO_CELL)]
+        best = beam[0]
+        for _ in range(_DEPTH):
+            beam = [grown for plan in beam for grown in self._grow(plan, others)]
+            beam.sort(key=lambda plan: (-plan.worth, plan.time_s))
+            del beam[_BEAM:]
+            best = max(best, beam[0], key=lambda plan: plan.worth)
+        return best.first
+
+    def _grow(self, plan: _Plan, others: list[Pose]) -> list[_Plan]:
+        grown = []
+        for cell in _around(plan.cell):
+            x_m, y_m = self.discs[cell]
+            time_s = plan.time_s + plan.pose.travel_s(x_m, y_m)
+            if plan.first == NO_CELL and any(o.distance_m(x_m, y_m) < _BLOCKED_M for o in others):
+                time_s += _BLOCKED_S
+            worth, cells = plan.worth, plan.cells
+            flips = self.game.flips(cells, self.seat, plan.cell, cell)
+            if flips:
+                # A disc of the other team counts twice: one more here, one less there.
+                gain = sum(1 if cells[flip] == NEUTRAL else 2 for flip in flips)
+                worth += gain * math.exp(-time_s / _PATIENCE_S)
+                after = list(cells)
+                for flip in flips:
+                    after[flip] = self.seat + 1
+                cells = tuple(after)
+            heading_rad = math.atan2(y_m - plan.pose.y_m, x_m - plan.pose.x_m)
+            first = cell if plan.first == NO_CELL else plan.first
+            grown.append(_Plan(worth, time_s, Pose(x_m, y_m, heading_rad, 1.0), cell, cells, first))
+        return grown
+
+
+def _around(cell: int) -> list[int]:
+    """The up to eight cells next to one, the diagonal ones too."""
+    row, column = divmod(cell, SIDE)
+    return [
+        SIDE * r + c
+        for r in range(max(0, row - 1), min(SIDE, row + 2))
+        for c in range(max(0, column - 1), min(SIDE, column + 2))
+        if (r, c) != (row, column)
+    ]
+
+
+def nearest(sheet: Sheet, seat: int) -> Brain:
+    """Make a `Nearest`."""
+    return Nearest(sheet, seat)
+
+
+def planner(sheet: Sheet, seat: int) -> Brain:
+    """Make a `Planner`."""
+    return Planner(sheet, seat)
+
+
+BOTS: dict[str, BotFactory] = {"straight": straight, "nearest": nearest, "planner": planner}

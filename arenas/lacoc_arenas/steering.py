@@ -1,0 +1,201 @@
+"""How bots see and steer: poses out of frames, and keys that bring a robot to a point.
+
+The keys are those of Fig. 4-2, which every sample gait follows: [0] stand, [1] turn
+left, [2] forward, [3] turn right, at the level of locomotion.
+"""
+
+import math
+from struct import Struct
+from typing import NamedTuple
+
+from lacoc_arenas.bot import Brain, Key
+from lacoc_shared.gait import JOINTS_PER_LEG, Level
+from lacoc_shared.messages import Frame, Sheet
+from lacoc_shared.seat import BEATS_PER_S, RESTART_KEY
+
+STAND, TURN_LEFT, FORWARD, TURN_RIGHT = (Key(Level.LOCOMOTION, digit) for digit in range(4))
+RESTART = Key(Level.LOCOMOTION, RESTART_KEY)
+
+SPEED_M_S = 0.057
+"""How fast the sample hexapod walks; other robots are near enough for a plan."""
+TURN_RAD_S = math.radians(17)
+
+_POSE = Struct("<7f")
+_FLOAT_BYTES = 4
+
+_AIM_RAD = math.radians(6)
+"""A turn ends this near to the wanted heading."""
+_STRAY_RAD = math.radians(16)
+"""A walk goes on until the heading is this far off."""
+_NEAR_M = 0.10
+"""So near to the target the bearing swings: the walk goes on until it is far off."""
+_NEAR_STRAY_RAD = math.radians(45)
+
+_FALLEN_TICKS = 2 * BEATS_PER_S
+_STUCK_TICKS = 4 * BEATS_PER_S
+_STUCK_M = 0.04
+"""A robot that walks goes farther than this in that time, or something is in its way."""
+_EVADE_TICKS = 6 * BEATS_PER_S
+
+_PASS_M = 0.42
+"""Two robots whose centres are this near touch, or will."""
+_AHEAD_RAD = math.radians(40)
+_PASS_RAD = math.radians(75)
+_WALL_M = 0.20
+"""How near to a wall a robot's centre comes."""
+
+
+class Pose(NamedTuple):
+    """Where a robot is."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+    """Direction of the body's +y (forward), counter-clockwise from the world's +x."""
+    up: float
+    """z of the body's upward direction: 1 stands, -1 lies on its back."""
+
+    def bearing_rad(self, x_m: float, y_m: float) -> float:
+        """How far to turn left to look at a point, -pi to pi."""
+        angle = math.atan2(y_m - self.y_m, x_m - self.x_m) - self.heading_rad
+        return math.remainder(angle, math.tau)
+
+    def distance_m(self, x_m: float, y_m: float) -> float:
+        """Distance to a point on the floor."""
+        return math.hypot(x_m - self.x_m, y_m - self.y_m)
+
+    def travel_s(self, x_m: float, y_m: float, reach_m: float = 0.0) -> float:
+        """How long it takes to turn to a point and walk until it is within reach."""
+        walk_m = max(0.0, self.distance_m(x_m, y_m) - reach_m)
+        return abs(self.bearing_rad(x_m, y_m)) / TURN_RAD_S + walk_m / SPEED_M_S
+
+
+class Eyes:
+    """Reads the poses of all robots out of the frames of one match."""
+
+    def __init__(self, sheet: Sheet) -> None:
+        self._offsets: list[int] = []
+        offset = 0
+        for seat in sheet.seats:
+            self._offsets.append(offset)
+            offset += _POSE.size + _FLOAT_BYTES * JOINTS_PER_LEG * len(seat.legs)
+
+    def poses(self, frame: Frame) -> list[Pose]:
+        """Where each robot is, one pose a seat; the frame must be of READY or later."""
+        return [_pose(*_POSE.unpack_from(frame.poses, offset)) for offset in self._offsets]
+
+
+def _pose(x: float, y: float, z: float, qw: float, qx: float, qy: float, qz: float) -> Pose:
+    forward_x, forward_y = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
+    return Pose(x, y, math.atan2(forward_y, forward_x), 1 - 2 * (qx * qx + qy * qy))
+
+
+class Pilot:
+    """Brings one robot to points: turns, walks, passes the other robot, gets up, frees itself."""
+
+    def __init__(self, seat: int, size_m: tuple[float, float]) -> None:
+        self._seat = seat
+        self._limits_m = tuple(size / 2 - _WALL_M for size in size_m)
+        self._wanted = STAND
+        self._fallen_since: int | None = None
+        self._mark: tuple[int, float, float] | None = None  # clock and place of the last progress
+        self._evade: tuple[int, float] | None = None  # until when, and with which heading
+
+    def toward(
+        self, frame: Frame, poses: list[Pose], target_m: tuple[float, float] | None
+    ) -> Key | None:
+        """The key that brings the robot nearer to a point; None where it stands already.
+
+        Args:
+            frame: the newest frame.
+            poses: where all robots are in it.
+            target_m: the point (x, y); None to stand.
+        """
+        seat, pose, now = frame.seats[self._seat], poses[self._seat], frame.clock_ticks
+        if seat.locked_ticks:
+            self._fallen_since = self._mark = self._evade = None
+            return None
+        if self._must_restart(pose, now):
+            return RESTART
+        self._watch_progress(poses, now, (seat.level, seat.key) == FORWARD)
+        self._wanted = STAND if target_m is None else self._steer(poses, target_m, now)
+        return self._wanted if (seat.level, seat.key) != self._wanted else None
+
+    def _must_restart(self, pose: Pose, now: int) -> bool:
+        if pose.up >= 0:
+            self._fallen_since = None
+            return False
+        if self._fallen_since is None:
+            self._fallen_since = now
+        if now - self._fallen_since < _FALLEN_TICKS:
+            return False
+        self._fallen_since = now
+        return True
+
+    def _watch_progress(self, poses: list[Pose], now: int, walks: bool) -> None:
+        pose = poses[self._seat]
+        if not walks or self._mark is None or pose.distance_m(*self._mark[1:]) > _STUCK_M:
+            self._mark = (now, pose.x_m, pose.y_m)
+        elif now - self._mark[0] >= _STUCK_TICKS:
+            away = [other for other in poses if other is not pose and _is_near(pose, other)]
+            bearing = (
+                pose.bearing_rad(away[0].x_m, away[0].y_m) + math.pi
+                if away
+                else (pose.bearing_rad(0.0, 0.0))
+            )
+            self._evade = (now + _EVADE_TICKS, pose.heading_rad + bearing)
+            self._mark = None
+
+    def _steer(self, poses: list[Pose], target_m: tuple[float, float], now: int) -> Key:
+        pose = poses[self._seat]
+        if self._evade is not None and now < self._evade[0]:
+            return self._turn(self._evade[1] - pose.heading_rad, _STRAY_RAD)
+        bearing_rad = pose.bearing_rad(*target_m)
+        for other in poses:
+            if other is not pose and _is_near(pose, other):
+                bearing_rad = self._pass(pose, other, bearing_rad)
+        near = pose.distance_m(*target_m) < _NEAR_M
+        return self._turn(bearing_rad, _NEAR_STRAY_RAD if near else _STRAY_RAD)
+
+    def _turn(self, bearing_rad: float, stray_rad: float) -> Key:
+        """Walk while the bearing is small; a turn once begun goes on until it is very small."""
+        bearing_rad = math.remainder(bearing_rad, math.tau)
+        turn = TURN_LEFT if bearing_rad > 0 else TURN_RIGHT
+        return (
+            turn
+            if abs(bearing_rad) > (_AIM_RAD if self._wanted == turn else stray_rad)
+            else (FORWARD)
+        )
+
+    def _pass(self, pose: Pose, other: Pose, bearing_rad: float) -> float:
+        """Turn the wanted bearing aside where the other robot stands in the way."""
+        blocked_rad = pose.bearing_rad(other.x_m, other.y_m)
+        off_rad = math.remainder(bearing_rad - blocked_rad, math.tau)
+        if abs(off_rad) > _AHEAD_RAD:
+            return bearing_rad
+        sides = (1, -1) if off_rad >= 0 else (-1, 1)
+        for side in sides:
+            if self._is_free(pose, blocked_rad + side * _PASS_RAD):
+                return blocked_rad + side * _PASS_RAD
+        return bearing_rad
+
+    def _is_free(self, pose: Pose, bearing_rad: float) -> bool:
+        """Is there room before the wall in this direction?"""
+        angle = pose.heading_rad + bearing_rad
+        ahead_m = pose.x_m + _WALL_M * math.cos(angle), pose.y_m + _WALL_M * math.sin(angle)
+        return all(abs(at) <= limit for at, limit in zip(ahead_m, self._limits_m, strict=True))
+
+
+def _is_near(pose: Pose, other: Pose) -> bool:
+    return pose.distance_m(other.x_m, other.y_m) < _PASS_M
+
+
+def straight(sheet: Sheet, seat: int) -> Brain:
+    """The simplest bot of every game: it walks straight ahead."""
+
+    def brain(frame: Frame) -> Key | None:
+        standing = frame.seats[seat]
+        locked = standing.locked_ticks > 0
+        return None if locked or (standing.level, standing.key) == FORWARD else FORWARD
+
+    return brain
