@@ -1,0 +1,119 @@
+"""The tree is as CONTRIBUTING.md and docs/architecture.md say."""
+
+import re
+import socket
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import lacoc_shared
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = sorted(path.parent for path in ROOT.glob("*/lacoc_*/__init__.py"))
+ARENAS = sorted(path.parent for path in ROOT.glob("arenas/lacoc_arenas/*/arena.toml"))
+ROBOTS = sorted(path.parent for path in ROOT.glob("robots/lacoc_robots/samples/*/robot.toml"))
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+
+def tracked() -> list[Path]:
+    """All files that a clone has."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    if listed.returncode:
+        pytest.skip("not a git checkout")
+    return [ROOT / name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()]
+
+
+def test_the_version_is_said_once() -> None:
+    """pyproject.toml and lacoc_shared agree."""
+    assert PROJECT["version"] == lacoc_shared.__version__
+
+
+@pytest.mark.parametrize("package", PACKAGES, ids=lambda path: path.name)
+def test_a_package_is_typed(package: Path) -> None:
+    """Type checkers of other projects look at our types."""
+    assert (package / "py.typed").read_bytes() == b""
+
+
+def test_there_are_five_rooms() -> None:
+    """The five rooms of docs/architecture.md."""
+    names = [package.name for package in PACKAGES]
+    rooms = ["arenas", "client", "robots", "server", "shared"]
+    assert sorted(names) == [f"lacoc_{room}" for room in rooms]
+
+
+@pytest.mark.parametrize("arena", ARENAS, ids=lambda path: path.name)
+def test_an_arena_is_complete_and_installed(arena: Path) -> None:
+    """An arena's folder has its settings, rules, field and bots, and is an entry point."""
+    files = {path.name for path in arena.iterdir()}
+    assert {"__init__.py", "arena.toml", "rules.py", "field.py", "bots.py"} <= files
+    assert f"lacoc_arenas.{arena.name}" in PROJECT["entry-points"]["lacoc.arenas"].values()
+
+
+@pytest.mark.parametrize("robot", ROBOTS, ids=lambda path: path.name)
+def test_a_sample_robot_is_complete_and_installed(robot: Path) -> None:
+    """A sample robot's folder has the robot and a gait for each level, and is an entry point."""
+    files = {path.name for path in robot.iterdir()}
+    assert {"__init__.py", "robot.toml", "Loco-data.txt", "LocoTra-data.txt"} <= files
+    assert f"lacoc_robots.samples.{robot.name}" in PROJECT["entry-points"]["lacoc.robots"].values()
+
+
+def test_every_entry_point_is_there() -> None:
+    """No entry names a module that is not in the tree."""
+    entries = [
+        entry.partition(":")[0]
+        for group in PROJECT["entry-points"].values()
+        for entry in group.values()
+    ]
+    missing = [
+        entry
+        for entry in entries
+        if not any(
+            (ROOT / room / Path(*entry.split("."))).with_suffix(".py").is_file()
+            or (ROOT / room / Path(*entry.split("."))).is_dir()
+            for room in ("shared", "robots", "arenas", "server", "client")
+        )
+    ]
+    assert missing == []
+
+
+def test_nothing_of_the_machine_it_was_made_on_is_in_it() -> None:
+    """No tracked file names this checkout's path, this home folder or this host."""
+    host = re.escape(socket.gethostname())
+    own = [re.escape(f"{path}/") for path in (ROOT, Path.home()) if len(path.parts) > 1]
+    pattern = re.compile("|".join([*own, rf"\b{host}\b"] if host != "localhost" else own))
+    found = []
+    for path in tracked():
+        text = path.read_bytes().decode("utf-8", "replace")
+        found += [f"{path.relative_to(ROOT)}: {hit}" for hit in pattern.findall(text)]
+
+    assert found == []
+
+
+def test_no_library_is_copied_in() -> None:
+    """What others made is installed, not kept here: no vendored folders, binaries or bundles."""
+    folders = {"vendor", "third_party", "node_modules", "site-packages", "_vendor"}
+    suffixes = {".whl", ".so", ".dll", ".dylib", ".jar", ".exe", ".egg"}
+    found = [
+        path.relative_to(ROOT)
+        for path in tracked()
+        if folders & set(path.parts) or path.suffix in suffixes or path.name.endswith(".min.js")
+    ]
+    assert found == []
+
+
+def test_links_in_the_documents_lead_somewhere() -> None:
+    """A Markdown link to a file of the project finds it."""
+    link = re.compile(r"\]\((?!https?://|mailto:|#)([^)#\s]+)")
+    broken = [
+        f"{path.relative_to(ROOT)}: {target}"
+        for path in tracked()
+        if path.suffix == ".md"
+        for target in link.findall(path.read_text(encoding="utf-8"))
+        if not (path.parent / target).exists()
+    ]
+    assert broken == []

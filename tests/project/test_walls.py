@@ -1,0 +1,92 @@
+"""The walls between the rooms stand: each is broken once in a copy, and found."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+ROOMS = ("shared", "robots", "arenas", "server", "client")
+
+pytestmark = pytest.mark.slow
+
+
+def broken_walls(tree: Path) -> list[str]:
+    """Check the walls of a tree; returns the names of the broken ones.
+
+    A tool's own folder is put before the installed packages: the copy is looked at, not the
+    checkout that is installed for editing.
+    """
+    paths = [str(tree / room) for room in ROOMS]
+    code = f"import sys; sys.path[:0] = {paths!r}; from importlinter.cli import lint_imports; "
+    done = subprocess.run(
+        [sys.executable, "-c", code + "sys.exit(lint_imports(no_cache=True))"],
+        cwd=tree,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    lines = done.stdout.splitlines()
+    broken = [line.removesuffix(" BROKEN") for line in lines if line.endswith(" BROKEN")]
+    assert any(line.endswith(" KEPT") for line in lines), done.stdout + done.stderr
+    assert bool(broken) == bool(done.returncode)
+    return broken
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """A copy of the sources."""
+    for room in ROOMS:
+        shutil.copytree(
+            ROOT / room, tmp_path / room, ignore=shutil.ignore_patterns("__pycache__", "web")
+        )
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    return tmp_path
+
+
+def test_the_walls_stand(tree: Path) -> None:
+    """Nothing in the project breaks a wall."""
+    assert broken_walls(tree) == []
+
+
+ONE_WAY = "Imports go one way"
+PURE = "What is judged and replayed is pure"
+MUJOCO = "Only models, fields and the world know MuJoCo"
+ZENOH = "Only the session knows Zenoh"
+CLIENT = "A client needs nothing of a court's"
+
+
+@pytest.mark.parametrize(
+    ("module", "line", "walls"),
+    [
+        ("shared/lacoc_shared/gait.py", "import lacoc_robots", {ONE_WAY}),
+        ("arenas/lacoc_arenas/game.py", "import lacoc_server.drive", {ONE_WAY}),
+        ("robots/lacoc_robots/spec.py", "import lacoc_arenas.game", {ONE_WAY}),
+        ("arenas/lacoc_arenas/arena.py", "import lacoc_robots.spec", {ONE_WAY}),
+        ("server/lacoc_server/drive.py", "import lacoc_client", {ONE_WAY}),
+        ("arenas/lacoc_arenas/othello/rules.py", "import time", {PURE}),
+        ("arenas/lacoc_arenas/flag_strike/rules.py", "from random import random", {PURE}),
+        ("arenas/lacoc_arenas/practice/rules.py", "import threading", {PURE}),
+        ("arenas/lacoc_arenas/othello/bots.py", "import asyncio", {PURE}),
+        ("robots/lacoc_robots/spec.py", "from datetime import datetime", {PURE}),
+        ("server/lacoc_server/drive.py", "import secrets", {PURE}),
+        ("server/lacoc_server/referee.py", "import subprocess", {PURE}),
+        ("server/lacoc_server/match.py", "import lacoc_server.world", {PURE}),
+        ("shared/lacoc_shared/gait.py", "import time", {PURE}),  # what the rules stand on, too
+        ("server/lacoc_server/replay.py", "from mujoco import mj_step", {MUJOCO}),
+        ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),
+        ("server/lacoc_server/replay.py", "import zenoh.ext", {ZENOH}),
+        ("client/lacoc_client/__init__.py", "import lacoc_robots.model", {CLIENT}),
+        ("client/lacoc_client/__init__.py", "import lacoc_arenas.othello.field", {CLIENT}),
+        ("client/lacoc_client/__init__.py", "import mujoco", {CLIENT, MUJOCO}),
+        ("client/lacoc_client/__init__.py", "import lacoc_server", {CLIENT, ONE_WAY}),
+    ],
+)
+def test_a_broken_wall_is_found(tree: Path, module: str, line: str, walls: set[str]) -> None:
+    """One planted import breaks the wall it goes through."""
+    path = tree / module
+    path.write_text(path.read_text(encoding="utf-8") + f"\n{line}\n", encoding="utf-8")
+
+    assert set(broken_walls(tree)) == walls
