@@ -3,10 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import msgspec
+
 from lacoc_robots.spec import Limits, RobotSpec, read_robot
 from lacoc_shared.gait import Gait, LocomotionTable, PostureTable
 from lacoc_shared.gait_text import read_gait
-from lacoc_shared.messages import SentFile
+from lacoc_shared.messages import Join, SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake
 
 
@@ -64,3 +66,33 @@ def weigh_in(
             next((t for t in tables if isinstance(t, LocomotionTable)), None),
         ),
     )
+
+
+@dataclass(frozen=True)
+class Admission:
+    """Weighs in what comes with a join, and fills in what a contestant did not bring.
+
+    A team without a robot file gets the contest's robot; without gait files too, its sample gait.
+    """
+
+    robot: SentFile
+    """The contest's robot."""
+    postures: SentFile | None
+    locomotion: SentFile | None
+    """Its sample gait."""
+    limits: Mapping[str, float]
+    """Contest limits that differ from the defaults of rules 1."""
+
+    def __call__(self, join: Join) -> Join:
+        """Complete a join.
+
+        Raises:
+            FileRefused: with every mistake of every file.
+        """
+        robot, postures, locomotion = join.robot, join.postures, join.locomotion
+        if robot is None:
+            robot = self.robot
+            if postures is None and locomotion is None:
+                postures, locomotion = self.postures, self.locomotion
+        weigh_in(robot, postures, locomotion, self.limits)
+        return msgspec.structs.replace(join, robot=robot, postures=postures, locomotion=locomotion)

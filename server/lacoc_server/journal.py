@@ -1,10 +1,12 @@
 """A match with its record: every beat is on its way to the disk before anyone is answered."""
 
 import platform
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
+import msgspec
 import mujoco
 
 from lacoc_server.match import Beat, Match
@@ -38,6 +40,8 @@ class Journal:
         self.writer = (
             RecordWriter(folder, _header(match.setup, segment, match.beats + 1)) if folder else None
         )
+        self.verdict: Callable[[], dict[str, Any]] = dict
+        """Gives the health verdict that is stamped on the result."""
         self._ticks = 0
         self._last: tuple[object, ...] = ()
         self._scene = b""
@@ -72,7 +76,7 @@ class Journal:
             if self._ticks % SNAPSHOT_TICKS == 1 and isinstance(match.physics, World):
                 writer.snapshot(number, match.physics.save())
         if beat.result is not None:
-            writer.result(beat.result)
+            writer.result(msgspec.structs.replace(beat.result, health=self.verdict()))
         return beat, encoded
 
     def close(self) -> None:

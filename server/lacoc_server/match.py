@@ -352,6 +352,7 @@ class Match:
             return Done()
         if seat.join is None:
             return Refusal(f"The match is on ({self.phase.name}): join when the next one opens.")
+        seat.left = False
         self.tell("join", f"{seat.team} is back.", seat=join.seat)
         if _files(seat.join) == _files(join):
             return Done()
@@ -365,12 +366,12 @@ class Match:
             self._sheet_changed = True
             return Done()
         self.tell("leave", f"{seat.team} has left; the seat stays theirs.", seat=seat.index)
-        seat.silent = True
+        seat.silent = seat.left = True
         seat.stand()
         if (
             self.rules.start == "ready"
             and self.phase in (Phase.PLAYING, Phase.HALTED)
-            and all(other.silent for other in self.seats)
+            and all(other.left for other in self.seats)
         ):
             self.finish("everybody has left")
         return Done("The seat stays yours.")

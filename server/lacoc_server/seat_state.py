@@ -22,6 +22,8 @@ class Seat:
     entry: Entry | None = None
     ready: bool = False
     silent: bool = False
+    left: bool = False
+    """The contestant left during play; the next match does not take them along."""
     drive: Drive | None = None
     """From READY on."""
     state: DriveState | None = None

@@ -1,0 +1,154 @@
+"""`lacoc demo`: a whole match, each part a process of its own, over the real network."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import IO, Annotated, Any
+
+import typer
+
+from lacoc_shared import screen
+from lacoc_shared.mistakes import UserError
+
+app = typer.Typer()
+
+_READY_S = 60
+"""Within this the bots have joined and said ready, also on a slow machine."""
+_END_S = 10
+"""Within this a process that was asked to end has ended."""
+
+
+@app.command(name="demo")
+def demo_command(
+    arena: Annotated[
+        str, typer.Option(envvar="LACOC_ARENA", help="The game: othello or flag-strike.")
+    ] = "othello",
+    left: Annotated[str, typer.Option(help="Bot in the left seat.")] = "planner",
+    right: Annotated[str, typer.Option(help="Bot in the right seat.")] = "nearest",
+    seconds: Annotated[
+        float | None, typer.Option(help="Length of the match, if not the arena's.", min=0.1)
+    ] = None,
+    speed: Annotated[
+        float, typer.Option(help="2 plays twice as fast as real time.", min=0.1, max=20)
+    ] = 1.0,
+    headless: Annotated[
+        bool, typer.Option("--headless", help="Show the events only, no live picture.")
+    ] = False,
+    recordings: Annotated[
+        Path, typer.Option(metavar="FOLDER", help="Where the record goes.")
+    ] = Path("recordings"),
+) -> None:
+    """Show a whole match: a court, two bots and a referee meet over the network.
+
+    Every part is a process of its own, as in a contest. At the end the record is simulated again
+    and must give the same match, bit for bit.
+    """
+    with ExitStack() as processes:
+        court = processes.enter_context(_court(arena, seconds, speed, recordings))
+        where = ("--court", court.name, "--connect", court.address)
+        show_live = not headless and sys.stdout.isatty()
+        for seat, bot in (("left", left), ("right", right)):
+            join = ("--arena", arena, "--seat", seat, *where)
+            processes.enter_context(_process("bot", bot, *join, token=court.tokens[seat]))
+        for decision, wait_s in (("start", _READY_S), ("official", None)):
+            wait = ("--wait", str(wait_s)) if wait_s else ("--wait", "86400")
+            words = ("referee", decision, "--by", "demo", *wait, *where)
+            processes.enter_context(_process(*words, token=court.referee))
+        if show_live:
+            processes.enter_context(_process("watch", "--terminal", *where, output=None))
+        result = _follow(court, quiet=show_live)
+    screen.show(f"\n{result}")
+    record = court.record(recordings)
+    screen.show(f"Record: {record}")
+    if _lacoc("replay", "verify", str(record)).wait() != 0:
+        raise UserError("The record does not give the same match again: please report this.")
+
+
+class _Court:
+    """The court's process and what it said when it opened."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        assert process.stdout is not None
+        self._process = process
+        self._lines: IO[str] = process.stdout
+        opened = next(self.lines(), None)
+        if opened is None:
+            raise UserError("The court did not open; what it says is above.")
+        self.name: str = opened["court"]
+        self.address: str = opened["locators"][0]
+        self.tokens: Mapping[str, str] = opened["tokens"]
+        self.referee: str = opened["referee"]
+
+    def lines(self) -> Iterator[dict[str, Any]]:
+        """Everything the court says, as it says it."""
+        for line in self._lines:
+            yield json.loads(line)
+
+    def record(self, folder: Path) -> Path:
+        """The record of its match."""
+        return max(folder.glob(f"*-{self.name}-*.mcap"), key=lambda path: path.stat().st_mtime)
+
+
+def _follow(court: _Court, *, quiet: bool) -> str:
+    """Show events until the result is official; returns the sentence of the result."""
+    result = ""
+    for event in court.lines():
+        if event["kind"] == "result":
+            result = event["text"]
+        if not quiet:
+            screen.show(f"{_clock(event['clock_ticks'])}  {event['text']}")
+        if event["kind"] == "phase" and event["data"]["after"] in ("OFFICIAL", "VOID"):
+            return result
+    raise UserError("The court ended before the match did; what it says is above.")
+
+
+def _clock(ticks: int) -> str:
+    seconds = max(0, ticks) / 50
+    return f"{int(seconds // 60)}:{seconds % 60:04.1f}"
+
+
+@contextmanager
+def _court(arena: str, seconds: float | None, speed: float, recordings: Path) -> Iterator[_Court]:
+    words = ["serve", "--json", "--arena", arena, "--listen", "tcp/127.0.0.1:0"]
+    words += ["--recordings", str(recordings), "--speed", str(speed)]
+    words += ["--seconds", str(seconds)] if seconds else []
+    with _ended(_lacoc(*words, output=subprocess.PIPE)) as process:
+        yield _Court(process)
+
+
+@contextmanager
+def _process(
+    *words: str, token: str = "", output: int | None = subprocess.DEVNULL
+) -> Iterator[None]:
+    with _ended(_lacoc(*words, output=output, token=token)):
+        yield
+
+
+@contextmanager
+def _ended(process: subprocess.Popen[str]) -> Iterator[subprocess.Popen[str]]:
+    """A process that is asked to end when it is no longer needed."""
+    try:
+        yield process
+    finally:
+        process.terminate()
+        try:
+            process.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+
+
+def _lacoc(*words: str, output: int | None = None, token: str = "") -> subprocess.Popen[str]:
+    """Start a subcommand; its token is in the environment, where others can't read it."""
+    environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
+    if token:
+        environment["LACOC_TOKEN"] = token
+    return subprocess.Popen(
+        [sys.executable, "-m", "lacoc_shared", *words],
+        stdout=output,
+        env=environment,
+        text=True,
+    )

@@ -1,0 +1,163 @@
+"""`lacoc serve`: a court."""
+
+import signal
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.arena import Arena
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.court import Court, CourtSettings
+from lacoc_server.decision_desk import DecisionDesk
+from lacoc_server.entry import Admission
+from lacoc_server.inbox import Inbox
+from lacoc_server.network import CourtNetwork
+from lacoc_shared import contest as contests
+from lacoc_shared import options, screen
+from lacoc_shared.address import endpoint
+from lacoc_shared.contest import Contest
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import Event, SentFile
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seal import hash_token
+from lacoc_shared.seat import BEAT_S
+
+app = typer.Typer()
+
+
+@app.command(name="serve")
+def serve_command(
+    contest: options.ContestFile = None,
+    court: options.CourtName = None,
+    arena: Annotated[
+        str | None,
+        typer.Option(
+            envvar="LACOC_ARENA",
+            help="The game where there is no contest file: othello, flag-strike, practice, or the "
+            "path of an arena's folder.",
+        ),
+    ] = None,
+    listen: Annotated[
+        str | None,
+        typer.Option(
+            envvar="LACOC_LISTEN",
+            metavar="ADDRESS",
+            help="Where to listen, such as tcp/0.0.0.0:7447; port 0 takes a free one.",
+        ),
+    ] = None,
+    recordings: Annotated[
+        Path | None,
+        typer.Option(
+            envvar="LACOC_RECORDINGS",
+            metavar="FOLDER",
+            help="Folder of the records; by default the contest's, or 'recordings'.",
+        ),
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(help="Length of a match, if not the arena's.", min=0.1)
+    ] = None,
+    speed: Annotated[
+        float, typer.Option(help="2 plays twice as fast as real time.", min=0.1, max=50)
+    ] = 1.0,
+    json: options.Json = False,
+) -> None:
+    """Run a court: it steps the robots, keeps the clock, scores and records.
+
+    Without a contest file the court makes its own tokens and prints the line for each contestant
+    and for the referee. Ctrl-C closes the court; the record is finished first.
+    """
+    plan, made_here = _contest(contest, arena, listen)
+    name, entry = plan.court(court)
+    loaded = arenas.load(entry.arena, _overrides(entry.settings, seconds))
+    _check_seats(name, entry, loaded)
+    keys = Keys(name)
+    admission = Admission(
+        SentFile(*find_robot(plan.robot)), *sample_gait_files(plan.robot), plan.limits
+    )
+    inbox = Inbox(
+        keys,
+        [seat.id for seat in loaded.seats],
+        {seat: hash_token(holder.token) for seat, holder in entry.seat.items()},
+        admission,
+    )
+    desk = DecisionDesk([hash_token(entry.referee.token)])
+    addresses = (endpoint(listen),) if listen else entry.listen
+    with CourtNetwork(keys, addresses, inbox, desk) as network:
+        settings = CourtSettings(
+            name, loaded, plan.limits, recordings or plan.recordings, speed=speed
+        )
+        running = Court(settings, network, screen.print_json if json else _say)
+        _open_doors(name, entry, loaded, network.locators, made_here=made_here, json=json)
+        stop = _stop_on_signal()
+        running.run(lambda: bool(stop))
+
+
+def _contest(path: Path | None, arena: str | None, listen: str | None) -> tuple[Contest, bool]:
+    """The contest, and whether it was made here."""
+    if path is not None:
+        if arena is not None:
+            raise UserError("Give --contest or --arena, not both: the contest names its arenas.")
+        return contests.load(path), False
+    name = arena or "othello"
+    seats = [seat.id for seat in arenas.load(name).seats]
+    return contests.throwaway(name, seats, (listen or contests.LOOPBACK,)), True
+
+
+def _overrides(settings: dict[str, Any], seconds: float | None) -> dict[str, Any]:
+    return (
+        settings if seconds is None else arenas.merge(settings, {"match": {"duration_s": seconds}})
+    )
+
+
+def _check_seats(name: str, entry: contests.Court, arena: Arena) -> None:
+    there, wanted = set(entry.seat), {seat.id for seat in arena.seats}
+    if there != wanted:
+        raise UserError(
+            f"Court {name!r} has tokens for {_names(there)}, but {arena.name} has the seats "
+            f"{_names(wanted)}: mend [court.{name}.seat] in the contest file."
+        )
+
+
+def _names(seats: set[str]) -> str:
+    return ", ".join(sorted(seats)) or "no seat"
+
+
+def _open_doors(
+    name: str,
+    entry: contests.Court,
+    arena: Arena,
+    locators: tuple[str, ...],
+    *,
+    made_here: bool,
+    json: bool,
+) -> None:
+    if json:
+        opened: dict[str, Any] = {"kind": "open", "court": name, "arena": arena.name}
+        opened["locators"] = locators
+        if made_here:
+            opened["tokens"] = {seat: holder.token for seat, holder in entry.seat.items()}
+            opened["referee"] = entry.referee.token
+        screen.print_json(opened)
+        return
+    screen.show(f"Court {name} plays {arena.title} at {', '.join(locators)}.")
+    if made_here:
+        open_court = contests.Court(
+            arena=entry.arena, listen=locators, seat=entry.seat, referee=entry.referee
+        )
+        for who, line in contests.join_lines(name, open_court).items():
+            screen.show(f"  {who}: {line}")
+
+
+def _say(event: Event) -> None:
+    used_s = max(0.0, event.clock_ticks * BEAT_S)
+    screen.show(f"{int(used_s // 60)}:{used_s % 60:04.1f}  {event.text}")
+
+
+def _stop_on_signal() -> list[int]:
+    """A list that fills when somebody asks the process to end."""
+    asked: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda received, _: asked.append(received))
+    return asked

@@ -1,0 +1,163 @@
+"""A court: the loop that gives a match its beats, and the only reader of a clock.
+
+One thread. Each beat takes what arrived, lets the match have it, records, and only then
+answers and publishes: what anybody was told is on disk (design.md, "One beat").
+"""
+
+import hashlib
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from lacoc_arenas.arena import Arena
+from lacoc_server.journal import Journal
+from lacoc_server.match import Match
+from lacoc_server.network import Arrival, CourtNetwork
+from lacoc_server.pace import Pace
+from lacoc_server.world import World
+from lacoc_shared.decisions import Next, Official
+from lacoc_shared.inputs import Decide, Input
+from lacoc_shared.messages import Event, Health
+from lacoc_shared.record.pack import pack_in_background
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import BEATS_PER_S, Phase
+
+HEALTH_BEATS = BEATS_PER_S // 2
+"""Health goes out twice a second."""
+
+
+@dataclass(frozen=True)
+class CourtSettings:
+    """What a court is started with."""
+
+    name: str
+    arena: Arena
+    limits: Mapping[str, float]
+    """Contest limits for robots that differ from the defaults of rules 1."""
+    recordings: Path | None
+    """Folder of the records; None: no record."""
+    speed: float = 1.0
+    """1: a beat every 20 ms; more for a demonstration in a hurry."""
+
+
+class Court:
+    """Holds one match at a time.
+
+    Args:
+        settings: what to play.
+        network: how others reach it; opened by the caller.
+        say: told every event, for the organiser's screen.
+    """
+
+    def __init__(
+        self, settings: CourtSettings, network: CourtNetwork, say: Callable[[Event], None]
+    ) -> None:
+        self._settings = settings
+        self._network = network
+        self._say = say
+        self._scene = b""
+        self._packing: list[Any] = []
+        self._pace = Pace(time.monotonic(), settings.speed, _offset_s(settings.name))
+        self._journal = self._open(1)
+
+    def run(self, stopping: Callable[[], bool]) -> None:
+        """Give the match its beats until `stopping` says so; then finish the record."""
+        pace = self._pace
+        inputs: list[Input] = []
+        try:
+            while not stopping():
+                time.sleep(pace.wait_s(time.monotonic()))
+                now_s = time.monotonic()
+                pace.begin(now_s)
+                inputs = self._beat(now_s, inputs)
+        finally:
+            self._close()
+            for packing in self._packing:
+                packing.wait()
+
+    def _beat(self, now_s: float, own: list[Input]) -> list[Input]:
+        """One beat; returns the court's own inputs for the next."""
+        match, network = self._journal.match, self._network
+        arrivals: list[Arrival] = network.poll(now_s)
+        beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
+        for arrival, outcome in zip(arrivals, beat.outcomes[len(own) :], strict=True):
+            if arrival.answer is not None:
+                arrival.answer(outcome)
+        network.publish_frame(frame)
+        for event in beat.events:
+            network.publish_event(event)
+            self._say(event)
+        if match.physics.scene_hash != self._scene:
+            self._scene = match.physics.scene_hash
+            network.publish_scene(match.physics.scene)
+        if beat.sheet_changed:
+            network.publish_sheet(match.sheet())
+        if match.beats % HEALTH_BEATS == 0:
+            network.publish_health(self._health(now_s))
+        return self._follow()
+
+    def _follow(self) -> list[Input]:
+        """What comes after a beat that ended something."""
+        match = self._journal.match
+        if match.next_wanted:
+            self._close()
+            joins: list[Input] = [seat.join for seat in match.seats if seat.join and not seat.left]
+            self._journal = self._open(match.setup.match + 1)
+            return joins
+        if match.rules.start == "ready":  # nobody judges: the court opens the next by itself
+            if match.phase is Phase.FINISHED:
+                return [Decide("court", "", Official())]
+            if match.phase is Phase.OFFICIAL:
+                return [Decide("court", "", Next())]
+        return []
+
+    def _open(self, number: int) -> Journal:
+        settings = self._settings
+        stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
+        setup = Setup(
+            match_id=f"{stamp}-{settings.name}-{number:03d}",
+            court=settings.name,
+            match=number,
+            arena=settings.arena.name,
+            settings=settings.arena.settings,
+            limits=dict(settings.limits),
+        )
+        journal = Journal(Match(setup, World), settings.recordings)
+        journal.verdict = self._verdict
+        return journal
+
+    def _close(self) -> None:
+        """Finish the record of this match; it is packed in a process of its own."""
+        self._journal.close()
+        if self._settings.recordings is not None:
+            match_id = self._journal.match.setup.match_id
+            self._packing.append(pack_in_background(self._settings.recordings, match_id))
+
+    def _verdict(self) -> dict[str, Any]:
+        pace = self._pace
+        return {
+            "real_time_factor": round(pace.real_time_factor, 3),
+            "slow_beats": pace.slow_beats,
+            "worst_late_ms": round(pace.worst_late_s * 1000, 1),
+        }
+
+    def _health(self, now_s: float) -> Health:
+        pace, match = self._pace, self._journal.match
+        return Health(
+            match=match.setup.match,
+            beat=match.beats,
+            real_time_factor=pace.real_time_factor,
+            slow_beats=pace.slow_beats,
+            worst_late_ms=pace.worst_late_s * 1000,
+            seats=self._network.seat_health(now_s),
+            dropped=self._network.dropped,
+            decisions=match.legality(),
+        )
+
+
+def _offset_s(name: str) -> float:
+    """Part of a second by which a court's beats are shifted (design.md, "Time")."""
+    return int.from_bytes(hashlib.blake2b(name.encode(), digest_size=4).digest()) / 2**32

@@ -1,0 +1,53 @@
+"""The pace of a court: when the next beat is due, and how well that was kept.
+
+Pure: times of the monotonic clock go in and come out. Only the court's loop reads it.
+"""
+
+from collections import deque
+
+from lacoc_shared.seat import BEAT_S
+
+CATCH_UP_BEATS = 5
+"""After a stall at most so many beats come without a pause; then the match runs late."""
+SLOW_S = BEAT_S
+"""A beat that starts later than this is a slow beat."""
+_WINDOW_BEATS = 250
+
+
+class Pace:
+    """Due times of beats.
+
+    Args:
+        now_s: monotonic time.
+        speed: 2 lets two beats of 20 ms pass in 20 ms.
+        offset_s: puts the beats of this court between those of others on the machine.
+    """
+
+    def __init__(self, now_s: float, speed: float = 1.0, offset_s: float = 0.0) -> None:
+        self._beat_s = BEAT_S / speed
+        self._speed = speed
+        self._due_s = now_s + offset_s % self._beat_s
+        self._starts_s: deque[float] = deque(maxlen=_WINDOW_BEATS)
+        self.slow_beats = 0
+        self.worst_late_s = 0.0
+
+    def wait_s(self, now_s: float) -> float:
+        """How long to wait for the next beat; 0 if it is due."""
+        return max(0.0, self._due_s - now_s)
+
+    def begin(self, now_s: float) -> None:
+        """A beat begins now."""
+        late_s = now_s - self._due_s
+        self.worst_late_s = max(self.worst_late_s, late_s)
+        if late_s > SLOW_S:
+            self.slow_beats += 1
+        self._due_s = max(self._due_s, now_s - CATCH_UP_BEATS * self._beat_s) + self._beat_s
+        self._starts_s.append(now_s)
+
+    @property
+    def real_time_factor(self) -> float:
+        """Speed of the last beats over the speed that was asked for: 1 is on time."""
+        if len(self._starts_s) < 2:
+            return 1.0
+        took_s = self._starts_s[-1] - self._starts_s[0]
+        return (len(self._starts_s) - 1) * self._beat_s / took_s if took_s > 0 else 1.0
