@@ -1,0 +1,92 @@
+"""Install what a release ships, in clean environments, and try it: what a checkout never runs.
+
+    python tests/project/wheel_smoke.py dist
+
+The wheel without MuJoCo is a contestant's machine, the source archive with it a court's.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import venv
+from pathlib import Path
+
+SAMPLE = "import lacoc_robots.samples.hexapod as robot; print(robot.__path__[0])"
+IMPORT_ALL = """
+import importlib, pkgutil
+for name in {packages}:
+    package = importlib.import_module(name)
+    for module in pkgutil.walk_packages(package.__path__, name + "."):
+        if not module.name.endswith("__main__"):
+            importlib.import_module(module.name)
+"""
+
+
+class Environment:
+    """A virtual environment with one archive installed."""
+
+    def __init__(self, folder: Path, archive: Path, extra: str = "") -> None:
+        venv.create(folder, with_pip=True)
+        self.bin = folder / ("Scripts" if os.name == "nt" else "bin")
+        self.folder = folder
+        self.run("python", "-m", "pip", "install", "--quiet", f"{archive.resolve()}{extra}")
+
+    def run(self, *command: str, code: int = 0) -> subprocess.CompletedProcess[str]:
+        """Run a program of the environment, away from the checkout."""
+        done = subprocess.run(
+            [str(self.bin / command[0]), *command[1:]],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if done.returncode != code:
+            sys.exit(
+                f"{' '.join(command)}: exit code {done.returncode}, expected {code}\n"
+                f"{done.stdout}{done.stderr}"
+            )
+        return done
+
+
+def try_both(env: Environment) -> None:
+    """What must work with and without MuJoCo."""
+    env.run("lacoc", "--version")
+    assert "practice" in env.run("lacoc", "--help").stdout
+    sample = env.run("python", "-c", SAMPLE).stdout.strip()
+    for name in ("Loco-data.txt", "LocoTra-data.txt"):
+        env.run("lacoc", "gait", "check", str(Path(sample, name)))
+    env.run("lacoc", "contest", "init")
+    env.run("lacoc", "contest", "check")
+
+
+def try_contestant(env: Environment) -> None:
+    """A contestant's machine: no MuJoCo, and a court says in one line how to get it."""
+    try_both(env)
+    env.run("python", "-c", IMPORT_ALL.format(packages=["lacoc_shared", "lacoc_client"]))
+    error = env.run("lacoc", "serve", "--arena", "othello", code=2).stderr
+    assert error.count("\n") == 1, error
+    assert 'pip install "lacoc[server]"' in error, error
+
+
+def try_court(env: Environment) -> None:
+    """A court's machine: every module imports, and a short match is played."""
+    try_both(env)
+    packages = ["lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lacoc_client"]
+    env.run("python", "-c", IMPORT_ALL.format(packages=packages))
+    env.run("lacoc", "demo", "--headless", "--seconds", "3")
+
+
+def main(dist: Path) -> None:
+    """Try the newest wheel and source archive of a folder."""
+    (wheel,) = dist.glob("*.whl")
+    (source,) = dist.glob("*.tar.gz")
+    with tempfile.TemporaryDirectory(prefix="lacoc smoke ") as folder:
+        try_contestant(Environment(Path(folder, "contestant"), wheel))
+        print(f"{wheel.name}: a contestant's machine works")
+        try_court(Environment(Path(folder, "court"), source, "[server]"))
+        print(f"{source.name}: a court's machine works")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
