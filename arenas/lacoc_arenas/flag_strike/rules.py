@@ -164,11 +164,9 @@ class FlagStrike:
         touching: dict[int, list[int]] = {}
         for seat, robot in enumerate(observation):
             for marker in robot.touched:
-                if state.board[marker] != NEUTRAL:
-                    continue
                 if (seat, marker) in state.void or (seat, self.markers[marker].name) in struck:
                     void.append((seat, marker))
-                else:
+                elif state.board[marker] == NEUTRAL:
                     touching.setdefault(marker, []).append(seat)
         strikes = [(marker, seats[0]) for marker, seats in touching.items() if len(seats) == 1]
         return tuple(sorted(void)), strikes

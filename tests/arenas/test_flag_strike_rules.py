@@ -1,0 +1,331 @@
+"""Flag-Strike, rule by rule (workshop 5-2, rules 6)."""
+
+import math
+
+import pytest
+
+from lacoc_arenas import arena
+from lacoc_arenas.flag_strike.rules import NO_CORNER, FlagStrike, State
+from lacoc_arenas.game import DOWN, LEFT, NEUTRAL, RIGHT, Claim, GameEvent, Place, RobotView
+
+GAME: FlagStrike = arena.load("flag-strike").game
+INDEX = {marker.name: index for index, marker in enumerate(GAME.markers)}
+CORNERS = [(marker.x_m, marker.y_m) for marker in GAME.markers[:4]]
+START = GAME.start()
+MIDDLE = (0.0, 0.0)
+Spot = tuple[float, float]
+
+
+def view(
+    where: Spot = MIDDLE, touched: tuple[str, ...] = (), placed: Spot | None = None
+) -> RobotView:
+    start = None if placed is None else Place(*placed, 0.0)
+    indices = tuple(INDEX[name] for name in touched)
+    return RobotView(*where, 0.07, 1.0, 0.0, 0.0, 0.0, start, indices)
+
+
+def tick(
+    before: State,
+    left: RobotView | None = None,
+    right: RobotView | None = None,
+    *,
+    game: FlagStrike = GAME,
+    struck: frozenset[Claim] = frozenset(),
+) -> tuple[State, tuple[GameEvent, ...]]:
+    return game.step(before, (left or view(), right or view()), 0.02, struck)
+
+
+def claims(events: tuple[GameEvent, ...]) -> list[Claim]:
+    return [(event.seat, event.marker) for event in events]
+
+
+# rules 6 "field", "corners", "flags", "start"
+
+
+def test_field() -> None:
+    """Rules 6 field: 2.0 x 2.0 m, four circles of radius 0.15 m, 0.20 m from both walls."""
+    assert GAME.size_m == (2.0, 2.0)
+    assert CORNERS == [(-0.8, -0.8), (0.8, -0.8), (-0.8, 0.8), (0.8, 0.8)]
+    assert {marker.radius_m for marker in GAME.markers[:4]} == {0.15}
+    assert [marker.name for marker in GAME.markers[:5]] == [
+        "corner0",
+        "corner1",
+        "corner2",
+        "corner3",
+        "flag0",
+    ]
+
+
+def test_twenty_flags_in_four_colours() -> None:
+    """Workshop 5-2 rule 6, rules 6 flags: 8 x 1, 6 x 2, 4 x 3 and 2 x 5 are 42 points."""
+    flags = [marker for marker in GAME.markers if marker.kind == "flag"]
+    worth = [flag.points for flag in flags]
+    assert {points: worth.count(points) for points in set(worth)} == {1: 8, 2: 6, 3: 4, 5: 2}
+    assert (len(flags), sum(worth)) == (20, 42)
+    assert len({colour.rgb for colour in GAME.settings.colour}) == 4
+    assert {flag.radius_m for flag in flags} == {0.01}
+    assert GAME.settings.pole_height_m == 0.25
+
+
+def test_starts() -> None:
+    """Rules 6 start: left at (-0.6, 0), then 0.4 and -0.4, facing +x; right turned."""
+    left, right = GAME.starts
+    assert [(p.x_m, p.y_m, p.heading_rad) for p in left] == [
+        (-0.6, 0.0, 0.0),
+        (-0.6, 0.4, 0.0),
+        (-0.6, -0.4, 0.0),
+    ]
+    assert [(p.x_m, p.y_m, p.heading_rad) for p in right] == [
+        (0.6, 0.0, math.pi),
+        (0.6, -0.4, math.pi),
+        (0.6, 0.4, math.pi),
+    ]
+
+
+def test_neutral_at_the_start() -> None:
+    """Rules 6 corners and flags: all neutral, no points."""
+    assert set(GAME.board(START)) == {NEUTRAL}
+    assert GAME.score(START) == (0, 0)
+
+
+def test_lasts_three_minutes() -> None:
+    """Workshop 5-2 rule 1: the time limit is 3 minutes; rules 4: freeze 5 s, countdown 3 s."""
+    match = arena.load("flag-strike").match
+    assert (match.duration_s, match.countdown_s, match.restart_freeze_s) == (180.0, 3.0, 5.0)
+    assert match.levels == ("B",)
+
+
+# 5-2 rules 2 and 3, rules 6 "corners"
+
+
+@pytest.mark.parametrize("corner", range(4))
+def test_corner_takes_the_colour(corner: int) -> None:
+    """Workshop 5-2 rule 2: the centre of the body comes in, and the corner is that robot's."""
+    after, events = tick(START, view(CORNERS[corner]))
+    assert claims(events) == [(0, f"corner{corner}")]
+    assert events[0].kind == "capture"
+    assert events[0].text.format(team="Ants") == f"Ants takes corner{corner} for 5 points."
+    assert after.board[corner] == LEFT
+    assert GAME.score(after) == (5, 0)
+
+
+@pytest.mark.parametrize(
+    ("x_m", "inside"), [(0.75, True), (0.9375, True), (0.5625, True), (0.5624, False)]
+)
+def test_corner_edge(x_m: float, inside: bool) -> None:
+    """Rules 6 corners: a circle; its edge belongs to it."""
+    game = arena.load(
+        "flag-strike",
+        {"game": {"corner_inset_m": 0.25, "corner_radius_m": 0.1875, "clearance_m": 0.2}},
+    ).game
+    assert (game.corner_at(x_m, 0.75) == 3) is inside
+    assert (game.corner_at(-x_m, -0.75) == 0) is inside
+
+
+def test_corner_is_nowhere_for_no_number() -> None:
+    """Rules 6 corners: a position that is no number is in no corner."""
+    assert GAME.corner_at(math.nan, 0.8) == NO_CORNER
+
+
+def test_corner_can_be_retaken() -> None:
+    """Workshop 5-2 rule 3: the other robot can regain it, though the first stays inside."""
+    held, _ = tick(START, view(CORNERS[0]))
+    after, events = tick(held, view(CORNERS[0]), view(CORNERS[0]))
+    assert claims(events) == [(1, "corner0")]
+    assert GAME.score(after) == (0, 5)
+    stays, events = tick(after, view(CORNERS[0]), view(CORNERS[0]))
+    assert stays is after
+    assert events == ()
+    left_out, _ = tick(after, view(), view(CORNERS[0]))
+    again, events = tick(left_out, view(CORNERS[0]), view(CORNERS[0]))
+    assert claims(events) == [(0, "corner0")]
+    assert GAME.score(again) == (5, 0)
+
+
+def test_own_corner_is_no_event() -> None:
+    """Rules 6 corners: to come into one's own corner again changes nothing."""
+    held, _ = tick(START, view(CORNERS[2]))
+    outside, _ = tick(held)
+    assert GAME.board(outside)[2] == LEFT
+    _, events = tick(outside, view(CORNERS[2]))
+    assert events == ()
+
+
+def test_both_come_in_one_tick() -> None:
+    """Rules 6 corners: both in one tick: it stays, whoever holds it."""
+    for owner in (NEUTRAL, LEFT, RIGHT):
+        before = GAME.set(START, 1, owner)
+        after, events = tick(before, view(CORNERS[1]), view(CORNERS[1]))
+        assert events == ()
+        assert after.board == before.board
+        assert after.inside == (1, 1)
+
+
+def test_both_take_other_corners_in_one_tick() -> None:
+    """Rules 4: what both do in one tick comes in the order of the markers."""
+    _, events = tick(START, view(CORNERS[3]), view(CORNERS[1]))
+    assert claims(events) == [(1, "corner1"), (0, "corner3")]
+
+
+def test_put_down_outside_and_in_again_in_one_tick() -> None:
+    """Rules 4 and 6: after [x], "outside in the tick before" is asked at the start place."""
+    held, _ = tick(START, view(CORNERS[0]), view())
+    lost = GAME.set(held, 0, RIGHT)
+    _, events = tick(lost, view(CORNERS[0], placed=(-0.6, 0.0)))
+    assert claims(events) == [(0, "corner0")]
+    _, events = tick(lost, view(CORNERS[0], placed=CORNERS[0]))
+    assert events == ()
+
+
+def test_start_inside_a_corner_takes_nothing() -> None:
+    """Rules 6 corners: a robot that starts inside has not come in."""
+    game = arena.load("flag-strike", {"game": {"starts": [[-0.8, 0.8]]}}).game
+    _, events = tick(game.start(), view((-0.8, 0.8)), game=game)
+    assert game.start().inside == (2, 1)
+    assert events == ()
+
+
+def test_corner_points_are_a_setting() -> None:
+    """Rules 6 corners: it counts 5 points while held, or what the file says."""
+    game = arena.load("flag-strike", {"game": {"corner_points": 7}}).game
+    after, events = tick(game.start(), view(CORNERS[0]), game=game)
+    assert game.score(after) == (7, 0)
+    assert events[0].points == 7
+
+
+# 5-2 rule 4, rules 6 "all four"
+
+
+def all_corners_for_left(game: FlagStrike = GAME) -> State:
+    state = game.start()
+    for corner in range(4):
+        assert game.over(state) == ""
+        state = game.set(state, corner, LEFT)
+    return state
+
+
+def test_all_four_end_the_match() -> None:
+    """Workshop 5-2 rule 4: at once when one robot holds all four; rule 8 decides by points."""
+    state = all_corners_for_left()
+    assert GAME.over(state) == "the left team holds all corners"
+    assert GAME.winner(state, (20, 22)) == 1
+    assert GAME.winner(state, (20, 20)) is None
+    assert GAME.over(GAME.set(state, 3, RIGHT)) == ""
+
+
+def test_ends_after_all_events_of_the_tick() -> None:
+    """Rules 4: end conditions are looked at after all events of the tick."""
+    three = GAME.set(all_corners_for_left(), 3, NEUTRAL)
+    after, events = tick(three, view(CORNERS[3]), view(CORNERS[0]))
+    assert claims(events) == [(1, "corner0"), (0, "corner3")]
+    assert GAME.over(after) == ""
+
+
+def test_all_corners_win() -> None:
+    """Rules 6 all four: with `all_corners_win` the holder has won, whatever the points."""
+    game = arena.load("flag-strike", {"game": {"all_corners_win": True}}).game
+    assert game.winner(all_corners_for_left(game), (20, 22)) == 0
+    assert game.winner(game.start(), (20, 22)) == 1
+
+
+# 5-2 rule 5, rules 6 "strike"
+
+
+@pytest.mark.parametrize(("flag", "points"), [("flag0", 1), ("flag8", 2), ("flag19", 5)])
+def test_strike(flag: str, points: int) -> None:
+    """Workshop 5-2 rule 5: a flag that one robot touches falls, and its points are kept."""
+    after, events = tick(START, view(touched=(flag,)))
+    assert claims(events) == [(0, flag)]
+    assert events[0].kind == "strike"
+    assert events[0].points == points
+    assert GAME.score(after) == (points, 0)
+    later, events = tick(after, view(), view(touched=(flag,)))
+    assert events == ()
+    assert later is after
+
+
+def test_touched_by_both_it_stands() -> None:
+    """Rules 6 strike: touched by both in one tick it stands, until one of them lets go."""
+    both = view(touched=("flag4",))
+    after, events = tick(START, both, both)
+    assert events == ()
+    assert after.board == START.board
+    _, events = tick(after, view(), both)
+    assert claims(events) == [(1, "flag4")]
+
+
+def test_several_flags_in_one_tick() -> None:
+    """Rules 4 and 6: all flags touched in a tick fall, in the order of the markers."""
+    _, events = tick(START, view(touched=("flag9", "flag3")), view(touched=("flag5", "flag3")))
+    assert claims(events) == [(1, "flag5"), (0, "flag9")]
+
+
+def test_capture_and_strike_in_one_tick() -> None:
+    """Rules 7: the score is the points of corners and flags together."""
+    after, events = tick(START, view(CORNERS[0], touched=("flag19",)))
+    assert claims(events) == [(0, "corner0"), (0, "flag19")]
+    assert GAME.score(after) == (10, 0)
+
+
+# 5-2 rule 8
+
+
+@pytest.mark.parametrize(("scores", "winner"), [((9, 8), 0), ((8, 9), 1), ((8, 8), None)])
+def test_winner_has_more_points(scores: tuple[int, int], winner: int | None) -> None:
+    """Workshop 5-2 rule 8, rules 6 end: more points win, equal is a draw."""
+    assert GAME.winner(START, scores) == winner
+
+
+# 5-2 rule 9, rules 4 "referee"
+
+
+def test_referee_sets_corners_and_flags() -> None:
+    """Workshop 5-2 rule 9, rules 4: a set marker counts; only a flag can be down."""
+    state = GAME.set(GAME.set(START, 0, LEFT), INDEX["flag19"], RIGHT)
+    assert GAME.score(state) == (5, 5)
+    down = GAME.set(state, INDEX["flag19"], DOWN)
+    assert GAME.score(down) == (5, 0)
+    assert tick(down, view(touched=("flag19",)))[1] == ()
+    stands = GAME.set(down, INDEX["flag19"], NEUTRAL)
+    assert claims(tick(stands, view(touched=("flag19",)))[1]) == [(0, "flag19")]
+    with pytest.raises(ValueError, match="a corner is neutral, left or right"):
+        GAME.set(START, 0, DOWN)
+
+
+def test_struck_capture() -> None:
+    """Rules 4 take-back: no capture, but the robot is inside until it leaves."""
+    after, events = tick(START, view(CORNERS[0]), struck=frozenset({(0, "corner0")}))
+    assert events == ()
+    assert after.inside == (0, NO_CORNER)
+    assert tick(after, view(CORNERS[0])) == (after, ())
+    outside, _ = tick(after)
+    assert claims(tick(outside, view(CORNERS[0]))[1]) == [(0, "corner0")]
+
+
+def test_struck_touch_is_void_until_let_go() -> None:
+    """Rules 4 take-back: a struck touch does not strike one tick later either."""
+    touching = view(touched=("flag6",))
+    after, events = tick(START, touching, struck=frozenset({(0, "flag6")}))
+    assert events == ()
+    assert after.board == START.board
+    assert tick(after, touching) == (after, ())
+    free, _ = tick(after)
+    assert free.void == ()
+    assert claims(tick(free, touching)[1]) == [(0, "flag6")]
+
+
+def test_void_touch_does_not_protect_the_flag() -> None:
+    """Rules 4 take-back: the other robot can strike the flag meanwhile."""
+    touching = view(touched=("flag6",))
+    after, _ = tick(START, touching, struck=frozenset({(0, "flag6")}))
+    fallen, events = tick(after, touching, touching)
+    assert claims(events) == [(1, "flag6")]
+    again = GAME.set(fallen, INDEX["flag6"], NEUTRAL)
+    assert tick(again, touching)[1] == ()
+
+
+def test_nothing_happens() -> None:
+    """Rules 6: a tick in which nothing happens gives the same state."""
+    before = tick(START)[0]
+    assert tick(before, view((0.1, 0.1)), view((-0.3, 0.3))) == (before, ())
+    assert tick(before)[0] is before

@@ -1,0 +1,450 @@
+"""Robot-Othello, rule by rule (workshop 5-1, rules 5)."""
+
+import math
+
+import pytest
+
+from lacoc_arenas import arena
+from lacoc_arenas.game import DOWN, LEFT, NEUTRAL, RIGHT, Claim, GameEvent, Place, RobotView
+from lacoc_arenas.othello.rules import NO_CELL, Othello, State
+
+GAME: Othello = arena.load("othello").game
+INDEX = {marker.name: index for index, marker in enumerate(GAME.markers)}
+GAP = "gap"
+
+
+def with_settings(**settings: object) -> Othello:
+    return arena.load("othello", {"game": settings}).game
+
+
+def view(where: str, placed: str | None = None, game: Othello = GAME) -> RobotView:
+    """A robot on a disc's middle, or between the four discs in the middle of the field."""
+    x_m, y_m = (0.0, 0.0) if where == GAP else middle(where, game)
+    start = None if placed is None else Place(*middle(placed, game), 0.0)
+    return RobotView(x_m, y_m, 0.07, 1.0, 0.0, 0.0, 0.0, start)
+
+
+def middle(name: str, game: Othello = GAME) -> tuple[float, float]:
+    disc = game.markers[INDEX[name]]
+    return disc.x_m, disc.y_m
+
+
+def board(*rows: str) -> tuple[int, ...]:
+    """The cells of a picture, row 5 first; rows left out below are neutral."""
+    filled = [*rows, *["......"] * (6 - len(rows))]
+    return tuple(".LR".index(cell) for row in reversed(filled) for cell in row)
+
+
+def picture(cells: tuple[int, ...]) -> tuple[str, ...]:
+    rows = ["".join(".LR"[cell] for cell in cells[6 * row : 6 * row + 6]) for row in range(6)]
+    return tuple(reversed(rows))
+
+
+def state(cells: tuple[int, ...], left: str, right: str = "c5r0") -> State:
+    return State(cells, (INDEX[left], INDEX[right]))
+
+
+def tick(
+    before: State,
+    left: str = GAP,
+    right: str = GAP,
+    *,
+    game: Othello = GAME,
+    struck: frozenset[Claim] = frozenset(),
+) -> tuple[State, tuple[GameEvent, ...]]:
+    return game.step(before, (view(left, game=game), view(right, game=game)), 0.02, struck)
+
+
+# 5-1 rule 1, rules 5 "board"
+
+
+def test_board_is_six_by_six() -> None:
+    """Workshop 5-1 rule 1, rules 5 board: 6 x 6 cells around the origin, c0r0 at the lower left."""
+    assert len(GAME.markers) == 36
+    assert middle("c0r0") == (-0.75, -0.75)
+    assert middle("c5r0") == (0.75, -0.75)
+    assert middle("c0r5") == (-0.75, 0.75)
+    assert math.isclose(middle("c1r0")[0] - middle("c0r0")[0], 0.30)
+    assert {disc.radius_m for disc in GAME.markers} == {0.12}
+    assert [disc.name for disc in GAME.markers[:7]] == [f"c{c}r0" for c in range(6)] + ["c0r1"]
+
+
+def test_wall_stands_outside_the_outer_discs() -> None:
+    """Rules 5 board: a wall 0.15 m outside the outer discs' edge."""
+    assert GAME.size_m == pytest.approx((2.04, 2.04))
+    assert with_settings(wall_m=0.3).size_m == pytest.approx((2.34, 2.34))
+
+
+# rules 5 "opening"
+
+OPENINGS = {
+    "halves": ("LLLRRR",) * 6,
+    "neutral": ("......", "......", ".....R", "L.....", "......", "......"),
+    "checkers": ("RLRRLR", "LRLLRL", "RLRRLR", "LRLLRL", "RLRRLR", "LRLLRL"),
+    "reversi": ("......", "......", "..LR.R", "L.LR..", "......", "......"),
+}
+
+
+@pytest.mark.parametrize("name", OPENINGS)
+def test_opening(name: str) -> None:
+    """Rules 5 opening: the four boards."""
+    assert picture(with_settings(opening=name).start().cells) == OPENINGS[name]
+
+
+@pytest.mark.parametrize("name", OPENINGS)
+def test_opening_is_fair(name: str) -> None:
+    """Rules 5 opening: each turned by 180 degrees is the same with colours swapped."""
+    cells = with_settings(opening=name).start().cells
+    assert tuple((NEUTRAL, RIGHT, LEFT)[cell] for cell in reversed(cells)) == cells
+
+
+def test_start_cells_are_owned_where_they_are_set() -> None:
+    """Rules 5 opening and start: `neutral` owns the start cells, wherever the file puts them."""
+    game = with_settings(opening="neutral", start_cells=[[2, 5], [0, 0]])
+    cells = game.start().cells
+    assert cells[INDEX["c2r5"]] == LEFT
+    assert cells[INDEX["c3r0"]] == RIGHT
+    assert cells.count(NEUTRAL) == 34
+
+
+# 5-1 rule 3, rules 5 "start"
+
+
+def test_starts() -> None:
+    """Workshop 5-1 rule 3, rules 5 start: left on column 0 facing +x, right on column 5, -x."""
+    left, right = GAME.starts
+    assert [GAME.markers[GAME.cell_at(p.x_m, p.y_m)].name for p in left] == [
+        "c0r2",
+        "c0r3",
+        "c0r1",
+        "c0r4",
+        "c0r0",
+        "c0r5",
+    ]
+    assert [GAME.markers[GAME.cell_at(p.x_m, p.y_m)].name for p in right] == [
+        "c5r3",
+        "c5r2",
+        "c5r4",
+        "c5r1",
+        "c5r5",
+        "c5r0",
+    ]
+    assert {p.heading_rad for p in left} == {0.0}
+    assert {p.heading_rad for p in right} == {math.pi}
+
+
+def test_start_cell_is_the_last_cell() -> None:
+    """Rules 5 start: the cell a robot is put on is its last cell, so it can flip from there."""
+    game = with_settings(opening="neutral")
+    assert game.start().last == (INDEX["c0r2"], INDEX["c5r3"])
+    after, events = tick(game.start(), "c1r2", game=game)
+    assert [event.marker for event in events] == ["c1r2"]
+    assert after.cells[INDEX["c1r2"]] == LEFT
+
+
+def test_being_put_down_flips_nothing() -> None:
+    """Rules 5 start: after [x] the start cell is the last cell; nothing flips, not even it."""
+    before = state(board("......", "......", "......", "RL...."), "c1r2")
+    after, events = GAME.step(before, (view("c0r2", placed="c0r2"), view(GAP)), 0.02)
+    assert events == ()
+    assert after.cells == before.cells
+    assert after.last[0] == INDEX["c0r2"]
+
+
+def test_walking_off_the_start_in_the_tick_of_being_put_down() -> None:
+    """Rules 5 start: in that very tick the start cell is already the last one."""
+    before = state(board("......", "......", "......", "LR...."), "c4r4")
+    after, events = GAME.step(before, (view("c1r2", placed="c0r2"), view(GAP)), 0.02)
+    assert [event.marker for event in events] == ["c1r2"]
+    assert after.last[0] == INDEX["c1r2"]
+
+
+# rules 5 "entering"
+
+
+@pytest.mark.parametrize(("offset_m", "inside"), [(0.0, True), (0.125, True), (0.1250001, False)])
+def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
+    """Rules 5 entering: the centre comes within the disc's radius, the edge included."""
+    game = with_settings(pitch_m=0.5, disc_radius_m=0.125)
+    x_m, y_m = 0.25, -0.25
+    cell = INDEX["c3r2"]
+    assert (game.cell_at(x_m + offset_m, y_m) == cell) is inside
+    assert (game.cell_at(x_m - offset_m, y_m) == cell) is inside
+    assert (game.cell_at(x_m, y_m + offset_m) == cell) is inside
+
+
+@pytest.mark.parametrize(
+    ("x_m", "y_m"),
+    [(0.0, 0.0), (0.0, 0.15), (0.3, 0.15), (0.9, 0.15), (math.nan, 0.0), (math.inf, 0.15)],
+)
+def test_between_and_outside_the_discs(x_m: float, y_m: float) -> None:
+    """Rules 5 entering: between two discs, outside the board and nowhere at all is no cell."""
+    assert GAME.cell_at(x_m, y_m) == NO_CELL
+
+
+def test_touching_discs_share_no_point() -> None:
+    """Rules 5 entering: where discs touch, the point between belongs to the outer one."""
+    game = with_settings(pitch_m=0.5, disc_radius_m=0.25)
+    assert game.cell_at(0.5, 0.25) == INDEX["c4r3"]
+    assert game.cell_at(-0.5, -0.25) == INDEX["c1r2"]
+    assert game.cell_at(0.0, 0.25) == NO_CELL
+
+
+def test_entered_cell_becomes_the_last_whatever_happens() -> None:
+    """Rules 5 entering: entering diagonally flips nothing, but the disc is the last cell now."""
+    before = state(board("......", "......", "......", ".R....", "L....."), "c0r1")
+    after, events = tick(before, "c1r2")
+    assert events == ()
+    assert after.last[0] == INDEX["c1r2"]
+
+
+def test_nothing_happens_on_the_last_cell() -> None:
+    """Rules 5 entering: leaving a disc for a gap and coming back is no entering."""
+    before = state(board("......", "......", "......", "R....."), "c0r2")
+    for where in (GAP, "c0r2"):
+        after, events = tick(before, where, "c5r0")
+        assert after is before
+        assert events == ()
+
+
+# 5-1 rules 4 and 5, rules 5 "flip by walking"
+
+WALKS = {
+    "the other's colour along the row": ("LR....", "c0r5", "c1r5", True),
+    "a neutral disc along the row": ("L.....", "c0r5", "c1r5", True),
+    "backward along the row": ("RL....", "c1r5", "c0r5", True),
+    "from a disc of the other colour": ("RR....", "c0r5", "c1r5", False),
+    "from a neutral disc": (".R....", "c0r5", "c1r5", False),
+    "over a gap of one disc": ("LRR...", "c0r5", "c2r5", False),
+    "one's own colour": ("LL....", "c0r5", "c1r5", False),
+}
+
+
+@pytest.mark.parametrize("what", WALKS)
+def test_flip_by_walking(what: str) -> None:
+    """Workshop 5-1 rules 4 and 5, rules 5: enter a neighbour from a last cell of one's own."""
+    row, origin, cell, flips = WALKS[what]
+    before = state(board(row), origin)
+    after, events = tick(before, cell)
+    assert bool(events) is flips
+    assert (after.cells != before.cells) is flips
+    assert after.last[0] == INDEX[cell]
+    if flips:
+        assert after.cells[INDEX[cell]] == LEFT
+
+
+@pytest.mark.parametrize("cell", ["c2r3", "c2r1", "c1r2", "c3r2"])
+def test_flip_vertically_and_horizontally(cell: str) -> None:
+    """Workshop 5-1 rule 5: along the column and along the row, both ways."""
+    before = state(board("......", "......", "..R...", ".RLR..", "..R..."), "c2r2")
+    after, events = tick(before, cell)
+    assert [event.marker for event in events] == [cell]
+    assert after.cells[INDEX[cell]] == LEFT
+
+
+@pytest.mark.parametrize("cell", ["c1r1", "c1r3", "c3r1", "c3r3"])
+def test_never_diagonally(cell: str) -> None:
+    """Workshop 5-1 rule 5, rules 5: entered diagonally, a disc stays as it is."""
+    before = state(board("......", "......", ".RRR..", ".RLR..", ".RRR.."), "c2r2")
+    after, events = tick(before, cell)
+    assert events == ()
+    assert after.cells == before.cells
+
+
+def test_colour_of_the_last_cell_counts_now() -> None:
+    """Rules 5 flip by walking: the last cell must have its own colour at that moment."""
+    before = state(board("LR...."), "c0r5")
+    lost = GAME.set(before, INDEX["c0r5"], RIGHT)
+    assert tick(lost, "c1r5")[1] == ()
+    assert len(tick(before, "c1r5")[1]) == 1
+
+
+def test_right_robot_flips_too() -> None:
+    """Workshop 5-1 rule 4: "your robot" is either robot."""
+    before = state(board("....LR"), "c0r0", "c5r5")
+    after, events = tick(before, right="c4r5")
+    assert [(event.seat, event.marker, event.points) for event in events] == [(1, "c4r5", 1)]
+    assert after.cells[INDEX["c4r5"]] == RIGHT
+
+
+# 5-1 rule 5, rules 5 "flip in a row"
+
+RUNS = {
+    "one disc to one's own": ("LRRL..", "LLLL..", ("c2r5",)),
+    "three discs to one's own": ("LRRRRL", "LLLLLL", ("c2r5", "c3r5", "c4r5")),
+    "none to the edge": ("LRRRRR", "LLRRRR", ()),
+    "none across a neutral disc": ("LRR.RL", "LLR.RL", ()),
+    "none beyond the nearest of one's own": ("LRRLRL", "LLLLRL", ("c2r5",)),
+    "from a neutral disc": ("L.RL..", "LLLL..", ("c2r5",)),
+    "none where the next is one's own": ("LRLRL.", "LLLRL.", ()),
+}
+
+
+@pytest.mark.parametrize("what", RUNS)
+def test_flip_in_a_row(what: str) -> None:
+    """Workshop 5-1 rule 5, rules 5: runs of the other colour up to a disc of one's own."""
+    row, expected, also = RUNS[what]
+    after, events = tick(state(board(row), "c0r5"), "c1r5")
+    assert picture(after.cells)[0] == expected
+    assert events[0].marker == "c1r5"
+    assert events[0].also == also
+    assert events[0].points == 1 + len(also)
+
+
+def test_flip_in_row_and_column_at_once() -> None:
+    """Rules 5 flip in a row: along the row and the column from the new disc, never diagonally."""
+    before = state(
+        board(
+            "..L..L",
+            "..R.R.",
+            "..RR..",
+            "LLRRRL",
+            "..R...",
+            "..L...",
+        ),
+        "c1r2",
+    )
+    after, events = tick(before, "c2r2")
+    assert picture(after.cells) == (
+        "..L..L",
+        "..L.R.",
+        "..LR..",
+        "LLLLLL",
+        "..L...",
+        "..L...",
+    )
+    assert set(events[0].also) == {"c3r2", "c4r2", "c2r3", "c2r4", "c2r1"}
+
+
+def test_no_run_without_a_flip_by_walking() -> None:
+    """Rules 5 flip in a row: only "with such a flip"."""
+    before = state(board("......", "RRRL.."), "c0r3")
+    after, events = tick(before, "c0r4")
+    assert events == ()
+    assert after.cells == before.cells
+
+
+def test_flank_off() -> None:
+    """Rules 5 flip in a row: `flank = false` leaves the runs alone."""
+    game = with_settings(flank=False)
+    after, events = tick(state(board("LRRL.."), "c0r5"), "c1r5", game=game)
+    assert picture(after.cells)[0] == "LLRL.."
+    assert events[0].also == ()
+
+
+# rules 4 and 5 "both at once"
+
+
+def test_both_enter_the_same_neutral_disc() -> None:
+    """Rules 5 both at once: neither claims anything, and it is the last cell of both."""
+    before = state(board("L.R..."), "c0r5", "c2r5")
+    after, events = tick(before, "c1r5", "c1r5")
+    assert events == ()
+    assert after.cells == before.cells
+    assert after.last == (INDEX["c1r5"], INDEX["c1r5"])
+
+
+def test_second_robot_may_claim_a_disc_the_first_stands_on() -> None:
+    """Rules 5 both at once: only robots that enter in the same tick block one another."""
+    before = state(board("..R..."), "c1r5", "c2r5")
+    _, events = tick(before, "c1r5", "c1r5")
+    assert [event.seat for event in events] == [1]
+
+
+def test_last_cell_that_flips_in_the_same_tick_still_counts() -> None:
+    """Rules 5 both at once: claims are worked out on the board before the tick."""
+    before = state(board("LR....", "RL...."), "c0r5", "c1r5")
+    after, events = tick(before, "c1r5", "c0r5")
+    assert {(event.seat, event.marker) for event in events} == {(0, "c1r5"), (1, "c0r5")}
+    assert picture(after.cells)[0] == "RL...."
+
+
+def test_end_disc_that_flips_in_the_same_tick_still_counts() -> None:
+    """Rules 5 both at once: the end of a run counts although the other robot takes it now."""
+    before = state(board("LRRLR.", "......"), "c0r5", "c4r5")
+    after, events = tick(before, "c1r5", "c3r5")
+    assert picture(after.cells)[0] == "LLLRR."
+    assert events[0].also == ("c2r5",)
+
+
+def test_events_come_in_the_order_of_the_discs() -> None:
+    """Rules 4: what both do in a tick has an order that says nothing about the seats."""
+    before = state(board("RL....", "LR...."), "c0r4", "c0r5")
+    _, events = tick(before, "c1r4", "c1r5")
+    assert [event.marker for event in events] == ["c1r4", "c1r5"]
+    mirrored = state(board("LR....", "RL...."), "c0r5", "c0r4")
+    _, events = tick(mirrored, "c1r5", "c1r4")
+    assert [event.marker for event in events] == ["c1r4", "c1r5"]
+    assert [event.seat for event in events] == [1, 0]
+
+
+# 5-1 rules 6 and 7, rules 5 "score" and "end"
+
+
+def test_score_is_the_number_of_discs() -> None:
+    """Workshop 5-1 rule 6, rules 5 score: neutral discs count for nobody."""
+    before = state(board("LLL.RR"), "c0r5")
+    assert GAME.score(before) == (3, 2)
+    assert GAME.score(GAME.start()) == (18, 18)
+
+
+@pytest.mark.parametrize(
+    ("scores", "winner"), [((19, 17), 0), ((17, 19), 1), ((18, 18), None), ((0, 0), None)]
+)
+def test_winner_has_more_discs(scores: tuple[int, int], winner: int | None) -> None:
+    """Workshop 5-1 rule 7, rules 5 end: more discs win, equal is a draw."""
+    assert GAME.winner(GAME.start(), scores) == winner
+
+
+def test_lasts_three_minutes() -> None:
+    """Workshop 5-1 rule 2: the time limit is 3 minutes; rules 4: freeze 5 s, countdown 3 s."""
+    match = arena.load("othello").match
+    assert (match.duration_s, match.countdown_s, match.restart_freeze_s) == (180.0, 3.0, 5.0)
+    assert match.levels == ("B",)
+
+
+def test_over_when_a_team_has_no_disc_left() -> None:
+    """Rules 5 end: at once when a team has no disc left."""
+    before = state(board("LR...."), "c0r5")
+    assert GAME.over(before) == ""
+    after, _ = tick(before, "c1r5")
+    assert GAME.over(after) == "the right team has no disc left"
+    assert GAME.winner(after, GAME.score(after)) == 0
+
+
+# 5-1 rule 8, rules 4 "referee"
+
+
+def test_referee_sets_a_disc() -> None:
+    """Workshop 5-1 rule 8, rules 4: a set disc counts; a disc can't be down."""
+    before = GAME.start()
+    after = GAME.set(before, INDEX["c5r5"], LEFT)
+    assert GAME.score(after) == (19, 17)
+    assert after.last == before.last
+    assert GAME.score(GAME.set(before, INDEX["c5r5"], NEUTRAL)) == (18, 17)
+    with pytest.raises(ValueError, match="a disc is neutral, left or right"):
+        GAME.set(before, 0, DOWN)
+
+
+def test_struck_flip_has_no_effect_but_the_step() -> None:
+    """Rules 4 take-back: the flip and its runs do not happen; the disc is the last cell."""
+    before = state(board("LRRL.."), "c0r5")
+    after, events = tick(before, "c1r5", struck=frozenset({(0, "c1r5")}))
+    assert events == ()
+    assert after.cells == before.cells
+    assert after.last[0] == INDEX["c1r5"]
+    assert tick(after, "c1r5") == (after, ())
+
+
+def test_struck_is_one_claim_only() -> None:
+    """Rules 4 take-back: the other seat's claim on another disc in that tick stays."""
+    before = state(board("LR....", "....LR"), "c0r5", "c5r4")
+    _, events = tick(before, "c1r5", "c4r4", struck=frozenset({(0, "c1r5"), (0, "c4r4")}))
+    assert [(event.seat, event.marker) for event in events] == [(1, "c4r4")]
+
+
+def test_event_says_what_happened() -> None:
+    """Rules 5: the sentence of a flip names the team, the disc and its run."""
+    _, events = tick(state(board("LRRL.."), "c0r5"), "c1r5")
+    assert events[0].text.format(team="Ants") == "Ants flips c1r5 and with it c2r5."
+    assert events[0].kind == "flip"
