@@ -7,15 +7,13 @@ from collections.abc import Sequence
 from lacoc_shared.gait import LocomotionTable, PostureTable
 from lacoc_shared.gait_cells import (
     RANGE_DEG,
-    Legs,
-    Range,
     Row,
     locomotion_cells,
     narrow,
     number_text,
     posture_cells,
-    read_cells,
 )
+from lacoc_shared.gait_reader import Legs, Range, read_cells
 from lacoc_shared.mistakes import FileRefused, Mistake
 
 MAX_BYTES = 32 * 1024

@@ -17,16 +17,8 @@ import xlsxwriter
 from openpyxl.utils import get_column_letter
 
 from lacoc_shared.gait import LocomotionTable, PostureTable
-from lacoc_shared.gait_cells import (
-    RANGE_DEG,
-    Legs,
-    Range,
-    Row,
-    narrow,
-    number_text,
-    posture_cells,
-    read_cells,
-)
+from lacoc_shared.gait_cells import RANGE_DEG, Row, narrow, number_text, posture_cells
+from lacoc_shared.gait_reader import Legs, Range, read_cells
 from lacoc_shared.gait_sheets import INPUT_SHEET, MIRROR_SHEET, add_sheets
 from lacoc_shared.gait_text import read_gait
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
