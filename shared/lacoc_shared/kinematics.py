@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 
 ROOT_FLOATS = 7
 """Of a robot's pose in `Frame.poses`: position and quaternion, before its joint angles."""
+_AT_ORIGIN = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 def joints_per_seat(sheet: Sheet) -> tuple[int, ...]:
@@ -58,9 +59,17 @@ class ForwardKinematics:
         starts = np.cumsum([0, *(ROOT_FLOATS + count for count in joints)])
         self._roots: dict[int, int] = {}
         self._angles: dict[int, int] = {}
+        self.moving: list[int] = []
+        """Indices of the bodies that belong to a robot."""
+        self.rest = np.concatenate(
+            [np.zeros(0), *([*_AT_ORIGIN, *([0.0] * count)] for count in joints)]
+        )
+        """Poses of robots at the origin with every angle 0: enough for bodies that don't move."""
         seats: list[int] = []
         for index, body in enumerate(scene.bodies):
             seats.append(body.seat if body.seat >= 0 or body.parent < 0 else seats[body.parent])
+            if seats[index] >= 0:
+                self.moving.append(index)
             if body.seat >= 0:
                 self._roots[index] = int(starts[body.seat])
             elif body.joint >= 0:

@@ -1,8 +1,10 @@
 """Reads a record: from its packed file or its segments, whole or cut anywhere."""
 
+from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import partial
+from operator import itemgetter
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -43,6 +45,14 @@ class Record:
     def header(self) -> Header:
         """The first segment's header."""
         return self.headers[0]
+
+    def sheet_at(self, beat: int) -> Sheet | None:
+        """The sheet that was valid at a beat; None before the first."""
+        return _newest(beat, self.sheets)
+
+    def scene_at(self, beat: int) -> Scene | None:
+        """The scene that was valid at a beat; None before the first."""
+        return _newest(beat, self.scenes)
 
     @classmethod
     def read(cls, paths: Path | Iterable[Path]) -> "Record":
@@ -136,3 +146,8 @@ class Record:
 
 def _before(beat: int, items: list[tuple[int, V]]) -> list[tuple[int, V]]:
     return [item for item in items if item[0] < beat]
+
+
+def _newest(beat: int, items: list[tuple[int, V]]) -> V | None:
+    count = bisect_right(items, beat, key=itemgetter(0))
+    return items[count - 1][1] if count else None

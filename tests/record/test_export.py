@@ -1,0 +1,324 @@
+"""What comes out of a record can be read by the programs it is made for."""
+
+import csv
+import io
+import itertools
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from typer.testing import CliRunner
+
+from lacoc_shared import cli, codec
+from lacoc_shared.messages import Frame, Scene, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import export, foxglove_messages
+from lacoc_shared.record.commands import app
+from lacoc_shared.record.foxglove import foxglove
+from lacoc_shared.record.pos_data import PosData
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import Header, Result
+from lacoc_shared.record.writer import RecordWriter
+from lacoc_shared.seat import Phase
+
+MakeFrame = Callable[..., Frame]
+MakeHeader = Callable[..., Header]
+WriteMatch = Callable[..., Path]
+ROBOTS = (12, 12)
+
+
+@pytest.fixture
+def record(tmp_path: Path, write_match: WriteMatch) -> Record:
+    return Record.read(write_match(tmp_path))
+
+
+def _table(text: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(text), delimiter="\t"))
+
+
+def test_pos_data_is_the_table_of_rules_2(frame: MakeFrame) -> None:
+    """Rules 2: header row, tab-separated, 6 decimals, degrees, time from the first row."""
+    half = math.radians(90) / 2
+    root = (0.25, -0.5, 0.0625, math.cos(half), 0.0, 0.0, math.sin(half))
+    data = PosData(1, ROBOTS)
+    for beat in (7, 8):
+        other = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+        data.add(frame(beat, roots=(other, root), joints=math.radians(-30)))
+    lines = data.text().splitlines()
+    assert lines[0] == "\t".join(
+        ["time_s", "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg"]
+        + [f"j{joint}_deg" for joint in range(12)]
+    )
+    assert len(lines) == 3
+    cells = lines[2].split("\t")
+    assert cells[:6] == ["0.020000", "0.250000", "-0.500000", "0.062500", "0.000000", "0.000000"]
+    assert float(cells[6]) == pytest.approx(90, abs=1e-4)
+    assert [float(cell) for cell in cells[7:]] == pytest.approx([-30] * 12, abs=1e-4)
+    assert {len(cell.partition(".")[2]) for cell in cells} == {6}
+
+
+def test_pos_data_has_a_row_for_each_tick_of_physics(frame: MakeFrame) -> None:
+    """Rules 2 and 4: rows in READY and PLAYING and for the tick that ends the match, no others."""
+    data = PosData(0, ROBOTS)
+    beats = [
+        (0, Phase.LOBBY, 0),
+        (1, Phase.READY, 0),
+        (2, Phase.READY, 0),
+        (3, Phase.COUNTDOWN, 0),
+        (50, Phase.COUNTDOWN, 0),
+        (153, Phase.PLAYING, 1),
+        (154, Phase.PLAYING, 2),
+        (157, Phase.PLAYING, 5),  # two frames were lost on the way
+        (156, Phase.PLAYING, 4),  # and one of them comes late
+        (158, Phase.HALTED, 5),
+        (200, Phase.COUNTDOWN, 5),
+        (350, Phase.PLAYING, 6),
+        (351, Phase.FINISHED, 7),
+        (352, Phase.FINISHED, 7),
+        (353, Phase.OFFICIAL, 7),
+    ]
+    for beat, phase, clock in beats:
+        data.add(frame(beat, phase, clock))
+    rows = _table(data.text())
+    assert [float(row["x_m"]) for row in rows] == pytest.approx(
+        [0.01 * beat for beat in (1, 2, 153, 154, 157, 350, 351)], abs=1e-6
+    )
+    assert [float(row["time_s"]) for row in rows] == pytest.approx(
+        [0.02 * tick for tick in (0, 1, 2, 3, 6, 7, 8)]
+    )
+
+
+def test_a_match_that_a_referee_ends_has_no_last_tick(frame: MakeFrame) -> None:
+    """Without a step of the clock FINISHED was a decision, and nothing moved in that beat."""
+    data = PosData(0, ROBOTS)
+    data.add(frame(10, Phase.PLAYING, 10))
+    data.add(frame(11, Phase.FINISHED, 10))
+    assert len(_table(data.text())) == 1
+
+
+def test_pos_data_of_a_record(record: Record) -> None:
+    """Each recorded tick of a seat; an unknown seat is refused with those there are."""
+    rows = _table(export.pos_data(record, "left").decode())
+    assert [float(row["x_m"]) for row in rows] == pytest.approx(
+        [0.01 * beat for beat in range(40)], abs=1e-6
+    )
+    with pytest.raises(UserError, match=r"no seat 'middle' in this match\. It has: left, right"):
+        export.pos_data(record, "middle")
+
+
+def test_pos_data_starts_anew_with_another_robot(
+    tmp_path: Path, header: MakeHeader, sheet: Sheet, frame: MakeFrame
+) -> None:
+    """A team that comes back to the lobby with six legs has no rows of its four."""
+    six = msgspec.structs.replace(
+        sheet,
+        seats=(msgspec.structs.replace(sheet.seats[0], legs=tuple("abcdef")), sheet.seats[1]),
+    )
+    writer = RecordWriter(tmp_path, header())
+    writer.sheet(0, sheet)
+    writer.frame(0, codec.encode(frame(0, Phase.READY)))
+    writer.sheet(1, six)
+    poses = np.zeros(7 + 18 + 7 + 12, "<f4")
+    poses[3] = 1.0
+    later = msgspec.structs.replace(frame(1, Phase.READY), poses=poses.tobytes())
+    writer.frame(1, codec.encode(later))
+    writer.close()
+    rows = _table(export.pos_data(Record.read(writer.path), "left").decode())
+    assert len(rows) == 1
+    assert "j17_deg" in rows[0]
+
+
+def test_events_as_csv(record: Record) -> None:
+    """Quotes and commas survive; seat and team stand by name."""
+    rows = list(csv.DictReader(io.StringIO(export.events_csv(record).decode())))
+    assert rows[1] == {
+        "number": "13",
+        "beat": "13",
+        "clock_s": "0.26",
+        "kind": "flip",
+        "seat": "left",
+        "team": "Ants",
+        "text": '"Ants" flip a disc, and more',
+    }
+    assert len(rows) == 4
+
+
+def test_the_result_as_json(record: Record, result: Result) -> None:
+    """The same struct comes back; a match without a result says so."""
+    assert msgspec.json.decode(export.result_json(record), type=Result) == result
+    record.result = None
+    with pytest.raises(UserError, match="has no result: it was never finished"):
+        export.result_json(record)
+
+
+def _foxglove(record: Record) -> dict[str, list[tuple[int, Any]]]:
+    reader = make_reader(io.BytesIO(foxglove(record)), validate_crcs=True)
+    found: dict[str, list[tuple[int, Any]]] = {}
+    for schema, channel, message in reader.iter_messages():
+        assert schema is not None
+        assert (channel.message_encoding, schema.encoding) == ("json", "jsonschema")
+        value = json.loads(message.data)
+        _check(json.loads(schema.data), value)
+        found.setdefault(f"{channel.topic} {schema.name}", []).append((message.log_time, value))
+    return found
+
+
+def _check(schema: dict[str, Any], value: Any) -> None:
+    """Check a value as the viewers read it: nested objects, no references."""
+    match schema["type"]:
+        case "object":
+            assert set(value) == set(schema["properties"])
+            for name, part in schema["properties"].items():
+                _check(part, value[name])
+        case "array":
+            for item in value:
+                _check(schema["items"], item)
+        case "number":
+            assert isinstance(value, int | float)
+        case kind:
+            assert isinstance(value, {"integer": int, "boolean": bool, "string": str}[kind])
+
+
+def test_foxglove_draws_the_match(record: Record) -> None:
+    """Official schema names, 25 pictures a second, everything in the frame of its body."""
+    found = _foxglove(record)
+    assert set(found) == {
+        "/tf foxglove.FrameTransforms",
+        "/scene foxglove.SceneUpdate",
+        "/board foxglove.SceneUpdate",
+        "/events foxglove.Log",
+    }
+    transforms = found["/tf foxglove.FrameTransforms"]
+    times = [time for time, _ in transforms]
+    assert {b - a for a, b in itertools.pairwise(times)} == {40_000_000}
+    assert len(times) == 20
+    last = {t["child_frame_id"]: t for t in transforms[-1][1]["transforms"]}
+    assert set(last) == {"left/body", "left/leg", "right/body", "right/leg"}
+    assert last["left/body"]["translation"] == {"x": 0.38, "y": 0.0, "z": 0.1}
+    assert last["left/leg"]["translation"] == {"x": 0.43, "y": 0.0, "z": 0.1}
+    assert last["left/leg"]["rotation"] == {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+    logs = found["/events foxglove.Log"]
+    assert [log["message"] for _, log in logs] == ['"Ants" flip a disc, and more'] * 4
+
+
+def test_foxglove_has_every_shape(record: Record) -> None:
+    """Robots in their team's colour on their bodies; what stands still, in the world."""
+    [(_, update)] = _foxglove(record)["/scene foxglove.SceneUpdate"]
+    entities = {entity["id"]: entity for entity in update["entities"]}
+    assert set(entities) == {"world", "left/body", "left/leg", "right/body", "right/leg"}
+    floor = entities["world"]["cubes"][0]
+    assert (floor["size"]["x"], floor["pose"]["position"]["z"]) == (10.0, -0.0005)
+    box = entities["right/body"]
+    assert box["frame_id"] == "right/body"
+    assert box["cubes"][0]["size"] == {"x": 0.1, "y": 0.12, "z": 0.05}
+    assert box["cubes"][0]["color"] == {"r": 1.0, "g": 128 / 255, "b": 0.0, "a": 1.0}
+    leg = entities["left/leg"]
+    assert leg["cylinders"][0]["size"] == {"x": 0.03, "y": 0.03, "z": 0.04}
+    assert [ball["pose"]["position"]["z"] for ball in leg["spheres"]] == [-0.02, 0.02, 0.0]
+
+
+def test_foxglove_shows_the_board_as_it_changes(record: Record) -> None:
+    """Each change gives the whole board, so that a viewer may jump to any time."""
+    boards = _foxglove(record)["/board foxglove.SceneUpdate"]
+    assert [(time - boards[0][0]) // 20_000_000 for time, _ in boards] == [0, 20]
+    for _, update in boards:
+        assert update["deletions"][0]["type"] == foxglove_messages.ALL_ENTITIES
+        assert [entity["id"] for entity in update["entities"]] == ["c0", "c1", "c2"]
+        assert all(len(entity["cylinders"]) == 1 for entity in update["entities"])
+    middle = boards[0][1]["entities"][1]
+    assert middle["frame_id"] == "world"
+    assert middle["cylinders"][0]["pose"]["position"] == {"x": 0.3, "y": 0.0, "z": 0.0}
+
+
+def test_a_marker_is_drawn_in_its_state(record: Record, scene: Scene) -> None:
+    """The colours of both states differ, and the board shows the one that holds."""
+    geoms = tuple(
+        msgspec.structs.replace(geom, rgba=(0.1 * geom.state, 0, 0, 1.0))
+        if geom.marker >= 0
+        else geom
+        for geom in scene.geoms
+    )
+    record.scenes = [(0, msgspec.structs.replace(scene, geoms=geoms))]
+    boards = _foxglove(record)["/board foxglove.SceneUpdate"]
+    reds = [
+        [entity["cylinders"][0]["color"]["r"] for entity in update["entities"]]
+        for _, update in boards
+    ]
+    assert reds == [[0.1, 0.1, 0.1], [0.2, 0.1, 0.1]]
+
+
+def test_info(tmp_path: Path, write_match: WriteMatch) -> None:
+    """`lacoc replay info`: words for a person, one line of JSON for a program."""
+    path = write_match(tmp_path)
+    words = CliRunner().invoke(app, ["info", str(path)])
+    assert words.exit_code == 0
+    assert "Ants 20, Bees, Inc 16; winner: left; time is up, after 180.00 s" in words.stdout
+    found = json.loads(CliRunner().invoke(app, ["info", str(path), "--json"]).stdout)
+    assert found["teams"] == {"left": "Ants", "right": "Bees, Inc"}
+    assert (found["frames"], found["inputs"], found["events"], found["snapshots"]) == (40, 10, 4, 2)
+    assert (found["complete"], found["cut"], found["result"]["scores"]) == (True, "", [20, 16])
+
+
+def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
+    """It says where the record stops and that there is no result."""
+    path = write_match(tmp_path)
+    path.write_bytes(path.read_bytes()[:-2500])
+    words = CliRunner().invoke(app, ["info", str(path)])
+    assert "none: the match was never finished" in words.stdout
+    assert "without an end" in words.stderr
+    found = json.loads(CliRunner().invoke(app, ["info", str(path), "--json"]).stdout)
+    assert (found["complete"], found["result"]) == (False, None)
+
+
+def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> None:
+    """`lacoc replay export` without options; an older file is kept with a number (rules 2)."""
+    path, out = write_match(tmp_path), tmp_path / "out"
+    for _ in range(2):
+        done = CliRunner().invoke(app, ["export", str(path), "--out", str(out)])
+        assert done.exit_code == 0
+    names = [
+        "Pos-data-left.txt",
+        "Pos-data-right.txt",
+        "events.csv",
+        "result.json",
+        "foxglove.mcap",
+    ]
+    assert done.stdout.split() == [str(out / f"m-{name}") for name in names]
+    assert len(list(out.iterdir())) == 2 * len(names)
+    assert (out / "m-Pos-data-left.1.txt").read_text() == (out / "m-Pos-data-left.txt").read_text()
+
+
+def test_export_writes_what_is_asked(tmp_path: Path, write_match: WriteMatch) -> None:
+    """Only that; and if one of it can't be had, nothing."""
+    path, out = write_match(tmp_path), tmp_path / "out"
+    args = ["export", str(path), "--out", str(out), "--pos-data", "left"]
+    done = CliRunner().invoke(app, args)
+    assert done.stdout.split() == [str(out / "m-Pos-data-left.txt")]
+    failed = CliRunner().invoke(app, [*args, "--events", "--pos-data", "top"])
+    assert isinstance(failed.exception, UserError)
+    assert [file.name for file in out.iterdir()] == ["m-Pos-data-left.txt"]
+
+
+def test_export_of_a_match_that_never_began(
+    tmp_path: Path, header: MakeHeader, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What there is is written; of the rest it says why there is none."""
+    RecordWriter(tmp_path, header()).close()
+    path, out = tmp_path / "m.000.live.mcap", tmp_path / "out"
+    done = CliRunner().invoke(app, ["export", str(path), "--out", str(out)])
+    assert done.exit_code == 0
+    assert [file.name for file in out.iterdir()] == ["m-events.csv"]
+    assert "has no result" in done.stderr
+    assert "has no scene" in done.stderr
+
+
+def test_the_command_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`lacoc replay` is an entry point; a file that is no record is one clear line, exit code 2."""
+    assert cli.main(["replay", "info", str(tmp_path / "none.mcap")]) == 2
+    assert "There is no record" in capsys.readouterr().err
