@@ -1,0 +1,123 @@
+"""docs/protocol.md says what the code says: every key, message and field, and no more."""
+
+import re
+from pathlib import Path
+from typing import get_args
+
+import msgspec
+import pytest
+
+from lacoc_shared import inputs, keyspace, messages
+from lacoc_shared.decisions import DECISIONS
+from lacoc_shared.mistakes import Mistake
+from lacoc_shared.seat import No, Phase, SeatFlag
+
+PAGE = (Path(__file__).parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
+SECTIONS = dict(re.findall(r"^### (\w+)\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL))
+MESSAGES = {
+    kind.__name__: kind
+    for kind in (*vars(messages).values(), Mistake)
+    if isinstance(kind, type)
+    and issubclass(kind, msgspec.Struct)
+    and kind.__module__ in (messages.__name__, Mistake.__module__)
+}
+INPUTS = {str(kind.__struct_config__.tag): kind for kind in get_args(inputs.Input)}
+
+
+def rows(text: str) -> list[list[str]]:
+    """The cells of a table's rows, without its head."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+
+
+def by_name(text: str) -> dict[str, list[str]]:
+    """A table of two key columns: name -> fields; an empty first cell goes on with the last."""
+    found: dict[str, list[str]] = {}
+    name = ""
+    for first, field, *_ in rows(text):
+        name = first.strip("`") or name
+        found.setdefault(name, []).extend([field.strip("`")] if field else [])
+    return found
+
+
+def fields(kind: type[msgspec.Struct]) -> list[str]:
+    return [field.name for field in msgspec.structs.fields(kind)]
+
+
+def section(title: str) -> str:
+    match = re.search(rf"^##+ {title}\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL)
+    assert match, title
+    return match[1]
+
+
+def test_every_message_has_its_table_and_no_other() -> None:
+    """The messages of the page are those of `lacoc_shared.messages`."""
+    assert set(SECTIONS) - {"Decisions"} == set(MESSAGES)
+
+
+@pytest.mark.parametrize("name", MESSAGES)
+def test_every_field_is_described_in_its_order(name: str) -> None:
+    """A table has the message's fields in their order, each with its unit or range."""
+    table = rows(SECTIONS[name])
+
+    assert [row[0].strip("`") for row in table] == fields(MESSAGES[name])
+    assert all(row[1] for row in table)
+
+
+@pytest.mark.parametrize("name", MESSAGES)
+def test_what_travels_as_an_array_says_so(name: str) -> None:
+    """A reader in another language needs to know which messages are arrays."""
+    assert SECTIONS[name].lstrip().startswith("Array.") == bool(
+        MESSAGES[name].__struct_config__.array_like
+    )
+
+
+def test_every_decision_and_its_fields() -> None:
+    """The table of decisions is that of `lacoc_shared.decisions`, in the same order."""
+    expected = {name: fields(kind) for name, kind in DECISIONS.items()}
+    assert list(by_name(SECTIONS["Decisions"]).items()) == list(expected.items())
+
+
+def test_every_input_and_its_fields() -> None:
+    """The table of inputs is that of `lacoc_shared.inputs`, in the same order."""
+    expected = {name: fields(kind) for name, kind in INPUTS.items()}
+    assert list(by_name(section("Inputs of the record")).items()) == list(expected.items())
+
+
+def test_every_key_expression() -> None:
+    """The key expressions of the page are those of `lacoc_shared.keyspace`."""
+    keys = keyspace.Keys("main")
+    expected = {
+        keys.frame,
+        keys.event,
+        keys.sheet,
+        keys.scene,
+        keys.health,
+        keys.command("{seat}"),
+        *(keys.request("{seat}", what) for what in ("join", "ready", "leave")),
+        keys.decision("{decision}"),
+        keys.alive,
+    }
+    found = {
+        expression
+        for row in rows(section("Key expressions"))
+        for expression in re.findall(r"`([^`]+)`", row[0])
+    }
+    assert {one.replace("{court}", "main") for one in found} == expected
+
+
+def test_sizes_and_numbers() -> None:
+    """The limits, phases, flags and reasons of the page are the code's."""
+    table = section("Key expressions")
+    assert f"at most {keyspace.COMMAND_MAX_BYTES // 1024} KiB" in table
+    assert f"at most {keyspace.DECISION_MAX_BYTES // 1024} KiB" in table
+    assert f"at most {keyspace.JOIN_MAX_BYTES // 1024} KiB" in table
+    assert f"version {messages.PROTOCOL} of the protocol" in PAGE
+    assert ", ".join(f"{phase.value} {phase.name}" for phase in Phase) in PAGE
+    flags = dict(re.findall(r"(\d) (\w+)", SECTIONS["SeatFrame"].split("bits:")[1].split("|")[0]))
+    assert {int(bit): word.upper() for bit, word in flags.items()} == {
+        flag.value: flag.name for flag in SeatFlag
+    }
+    assert len(re.findall(r"\d [a-z]", SECTIONS["SeatFrame"].split("`refused_why` |")[1])) == len(
+        No
+    )
