@@ -9,7 +9,7 @@ import importlib
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 
@@ -19,17 +19,19 @@ from lacoc_shared import plugins
 from lacoc_shared.gait import Level
 from lacoc_shared.mistakes import UserError
 
+Seconds = Annotated[float, msgspec.Meta(ge=0, le=86_400)]
+
 
 class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What every game shares (rules 4), each a setting of the arena file."""
 
-    duration_s: float = 180.0
+    duration_s: Seconds = 180.0
     """Workshop 5-1 rule 2, 5-2 rule 1; 0: without end."""
-    countdown_s: float = 3.0
+    countdown_s: Seconds = 3.0
     """Before every start and every resume."""
-    restart_freeze_s: float = 5.0
+    restart_freeze_s: Seconds = 5.0
     """[x] and digits are refused for this long after [x]."""
-    levels: tuple[Literal["A", "B"], ...] = ("B",)
+    levels: Annotated[tuple[Literal["A", "B"], ...], msgspec.Meta(min_length=1)] = ("B",)
     """Levels of control that are open; the first is the one a seat begins with."""
     repeat: bool = True
     """Sequences repeat while the command stands (4-2, "continuous control")."""
@@ -45,14 +47,14 @@ class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 class SeatSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A seat and how its robot looks unless the team says otherwise."""
 
-    id: str
-    colour: str
+    id: Annotated[str, msgspec.Meta(pattern="^[a-z0-9]{1,16}$")]
+    colour: Annotated[str, msgspec.Meta(pattern="^#[0-9a-fA-F]{6}$")]
     pattern: Literal["plain", "stripes", "dots"] = "plain"
 
 
 class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     title: str
-    match: MatchSettings
+    match: MatchSettings = MatchSettings()
     seat: tuple[SeatSettings, ...]
     game: dict[str, Any] = {}
 
@@ -72,9 +74,18 @@ class Arena:
         self._module = module
         try:
             file = msgspec.convert(settings, _File)
+        except msgspec.ValidationError as error:
+            raise UserError(f"The file of arena {name!r} is wrong: {error}.") from None
+        try:
             self.game: AnyGame = importlib.import_module(f"{module}.rules").make(file.game)
-        except (msgspec.ValidationError, ValueError) as error:
-            raise UserError(f"The settings of arena {name!r} are wrong: {error}.") from None
+        except ValueError as error:  # msgspec.ValidationError is one
+            raise UserError(f"The table [game] of arena {name!r} is wrong: {error}.") from None
+        ids = [seat.id for seat in file.seat]
+        if len(ids) != len(self.game.starts) or len(set(ids)) != len(ids):
+            raise UserError(
+                f"The file of arena {name!r} is wrong: its game needs {len(self.game.starts)} "
+                f"[[seat]] tables, each with its own id; found {', '.join(ids) or 'none'}."
+            )
         self.title = file.title
         self.match = file.match
         self.seats = file.seat

@@ -98,9 +98,11 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             other = standing.setdefault((flag.x_m, flag.y_m), flag)
             if other is not flag:
                 raise ValueError(f"{flag} stands where {other} stands")
-        for flag in self.flags:
-            for mistake in self._mistakes(flag, standing):
-                raise ValueError(f"{flag} {mistake}")
+        mistakes = [
+            f"{flag} {mistake}" for flag in self.flags for mistake in self._mistakes(flag, standing)
+        ]
+        if mistakes:
+            raise ValueError("; ".join(mistakes))
 
     def _mistakes(self, flag: Flag, standing: dict[tuple[float, float], Flag]) -> Iterator[str]:
         if not self._inside(flag.x_m, flag.y_m):
@@ -116,10 +118,10 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             if gap_m < self.clearance_m:
                 yield self._near(gap_m, f"the edge of corner{number}")
         for x_m, y_m in self.starts:
-            for team, sign in (("left", 1), ("right", -1)):
-                gap_m = math.dist((flag.x_m, flag.y_m), (sign * x_m, sign * y_m))
+            for team, start in (("left", (x_m, y_m)), ("right", (0.0 - x_m, 0.0 - y_m))):
+                gap_m = math.dist((flag.x_m, flag.y_m), start)
                 if gap_m < self.clearance_m:
-                    yield self._near(gap_m, f"the {team} start [{sign * x_m}, {sign * y_m}]")
+                    yield self._near(gap_m, f"the {team} start {list(start)}")
 
     def _near(self, gap_m: float, what: str) -> str:
         return f"is {gap_m:.3f} m from {what}, nearer than clearance_m {self.clearance_m}"

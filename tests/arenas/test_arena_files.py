@@ -1,0 +1,450 @@
+"""Arena files: every setting counts, a wrong one is named, and others bring their own games."""
+
+import copy
+import shutil
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+from lacoc_arenas import arena
+from lacoc_arenas.game import LEFT, RobotView
+from lacoc_shared import plugins
+from lacoc_shared.gait import Level
+from lacoc_shared.mistakes import UserError
+
+mujoco = pytest.importorskip("mujoco")
+
+INSTALLED = ["othello", "flag-strike", "practice"]
+
+
+def look(name: str, overrides: dict[str, Any] | None = None) -> bytes:
+    """All that a game and its field say, as bytes."""
+    ground = arena.load(name, overrides)
+    game = ground.game
+    spec = mujoco.MjSpec()
+    ground.build_field(spec)
+    model = spec.compile()
+    said = [
+        game.markers,
+        game.starts,
+        game.size_m,
+        game.start(),
+        [game.winner(_all_left(game), scores) for scores in ((1, 2), (2, 1))],
+        _flanked(game),
+        [model.geom_pos.tolist(), model.geom_size.tolist(), model.geom_rgba.tolist()],
+    ]
+    return msgspec.msgpack.encode(said)
+
+
+def _all_left(game: Any) -> Any:
+    state = game.start()
+    for index in range(len(game.markers)):
+        state = game.set(state, index, LEFT)
+    return state
+
+
+def _flanked(game: Any) -> Any:
+    """The board after the left robot of Robot-Othello walked into a row that it closes."""
+    if not game.markers or game.markers[0].kind != "disc":
+        return None
+    state = game.start()
+    for index in range(36):
+        state = game.set(state, index, LEFT if index in (12, 17) else 2)
+    discs = game.markers[13], game.markers[20]
+    views = tuple(RobotView(d.x_m, d.y_m, 0.07, 1.0, 0.0, 0.0, 0.0) for d in discs)
+    return game.step(state, views, 0.02)[0].cells
+
+
+SETTINGS: list[tuple[str, str, Any]] = [
+    ("othello", "pitch_m", 0.32),
+    ("othello", "disc_radius_m", 0.10),
+    ("othello", "wall_m", 0.20),
+    ("othello", "opening", "checkers"),
+    ("othello", "start_cells", [[0, 3], [0, 2]]),
+    ("othello", "flank", False),
+    ("flag-strike", "size_m", [2.2, 2.0]),
+    ("flag-strike", "corner_radius_m", 0.14),
+    ("flag-strike", "corner_inset_m", 0.18),
+    ("flag-strike", "corner_points", 6),
+    ("flag-strike", "all_corners_win", True),
+    ("flag-strike", "starts", [[-0.6, 0.0]]),
+    ("flag-strike", "pole_radius_m", 0.02),
+    ("flag-strike", "pole_height_m", 0.3),
+    ("practice", "size_m", [3.0, 2.4]),
+    ("practice", "start", [0.5, 0.0]),
+    ("practice", "heading_deg", 0.0),
+]
+
+
+@pytest.mark.parametrize(("name", "key", "value"), SETTINGS)
+def test_setting_changes_what_it_says(name: str, key: str, value: Any) -> None:
+    """Rules 5 and 6: each is a setting of the arena file; rules 1: the contest may override it."""
+    assert look(name, {"game": {key: value}}) != look(name)
+
+
+def test_every_setting_is_tested() -> None:
+    """Rules 5 and 6: the table above leaves out no entry of [game] but those tested below."""
+    for name in INSTALLED:
+        tested = {key for arena_name, key, _ in SETTINGS if arena_name == name}
+        tested |= {"clearance_m", "colour"} if name == "flag-strike" else set()
+        assert tested == arena.load(name).settings["game"].keys()
+
+
+def test_layout_in_the_file_is_the_layout() -> None:
+    """Rules 6 strike: "the layout in the arena file is the layout", colours and points too."""
+    colours = copy.deepcopy(arena.load("flag-strike").settings["game"]["colour"])
+    colours[0]["flags"][0:2] = [[-0.1, 0.5], [0.1, -0.5]]
+    colours[1]["points"] = 4
+    colours[2]["rgb"] = "#123456"
+    overrides = {"game": {"colour": colours}}
+    game = arena.load("flag-strike", overrides).game
+    flags = [marker for marker in game.markers if marker.kind == "flag"]
+    assert (flags[0].x_m, flags[0].y_m) == (-0.1, 0.5)
+    assert [flag.points for flag in flags] == [1] * 8 + [4] * 6 + [3] * 4 + [5] * 2
+    assert look("flag-strike", overrides) != look("flag-strike")
+
+
+def test_match_settings() -> None:
+    """Rules 4: length, countdown, freeze and open levels are the arena's."""
+    ground = arena.load("othello", {"match": {"duration_s": 60, "levels": ["A", "B"]}})
+    assert ground.match.duration_s == 60.0
+    assert ground.match.open_levels == (Level.POSTURE, Level.LOCOMOTION)
+    assert ground.match.countdown_s == 3.0
+
+
+def test_practice_match() -> None:
+    """Rules 3 and 4: practice has one seat, both levels, no end, no freeze, no referee."""
+    ground = arena.load("practice")
+    assert [seat.id for seat in ground.seats] == ["solo"]
+    match = ground.match
+    assert match.open_levels == (Level.POSTURE, Level.LOCOMOTION)
+    assert (match.duration_s, match.countdown_s, match.restart_freeze_s) == (0.0, 0.0, 0.0)
+    assert match.start == "ready"
+
+
+@pytest.mark.parametrize("name", ["othello", "flag-strike"])
+def test_seats_of_the_games(name: str) -> None:
+    """Rules 4: left and right, blue and orange, told apart by pattern too."""
+    seats = arena.load(name).seats
+    assert [(seat.id, seat.colour, seat.pattern) for seat in seats] == [
+        ("left", "#0072b2", "plain"),
+        ("right", "#e69f00", "stripes"),
+    ]
+
+
+def test_file_is_the_only_source() -> None:
+    """Rules 5 and 6: no entry of [game] has a second value in the code: all must be given."""
+    for name in INSTALLED:
+        for key in arena.load(name).settings["game"]:
+            settings = copy.deepcopy(arena.load(name).settings)
+            del settings["game"][key]
+            with pytest.raises(UserError, match=f"missing required field `{key}`"):
+                arena.from_settings(name, settings)
+
+
+def edit_flags(edit: Callable[[list[dict[str, Any]]], None]) -> dict[str, Any]:
+    colours = copy.deepcopy(arena.load("flag-strike").settings["game"]["colour"])
+    edit(colours)
+    return {"colour": colours}
+
+
+def move(colour: int, flag: int, *places: list[float]) -> dict[str, Any]:
+    def edit(colours: list[dict[str, Any]]) -> None:
+        colours[colour]["flags"][flag : flag + len(places)] = places
+
+    return edit_flags(edit)
+
+
+WRONG: list[tuple[str, dict[str, Any], str]] = [
+    ("othello", {"pich_m": 0.3}, "unknown field `pich_m`"),
+    ("othello", {"pitch_m": "wide"}, "Expected `float`, got `str` - at `$.pitch_m`"),
+    ("othello", {"pitch_m": float("nan")}, "Expected `float` > 0.0 - at `$.pitch_m`"),
+    ("othello", {"wall_m": float("inf")}, "Expected `float` <= 20.0 - at `$.wall_m`"),
+    ("othello", {"wall_m": 0.0}, "`$.wall_m`"),
+    ("othello", {"disc_radius_m": 0.16}, "disc_radius_m 0.16 is more than half of pitch_m 0.3"),
+    ("othello", {"opening": "chess"}, "Invalid enum value 'chess' - at `$.opening`"),
+    ("othello", {"start_cells": []}, "`$.start_cells`"),
+    ("othello", {"start_cells": [[3, 0]]}, "Expected `int` <= 2 - at `$.start_cells[0][0]`"),
+    ("othello", {"start_cells": [[0, 6]]}, "Expected `int` <= 5 - at `$.start_cells[0][1]`"),
+    ("othello", {"start_cells": [[0, 1], [0, 1]]}, "start_cells names a cell twice"),
+    ("othello", {"flank": "yes"}, "`$.flank`"),
+    ("flag-strike", {"corner_inset_m": 0.9}, "make the corners overlap"),
+    ("flag-strike", {"starts": [[-1.2, 0.0]]}, "the start [-1.2, 0.0] is outside the walls"),
+    ("flag-strike", {"corner_points": 0}, "`$.corner_points`"),
+    (
+        "flag-strike",
+        {"clearance_m": 0.34},
+        "flag10 (yellow, [-0.34, 0.6]) is 0.328 m from the left start [-0.6, 0.4], nearer than "
+        "clearance_m 0.34; flag11",
+    ),
+    (
+        "flag-strike",
+        move(0, 4, [-0.40, 0.05], [0.40, -0.05]),
+        "flag4 (green, [-0.4, 0.05]) is 0.206 m from the left start [-0.6, 0.0], nearer than "
+        "clearance_m 0.25",
+    ),
+    (
+        "flag-strike",
+        move(0, 0, [0.40, 0.05], [-0.40, -0.05]),
+        "flag0 (green, [0.4, 0.05]) is 0.206 m from the right start [0.6, 0.0]",
+    ),
+    (
+        "flag-strike",
+        move(3, 0, [0.5, 0.6], [-0.5, -0.6]),
+        "flag18 (black, [0.5, 0.6]) is 0.211 m from the edge of corner3",
+    ),
+    (
+        "flag-strike",
+        move(1, 0, [-0.16, 0.01]),
+        "flag8 (yellow, [-0.16, 0.01]) has no partner: another yellow flag must stand at "
+        "[0.16, -0.01]",
+    ),
+    ("flag-strike", move(3, 0, [0.0, 0.0]), "flag18 (black, [0.0, 0.0]) has no partner"),
+    ("flag-strike", move(2, 0, [0.14, 0.82]), "stands where flag14 (purple, [0.14, 0.82]) stands"),
+    ("flag-strike", move(3, 0, [1.2, 0.0], [-1.2, 0.0]), "stands outside the walls"),
+    ("flag-strike", edit_flags(lambda c: c[0]["flags"].pop()), "there are 19 flags, expected 20"),
+    ("flag-strike", edit_flags(lambda c: c[3].update(points=1)), "have the same points"),
+    ("flag-strike", edit_flags(lambda c: c[3].update(name="green")), "have the same name"),
+    ("flag-strike", edit_flags(lambda c: c[0].update(rgb="green")), "`$.colour[0].rgb`"),
+    ("flag-strike", {"colour": []}, "there are 0 colours of flags, expected 4"),
+    ("practice", {"start": [1.2, 0.0]}, "start [1.2, 0.0] is outside the walls"),
+    ("practice", {"heading_deg": float("nan")}, "`$.heading_deg`"),
+]
+
+
+@pytest.mark.parametrize(("name", "game", "says"), WRONG)
+def test_wrong_game_setting(name: str, game: dict[str, Any], says: str) -> None:
+    """Rules 5 and 6: a wrong arena file is refused; the message names the setting or the flag."""
+    with pytest.raises(UserError) as refused:
+        arena.load(name, {"game": game})
+    assert f"The table [game] of arena {name!r} is wrong: " in str(refused.value)
+    assert says in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "says"),
+    [
+        ({"match": {"duration_s": -1}}, "`$.match.duration_s`"),
+        ({"match": {"levels": []}}, "`$.match.levels`"),
+        ({"match": {"levels": ["C"]}}, "`$.match.levels[0]`"),
+        ({"match": {"start": "now"}}, "`$.match.start`"),
+        ({"match": {"minutes": 3}}, "unknown field `minutes`"),
+        ({"seat": [{"id": "left", "colour": "blue"}]}, "`$.seat[0].colour`"),
+        ({"seat": [{"id": "left", "colour": "#0072b2"}]}, "needs 2 [[seat]] tables"),
+        ({"seat": [{"id": "a", "colour": "#0072b2"}] * 2}, "each with its own id; found a, a"),
+        ({"titel": "x"}, "unknown field `titel`"),
+    ],
+)
+def test_wrong_common_setting(overrides: dict[str, Any], says: str) -> None:
+    """Rules 4: what every game shares is checked the same way."""
+    with pytest.raises(UserError) as refused:
+        arena.load("othello", overrides)
+    assert "The file of arena 'othello' is wrong: " in str(refused.value)
+    assert says in str(refused.value)
+
+
+def test_unknown_arena() -> None:
+    """An arena that is not there: the message lists the ones that are."""
+    with pytest.raises(UserError, match=r"no arena 'chess'\. Installed: .*othello.*practice"):
+        arena.load("chess")
+
+
+def test_unreadable_file(tmp_path: Path) -> None:
+    """A folder with no file, or with one that is no TOML: the message names the file."""
+    with pytest.raises(UserError, match=r"arena\.toml can't be read"):
+        arena.load(str(tmp_path))
+    (tmp_path / "arena.toml").write_text("title =")
+    with pytest.raises(UserError, match=r"arena\.toml can't be read: Invalid value"):
+        arena.load(str(tmp_path))
+
+
+@pytest.mark.parametrize("name", INSTALLED)
+def test_settings_make_the_same_arena_again(name: str) -> None:
+    """The settings in a record make the arena it was played on, through msgpack too."""
+    first = arena.load(name)
+    settings = msgspec.msgpack.decode(msgspec.msgpack.encode(first.settings))
+    again = arena.from_settings(first.name, settings)
+    assert again.settings == first.settings
+    assert again.game.start() == first.game.start()
+    assert again.game.markers == first.game.markers
+
+
+@pytest.mark.parametrize("name", INSTALLED)
+def test_state_survives_the_record(name: str) -> None:
+    """Snapshots: the state of a match goes through msgpack and comes back the same."""
+    game = arena.load(name).game
+    packed = msgspec.msgpack.encode(game.start())
+    assert msgspec.msgpack.decode(packed, type=game.state_type) == game.start()
+
+
+def test_merge_replaces_single_entries() -> None:
+    """Rules 1, "where each number lives": nested tables are merged, lists replaced whole."""
+    merged = arena.merge({"a": {"b": 1, "c": [1, 2]}, "d": 3}, {"a": {"c": [4]}, "e": 5})
+    assert merged == {"a": {"b": 1, "c": [4]}, "d": 3, "e": 5}
+
+
+# games of others
+
+RULES = '''
+"""Race: who first comes past the line in the middle."""
+
+import msgspec
+
+from lacoc_arenas.game import LEFT, NEUTRAL, GameEvent, Place, leader
+from lacoc_shared.messages import MarkerInfo
+
+
+class Settings(msgspec.Struct, forbid_unknown_fields=True):
+    length_m: float
+
+
+class State(msgspec.Struct, frozen=True):
+    line: int = NEUTRAL
+
+
+class Race:
+    state_type = State
+    markers = (MarkerInfo(name="line", kind="line", x_m=0.0, y_m=0.0, radius_m=0.1),)
+
+    def __init__(self, length_m):
+        self.size_m = (length_m, 1.0)
+        at_m = length_m / 2 - 0.3
+        self.starts = ((Place(-at_m, 0.0, 0.0),), (Place(at_m, 0.0, 3.141592653589793),))
+
+    def start(self):
+        return State()
+
+    def step(self, state, observation, dt_s, struck=frozenset()):
+        past = [observation[0].x_m >= 0, observation[1].x_m <= 0]
+        if state.line != NEUTRAL or past[0] == past[1]:
+            return state, ()
+        seat = past.index(True)
+        text = "{team} is first."
+        event = GameEvent(kind="win", seat=seat, marker="line", points=1, text=text)
+        return State(seat + 1), (event,)
+
+    def board(self, state):
+        return (state.line,)
+
+    def score(self, state):
+        return tuple(int(state.line == seat + 1) for seat in range(2))
+
+    def over(self, state):
+        return "the race is won" if state.line else ""
+
+    def winner(self, state, scores):
+        return leader(scores)
+
+    def set(self, state, marker, value):
+        return State(value)
+
+
+def make(settings):
+    return Race(msgspec.convert(settings, Settings).length_m)
+'''
+
+FIELD = """
+from lacoc_arenas import field
+
+
+def build(spec, game):
+    field.ground(spec, game.size_m)
+    for state in range(3):
+        tint = field.TINTS["neutral"]
+        field.plate(
+            spec, field.marker_geom("line", state), (0.0, 0.0), (0.01, 0.5), 0.001, tint
+        )
+"""
+
+BOTS = """
+from lacoc_arenas.steering import straight
+
+BOTS = {"runner": straight}
+"""
+
+TOML = """
+title = "Race"
+
+[[seat]]
+id = "left"
+colour = "#0072b2"
+
+[[seat]]
+id = "right"
+colour = "#e69f00"
+
+[game]
+length_m = 3.0
+"""
+
+
+@pytest.fixture
+def race(tmp_path: Path) -> Path:
+    """A tiny game of a third party, as a folder."""
+    folder = tmp_path / "race_of_another"
+    folder.mkdir()
+    for name, text in {
+        "rules.py": RULES,
+        "field.py": FIELD,
+        "bots.py": BOTS,
+        "arena.toml": TOML,
+    }.items():
+        (folder / name).write_text(text)
+    return folder
+
+
+def play_race(ground: arena.Arena) -> None:
+    spec = mujoco.MjSpec()
+    ground.build_field(spec)
+    assert spec.compile().geom("marker:line:neutral").rgba[3] == 1
+    views = tuple(RobotView(x, 0.0, 0.07, 1.0, 0.0, 0.0, 0.0) for x in (0.01, 0.5))
+    state, events = ground.game.step(ground.game.start(), views, 0.02)
+    assert [event.text for event in events] == ["{team} is first."]
+    assert ground.game.over(state) == "the race is won"
+    assert list(ground.bots) == ["runner"]
+    assert ground.match.duration_s == 180.0
+
+
+def test_game_in_a_folder(race: Path) -> None:
+    """A third-party game is played by pointing at its folder."""
+    ground = arena.load(str(race), {"game": {"length_m": 4}})
+    assert ground.game.size_m == (4.0, 1.0)
+    assert ground.name == str(race)
+    play_race(ground)
+    play_race(arena.from_settings(ground.name, ground.settings))
+
+
+def test_game_installed_by_entry_point(race: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A third-party game is played by its name once its package is installed."""
+    info = race.parent / "race_of_another-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: race-of-another\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("[lacoc.arenas]\nrace = race_of_another\n")
+    monkeypatch.syspath_prepend(str(race.parent))
+    assert "race" in plugins.installed("lacoc.arenas")
+    ground = arena.load("race")
+    assert ground.name == "race"
+    play_race(ground)
+    for module in [m for m in sys.modules if m.split(".")[0] == "race_of_another"]:
+        monkeypatch.delitem(sys.modules, module)
+
+
+@pytest.mark.parametrize("name", ["othello", "flag_strike", "practice"])
+def test_copied_folder_is_a_game(name: str, tmp_path: Path) -> None:
+    """An organiser copies a game's folder, changes its file and plays it."""
+    original = plugins.folder_of(plugins.package("lacoc.arenas", "arena", name.replace("_", "-")))
+    folder = tmp_path / name
+    shutil.copytree(original, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    file = folder / "arena.toml"
+    file.write_text(file.read_text().replace('title = "', 'title = "Our '))
+    ground = arena.load(str(folder))
+    assert ground.title == f"Our {tomllib.loads((original / 'arena.toml').read_text())['title']}"
+    spec = mujoco.MjSpec()
+    ground.build_field(spec)
+    assert spec.compile().ngeom > 5
+    assert ground.bots

@@ -1,0 +1,29 @@
+"""Practice: an open field with nothing to win (rules 4)."""
+
+import math
+
+import pytest
+
+from lacoc_arenas import arena
+from lacoc_arenas.game import Place, RobotView
+
+GAME = arena.load("practice").game
+
+
+def test_field() -> None:
+    """Rules 4: one seat in practice; about 2.4 m, the robot in the middle, looking up."""
+    assert GAME.size_m == (2.4, 2.4)
+    assert GAME.starts == ((Place(0.0, 0.0, math.pi / 2),),)
+
+
+def test_nothing_happens() -> None:
+    """Rules 4: no markers, no points, no end, no winner, nothing to set."""
+    state = GAME.start()
+    view = RobotView(1.0, -1.0, 0.07, 1.0, 0.0, 0.0, 0.0, GAME.starts[0][0])
+    assert GAME.step(state, (view,), 0.02, frozenset({(0, "x")})) == (state, ())
+    assert GAME.board(state) == ()
+    assert GAME.score(state) == (0,)
+    assert GAME.over(state) == ""
+    assert GAME.winner(state, (3,)) is None
+    with pytest.raises(ValueError, match="no markers"):
+        GAME.set(state, 0, 1)
