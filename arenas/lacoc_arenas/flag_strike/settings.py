@@ -93,8 +93,9 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             raise ValueError(f"there are {len(self.flags)} flags, expected {FLAGS}")
 
     def _check_flags(self) -> None:
+        flags = self.flags
         standing: dict[tuple[float, float], Flag] = {}
-        for flag in self.flags:
+        for flag in flags:
             other = standing.setdefault((flag.x_m, flag.y_m), flag)
             if other is not flag:
                 raise ValueError(f"{flag} stands where {other} stands")
