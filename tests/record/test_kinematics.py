@@ -6,8 +6,12 @@ import mujoco
 import numpy as np
 import pytest
 
+from lacoc_arenas.arena import load
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.entry import weigh_in
+from lacoc_server.world import World
 from lacoc_shared.kinematics import ForwardKinematics, euler_zyx, multiply, rotate, split_poses
-from lacoc_shared.messages import Scene, SceneBody
+from lacoc_shared.messages import Scene, SceneBody, SentFile
 
 _XML = """
 <mujoco>
@@ -90,6 +94,33 @@ def test_bodies_are_where_mujoco_has_them(model: mujoco.MjModel, scene: Scene) -
     assert all_pos.shape == (50, model.nbody, 3)
     assert np.abs(all_pos - np.array([pos for pos, _ in expected])).max() < 1e-6
     assert all_quat.shape == (50, model.nbody, 4)
+
+
+@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+def test_frames_of_a_court_show_its_robots(arena: str) -> None:
+    """design.md, "Robot and world": with scene and frames alone every body is where it is.
+
+    Robots of different joint counts, so that a seat's angles are looked for in their place.
+    """
+    names = ("quadruped", "hexapod")
+    entries = [
+        weigh_in(SentFile(*find_robot(name)), *sample_gait_files(name), limits={}) for name in names
+    ]
+    world = World(load(arena), entries)
+    joints = [entry.robot.joints for entry in entries]
+    kinematics = ForwardKinematics(world.scene, joints)
+    random = np.random.default_rng(3)
+    for _ in range(5):
+        for seat in ("left", "right"):
+            pose = world.data.joint(f"{seat}/root").qpos
+            pose[:] = random.normal(size=7)
+            pose[3:] /= np.linalg.norm(pose[3:])
+        for joint in range(world.model.njnt):
+            if world.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE:
+                world.data.joint(joint).qpos = random.uniform(-2.6, 2.6)
+        mujoco.mj_kinematics(world.model, world.data)
+        pos_w, _ = kinematics.poses(world.poses())
+        assert np.abs(pos_w - world.data.xpos).max() < 1e-6
 
 
 def test_which_bodies_move(model: mujoco.MjModel, scene: Scene) -> None:

@@ -243,6 +243,22 @@ def test_packing_that_was_interrupted_is_repeated(tmp_path: Path, write_match: W
     assert [p.name for p in tmp_path.iterdir()] == ["m.mcap"]
 
 
+def test_packing_that_fails_keeps_the_segments(tmp_path: Path, write_match: WriteMatch) -> None:
+    """On a full disk nothing is lost and nothing half-made is left."""
+    resource = pytest.importorskip("resource")
+    path = write_match(tmp_path)
+    data = path.read_bytes()
+    unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (500, unlimited[1]))
+        with pytest.raises(UserError, match=r"can't be packed: File too large\. Its segments"):
+            pack.pack([path], tmp_path / "m.mcap")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes() == data
+
+
 @pytest.mark.slow
 def test_packing_in_the_background(tmp_path: Path, write_match: WriteMatch) -> None:
     """A court packs in a process of its own; of a match without segments it says so."""

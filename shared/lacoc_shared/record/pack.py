@@ -42,6 +42,7 @@ def pack(segments: Sequence[Path], out: Path) -> None:
         for segment in segments:
             segment.unlink()
     except OSError as error:
+        unfinished.unlink(missing_ok=True)
         raise UserError(
             f"The record {out} can't be packed: {error.strerror}. Its segments are kept: make "
             "room on the disk and pack them again."

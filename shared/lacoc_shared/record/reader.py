@@ -135,6 +135,8 @@ class Record:
         if self.last_beat < beat:
             return
         self.last_beat = beat - 1
+        if self.result is not None and self.result.beats > beat:
+            self.result = None
         self.inputs = {at: items for at, items in self.inputs.items() if at < beat}
         self.touches = {at: touch for at, touch in self.touches.items() if at < beat}
         self.events = [event for event in self.events if event.beat < beat]
