@@ -100,7 +100,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
             if other is not flag:
                 raise ValueError(f"{flag} stands where {other} stands")
         mistakes = [
-            f"{flag} {mistake}" for flag in self.flags for mistake in self._mistakes(flag, standing)
+            f"{flag} {mistake}" for flag in flags for mistake in self._mistakes(flag, standing)
         ]
         if mistakes:
             raise ValueError("; ".join(mistakes))
