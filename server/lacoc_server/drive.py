@@ -104,16 +104,12 @@ def _toward(angles: Posture, target: Posture, step_rad: float) -> Posture:
     if angles == target:
         return target
     reach = step_rad * _ROUNDING
-    moved = []
-    arrived = True
-    for angle, goal in zip(angles, target, strict=True):
-        gap = goal - angle
-        if gap > reach:
-            moved.append(angle + step_rad)
-            arrived = False
-        elif gap < -reach:
-            moved.append(angle - step_rad)
-            arrived = False
-        else:
-            moved.append(goal)
-    return target if arrived else tuple(moved)
+    moved = tuple(
+        [
+            goal
+            if -reach <= goal - angle <= reach
+            else angle + (step_rad if goal > angle else -step_rad)
+            for angle, goal in zip(angles, target, strict=True)
+        ]
+    )
+    return target if moved == target else moved

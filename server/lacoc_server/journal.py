@@ -1,4 +1,9 @@
-"""A match with its record: every beat is on its way to the disk before anyone is answered."""
+"""A match with its record: every beat is on its way to the disk before anyone is answered.
+
+A beat's frame comes after all else that the beat made, and so seals it: what stands in a
+record without the frame of its beat was written by a court that was killed in that beat.
+Only beats in which nothing happened at all have no frame.
+"""
 
 import platform
 from collections.abc import Callable, Sequence
@@ -7,10 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-import mujoco
 
 from lacoc_server.match import Beat, Match
-from lacoc_server.world import World
+from lacoc_server.world import MUJOCO_VERSION, World
 from lacoc_shared import __version__
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import Input
@@ -69,14 +73,15 @@ class Journal:
             writer.sheet(number, match.sheet())
         if beat.touch is not None:
             writer.touch(number, beat.touch)
-        if beat.ticked or number % BEATS_PER_S == 0 or self._new(beat.frame):
+        if beat.result is not None:
+            writer.result(msgspec.structs.replace(beat.result, health=self.verdict()))
+        happened = beat.ticked or inputs or beat.events or beat.sheet_changed
+        if self._new(beat.frame) or happened or number % BEATS_PER_S == 0:
             writer.frame(number, encoded)
         if beat.ticked:
             self._ticks += 1
             if self._ticks % SNAPSHOT_TICKS == 1 and isinstance(match.physics, World):
                 writer.snapshot(number, match.physics.save())
-        if beat.result is not None:
-            writer.result(msgspec.structs.replace(beat.result, health=self.verdict()))
         return beat, encoded
 
     def close(self) -> None:
@@ -101,7 +106,7 @@ def _header(setup: Setup, segment: int, first_beat: int) -> Header:
         versions={
             "lacoc": __version__,
             "protocol": str(PROTOCOL),
-            "mujoco": mujoco.mj_versionString(),
+            "mujoco": MUJOCO_VERSION,
             "machine": platform.machine(),
         },
         setup=setup,

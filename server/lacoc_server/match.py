@@ -128,6 +128,8 @@ class Match:
         self.make_physics = make_physics
         self.physics: Physics = make_physics(self.arena, ())
         self._poses = b""
+        self._shown: tuple[Any, bytes] = (None, b"")
+        """A state of the game and its board as frames carry it."""
         self._views: tuple[RobotView, ...] = ()
         self._pose_offsets: tuple[int, ...] = ()
         self._placed: list[Place | None] = [None] * len(self.seats)
@@ -228,6 +230,8 @@ class Match:
         self._result_changed = False
         if self.phase is Phase.CREATED:
             self.enter(Phase.LOBBY)
+        if self.phase is Phase.COUNTDOWN:
+            self.countdown_beats -= 1
         outcomes: list[Outcome] = [Done()] * len(inputs)
         for index in sorted(range(len(inputs)), key=lambda index: _rank(inputs[index])):
             outcomes[index] = self._take(inputs[index])
@@ -268,15 +272,9 @@ class Match:
             self._build()
             self.enter(Phase.READY, model=self.physics.model_hash)
         elif self.phase is Phase.READY and self.missing():
-            self.physics, self._poses, self._views = self.make_physics(self.arena, ()), b"", ()
-            self._sheet_changed = True
-            for seat in self.seats:
-                seat.drive = seat.state = None
-            self.enter(Phase.LOBBY)
+            self._clear()
         elif self.phase is Phase.READY and self.rules.start == "ready":
             self.begin_countdown()
-        elif self.phase is Phase.COUNTDOWN:
-            self.countdown_beats -= 1
         if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
             self.enter(Phase.PLAYING)
 
@@ -342,6 +340,8 @@ class Match:
             same = seat.join is not None and _files(seat.join) == _files(join)
             if not same:
                 seat.ready = False
+                if self.phase is Phase.READY:  # also if everybody says ready again in this beat
+                    self._clear()
             seat.join, seat.entry, seat.silent = join, entry, False
             self._sheet_changed = True
             self.tell(
@@ -494,6 +494,14 @@ class Match:
         self._sheet_changed = True
         self._look()
 
+    def _clear(self) -> None:
+        """Back to the empty field: a robot of the model that was built is not there any more."""
+        self.physics, self._poses, self._views = self.make_physics(self.arena, ()), b"", ()
+        self._sheet_changed = True
+        for seat in self.seats:
+            seat.drive = seat.state = None
+        self.enter(Phase.LOBBY)
+
     def _look(self) -> None:
         """Take the robots' poses: exactly the numbers that everybody sees."""
         self._poses = self.physics.poses()
@@ -537,18 +545,21 @@ class Match:
         return next((place for place in places if room_m(place) >= 0), max(places, key=room_m))
 
     def _frame(self) -> Frame:
+        state = self.history.state
+        if state is not self._shown[0]:  # it changes seldom, and frames are many
+            self._shown = (state, pack_states(self.game.board(state)))
         scores = self.scores()
         return Frame(
             self.setup.match,
             self.beats,
             int(self.phase),
-            max(0, self.countdown_beats) if self.phase is Phase.COUNTDOWN else 0,
+            self.countdown_beats if self.phase is Phase.COUNTDOWN else 0,
             self.clock_ticks,
             tuple(
                 seat.frame(score, self.ticks)
                 for seat, score in zip(self.seats, scores, strict=True)
             ),
-            pack_states(self.game.board(self.history.state)),
+            self._shown[1],
             self._poses,
             self.physics.scene_hash,
             self.physics.digest,

@@ -1,28 +1,29 @@
 """A record played again: verified by physics, or taken up where it ended.
 
 Both feed the recorded inputs to a new match. `verify` steps the physics again and
-compares every recorded frame, bit for bit. `resume` lets the recorded poses stand for
+compares all that was recorded, bit for bit. `resume` lets the recorded poses stand for
 physics up to the newest snapshot, and only from there on steps: the rules judge on
-exactly the poses that frames carry, so the match that comes out is the same.
+exactly the poses that frames carry, so the match that comes out is the same. A last beat
+without its frame (`journal`) was not answered: both leave it out.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-import mujoco
+from msgspec.structs import replace
 
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
 from lacoc_server.entry import Entry
 from lacoc_server.match import Match
 from lacoc_server.physics import Fault
-from lacoc_server.world import World
+from lacoc_server.world import MUJOCO_VERSION, World
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.gait import Posture
 from lacoc_shared.messages import Event, Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
-from lacoc_shared.record.schema import Touch
+from lacoc_shared.record.schema import Result, Touch
 
 _NAMES = (
     "match",
@@ -62,25 +63,35 @@ def verify(record: Record) -> Iterator[int | Verdict]:
     """
     _same_physics(record)
     match = Match(record.header.setup, World)
-    frames = dict(record.frames)
+    frames, snapshots = dict(record.frames), dict(record.snapshots)
     events: dict[int, list[Event]] = {}
     for event in record.events:
         events.setdefault(event.beat, []).append(event)
+    last = _last_beat(record)
     compared = 0
-    for number in range(record.last_beat + 1):
+    result: Result | None = None
+    for number in range(last + 1):
         beat = match.beat(record.inputs.get(number, ()))
+        result = beat.result or result
+        differs = []
         if (recorded := frames.get(number)) is not None:
             compared += 1
             if encode(beat.frame) != recorded:
-                what = _difference(decode(recorded, Frame), beat.frame)
-                yield Verdict(number + 1, compared, number, f"beat {number} differs: {what}")
-                return
-        whole = number < record.last_beat or not record.cut
-        if whole and encode(beat.events) != encode(events.get(number, [])):
-            yield Verdict(number + 1, compared, number, f"beat {number} differs: its events")
+                differs += _differences(decode(recorded, Frame), beat.frame)
+        if encode(beat.events) != encode(events.get(number, [])):
+            differs.append("its events")
+        if beat.touch != record.touches.get(number):
+            differs.append("what the robots touched")
+        if (saved := snapshots.get(number)) is not None and _state(match) != saved:
+            differs.append("the snapshot")
+        if number == last and not _same_result(record.result, result, last):
+            differs.append("the result")
+        if differs:
+            text = f"beat {number} differs: {', '.join(differs)}"
+            yield Verdict(number + 1, compared, number, text)
             return
         yield number
-    yield Verdict(record.last_beat + 1, compared)
+    yield Verdict(last + 1, compared)
 
 
 @dataclass
@@ -163,7 +174,7 @@ def resume(record: Record, at: int | None = None) -> Match:
         live=newest < 0,
     )
     match = Match(record.header.setup, lambda arena, entries: _Recorded(arena, entries, cursor))
-    for number in range(record.last_beat + 1):
+    for number in range(_last_beat(record) + 1):
         cursor.move(number)
         match.beat(record.inputs.get(number, ()))
         if number == newest and isinstance(match.physics, _Recorded):
@@ -176,7 +187,7 @@ def resume(record: Record, at: int | None = None) -> Match:
 
 
 def _same_physics(record: Record) -> None:
-    here, there = mujoco.mj_versionString(), record.header.versions.get("mujoco", "?")
+    here, there = MUJOCO_VERSION, record.header.versions.get("mujoco", "?")
     if here != there:
         raise UserError(
             f"This record was made with MuJoCo {there}, and here is {here}: a replay is exact only "
@@ -184,8 +195,25 @@ def _same_physics(record: Record) -> None:
         )
 
 
-def _difference(recorded: Frame, again: Frame) -> str:
-    parts = [
+def _state(match: Match) -> bytes:
+    return match.physics.save() if isinstance(match.physics, World) else b""
+
+
+def _same_result(recorded: Result | None, again: Result | None, last: int) -> bool:
+    """Whether a recorded result is the one; its health verdict is the court's alone to say."""
+    if recorded is None or recorded.beats > last + 1:  # of a beat that was not answered
+        return True
+    return again is not None and replace(recorded, health=again.health) == again
+
+
+def _last_beat(record: Record) -> int:
+    """The last beat that counts."""
+    sealed = not record.cut or any(beat == record.last_beat for beat, _ in record.frames[-1:])
+    return record.last_beat if sealed else record.last_beat - 1
+
+
+def _differences(recorded: Frame, again: Frame) -> list[str]:
+    return [
         name
         for name, old, new in zip(
             _NAMES,
@@ -195,4 +223,3 @@ def _difference(recorded: Frame, again: Frame) -> str:
         )
         if old != new
     ]
-    return ", ".join(parts)

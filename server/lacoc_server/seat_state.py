@@ -1,6 +1,6 @@
 """A seat as the match sees it: who sits there, with what, and what its keys do now."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from lacoc_server.drive import Drive, DriveState
 from lacoc_server.entry import Entry
@@ -8,6 +8,11 @@ from lacoc_shared.gait import Level
 from lacoc_shared.inputs import JoinSeat, KeySeat
 from lacoc_shared.messages import SeatFrame, SheetSeat
 from lacoc_shared.seat import RESTART_KEY, No, SeatFlag
+
+# Plain numbers: an IntFlag takes longer to add up than all the rest of a frame.
+_JOINED, _READY, _SILENT, _FROZEN = (
+    int(flag) for flag in (SeatFlag.JOINED, SeatFlag.READY, SeatFlag.SILENT, SeatFlag.FROZEN)
+)
 
 
 @dataclass
@@ -35,7 +40,7 @@ class Seat:
     """Newest applied command: sequence number, beat."""
     refused: tuple[int, No] = (0, No.NONE)
     """Newest refused command: sequence number, reason."""
-    restarting: bool = field(default=False)
+    restarting: bool = False
     """It goes back to its start place in this beat."""
 
     @property
@@ -71,16 +76,16 @@ class Seat:
     def frame(self, score: int, ticks: int) -> SeatFrame:
         """The seat as frames carry it."""
         flags = (
-            (SeatFlag.JOINED if self.join else 0)
-            | (SeatFlag.READY if self.ready else 0)
-            | (SeatFlag.SILENT if self.silent else 0)
-            | (SeatFlag.FROZEN if ticks < self.frozen_until else 0)
+            (self.join is not None) * _JOINED
+            + self.ready * _READY
+            + self.silent * _SILENT
+            + (ticks < self.frozen_until) * _FROZEN
         )
         level, digit, posture = (
             (self.state.level, self.state.digit, self.state.posture) if self.state else (0, 0, 0)
         )
         return SeatFrame(
-            int(flags),
+            flags,
             score,
             int(level),
             digit,

@@ -1,7 +1,6 @@
 """The world: the one place where physics is stepped (design.md, "Robot and world")."""
 
 import hashlib
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,15 +15,21 @@ from lacoc_robots.model import add_robot, set_options
 from lacoc_server.entry import Entry
 from lacoc_server.physics import Fault
 from lacoc_server.scene import make_scene
-from lacoc_shared.codec import encode
+from lacoc_shared.codec import encode, scene_hash
 from lacoc_shared.gait import Posture
 from lacoc_shared.seat import NOBODY
 
 SUBSTEPS = 10
 """Physics steps of 2 ms in a tick of 20 ms."""
 
+MUJOCO_VERSION = mujoco.mj_versionString()
+"""A replay is exact only with the same."""
+
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 """Everything the next step depends on; less (FULLPHYSICS) is not exact (physics.md 1)."""
+
+_TOUCH_M = 1e-3
+"""Distances between geoms are worked out up to here; farther apart is no touch."""
 
 _WARNINGS = {
     mujoco.mjtWarning.mjWARN_BADQPOS: "a position became not a number or too large",
@@ -48,8 +53,6 @@ class _Robot:
     joint_dofs: npt.NDArray[np.intp]
     actuators: slice
     geoms: npt.NDArray[np.intp]
-    reach_m: float
-    """No part is ever farther from the body's origin."""
 
 
 class World:
@@ -80,10 +83,10 @@ class World:
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self.scene = make_scene(self.model, arena.game, seats)
-        self.scene_hash = _hash(encode(self.scene)).digest()
+        self.scene_hash = scene_hash(encode(self.scene))
         buffer = np.empty(mujoco.mj_sizeModel(self.model), np.uint8)
         mujoco.mj_saveModel(self.model, None, buffer)
-        self.model_hash = _hash(buffer).hexdigest()
+        self.model_hash = hashlib.blake2b(buffer.data, digest_size=8).hexdigest()
         self.digest = bytes(8)
         self._robots = [self._find(entry, seats[i]) for i, entry in enumerate(entries)]
         qpos = [
@@ -92,13 +95,15 @@ class World:
             for index in (*range(robot.root_qpos, robot.root_qpos + 7), *robot.joint_qpos)
         ]
         self._pose_qpos = np.array(qpos, np.intp)
-        self._probes = [
-            (index, self.model.geom(f"probe:{marker.name}").id, marker.x_m, marker.y_m)
-            for index, marker in enumerate(arena.game.markers)
-            if mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, f"probe:{marker.name}") >= 0
-        ]
-        probe_radius_m = max((float(self.model.geom_rbound[p[1]]) for p in self._probes), default=0)
-        self._near_m2 = [(robot.reach_m + probe_radius_m) ** 2 for robot in self._robots]
+        probes = {
+            marker: mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, f"probe:{info.name}")
+            for marker, info in enumerate(arena.game.markers)
+        }
+        self._probes = [(marker, probe) for marker, probe in probes.items() if probe >= 0]
+        self._touch = _TouchTest(self.model, self.data, self._robots, self._probes)
+        # Views into MuJoCo's own arrays: they always show what is there now.
+        self._control = self.data.ctrl
+        self._warned = self.data.warning.number
         self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
         for seat, robot in enumerate(self._robots):
             self._put(robot, arena.game.starts[seat][0])
@@ -120,14 +125,14 @@ class World:
         Returns:
             None, or what went wrong; then the state before the tick stands.
         """
-        control = self.data.ctrl
-        for robot, commanded in zip(self._robots, angles, strict=True):
-            control[robot.actuators] = commanded
+        self._control[:] = [angle for posture in angles for angle in posture]
         mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
-        if self.data.warning.number.any():
+        if any(self._warned.tobytes()):
             return self._undo()
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
-        self.digest = hashlib.blake2b(self._state.data, key=self.digest, digest_size=8).digest()
+        chain = hashlib.sha256(self.digest)
+        chain.update(self._state.data)
+        self.digest = chain.digest()[:8]
         return None
 
     def poses(self) -> bytes:
@@ -141,14 +146,7 @@ class World:
         A probe is a geom that exerts no force. Touch is MuJoCo's own distance between geoms being
         at most 0; the order of the contact list plays no part.
         """
-        near = [self._near(seat) for seat in range(len(self._robots))]
-        if any(near):
-            # After mj_step, the geoms still stand where the last step began.
-            mujoco.mj_kinematics(self.model, self.data)
-        return [
-            tuple(marker for marker, probe in probes if self._touches(robot, probe))
-            for robot, probes in zip(self._robots, near, strict=True)
-        ]
+        return self._touch()
 
     # Snapshots
 
@@ -185,7 +183,6 @@ class World:
             np.array([joint.dofadr[0] for joint in joints], np.intp),
             slice(first, first + len(joints)),
             np.flatnonzero(model.body_rootid[model.geom_bodyid] == body_root),
-            _reach_m(entry),
         )
 
     def _put(self, robot: _Robot, place: Place) -> None:
@@ -229,41 +226,56 @@ class World:
                 return seat
         return NOBODY
 
-    def _near(self, seat: int) -> list[tuple[int, int]]:
-        """Markers (with their probes) that some part of a robot may reach."""
-        if not self._probes:
-            return []
-        at, near_m2 = self._robots[seat].root_qpos, self._near_m2[seat]
-        x_m, y_m = self.data.qpos[at : at + 2].tolist()
-        return [
-            (marker, probe)
-            for marker, probe, probe_x_m, probe_y_m in self._probes
-            if (probe_x_m - x_m) ** 2 + (probe_y_m - y_m) ** 2 <= near_m2
-        ]
 
-    def _touches(self, robot: _Robot, probe: int) -> bool:
-        model, data = self.model, self.data
-        gaps = data.geom_xpos[robot.geoms, :2] - data.geom_xpos[probe, :2]
-        reach = model.geom_rbound[robot.geoms] + model.geom_size[probe, 0]
-        candidates = robot.geoms[np.einsum("ij,ij->i", gaps, gaps) <= reach * reach]
-        return any(
-            mujoco.mj_geomDistance(model, data, geom, probe, _TOUCH_M, None) <= 0
-            for geom in candidates.tolist()
-        )
+class _TouchTest:
+    """Which markers each robot touches.
 
+    Args:
+        model: the compiled model.
+        data: its data.
+        robots: the robots, seat by seat.
+        probes: marker and geom of each probe; probes stand upright and never move.
+    """
 
-_TOUCH_M = 1e-3
-"""Distances are worked out up to here; farther apart is no touch."""
+    def __init__(
+        self,
+        model: Any,
+        data: Any,
+        robots: Sequence[_Robot],
+        probes: Sequence[tuple[int, int]],
+    ) -> None:
+        self._model, self._data = model, data
+        self._probes = probes
+        self._none: list[tuple[int, ...]] = [()] * len(robots)
+        self._seats = [seat for seat, robot in enumerate(robots) for _ in robot.geoms]
+        self._geoms = np.concatenate([robot.geoms for robot in robots] or [np.empty(0, np.intp)])
+        geoms = [geom for _, geom in probes]
+        mujoco.mj_kinematics(model, data)
+        self._x_m, self._y_m = data.geom_xpos[geoms, 0], data.geom_xpos[geoms, 1]
+        reach_m = model.geom_rbound[self._geoms, None] + model.geom_size[geoms, 0]
+        self._reach_m2 = reach_m**2
+        self._at = data.geom_xpos
 
-
-def _reach_m(entry: Entry) -> float:
-    robot = entry.robot
-    legs = (math.hypot(*leg.position_m) + sum(leg.lengths_m) + leg.radius_m for leg in robot.legs)
-    return max(math.hypot(*robot.size_m) / 2, *legs)
-
-
-def _hash(data: Any) -> Any:
-    return hashlib.blake2b(data, digest_size=8)
+    def __call__(self) -> Sequence[tuple[int, ...]]:
+        """For each seat the markers it touches, in ascending order."""
+        if not (self._probes and self._seats):
+            return self._none
+        # After mj_step the geoms still stand where the last step began.
+        mujoco.mj_kinematics(self._model, self._data)
+        at = self._at[self._geoms]
+        gap_m2 = (at[:, 0, None] - self._x_m) ** 2 + (at[:, 1, None] - self._y_m) ** 2
+        close = gap_m2 <= self._reach_m2
+        if not close.any():
+            return self._none
+        touched: list[set[int]] = [set() for _ in self._none]
+        for geom, probe in zip(*(places.tolist() for places in close.nonzero()), strict=True):
+            marker, pole = self._probes[probe]
+            gap_m = mujoco.mj_geomDistance(
+                self._model, self._data, int(self._geoms[geom]), pole, _TOUCH_M, None
+            )
+            if gap_m <= 0:
+                touched[self._seats[geom]].add(marker)
+        return [tuple(sorted(markers)) for markers in touched]
 
 
 def _rgba(colour: str) -> tuple[float, float, float, float]:

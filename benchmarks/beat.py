@@ -1,0 +1,90 @@
+"""The court's whole beat, and a whole headless match, against bare `mj_step`."""
+
+import statistics
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from benchmarks.paths import BarePath, keys_at, setup_of, started
+from lacoc_arenas import arena as arenas
+from lacoc_server.simulate import player, simulate
+from lacoc_server.world import World
+from lacoc_shared.seat import BEAT_S
+
+ROUND_TICKS = 250
+
+
+def beat(arena: str, rounds: int) -> dict[str, Any]:
+    """Time the beat of a court against bare physics of the same path, in interleaved rounds.
+
+    A beat is drive, physics, rules, frame, encoding and record, as the court does it.
+
+    Returns:
+        Median microseconds of each, and the median of the rounds' ratios.
+    """
+    ours, bare_us, ratios = [], [], []
+    with tempfile.TemporaryDirectory() as folder:
+        journal = started(arena, Path(folder))
+        world = journal.match.physics
+        assert isinstance(world, World)
+        bare = BarePath(world)
+        for _ in range(rounds):
+            controls: list[npt.NDArray[np.float64]] = []
+            took_s = 0.0
+            for _ in range(ROUND_TICKS):
+                keys = keys_at(journal.match.ticks)
+                begin = time.perf_counter()
+                journal.beat(keys)
+                took_s += time.perf_counter() - begin
+                controls.append(world.data.ctrl.copy())
+            bare_s = bare.run(controls)
+            ours.append(took_s / ROUND_TICKS * 1e6)
+            bare_us.append(bare_s / ROUND_TICKS * 1e6)
+            ratios.append(took_s / bare_s)
+        assert bare.is_where(world), "bare physics took another path"
+        journal.close()
+    return {
+        "beat_us": statistics.median(ours),
+        "bare_us": statistics.median(bare_us),
+        "ratio": statistics.median(ratios),
+    }
+
+
+def whole_match(arena: str, rounds: int) -> dict[str, Any]:
+    """Time a headless match with its record against bare physics of its path.
+
+    Returns:
+        Median seconds of each, the speed as a part of the bare one's, times real time, and the
+        bytes of the finished record.
+    """
+    match_s, bare_s, shares, sizes = [], [], [], []
+    loaded = arenas.load(arena)
+    for number in range(rounds):
+        controls: list[npt.NDArray[np.float64]] = []
+        journal = started(arena, None)
+        world = journal.match.physics
+        assert isinstance(world, World)
+        bare = BarePath(world)
+        while journal.match.ticks < journal.match.duration_ticks - 1:
+            journal.beat(keys_at(journal.match.ticks))
+            controls.append(world.data.ctrl.copy())
+        with tempfile.TemporaryDirectory() as folder:
+            players = [player(loaded, seat, "straight") for seat in (0, 1)]
+            begin = time.perf_counter()
+            result = simulate(setup_of(arena, f"benchmark-{number}"), players, Path(folder))
+            match_s.append(time.perf_counter() - begin)
+            sizes.append((Path(folder) / f"benchmark-{number}.mcap").stat().st_size)
+        bare_s.append(bare.run(controls))
+        shares.append(bare_s[-1] / match_s[-1])
+    return {
+        "match_s": statistics.median(match_s),
+        "bare_s": statistics.median(bare_s),
+        "share": statistics.median(shares),
+        "times_real_time": result.clock_s / statistics.median(match_s),
+        "record_bytes": int(statistics.median(sizes)),
+        "bytes_per_s": statistics.median(sizes) / (result.beats * BEAT_S),
+    }

@@ -1,0 +1,83 @@
+"""Matches to measure, and the same paths by bare physics."""
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.journal import Journal
+from lacoc_server.match import Match
+from lacoc_server.world import SUBSTEPS, World
+from lacoc_shared.decisions import Start
+from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
+from lacoc_shared.messages import SentFile
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import Phase
+
+KEYS = (2, 2, 1, 2, 3, 2)
+"""What both robots do, a new key every `KEY_TICKS`: they walk, turn, and meet."""
+KEY_TICKS = 97
+
+_STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
+
+
+def setup_of(arena: str, match_id: str = "benchmark") -> Setup:
+    """The setup of a match in an arena."""
+    settings = arenas.load(arena).settings
+    return Setup(
+        match_id=match_id, court="benchmark", match=1, arena=arena, settings=settings, limits={}
+    )
+
+
+def started(arena: str, folder: Path | None, match_id: str = "benchmark") -> Journal:
+    """A match of two sample hexapods that has just begun to be played."""
+    match = Match(setup_of(arena, match_id), World)
+    journal = Journal(match, folder)
+    files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
+    seats = range(len(match.seats))
+    journal.beat([JoinSeat(seat, f"Team {seat}", *files, token_hash="") for seat in seats])
+    journal.beat([ReadySeat(seat, True) for seat in seats])
+    journal.beat([Decide("benchmark", "", Start())])
+    while match.phase is not Phase.PLAYING:
+        journal.beat()
+    return journal
+
+
+def keys_at(tick: int) -> list[Input]:
+    """The keys of both seats in a tick."""
+    if tick % KEY_TICKS:
+        return []
+    number = tick // KEY_TICKS
+    return [KeySeat(seat, number + 1, 1, KEYS[number % len(KEYS)]) for seat in (0, 1)]
+
+
+class BarePath:
+    """The same model, state and controls as a match, stepped by nothing but MuJoCo."""
+
+    def __init__(self, world: World) -> None:
+        self._model = world.model
+        self._data = mujoco.MjData(world.model)
+        state = np.empty(mujoco.mj_stateSize(world.model, _STATE))
+        mujoco.mj_getState(world.model, world.data, state, _STATE)
+        mujoco.mj_setState(world.model, self._data, state, _STATE)
+
+    def run(self, controls: Sequence[npt.NDArray[np.float64]]) -> float:
+        """Step a tick for each control; returns the time it took [s]."""
+        model, data = self._model, self._data
+        begin = time.perf_counter()
+        for control in controls:
+            data.ctrl[:] = control
+            mujoco.mj_step(model, data, nstep=SUBSTEPS)
+        return time.perf_counter() - begin
+
+    def is_where(self, world: World) -> bool:
+        """Whether it came to exactly the same state as the match's world."""
+        return bool(
+            np.array_equal(self._data.qpos, world.data.qpos)
+            and np.array_equal(self._data.qvel, world.data.qvel)
+        )
