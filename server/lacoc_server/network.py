@@ -70,7 +70,7 @@ class CourtNetwork:
         self._session = session = open_court(listen)
         self._frame = session.publisher(keys.frame)
         self._event = session.history_publisher(keys.event, _EVENTS_KEPT)
-        self._sheet = session.publisher(keys.sheet)
+        self._sheet = session.history_publisher(keys.sheet, 1)
         self._health = session.publisher(keys.health)
         self._commands = [session.ring(keys.command(seat), _RING) for seat in inbox.seats]
         self._desks: list[tuple[Desk, _Judge]] = [
@@ -86,7 +86,7 @@ class CourtNetwork:
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
         self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
         self._sheet_bytes = self._scene_bytes = b""
-        session.announce(f"{keys.live}/court")
+        session.announce(keys.alive)
         self.locators = session.locators()
         """Addresses to connect to, with the port it really got."""
 
@@ -121,7 +121,7 @@ class CourtNetwork:
         self._event.put(encode(event))
 
     def publish_sheet(self, sheet: Sheet) -> None:
-        """Send a changed sheet, and keep it for those who ask."""
+        """Send a changed sheet, which must arrive, and keep it for those who ask."""
         self._sheet_bytes = encode(sheet)
         self._sheet.put(self._sheet_bytes)
 

@@ -17,7 +17,7 @@ _PROTOCOLS = ("tcp", "tls")
 _ADDRESS = re.compile(
     r"(?:(?P<protocol>[a-z]+)/)?"
     r"(?P<host>\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9_.-]+)"
-    r"(?::(?P<port>\d{1,5}))?"
+    r"(?::(?P<port>[0-9]{1,5}))?"
 )
 _PROBE_S = 2.0
 

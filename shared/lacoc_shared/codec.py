@@ -4,6 +4,7 @@
 nothing that arrives is used before it is known to be what it should be.
 """
 
+import hashlib
 from typing import Any, TypeVar
 
 import msgspec
@@ -41,6 +42,11 @@ def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
         return decoder.decode(data)  # type: ignore[no-any-return]
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise BadMessage(str(error)) from None
+
+
+def scene_hash(scene: bytes) -> bytes:
+    """The 8 bytes by which frames and sheets name an encoded `Scene`."""
+    return hashlib.blake2b(scene, digest_size=8).digest()
 
 
 def pack_states(states: tuple[int, ...]) -> bytes:

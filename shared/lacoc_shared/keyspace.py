@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 from lacoc_shared.mistakes import UserError
 
+EVERY_COURT = "lacoc/*/live/court"
+"""Liveliness: the announcements of all courts that can be reached."""
 COMMAND_MAX_BYTES = 1024
 """A longer command, ready or leave is not read."""
 DECISION_MAX_BYTES = 4096
@@ -62,9 +64,9 @@ class Keys:
         return f"{self.root}/health"
 
     @property
-    def live(self) -> str:
-        """Liveliness tokens lie below this: who is connected."""
-        return f"{self.root}/live"
+    def alive(self) -> str:
+        """Liveliness: announced while the court is connected."""
+        return f"{self.root}/live/court"
 
     def command(self, seat: str) -> str:
         """Controller to court: the seat's commands."""

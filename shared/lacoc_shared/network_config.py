@@ -22,7 +22,6 @@ hold up everybody's commands for ten seconds."""
 _HEADERS_BYTES = 2048
 _CLIENT_MAX_BYTES = 1 << 20  # a scene is far above what a court needs to take in
 _LEASE_MS = 3000
-_PRESENCE = ("liveliness_token", "liveliness_query", "declare_liveliness_subscriber")
 
 
 def court_config(listen: Sequence[str]) -> Config:
@@ -74,7 +73,8 @@ def client_config(connect: Sequence[str], timeout_s: float) -> Config:
 def _common(mode: str) -> Config:
     return {
         "mode": mode,  # a peer would not be brokered, or would go round the access rules
-        "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
+        # Nobody is searched for, so there is nothing to wait half a second for either.
+        "scouting": {"delay": 0, "multicast": {"enabled": False}, "gossip": {"enabled": False}},
     }
 
 
@@ -106,37 +106,32 @@ def _limit(name: str, key_expression: str, max_bytes: int) -> Config:
 
 def _access() -> Config:
     """Access rules: all that is not allowed is denied, so nobody but the court sends frames."""
+    # A wildcard does not cover the @ of a history: it is named.
+    histories = ["lacoc/*/event/@adv/**", "lacoc/*/sheet/@adv/**"]
     rules = {
         "court-to-all": _rule(
             "egress",
-            # A wildcard does not cover the @ of the event history: it is named.
-            ["lacoc/**", "lacoc/*/event/@adv/**"],
+            ["lacoc/**", *histories],
             [
-                "put",
-                "delete",
-                "reply",
-                "query",
-                "declare_subscriber",
-                "declare_queryable",
-                *_PRESENCE,
+                *("put", "delete", "reply", "query", "declare_subscriber", "declare_queryable"),
+                *("liveliness_token", "liveliness_query", "declare_liveliness_subscriber"),
             ],
         ),
         "watch": _rule(
             "ingress",
-            [f"lacoc/*/{what}" for what in ("frame", "event", "event/@adv/**", "sheet", "health")],
+            [*(f"lacoc/*/{what}" for what in ("frame", "event", "sheet", "health")), *histories],
             ["declare_subscriber"],
         ),
         "fetch": _rule(
             "ingress",
-            [f"lacoc/*/{what}" for what in ("sheet", "scene", "event/**", "event/@adv/**")],
+            [*(f"lacoc/*/{what}" for what in ("sheet", "scene", "event/**")), *histories],
             ["query"],
         ),
         "presence": _rule(
             "ingress",
-            ["lacoc/*/live/**", "lacoc/*/event/@adv/**"],
-            list(_PRESENCE[1:]),
+            ["lacoc/*/live/**", *histories],
+            ["liveliness_query", "declare_liveliness_subscriber"],
         ),
-        "be-present": _rule("ingress", ["lacoc/*/live/seat/*"], ["liveliness_token"]),
         "command": _rule("ingress", ["lacoc/*/seat/*/key"], ["put"]),
         "request": _rule("ingress", ["lacoc/*/seat/*/*", "lacoc/*/referee/*"], ["query"]),
     }

@@ -1,0 +1,88 @@
+"""Requests to a court, and its refusals put into words."""
+
+from typing import TypeVar
+
+import msgspec
+
+from lacoc_shared import codec
+from lacoc_shared.keyspace import EVERY_COURT, Keys
+from lacoc_shared.messages import PROTOCOL, Refusal
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.session import NoReply, Refused, Session
+
+T = TypeVar("T")
+
+ANSWER_S = 5.0
+"""A court answers within a beat or two; one that needs longer is in trouble."""
+
+_MAX_BYTES = 1 << 20
+
+
+class NoCourt(UserError):
+    """No court of that name answers."""
+
+
+def ask(
+    session: Session,
+    keys: Keys,
+    key: str,
+    message: msgspec.Struct,
+    reply: type[T],
+    timeout_s: float = ANSWER_S,
+) -> T:
+    """Ask a court and read its answer.
+
+    Args:
+        session: the connection.
+        keys: the court's key expressions.
+        key: the one to ask under.
+        message: what to ask.
+        reply: the message that answers.
+        timeout_s: how long to wait.
+
+    Raises:
+        NoCourt: if nobody answers; the message says which courts there are.
+        FileRefused: if the court found mistakes in files.
+        UserError: if the court refuses; the message is its reason.
+    """
+    return understand(fetch(session, keys, key, codec.encode(message), timeout_s), reply)
+
+
+def fetch(
+    session: Session, keys: Keys, key: str, payload: bytes = b"", timeout_s: float = ANSWER_S
+) -> bytes:
+    """Ask a court in bytes; see `ask`."""
+    try:
+        return session.ask(key, payload, timeout_s)
+    except NoReply:
+        raise NoCourt(_no_answer(session, keys.court)) from None
+    except Refused as refused:
+        refusal = understand(refused.payload, Refusal)
+        if refusal.mistakes:
+            raise FileRefused(list(refusal.mistakes)) from None
+        raise UserError(refusal.reason) from None
+
+
+def understand(payload: bytes, kind: type[T]) -> T:
+    """Decode what a court sent.
+
+    Raises:
+        UserError: if it is not understood, because the court has another version.
+    """
+    try:
+        return codec.decode(payload, kind, _MAX_BYTES)
+    except codec.BadMessage as error:
+        raise UserError(
+            f"The court's answer is not understood ({error}). This program speaks version "
+            f"{PROTOCOL} of the protocol: install the version of lacoc that the organiser uses."
+        ) from None
+
+
+def _no_answer(session: Session, court: str) -> str:
+    courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
+    address = ", ".join(session.endpoints)
+    if court in courts:
+        return f"Court {court!r} at {address} does not answer. Is it overloaded or stopped?"
+    if courts:
+        return f"There is no court {court!r} at {address}; there is {', '.join(courts)}."
+    return f"No court answers at {address}. Is it running?"

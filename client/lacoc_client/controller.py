@@ -1,0 +1,320 @@
+"""Hold a seat: join, press keys, see what became of them, and come back after a break."""
+
+import time
+from enum import Enum
+from typing import NamedTuple
+
+from lacoc_client.asking import NoCourt, ask
+from lacoc_client.spectator import Spectator
+from lacoc_shared import seal
+from lacoc_shared.codec import encode
+from lacoc_shared.keyspace import JOIN_MAX_BYTES
+from lacoc_shared.messages import (
+    PROTOCOL,
+    Command,
+    Done,
+    Frame,
+    Health,
+    Join,
+    Joined,
+    SeatFrame,
+    SeatRequest,
+    SentFile,
+)
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.seat import NO_SENTENCES
+from lacoc_shared.session import Session
+
+REPEAT_S = 0.1
+"""The last command is repeated 10 times a second (rules 3)."""
+SILENT_AFTER_S = 0.5
+"""A court that sends no frame for so long is called silent."""
+
+_REJOIN_TIMEOUT_S = 1.0
+_REMEMBERED = 64
+_WHY = {int(no): sentence for no, sentence in NO_SENTENCES.items()}
+
+
+class Hold(Enum):
+    """What a controller knows of its seat."""
+
+    NOT_JOINED = "not joined"
+    HELD = "held"
+    LOST = "the court does not answer"
+    """The court was restarted and has not answered yet: it is asked again."""
+    REPLACED = "replaced"
+    """The same token joined again elsewhere."""
+    REFUSED = "refused"
+    """The court was restarted and did not take the controller back."""
+    LEFT = "left"
+
+
+class RefusedKey(NamedTuple):
+    """A command that the match refused."""
+
+    level: int
+    key: int
+    why: str
+
+
+class _Press(NamedTuple):
+    level: int
+    key: int
+    at_s: float
+
+
+class Controller:
+    """One seat of a court, held by a person's page, a bot or a ghost alike.
+
+    One thread uses it, and calls `poll` or `wait_frame` at least ten times a second while the
+    seat is held: they repeat the last command, which keeps the seat alive. After a restart of
+    the court they join again by themselves, with the same token and files.
+
+    Args:
+        session: an open client session.
+        court: the court's name.
+        seat: the seat's id.
+        token: the seat's token.
+        team: the team's name.
+        robot: a robot file; None: the contest's robot.
+        postures: a Loco-data file.
+        locomotion: a LocoTra-data file; neither: the sample gait of the contest's robot.
+
+    Raises:
+        UserError: if no such court answers, or it has no such seat.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        court: str,
+        seat: str,
+        token: str,
+        team: str,
+        *,
+        robot: SentFile | None = None,
+        postures: SentFile | None = None,
+        locomotion: SentFile | None = None,
+    ) -> None:
+        self.view = Spectator(session, court)
+        """All that anybody sees of the court: frames, events, sheet, health."""
+        self.seat = seat
+        self._session = session
+        self._keys = self.view.keys
+        self._join = Join(
+            protocol=PROTOCOL,
+            token=token,
+            name=team,
+            robot=robot,
+            postures=postures,
+            locomotion=locomotion,
+        )
+        self._commands = session.publisher(self._keys.command(seat))
+        self._joined: Joined | None = None
+        self._health_seen: Health | None = None
+        self._seq = 0
+        self._command = b""
+        self._sent_s = 0.0
+        self._pressed: dict[int, _Press] = {}
+        self._refused: list[RefusedKey] = []
+        self.hold = Hold.NOT_JOINED
+        self.reason = ""
+        """Why the seat is not held, where there is more to say."""
+        self.round_trip_ms: float | None = None
+        """From the newest key to the frame that shows it."""
+        self.index  # noqa: B018 - no such seat is a mistake to hear of at once
+
+    @property
+    def index(self) -> int:
+        """The seat's index in the sheet and in frames.
+
+        Raises:
+            UserError: if the court has no such seat.
+        """
+        names = [seat.id for seat in self.view.sheet.seats]
+        if self.seat not in names:
+            raise UserError(
+                f"Court {self._keys.court!r} has no seat {self.seat!r}; it has {', '.join(names)}."
+            )
+        return names.index(self.seat)
+
+    def join(self, timeout_s: float = 5.0) -> tuple[str, ...]:
+        """Take the seat, also from an older controller with the same token.
+
+        Returns:
+            What the contestant should know.
+
+        Raises:
+            FileRefused: if the files have mistakes.
+            UserError: if the court refuses for another reason, or does not answer.
+        """
+        size = len(encode(self._join))
+        if size > JOIN_MAX_BYTES - 1024:
+            raise UserError(
+                f"Your files are too large together: {size // 1024} KiB, at most "
+                f"{JOIN_MAX_BYTES // 1024 - 1} KiB travel. Shorten the gait files."
+            )
+        key = self._keys.request(self.seat, "join")
+        joined = ask(self._session, self._keys, key, self._join, Joined, timeout_s)
+        self.view.poll()
+        self._health_seen = self.view.health  # older than the session: says nothing of it
+        self._joined = joined
+        self._seq = max(self._seq, joined.last_seq)
+        self._pressed.clear()
+        self.hold, self.reason = Hold.HELD, ""
+        self._send(0, 0, 0)
+        return joined.notes
+
+    def ready(self, ready: bool = True) -> str:
+        """Say ready, or take it back.
+
+        Returns:
+            What the court says to it.
+
+        Raises:
+            UserError: if the court refuses or does not answer.
+        """
+        return self._request("ready", ready)
+
+    def leave(self) -> str:
+        """Give the seat up.
+
+        Returns:
+            What the court says to it.
+
+        Raises:
+            UserError: if the court refuses or does not answer.
+        """
+        text = self._request("leave", True)
+        self.hold, self._joined = Hold.LEFT, None
+        return text
+
+    def press(self, level: int, key: int) -> int:
+        """Send a new command; it stands, and is repeated, until the next.
+
+        Args:
+            level: a `Level`.
+            key: a digit, or `RESTART_KEY`.
+
+        Returns:
+            The command's sequence number.
+
+        Raises:
+            UserError: if the seat is not held.
+        """
+        self._session_held()
+        self._seq += 1
+        self._pressed[self._seq] = _Press(level, key, time.monotonic())
+        if len(self._pressed) > _REMEMBERED:
+            del self._pressed[next(iter(self._pressed))]
+        self._send(self._seq, level, key)
+        return self._seq
+
+    def poll(self, now_s: float) -> Frame | None:
+        """Repeat the command if it is time, and take in what arrived.
+
+        Args:
+            now_s: `time.monotonic()`.
+
+        Returns:
+            The newest frame, if it is a new one.
+
+        Raises:
+            UserError: if the court's messages are not understood.
+        """
+        frame = self.view.poll()
+        if frame is not None and self.index < len(frame.seats):
+            self._compare(frame.seats[self.index])
+        if self.hold in (Hold.HELD, Hold.LOST):
+            self._check_hold()
+        if self.hold is Hold.HELD and now_s - self._sent_s >= REPEAT_S:
+            self._commands.put(self._command)
+            self._sent_s = now_s
+        return frame
+
+    def wait_frame(self, timeout_s: float) -> Frame | None:
+        """Wait for a new frame, repeating the command meanwhile; None if none came in time.
+
+        Raises:
+            UserError: if the court's messages are not understood.
+        """
+        deadline_s = time.monotonic() + timeout_s
+        while (frame := self.poll(now_s := time.monotonic())) is None:
+            if now_s >= deadline_s:
+                return None
+            self.view.wait(min(deadline_s - now_s, REPEAT_S))
+        return frame
+
+    def take_refused(self) -> list[RefusedKey]:
+        """Commands that the match refused since this was last called."""
+        refused, self._refused = self._refused, []
+        return refused
+
+    def link(self, now_s: float) -> str:
+        """The state of the link in a few words; "" while all is well."""
+        silent_s = self.view.silent_s(now_s)
+        if self.hold is Hold.HELD:
+            return "" if silent_s < SILENT_AFTER_S else f"court silent for {silent_s:.0f} s"
+        return self.reason or self.hold.value
+
+    def _session_held(self) -> Joined:
+        if self.hold is not Hold.HELD or self._joined is None:
+            raise UserError(
+                f"Seat {self.seat} is not yours now ({self.reason or self.hold.value})."
+            )
+        return self._joined
+
+    def _request(self, what: str, ready: bool) -> str:
+        joined = self._session_held()
+        key = self._keys.request(self.seat, what)
+        mac = seal.request_mac(joined.secret, key, joined.session, ready)
+        request = SeatRequest(session=joined.session, ready=ready, mac=mac)
+        return ask(self._session, self._keys, key, request, Done).text
+
+    def _send(self, seq: int, level: int, key: int) -> None:
+        assert self._joined is not None
+        session, secret = self._joined.session, self._joined.secret
+        mac = seal.command_mac(secret, self._keys.command(self.seat), session, seq, level, key)
+        self._command = encode(Command(session, seq, level, key, mac))
+        self._commands.put(self._command)
+        self._sent_s = time.monotonic()
+
+    def _compare(self, seat: SeatFrame) -> None:
+        """See what became of the keys that were pressed."""
+        newest = max(seat.applied_seq, seat.refused_seq)
+        for seq in [seq for seq in self._pressed if seq <= newest]:
+            press = self._pressed.pop(seq)
+            if seq in (seat.applied_seq, seat.refused_seq):
+                self.round_trip_ms = (self.view.frame_s - press.at_s) * 1000
+            if seq == seat.refused_seq:
+                why = _WHY.get(seat.refused_why, "the court refused it")
+                self._refused.append(RefusedKey(press.level, press.key, why))
+
+    def _check_hold(self) -> None:
+        """See from the court's health whether the seat is still this controller's.
+
+        A court that was restarted knows no session, and a newer session with the same token
+        replaces this one: health names the session that holds each seat.
+        """
+        health = self.view.health
+        if health is None or health is self._health_seen:
+            return
+        self._health_seen = health
+        holder = next((seat.session for seat in health.seats if seat.id == self.seat), 0)
+        if self._joined is not None and holder == self._joined.session:
+            return
+        if self._joined is None or holder == 0:
+            self._join_again()
+        else:
+            self.hold = Hold.REPLACED
+            self.reason = f"seat {self.seat} was joined again from another window or machine"
+
+    def _join_again(self) -> None:
+        try:
+            self.join(_REJOIN_TIMEOUT_S)
+        except NoCourt:  # perhaps it has made a session all the same: the next health tries again
+            self.hold, self._joined = Hold.LOST, None
+        except FileRefused:
+            self.hold, self.reason = Hold.REFUSED, "the court does not accept the files any more"
+        except UserError as error:
+            self.hold, self.reason = Hold.REFUSED, str(error)

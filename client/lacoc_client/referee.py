@@ -1,0 +1,38 @@
+"""The referee's hand: decisions with who and why, and the court's word on each."""
+
+from lacoc_client.asking import ask
+from lacoc_shared.decisions import Decision
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import DecisionReply, DecisionRequest
+from lacoc_shared.session import Session
+
+
+class RefereeClient:
+    """Sends decisions to a court.
+
+    Args:
+        session: an open client session.
+        court: the court's name.
+        token: a referee's token.
+    """
+
+    def __init__(self, session: Session, court: str, token: str) -> None:
+        self._session = session
+        self._keys = Keys(court)
+        self._token = token
+
+    def decide(self, decision: Decision, reason: str, by: str) -> DecisionReply:
+        """Decide; the reply comes when the decision is on disk.
+
+        Args:
+            decision: what is decided.
+            reason: why, for the record.
+            by: who decides, for the record.
+
+        Raises:
+            UserError: if the court refuses it; the message is its reason.
+        """
+        name = str(type(decision).__struct_config__.tag)
+        request = DecisionRequest(token=self._token, by=by, reason=reason, decision=decision)
+        key = self._keys.decision(name)
+        return ask(self._session, self._keys, key, request, DecisionReply)

@@ -1,0 +1,168 @@
+"""Watch a court: frames, events from the first on, the sheet and the scene."""
+
+import time
+
+import msgspec
+
+from lacoc_client.asking import ANSWER_S, NoCourt, fetch, understand
+from lacoc_shared.codec import scene_hash
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.session import Session
+
+_EVENTS_DEPTH = 4096
+_FETCH_TRIES = 3
+
+
+class _Version(msgspec.Struct):
+    protocol: int
+
+
+class Spectator:
+    """What one sees of a court; complete at once, also for a late comer.
+
+    One thread uses it. `poll` or `wait_frame` bring it up to date; the attributes never
+    change otherwise.
+
+    Args:
+        session: an open client session.
+        court: the court's name.
+
+    Raises:
+        UserError: if no such court answers, or it speaks another version of the protocol.
+    """
+
+    def __init__(self, session: Session, court: str) -> None:
+        self.keys = Keys(court)
+        self._session = session
+        self._frames = session.mailbox(self.keys.frame, 1)
+        self._sheets = session.history_mailbox(self.keys.sheet, 1)
+        self._healths = session.mailbox(self.keys.health, 1)
+        self._events = session.history_mailbox(self.keys.event, _EVENTS_DEPTH)
+        self._new_events: list[Event] = []
+        self.sheet: Sheet = self._fetch_sheet()
+        """Who plays what; always that of the newest frame's scene."""
+        self.frame: Frame | None = None
+        """The newest frame."""
+        self.frame_s = time.monotonic()
+        """When it arrived (before the first: since when it is waited for)."""
+        self.health: Health | None = None
+        """The newest health."""
+        self._log: dict[int, Event] = {}
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """All events of the match so far."""
+        return tuple(self._log.values())
+
+    def poll(self) -> Frame | None:
+        """Take in what arrived.
+
+        Returns:
+            The newest frame, if it is a new one.
+
+        Raises:
+            UserError: if the court's messages are not understood.
+        """
+        while (mail := self._events.take()) is not None:
+            self._take_in(understand(mail.payload, Event))
+        if (mail := self._healths.take()) is not None:
+            self.health = understand(mail.payload, Health)
+        newest = self._frames.take()
+        if (mail := self._sheets.take()) is not None:
+            self.sheet = _read_sheet(mail.payload)
+        if newest is None:
+            return None
+        self.frame, self.frame_s = understand(newest.payload, Frame), newest.arrived_s
+        if self.frame.scene != self.sheet.scene:
+            self._catch_up(self.frame)
+        return self.frame
+
+    def wait_frame(self, timeout_s: float) -> Frame | None:
+        """Wait for a new frame; None if none came in time.
+
+        Raises:
+            UserError: if the court's messages are not understood.
+        """
+        deadline_s = time.monotonic() + timeout_s
+        while (frame := self.poll()) is None:
+            left_s = deadline_s - time.monotonic()
+            if left_s <= 0:
+                return None
+            self.wait(left_s)
+        return frame
+
+    def wait(self, timeout_s: float) -> None:
+        """Sleep until a frame is there, at most so long."""
+        self._frames.wait(timeout_s)
+
+    def take_events(self) -> list[Event]:
+        """Events that came since this was last called."""
+        events, self._new_events = self._new_events, []
+        return events
+
+    def silent_s(self, now_s: float) -> float:
+        """How long no frame has come; a court sends one every 20 ms in every phase."""
+        return max(0.0, now_s - self.frame_s)
+
+    def scene(self) -> Scene:
+        """Fetch the drawable model that belongs to the sheet.
+
+        Raises:
+            UserError: if no court answers, or what it sends does not fit its sheet.
+        """
+        for _ in range(_FETCH_TRIES):
+            scene = fetch(self._session, self.keys, self.keys.scene)
+            if scene_hash(scene) == self.sheet.scene:
+                return understand(scene, Scene)
+            self.sheet = self._fetch_sheet()
+        raise UserError(_OTHER_SCENE)
+
+    def _fetch_sheet(self, timeout_s: float = ANSWER_S) -> Sheet:
+        return _read_sheet(fetch(self._session, self.keys, self.keys.sheet, timeout_s=timeout_s))
+
+    def _catch_up(self, frame: Frame) -> None:
+        """The scene changed: get the sheet that belongs to the frame.
+
+        The court sends the frame a moment before the sheet, and the scene may change again.
+        """
+        for _ in range(_FETCH_TRIES):
+            try:
+                self.sheet = self._fetch_sheet(timeout_s=1.0)
+            except NoCourt:  # it went away just now: the next frame will ask again
+                return
+            if self.sheet.scene == frame.scene:
+                return
+            newer = self._frames.take() if self._frames.wait(1.0) else None
+            if newer is not None:
+                frame = understand(newer.payload, Frame)
+                self.frame, self.frame_s = frame, newer.arrived_s
+        if self.sheet.scene != frame.scene:
+            raise UserError(_OTHER_SCENE)
+
+    def _take_in(self, event: Event) -> None:
+        """Keep the log of one match: what a restarted court sends again is not new."""
+        if self._log.get(event.number) == event:
+            return
+        began_anew = event.number in self._log
+        if began_anew or any(known.match != event.match for known in self._log.values()):
+            self._log.clear()
+        self._log[event.number] = event
+        self._new_events.append(event)
+
+
+_OTHER_SCENE = (
+    "The court's frames show another scene than its sheet describes. Start this program again; "
+    "if that does not help, tell the organiser."
+)
+
+
+def _read_sheet(payload: bytes) -> Sheet:
+    version = understand(payload, _Version).protocol
+    if version != PROTOCOL:
+        raise UserError(
+            f"The court speaks version {version} of the protocol, this program version "
+            f"{PROTOCOL}: install the version of lacoc that the organiser uses."
+        )
+    return understand(payload, Sheet)

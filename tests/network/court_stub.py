@@ -1,0 +1,174 @@
+"""A court for tests: real network, real inbox; a match that says yes and counts."""
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import msgspec
+
+from lacoc_server.decision_desk import DecisionDesk
+from lacoc_server.inbox import Inbox
+from lacoc_server.network import CourtNetwork, Outcome
+from lacoc_shared import seal
+from lacoc_shared.codec import encode, scene_hash
+from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import (
+    PROTOCOL,
+    DecisionReply,
+    Done,
+    Event,
+    Frame,
+    Health,
+    Join,
+    Refusal,
+    Scene,
+    SceneBody,
+    SeatFrame,
+    SentFile,
+    Sheet,
+    SheetSeat,
+)
+from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.seat import No, Phase
+
+KEYS = Keys("main")
+SEATS = ("left", "right")
+TOKENS = {"left": "token of left", "right": "token of right"}
+HASHES = {seat: seal.hash_token(token) for seat, token in TOKENS.items()}
+WHISTLE = "whistle"
+WRONG = SentFile("mine.txt", b"wrong")
+
+
+def check_files(join: Join) -> Join:
+    if join.postures == WRONG:
+        found = [Mistake(file="mine.txt", found=f, expected="20", row=3) for f in ("a", "b")]
+        raise FileRefused(found)
+    return msgspec.structs.replace(join, robot=join.robot or SentFile("r.toml", b""))
+
+
+def make_scene(name: str) -> Scene:
+    body = SceneBody(name=name, parent=-1, pos=(0.0, 0.0, 0.0), quat=(1.0, 0.0, 0.0, 0.0))
+    return Scene(bodies=(body,), geoms=())
+
+
+def make_sheet(scene: Scene, **changes: Any) -> Sheet:
+    seats = tuple(SheetSeat(id=seat, colour="#123456", pattern="plain") for seat in SEATS)
+    fields: dict[str, Any] = {"protocol": PROTOCOL, "version": "0", "court": "main", "match": 1}
+    fields |= {"arena": "test", "title": "Test", "duration_s": 180.0, "levels": (1,)}
+    fields |= {"settings": {}, "seats": seats, "markers": ()}
+    fields |= {"scene": scene_hash(encode(scene))}
+    return Sheet(**(fields | changes))
+
+
+def make_event(number: int, match: int = 1, text: str = "something") -> Event:
+    return Event(number=number, match=match, beat=0, clock_ticks=0, kind="phase", text=text)
+
+
+class CourtStub:
+    """Beats every 5 ms on a thread of its own; `inputs` is all that entered the match.
+
+    Digit 9 and a team called "Nobody" are refused by its match.
+    """
+
+    def __init__(self, listen: str = "127.0.0.1:0", **restored: Any) -> None:
+        token_hashes = restored.pop("token_hashes", HASHES)
+        inbox = Inbox(KEYS, SEATS, token_hashes, check_files, **restored)
+        self.network = CourtNetwork(KEYS, [listen], inbox, DecisionDesk([seal.hash_token(WHISTLE)]))
+        self.inputs: list[Input] = []
+        self.scene = make_scene("empty")
+        self.silent = False
+        self._seats = {seat: SeatFrame(0, 0, 1, 0, 0, 0, 0, 0, 0, 0) for seat in range(2)}
+        self._todo: list[Callable[[], None]] = []
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self.show(self.scene)
+
+    def __enter__(self) -> "CourtStub":
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stopping.set()
+        self._thread.join()
+        self.network.__exit__()
+
+    @property
+    def address(self) -> str:
+        return self.network.locators[0]
+
+    @property
+    def refused(self) -> Mapping[str, Mapping[str, int]]:
+        return {seat.id: seat.refused for seat in self.network.seat_health(0.0)}
+
+    def keys(self, seat: int = 0) -> list[tuple[int, int]]:
+        return [(i.seq, i.key) for i in self.inputs if isinstance(i, KeySeat) and i.seat == seat]
+
+    def show(self, scene: Scene, **changes: Any) -> None:
+        """Let the match have another scene, and say so."""
+        self.scene = scene
+        self.network.publish_scene(scene)
+        self.network.publish_sheet(make_sheet(scene, **changes))
+
+    def in_a_beat(self, what: Callable[[], None]) -> None:
+        """Do something on the court's thread."""
+        self._todo.append(what)
+
+    def _run(self) -> None:
+        beat = 0
+        while not self._stopping.wait(0.005):
+            beat += 1
+            now_s = time.monotonic()
+            arrivals = self.network.poll(now_s)
+            outcomes = [self._apply(arrival.input, beat) for arrival in arrivals]
+            for arrival, outcome in zip(arrivals, outcomes, strict=True):
+                if arrival.answer:
+                    arrival.answer(outcome)
+            while self._todo:
+                self._todo.pop()()
+            if not self.silent:
+                self._publish(beat, now_s)
+
+    def _publish(self, beat: int, now_s: float) -> None:
+        scene = scene_hash(encode(self.scene))
+        seats = tuple(self._seats.values())
+        frame = Frame(1, beat, Phase.PLAYING, 0, 0, seats, b"", b"", scene, bytes(8))
+        self.network.publish_frame(encode(frame))
+        if beat % 10 == 0:
+            health = Health(
+                match=1,
+                beat=beat,
+                real_time_factor=1.0,
+                slow_beats=0,
+                worst_late_ms=0.0,
+                seats=self.network.seat_health(now_s),
+                dropped=self.network.dropped,
+                decisions={},
+            )
+            self.network.publish_health(health)
+
+    def _apply(self, one: Input, beat: int) -> Outcome:
+        self.inputs.append(one)
+        if isinstance(one, JoinSeat) and one.team == "Nobody":
+            return Refusal("there is no such team")
+        if isinstance(one, JoinSeat):
+            return Done("welcome")
+        if isinstance(one, Decide):
+            return DecisionReply(beat=beat, event=1, text="started", scores=(0, 0))
+        if isinstance(one, KeySeat) and one.key == 9:
+            self._change(one.seat, refused_seq=one.seq, refused_why=No.NO_SUCH_KEY)
+        elif isinstance(one, KeySeat):
+            self._change(one.seat, applied_seq=one.seq, applied_beat=beat, key=one.key)
+        return Done()
+
+    def _change(self, seat: int, **changes: int) -> None:
+        self._seats[seat] = msgspec.structs.replace(self._seats[seat], **changes)
+
+
+def until(condition: Callable[[], object], timeout_s: float = 10.0) -> None:
+    """Wait for something to become true."""
+    deadline_s = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < deadline_s, "it did not happen in time"
+        time.sleep(0.002)

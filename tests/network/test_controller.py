@@ -1,0 +1,216 @@
+"""A controller at a real court over a real network."""
+
+import time
+
+import pytest
+from court_stub import KEYS, TOKENS, WRONG, CourtStub, until
+
+from lacoc_client.controller import Controller, Hold
+from lacoc_shared import seal
+from lacoc_shared.codec import encode
+from lacoc_shared.inputs import HeardSeat, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
+from lacoc_shared.keyspace import JOIN_MAX_BYTES
+from lacoc_shared.messages import Command, SentFile
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.seat import RESTART_KEY
+from lacoc_shared.session import Session, open_client
+
+
+def controller(session: Session, seat: str = "left", **changes: object) -> Controller:
+    values: dict[str, object] = {"token": TOKENS[seat], "team": "Blue"} | changes
+    return Controller(session, "main", seat, **values)  # type: ignore[arg-type]
+
+
+def held(session: Session, seat: str = "left") -> Controller:
+    one = controller(session, seat)
+    one.join()
+    return one
+
+
+def test_a_join_travels_with_its_files(court: CourtStub, session: Session) -> None:
+    """The court gets name and files, and answers with notes."""
+    file = SentFile("mine.txt", b"20 20")
+    one = controller(session, postures=file)
+    assert one.join() == ("welcome",)
+    assert one.hold is Hold.HELD
+    join = court.inputs[0]
+    assert isinstance(join, JoinSeat)
+    assert (join.seat, join.team, join.postures) == (0, "Blue", file)
+
+
+def test_a_join_may_be_large_but_not_too_large(court: CourtStub, session: Session) -> None:
+    """All that is let out is taken in, and what is too large is said before it is lost."""
+    room = JOIN_MAX_BYTES - 1024
+    small = len(encode(controller(session, postures=SentFile("a", b""))._join))
+    controller(session, postures=SentFile("a", bytes(room - small - 4))).join()
+    with pytest.raises(UserError, match="too large together: 63 KiB"):
+        controller(session, postures=SentFile("a", bytes(room))).join()
+
+
+def test_a_wrong_token_is_said_and_disturbs_nobody(
+    court: CourtStub, session: Session, other_session: Session
+) -> None:
+    """A wrong token never disturbs the seat."""
+    holder = held(session)
+    with pytest.raises(UserError, match="does not open seat left"):
+        controller(other_session, token="guess").join()
+    holder.press(1, 2)
+    until(lambda: holder.poll(time.monotonic()) and holder.round_trip_ms)
+    assert holder.hold is Hold.HELD
+    assert court.refused["left"] == {"wrong token": 1}
+
+
+def test_mistakes_in_files_come_back_whole(session: Session) -> None:
+    """Rules 2: a file that is wrong is refused whole, with every mistake listed."""
+    with pytest.raises(FileRefused) as refused:
+        controller(session, postures=WRONG).join()
+    assert [mistake.found for mistake in refused.value.mistakes] == ["a", "b"]
+
+
+def test_a_join_that_the_match_refuses_makes_no_session(court: CourtStub, session: Session) -> None:
+    """A session starts only when the match has taken the join in."""
+    with pytest.raises(UserError, match="no such team"):
+        controller(session, team="Nobody").join()
+    assert court.network.seat_health(0.0)[0].session == 0
+
+
+def test_an_unknown_seat_and_an_unknown_court_are_named(session: Session) -> None:
+    """What was found, and what there is."""
+    with pytest.raises(UserError, match="no seat 'middle'; it has left, right"):
+        Controller(session, "main", "middle", "t", "Blue")
+    with pytest.raises(UserError, match=r"no court 'mian' at .*; there is main"):
+        Controller(session, "mian", "left", "t", "Blue")
+
+
+def test_a_key_is_applied_once_and_its_round_trip_is_known(
+    court: CourtStub, session: Session
+) -> None:
+    """Rules 3: repeated 10 times a second with the same sequence number; issue: round trip."""
+    one = held(session)
+    assert one.press(1, 2) == 1
+    until(lambda: one.poll(time.monotonic()) and one.round_trip_ms is not None)
+    assert one.round_trip_ms is not None
+    assert 0 < one.round_trip_ms < 1000
+    one.press(1, RESTART_KEY)
+    deadline_s = time.monotonic() + 0.5
+    while time.monotonic() < deadline_s:
+        one.wait_frame(0.05)
+    assert court.keys() == [(1, 2), (2, RESTART_KEY)]
+    assert court.refused["left"] == {}
+    health = court.network.seat_health(time.monotonic())[0]
+    assert health.commands_hz >= 2.5  # about 10 Hz for the half second, of a window of two
+
+
+def test_a_refused_key_is_said_in_a_sentence(court: CourtStub, session: Session) -> None:
+    """A refused command while playing: said on the screen, the match goes on."""
+    one = held(session)
+    one.press(1, 9)
+    until(lambda: one.poll(time.monotonic()) and court.keys())
+    until(lambda: one.wait_frame(1.0) and one.round_trip_ms is not None)
+    (refused,) = one.take_refused()
+    assert (refused.level, refused.key) == (1, 9)
+    assert refused.why == "your gait file has no such key"
+    assert one.take_refused() == []
+
+
+def test_ready_and_leave(court: CourtStub, session: Session) -> None:
+    """Requests with the session's seal; after leaving, keys are no longer sent."""
+    one = held(session)
+    one.ready()
+    one.ready(False)
+    one.leave()
+    assert court.inputs[-3:] == [ReadySeat(0, True), ReadySeat(0, False), LeaveSeat(0)]
+    assert one.hold is Hold.LEFT
+    with pytest.raises(UserError, match="not yours now"):
+        one.press(1, 2)
+
+
+def test_a_new_window_takes_over_and_the_old_one_knows(
+    court: CourtStub, session: Session, other_session: Session
+) -> None:
+    """The same token in another window: it goes on with the numbers, the old one is told."""
+    old = held(session)
+    old.press(1, 2)
+    until(lambda: court.keys() == [(1, 2)])
+    new = held(other_session)
+    assert new.press(1, 3) == 2
+    until(lambda: old.wait_frame(1.0) and old.hold is Hold.REPLACED)
+    assert "another window" in old.link(time.monotonic())
+    until(lambda: court.keys() == [(1, 2), (2, 3)])
+    for _ in range(20):
+        new.wait_frame(1.0)
+    assert new.hold is Hold.HELD
+
+
+def test_forged_commands_are_refused_and_counted(
+    court: CourtStub, session: Session, other_session: Session
+) -> None:
+    """A command of another seat, an old one or an altered one is refused by the court itself."""
+    left, right = held(session, "left"), held(other_session, "right")
+    left.press(1, 2)
+    until(lambda: court.keys())
+    joined = right._joined
+    assert joined is not None
+    mac = seal.command_mac(joined.secret, KEYS.command("right"), joined.session, 5, 1, 3)
+    forged = encode(Command(joined.session, 5, 1, 3, mac))
+    door = other_session.publisher(KEYS.command("left"))
+    door.put(forged)
+    door.put(b"rubbish")
+    door.put(bytes(2000))  # too long: the transport drops it
+    until(lambda: court.refused["left"] == {"not your seat": 1, "bad bytes": 1})
+    assert court.keys() == [(1, 2)]
+
+
+def test_a_flood_on_one_seat_does_not_touch_the_other(
+    court: CourtStub, session: Session, other_session: Session
+) -> None:
+    """Failure policy: the other seat and the beat's time are untouched."""
+    one = held(session, "right")
+    flood = other_session.publisher(KEYS.command("left"))
+    trips = []
+    for _ in range(20):
+        for _ in range(500):
+            flood.put(b"flood")
+        one.round_trip_ms = None
+        one.press(1, 2)
+        until(lambda: one.wait_frame(0.2) and one.round_trip_ms is not None)
+        trips.append(one.round_trip_ms)
+    assert [key for _, key in court.keys(seat=1)] == [2] * 20
+    assert court.refused["left"]["flood"] > 0
+    assert court.refused["right"] == {}
+    assert sorted(trips)[10] < 200
+
+
+@pytest.mark.slow
+def test_a_controller_that_stops_is_silent_and_heard_again(
+    court: CourtStub, session: Session
+) -> None:
+    """Rules 3: silent for 1 s of wall time gets "silent" as an input."""
+    one = held(session)
+    until(lambda: SilentSeat(0) in court.inputs)
+    one.poll(time.monotonic())
+    until(lambda: court.inputs[-1] == HeardSeat(0))
+
+
+@pytest.mark.slow
+def test_a_controller_comes_back_after_a_restart_of_the_court() -> None:
+    """Failure policy: the same token takes the seat back, here by itself, and numbers go on."""
+    with CourtStub() as first:
+        address = first.address
+        session = open_client([address])
+        one = held(session)
+        one.press(1, 2)
+        until(lambda: one.wait_frame(1.0) and one.round_trip_ms is not None)
+    with session:
+        until(lambda: not one.wait_frame(0.1) and one.link(time.monotonic()))
+        assert one.link(time.monotonic()).startswith("court silent for")
+        with CourtStub(address, last_seqs={"left": 1}, joined=("left",)) as second:
+            until(lambda: one.wait_frame(0.1) and second.network.seat_health(0.0)[0].session)
+            assert one.hold is Hold.HELD
+            assert one.link(time.monotonic()) == ""
+            assert second.keys() == []
+            assert one.press(1, 3) == 2
+            until(lambda: one.wait_frame(0.1) and second.keys() == [(2, 3)])
+        with CourtStub(address, token_hashes={}):
+            until(lambda: one.wait_frame(0.1) and one.hold is Hold.REFUSED)
+            assert "does not open seat left" in one.link(time.monotonic())

@@ -1,0 +1,213 @@
+"""The door to Zenoh: addresses, errors in words, and ends that do not hang."""
+
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import pytest
+from court_stub import until
+
+from lacoc_shared import address
+from lacoc_shared.keyspace import COMMAND_MAX_BYTES
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.session import NoReply, Refused, Session, open_client, open_court
+
+
+@pytest.fixture
+def router() -> Iterator[Session]:
+    with open_court(["127.0.0.1:0"]) as session:
+        yield session
+
+
+@pytest.mark.parametrize(
+    ("text", "complete"),
+    [
+        ("192.168.1.5", "tcp/192.168.1.5:7447"),
+        ("court.example.org:80", "tcp/court.example.org:80"),
+        ("tls/localhost:7000", "tls/localhost:7000"),
+        (" tcp/[::1]:7447 ", "tcp/[::1]:7447"),
+        ("127.0.0.1:0", "tcp/127.0.0.1:0"),
+    ],
+)
+def test_addresses_are_completed(text: str, complete: str) -> None:
+    """People write the least that is clear."""
+    assert address.endpoint(text) == complete
+
+
+@pytest.mark.parametrize(
+    "text", ["", "a b", "http://x", "udp/x:1", "x:70000", "tcp/", "::1", "tcp/x:y", "x:٣"]
+)
+def test_what_is_no_address_is_said(text: str) -> None:
+    """Found, and what it should look like."""
+    with pytest.raises(UserError, match="is not an address"):
+        address.endpoint(text)
+
+
+def test_a_court_learns_its_free_port(router: Session) -> None:
+    """Listening on port 0, then reading the locators."""
+    (locator,) = router.locators()
+    assert int(locator.rpartition(":")[2]) > 0
+    with open_client([locator]):
+        pass
+
+
+def test_a_port_in_use_is_said(router: Session) -> None:
+    """One clear message that says what to do."""
+    with pytest.raises(UserError, match=r"Port \d+ is in use"):
+        open_court(router.locators())
+
+
+def test_an_address_that_is_not_ours_is_said() -> None:
+    """A documentation address that no machine has."""
+    with pytest.raises(UserError, match=r"no address 192\.0\.2\.1"):
+        open_court(["192.0.2.1:0"])
+
+
+def test_where_nobody_listens_is_said() -> None:
+    """The court is not running, or has another port."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    with pytest.raises(UserError, match="Nobody listens at tcp/127"):
+        open_client([f"127.0.0.1:{port}"], timeout_s=0.2)
+
+
+def test_another_program_at_the_address_is_said() -> None:
+    """Something answers, but not as a court does."""
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        with pytest.raises(UserError, match="does not let this program in"):
+            open_client([f"127.0.0.1:{port}"], timeout_s=0.2)
+
+
+def test_an_unknown_name_is_said_at_once() -> None:
+    """Before any waiting: ".invalid" is never resolved."""
+    with pytest.raises(UserError, match=r"'court\.invalid' is not known"):
+        open_client(["court.invalid:7447"], timeout_s=30)
+
+
+def test_requests_are_answered_refused_or_in_vain(router: Session) -> None:
+    """No reply is an error of its own; a refusal carries its payload."""
+    desk = router.desk("lacoc/main/sheet", 1)
+    with open_client(router.locators()) as client:
+        with pytest.raises(NoReply):
+            client.ask("lacoc/main/scene")
+        with pytest.raises(NoReply):
+            client.ask("lacoc/main/sheet", timeout_s=0.05)
+        until(desk.take)
+    with pytest.raises(NoReply):
+        router.ask("lacoc/nothing")
+
+
+def test_a_request_whose_asker_is_gone_can_be_answered(router: Session) -> None:
+    """A client that ends while it waits does not disturb the court."""
+    desk = router.desk("lacoc/main/sheet", 1)
+    with open_client(router.locators()) as client, pytest.raises(NoReply):
+        client.ask("lacoc/main/sheet", timeout_s=0.02)
+    request = None
+    while request is None:
+        request = desk.take()
+    request.reply(b"too late")
+
+
+def test_refusals_carry_their_payload(router: Session) -> None:
+    """Typed: `Refused` with what the court said."""
+    desk = router.desk("lacoc/main/referee/*", 4)
+    code = (
+        "import sys; from lacoc_shared.session import *\n"
+        "with open_client([sys.argv[1]]) as c:\n"
+        "    try: c.ask('lacoc/main/referee/start', b'please')\n"
+        "    except Refused as refused: print(refused.payload)\n"
+    )
+    with _python(code, router.locators()[0]) as process:
+        request = None
+        while request is None:
+            request = desk.take()
+            time.sleep(0.001)
+        assert (request.key, request.payload) == ("lacoc/main/referee/start", b"please")
+        request.refuse(b"no")
+        out, _ = process.communicate(timeout=20)
+    assert out == "b'no'\n"
+    assert issubclass(Refused, Exception)
+
+
+def test_a_request_to_many_is_not_served(router: Session) -> None:
+    """A wildcard would ask every seat at once with one token."""
+    left, right = (router.desk(f"lacoc/main/seat/{seat}/join", 4) for seat in ("left", "right"))
+    with open_client(router.locators()) as client, pytest.raises(NoReply):
+        client.ask("lacoc/main/seat/*/join", b"me", timeout_s=0.1)
+    assert left.take() is None
+    assert right.take() is None
+
+
+def test_too_long_a_command_does_not_arrive(router: Session) -> None:
+    """A message size limit a key: 1 KiB for commands; the link lives on."""
+    ring = router.ring("lacoc/main/seat/left/key", 8)
+    with open_client(router.locators()) as client:
+        door = client.publisher("lacoc/main/seat/left/key")
+        for size in (COMMAND_MAX_BYTES + 1, 60_000, 3_000_000, COMMAND_MAX_BYTES):
+            door.put(bytes(size))
+        arrived: list[bytes] = []
+        until(lambda: arrived.extend(filter(None, [ring.take()])) or arrived)
+    assert [len(payload) for payload in arrived] == [COMMAND_MAX_BYTES]
+
+
+def test_a_mailbox_keeps_the_newest(router: Session) -> None:
+    """The newest wins, and that is the receiver's doing."""
+    frames = router.publisher("lacoc/main/frame")
+    with open_client(router.locators()) as client:
+        newest, every = client.mailbox("lacoc/main/frame", 1), client.mailbox("lacoc/*/frame", 99)
+        until(lambda: frames.put(b"first") or every.wait(0.01))
+        for number in range(20):
+            frames.put(b"%d" % number)
+        last = b""
+        while last != b"19":
+            assert every.wait(5.0)
+            mail = every.take()
+            last = mail.payload if mail else last
+        mail = newest.take()
+        assert mail is not None
+        assert mail.payload == b"19"
+        assert newest.take() is None
+        assert not newest.wait(0.01)
+
+
+def test_presence_is_seen(router: Session) -> None:
+    """A court announces itself while it is connected; nobody else can announce one."""
+    router.announce("lacoc/main/live/court")
+    with open_client(router.locators()) as client, open_client(router.locators()) as forger:
+        forger.announce("lacoc/forged/live/court")
+        with pytest.raises(NoReply):  # comes back when all before it has been dealt with
+            forger.ask("lacoc/main/sheet")
+        assert client.present("lacoc/*/live/court") == ("lacoc/main/live/court",)
+
+
+def _python(code: str, *arguments: str) -> "subprocess.Popen[str]":
+    return subprocess.Popen(
+        [sys.executable, "-c", code, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("end", ["raise SystemError('oops')", "pass", "sys.exit(3)"])
+def test_a_program_that_forgets_to_close_still_ends(router: Session, end: str) -> None:
+    """No process hangs at exit, however it ends (network.md 11)."""
+    code = (
+        "import sys; from lacoc_shared.session import *\n"
+        "client = open_client([sys.argv[1]]); client.mailbox('lacoc/main/frame', 1)\n"
+        "client.history_mailbox('lacoc/main/event', 9)\n"
+        "court = open_court(['127.0.0.1:0']); court.desk('lacoc/main/sheet', 1)\n"
+        f"court.ring('lacoc/main/seat/left/key', 9); {end}"
+    )
+    frames = router.publisher("lacoc/main/frame")
+    with _python(code, router.locators()[0]) as process:
+        while process.poll() is None:
+            frames.put(b"frame")
+            time.sleep(0.001)
+        _, errors = process.communicate(timeout=20)
+    assert process.returncode == {"pass": 0, "sys.exit(3)": 3}.get(end, 1), errors
+    assert ("oops" in errors) == ("oops" in end)

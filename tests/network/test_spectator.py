@@ -1,0 +1,160 @@
+"""Watching a real court over a real network, and the referee's hand."""
+
+import pytest
+from court_stub import KEYS, WHISTLE, CourtStub, make_event, make_scene, until
+
+from lacoc_client.asking import understand
+from lacoc_client.referee import RefereeClient
+from lacoc_client.spectator import Spectator
+from lacoc_shared import decisions as d
+from lacoc_shared.codec import encode, scene_hash
+from lacoc_shared.inputs import Decide
+from lacoc_shared.messages import Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.session import NoReply, Session, open_client
+
+
+def seen(spectator: Spectator, numbers: list[int]) -> None:
+    until(lambda: spectator.wait_frame(1.0) and [e.number for e in spectator.events] == numbers)
+
+
+def test_a_late_comer_is_complete_at_once(court: CourtStub, session: Session) -> None:
+    """Issue 2: the sheet can be fetched at any time; all events of the match come too."""
+    for number in range(1, 301):
+        court.network.publish_event(make_event(number))
+    spectator = Spectator(session, "main")
+    assert spectator.sheet.title == "Test"
+    assert spectator.scene() == court.scene
+    seen(spectator, list(range(1, 301)))
+    court.network.publish_event(make_event(301))
+    seen(spectator, list(range(1, 302)))
+    assert [event.number for event in spectator.take_events()] == list(range(1, 302))
+    assert spectator.take_events() == []
+
+
+def test_the_log_is_that_of_one_match(court: CourtStub, session: Session) -> None:
+    """The next match begins a new log, in which numbers count from 1 again."""
+    spectator = Spectator(session, "main")
+    for event in (make_event(1), make_event(2), make_event(1, match=2)):
+        court.network.publish_event(event)
+    until(lambda: spectator.wait_frame(1.0) and [e.match for e in spectator.events] == [2])
+    assert [event.match for event in spectator.take_events()] == [1, 1, 2]
+
+
+@pytest.mark.slow
+def test_what_a_restarted_court_sends_again_is_not_new() -> None:
+    """Event history dies with a court: after a restart it is published again from the record."""
+    with CourtStub() as first:
+        address = first.address
+        session = open_client([address])
+        spectator = Spectator(session, "main")
+        for number in (1, 2):
+            first.network.publish_event(make_event(number))
+        seen(spectator, [1, 2])
+        spectator.take_events()
+    with session:
+        with CourtStub(address) as second:
+            for number in (1, 2, 3):
+                second.network.publish_event(make_event(number))
+            seen(spectator, [1, 2, 3])
+            assert [event.number for event in spectator.take_events()] == [3]
+        with CourtStub(address) as third:
+            third.network.publish_event(make_event(1, text="something else"))
+            seen(spectator, [1])
+
+
+def test_a_changed_scene_is_followed(court: CourtStub, session: Session) -> None:
+    """Another scene needs another picture: the sheet is always that of the frame."""
+    spectator = Spectator(session, "main")
+    for name in ("one", "two", "three"):
+        scene = make_scene(name)
+        court.in_a_beat(lambda scene=scene: court.show(scene, title=scene.bodies[0].name))
+        until(lambda name=name: spectator.wait_frame(1.0) and spectator.sheet.title == name)
+        assert spectator.frame is not None
+        assert spectator.frame.scene == spectator.sheet.scene == scene_hash(encode(scene))
+        assert spectator.scene() == scene
+
+
+def test_a_court_whose_frames_do_not_fit_its_sheet_is_told_of(
+    court: CourtStub, session: Session
+) -> None:
+    """Scene hash is checked; a mismatch that stays is a clear sentence."""
+    spectator = Spectator(session, "main")
+    court.scene = make_scene("a scene that no sheet describes")
+    with pytest.raises(UserError, match="another scene than its sheet"):
+        until(lambda: spectator.wait_frame(1.0) and False)
+    court.network.publish_scene(court.scene)
+    with pytest.raises(UserError, match="another scene than its sheet"):
+        spectator.scene()
+
+
+def test_another_version_of_the_protocol_is_a_sentence(court: CourtStub, session: Session) -> None:
+    """Protocol version is checked by the sheet, also where the sheet itself looks different."""
+    court.in_a_beat(lambda: court.show(court.scene, protocol=99))
+    until(lambda: encode(99) in session.ask(KEYS.sheet))
+    with pytest.raises(UserError, match=r"version 99 .* this program version 1"):
+        Spectator(session, "main")
+
+
+def test_a_sheet_that_is_not_understood_is_a_sentence() -> None:
+    """A court of another make does not end in a traceback."""
+    with pytest.raises(UserError, match="is not understood"):
+        understand(encode({"protocol": 1}), Sheet)
+
+
+def test_a_request_where_no_court_is(court: CourtStub, session: Session) -> None:
+    """A request that gets no reply is an error, with words."""
+    with pytest.raises(NoReply):
+        session.ask("lacoc/other/sheet")
+    with pytest.raises(UserError, match=r"no court 'other' .* there is main"):
+        Spectator(session, "other")
+
+
+def test_nobody_but_the_court_sends_frames(
+    court: CourtStub, session: Session, other_session: Session
+) -> None:
+    """Frames and events are not signed: the access rules protect them."""
+    spectator = Spectator(session, "main")
+    spied = session.mailbox("lacoc/main/seat/**", 10)
+    for key in (KEYS.frame, KEYS.event, KEYS.sheet, KEYS.health):
+        other_session.publisher(key).put(b"forged")
+    desk = other_session.desk(KEYS.decision("*"), 4)
+    other_session.publisher(KEYS.command("left")).put(b"rubbish")
+    until(lambda: court.refused["left"].get("bad bytes"))
+    for _ in range(5):
+        assert spectator.wait_frame(1.0)  # a forged one would not be understood
+    assert spied.take() is None
+    RefereeClient(session, "main", WHISTLE).decide(d.Start(), "", "Kubota")
+    assert desk.take() is None
+
+
+def test_the_referee_decides(court: CourtStub, session: Session) -> None:
+    """Rules 4: each decision with who, reason and a reply."""
+    reply = RefereeClient(session, "main", WHISTLE).decide(d.Start(), "all ready", "Kubota")
+    assert reply.text == "started"
+    assert court.inputs == [Decide("Kubota", "all ready", d.Start())]
+
+
+def test_a_wrong_referee_token_is_refused(court: CourtStub, session: Session) -> None:
+    """One sentence, counted where the referee sees it, and nothing enters the match."""
+    with pytest.raises(UserError, match="not a referee's token"):
+        RefereeClient(session, "main", "guess").decide(d.Start(), "", "K")
+    assert court.network.dropped == {"wrong token": 1}
+    assert court.inputs == []
+
+
+def test_health_reaches_everybody(court: CourtStub, session: Session) -> None:
+    """Twice a second; each seat's link and refusals."""
+    spectator = Spectator(session, "main")
+    until(lambda: spectator.wait_frame(1.0) and spectator.health)
+    assert spectator.health is not None
+    assert [seat.id for seat in spectator.health.seats] == ["left", "right"]
+
+
+def test_a_silent_court_is_noticed(court: CourtStub, session: Session) -> None:
+    """No frame means no court: every phase has frames."""
+    spectator = Spectator(session, "main")
+    assert spectator.wait_frame(1.0)
+    court.silent = True
+    until(lambda: spectator.wait_frame(0.05) is None)
+    assert spectator.silent_s(spectator.frame_s + 3.0) == 3.0
