@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from lacoc_arenas.bot import Brain, Key
 from lacoc_shared.gait import JOINTS_PER_LEG, Level
-from lacoc_shared.messages import Frame, Sheet
+from lacoc_shared.messages import Frame, SeatFrame, Sheet
 from lacoc_shared.seat import BEATS_PER_S, RESTART_KEY
 
 STAND, TURN_LEFT, FORWARD, TURN_RIGHT = (Key(Level.LOCOMOTION, digit) for digit in range(4))
@@ -18,23 +18,21 @@ RESTART = Key(Level.LOCOMOTION, RESTART_KEY)
 
 SPEED_M_S = 0.057
 """How fast the sample hexapod walks; other robots are near enough for a plan."""
-TURN_RAD_S = math.radians(17)
+TURN_RAD_S = math.radians(21)
 
 _POSE = Struct("<7f")
 _FLOAT_BYTES = 4
 
-_AIM_RAD = math.radians(6)
-"""A turn ends this near to the wanted heading."""
 _STRAY_RAD = math.radians(16)
-"""A walk goes on until the heading is this far off."""
+"""Half of what one sequence of a turn turns: where the heading is less far off, it walks."""
 _NEAR_M = 0.10
 """So near to the target the bearing swings: the walk goes on until it is far off."""
 _NEAR_STRAY_RAD = math.radians(45)
 
 _FALLEN_TICKS = 2 * BEATS_PER_S
 _STUCK_TICKS = 4 * BEATS_PER_S
-_STUCK_M = 0.04
-"""A robot that walks goes farther than this in that time, or something is in its way."""
+_STUCK_M = 0.06
+"""A robot that walks for so long comes farther than this, or something is in its way."""
 _EVADE_TICKS = 6 * BEATS_PER_S
 
 _PASS_M = 0.42
@@ -91,20 +89,27 @@ def _pose(x: float, y: float, z: float, qw: float, qx: float, qy: float, qz: flo
 
 
 class Pilot:
-    """Brings one robot to points: turns, walks, passes the other robot, gets up, frees itself."""
+    """Brings one robot to points: turns, walks, passes the other robot, gets up, frees itself.
 
-    def __init__(self, seat: int, size_m: tuple[float, float]) -> None:
+    A key is left only where its sequence ends: a step that is broken off brings a robot
+    nowhere, and a turn in pieces turns it the wrong way.
+    """
+
+    def __init__(self, sheet: Sheet, seat: int, size_m: tuple[float, float]) -> None:
         self._seat = seat
+        self._postures = sheet.seats[seat].postures
         self._limits_m = tuple(size / 2 - _WALL_M for size in size_m)
-        self._wanted = STAND
+        self._posture = 0
         self._fallen_since: int | None = None
-        self._mark: tuple[int, float, float] | None = None  # clock and place of the last progress
+        self._seen = 0
+        self._walked_ticks = 0
+        self._mark_m = (0.0, 0.0)  # where it made its last progress
         self._evade: tuple[int, float] | None = None  # until when, and with which heading
 
     def toward(
         self, frame: Frame, poses: list[Pose], target_m: tuple[float, float] | None
     ) -> Key | None:
-        """The key that brings the robot nearer to a point; None where it stands already.
+        """The key that brings the robot nearer to a point; None to leave the standing one.
 
         Args:
             frame: the newest frame.
@@ -112,14 +117,20 @@ class Pilot:
             target_m: the point (x, y); None to stand.
         """
         seat, pose, now = frame.seats[self._seat], poses[self._seat], frame.clock_ticks
-        if seat.locked_ticks:
-            self._fallen_since = self._mark = self._evade = None
-            return None
         if self._must_restart(pose, now):
             return RESTART
         self._watch_progress(poses, now, (seat.level, seat.key) == FORWARD)
-        self._wanted = STAND if target_m is None else self._steer(poses, target_m, now)
-        return self._wanted if (seat.level, seat.key) != self._wanted else None
+        if not self._sequence_ended(seat) or seat.locked_ticks:
+            return None
+        wanted = STAND if target_m is None else self._steer(poses, target_m, now)
+        return wanted if (seat.level, seat.key) != wanted else None
+
+    def _sequence_ended(self, seat: SeatFrame) -> bool:
+        """Did the standing key just come back to its first posture, or has it no others?"""
+        before, self._posture = self._posture, seat.posture
+        if seat.level != Level.LOCOMOTION or seat.key == STAND.key:
+            return True
+        return seat.posture < before or self._postures[seat.key] == 1
 
     def _must_restart(self, pose: Pose, now: int) -> bool:
         if pose.up >= 0:
@@ -133,51 +144,41 @@ class Pilot:
         return True
 
     def _watch_progress(self, poses: list[Pose], now: int, walks: bool) -> None:
+        """Where a long walk comes nowhere: choose another heading for a while."""
         pose = poses[self._seat]
-        if not walks or self._mark is None or pose.distance_m(*self._mark[1:]) > _STUCK_M:
-            self._mark = (now, pose.x_m, pose.y_m)
-        elif now - self._mark[0] >= _STUCK_TICKS:
+        if pose.distance_m(*self._mark_m) > _STUCK_M:
+            self._mark_m, self._walked_ticks = (pose.x_m, pose.y_m), 0
+        elif walks:
+            self._walked_ticks += now - self._seen
+        self._seen = now
+        if self._walked_ticks >= _STUCK_TICKS:
             away = [other for other in poses if other is not pose and _is_near(pose, other)]
-            bearing = (
+            bearing_rad = (
                 pose.bearing_rad(away[0].x_m, away[0].y_m) + math.pi
                 if away
-                else (pose.bearing_rad(0.0, 0.0))
+                else pose.bearing_rad(0.0, 0.0)
             )
-            self._evade = (now + _EVADE_TICKS, pose.heading_rad + bearing)
-            self._mark = None
+            self._evade = (now + _EVADE_TICKS, pose.heading_rad + bearing_rad)
+            self._walked_ticks = 0
 
     def _steer(self, poses: list[Pose], target_m: tuple[float, float], now: int) -> Key:
         pose = poses[self._seat]
         if self._evade is not None and now < self._evade[0]:
-            return self._turn(self._evade[1] - pose.heading_rad, _STRAY_RAD)
+            return _key_for(self._evade[1] - pose.heading_rad, _STRAY_RAD)
         bearing_rad = pose.bearing_rad(*target_m)
         for other in poses:
             if other is not pose and _is_near(pose, other):
                 bearing_rad = self._pass(pose, other, bearing_rad)
         near = pose.distance_m(*target_m) < _NEAR_M
-        return self._turn(bearing_rad, _NEAR_STRAY_RAD if near else _STRAY_RAD)
-
-    def _turn(self, bearing_rad: float, stray_rad: float) -> Key:
-        """Walk while the bearing is small; a turn once begun goes on until it is very small."""
-        bearing_rad = math.remainder(bearing_rad, math.tau)
-        turn = TURN_LEFT if bearing_rad > 0 else TURN_RIGHT
-        return (
-            turn
-            if abs(bearing_rad) > (_AIM_RAD if self._wanted == turn else stray_rad)
-            else (FORWARD)
-        )
+        return _key_for(bearing_rad, _NEAR_STRAY_RAD if near else _STRAY_RAD)
 
     def _pass(self, pose: Pose, other: Pose, bearing_rad: float) -> float:
-        """Turn the wanted bearing aside where the other robot stands in the way."""
+        """Go round the other robot where it stands in the way: both keep to the right."""
         blocked_rad = pose.bearing_rad(other.x_m, other.y_m)
-        off_rad = math.remainder(bearing_rad - blocked_rad, math.tau)
-        if abs(off_rad) > _AHEAD_RAD:
+        if abs(math.remainder(bearing_rad - blocked_rad, math.tau)) > _AHEAD_RAD:
             return bearing_rad
-        sides = (1, -1) if off_rad >= 0 else (-1, 1)
-        for side in sides:
-            if self._is_free(pose, blocked_rad + side * _PASS_RAD):
-                return blocked_rad + side * _PASS_RAD
-        return bearing_rad
+        right_rad, left_rad = blocked_rad - _PASS_RAD, blocked_rad + _PASS_RAD
+        return right_rad if self._is_free(pose, right_rad) else left_rad
 
     def _is_free(self, pose: Pose, bearing_rad: float) -> bool:
         """Is there room before the wall in this direction?"""
@@ -188,6 +189,14 @@ class Pilot:
 
 def _is_near(pose: Pose, other: Pose) -> bool:
     return pose.distance_m(other.x_m, other.y_m) < _PASS_M
+
+
+def _key_for(bearing_rad: float, stray_rad: float) -> Key:
+    """Walk while the bearing is small, else turn to it."""
+    bearing_rad = math.remainder(bearing_rad, math.tau)
+    if abs(bearing_rad) <= stray_rad:
+        return FORWARD
+    return TURN_LEFT if bearing_rad > 0 else TURN_RIGHT
 
 
 def straight(sheet: Sheet, seat: int) -> Brain:

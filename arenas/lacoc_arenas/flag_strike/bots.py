@@ -36,7 +36,7 @@ class _Hunter(ABC):
         self.seat = seat
         self.places = [(marker.x_m, marker.y_m) for marker in self.game.markers]
         self._eyes = Eyes(sheet)
-        self._pilot = Pilot(seat, self.game.size_m)
+        self._pilot = Pilot(sheet, seat, self.game.size_m)
         self._seen: tuple[int, bytes] | None = None
         self._target = _NOWHERE
 

@@ -9,6 +9,7 @@ from lacoc_arenas.game import NEUTRAL
 from lacoc_arenas.steering import Eyes, Pilot, Pose, straight
 from lacoc_shared.codec import unpack_states
 from lacoc_shared.messages import Frame, Sheet
+from lacoc_shared.seat import BEATS_PER_S
 
 from .rules import NO_CELL, SIDE, make
 
@@ -16,8 +17,9 @@ _DEPTH, _BEAM = 7, 20
 """How many cells a plan looks ahead, and how many plans are kept at each."""
 _PATIENCE_S = 25.0
 """A disc this much later is worth 1 / e of one now: much can happen until then."""
-_BLOCKED_M, _BLOCKED_S = 0.35, 6.0
-"""What it costs to enter a cell with the other robot so near to it."""
+_BLOCKED_M, _BLOCKED_S = 0.35, 12.0
+"""A disc with the other robot so near to it is blocked; what it costs to go there all the same."""
+_REPLAN_TICKS = 4 * BEATS_PER_S
 
 
 class _Walker(ABC):
@@ -28,9 +30,9 @@ class _Walker(ABC):
         self.seat = seat
         self.discs = [(disc.x_m, disc.y_m) for disc in self.game.markers]
         self._eyes = Eyes(sheet)
-        self._pilot = Pilot(seat, self.game.size_m)
+        self._pilot = Pilot(sheet, seat, self.game.size_m)
         self._last = self.game.start().last[seat]
-        self._seen: tuple[int, bytes] | None = None
+        self._seen: tuple[int, int, bytes] | None = None
         self._target = NO_CELL
 
     def __call__(self, frame: Frame) -> Key | None:
@@ -39,13 +41,21 @@ class _Walker(ABC):
         cell = self.game.cell_at(pose.x_m, pose.y_m)
         if cell != NO_CELL:
             self._last = cell
-        seen = (self._last, frame.markers)
+        seen = (frame.clock_ticks // _REPLAN_TICKS, self._last, frame.markers)
         if seen != self._seen:
             self._seen = seen
             cells = unpack_states(frame.markers, len(self.discs))
             self._target = self.choose(cells, self._last, poses)
         target_m = None if self._target == NO_CELL else self.discs[self._target]
         return self._pilot.toward(frame, poses, target_m)
+
+    def blocked(self, cell: int, poses: list[Pose]) -> bool:
+        """Does another robot stand in the way?"""
+        return any(
+            other.distance_m(*self.discs[cell]) < _BLOCKED_M
+            for seat, other in enumerate(poses)
+            if seat != self.seat
+        )
 
     @abstractmethod
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
@@ -64,14 +74,21 @@ class Nearest(_Walker):
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
         """The nearest useful cell."""
         own, pose = self.seat + 1, poses[self.seat]
-        useful = [n for n in self.game.neighbours[last] if cells[n] != own == cells[last]] or [
+        flips = [n for n in self.game.neighbours[last] if cells[n] != own == cells[last]]
+        starts = [
             cell
             for cell, colour in enumerate(cells)
             if colour == own
             and cell != last
             and any(cells[n] != own for n in self.game.neighbours[cell])
         ]
+        useful = next(
+            (free for some in (flips, starts) if (free := self._free(some, poses))), flips or starts
+        )
         return min(useful, key=lambda c: pose.distance_m(*self.discs[c]), default=NO_CELL)
+
+    def _free(self, cells: list[int], poses: list[Pose]) -> list[int]:
+        return [cell for cell in cells if not self.blocked(cell, poses)]
 
 
 class _Plan(NamedTuple):
@@ -91,22 +108,21 @@ class Planner(_Walker):
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
         """The first cell of the best route found."""
         pose = poses[self.seat]
-        others = [other for other in poses if other is not pose]
         beam = [_Plan(0.0, 0.0, pose, last, cells, NO_CELL)]
         best = beam[0]
         for _ in range(_DEPTH):
-            beam = [grown for plan in beam for grown in self._grow(plan, others)]
+            beam = [grown for plan in beam for grown in self._grow(plan, poses)]
             beam.sort(key=lambda plan: (-plan.worth, plan.time_s))
             del beam[_BEAM:]
             best = max(best, beam[0], key=lambda plan: plan.worth)
         return best.first
 
-    def _grow(self, plan: _Plan, others: list[Pose]) -> list[_Plan]:
+    def _grow(self, plan: _Plan, poses: list[Pose]) -> list[_Plan]:
         grown = []
         for cell in _around(plan.cell):
             x_m, y_m = self.discs[cell]
             time_s = plan.time_s + plan.pose.travel_s(x_m, y_m)
-            if plan.first == NO_CELL and any(o.distance_m(x_m, y_m) < _BLOCKED_M for o in others):
+            if plan.first == NO_CELL and self.blocked(cell, poses):
                 time_s += _BLOCKED_S
             worth, cells = plan.worth, plan.cells
             flips = self.game.flips(cells, self.seat, plan.cell, cell)
