@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 from rich.table import Table
+from rich.text import Text
 
 from lacoc_robots.library import find_robot, installed_robots
 from lacoc_robots.limits import Limits
@@ -40,7 +41,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
         screen.print_json(facts)
         return
     width_m, length_m, height_m = facts["footprint_m"]
-    table = Table(title=f"{spec.name} is right", title_justify="left", show_header=False)
+    table = Table(title=Text(f"{spec.name} is right"), title_justify="left", show_header=False)
     for what, value in (
         ("legs", f"{facts['legs']} ({'  '.join(facts['labels'])})"),
         ("joints", f"{facts['joints']}"),
@@ -49,7 +50,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
         ("AngMin", f"{facts['ang_min_deg_s']:g} degrees/s"),
         ("next posture", _advance(spec)),
     ):
-        table.add_row(what, value)
+        table.add_row(what, Text(value))
     screen.show(table)
 
 
@@ -79,7 +80,7 @@ def list_robots(json: options.Json = False) -> None:
     if json:
         screen.print_json(robots)
         return
-    table = Table("robot", "legs", "mass [kg]", "AngMin [degrees/s]")
+    table = Table("robot", "legs", "mass in kg", "AngMin in degrees/s")
     for name, facts in robots.items():
         table.add_row(
             name, f"{facts['legs']}", f"{facts['mass_kg']:.3f}", f"{facts['ang_min_deg_s']:g}"

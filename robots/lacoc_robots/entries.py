@@ -5,10 +5,13 @@ check that asks "is it too large?" finds no second mistake where there was a fir
 """
 
 import math
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from lacoc_shared.mistakes import Mistake
+
+_HUGE = sys.float_info.max
 
 
 class Entries:
@@ -64,16 +67,22 @@ class Entries:
             where: the place of each within the entry, as fields of `Mistake`.
         """
         expected = f"{len(bounds)} numbers in [ ]"
-        value = self._take(name, expected)
-        if not isinstance(value, list) or len(value) != len(bounds):
-            if value is not None:
-                found = f"{len(value)} entries" if isinstance(value, list) else _shown(value)
-                self.note(name, found, expected)
+        values = self._take(name, expected)
+        if values is None:
+            return (math.nan,) * len(bounds)
+        if not isinstance(values, list):
+            self.note(name, _shown(values), expected)
+            return (math.nan,) * len(bounds)
+        if len(values) != len(bounds):
+            # Which number belongs where is unknown, but each must be one.
+            self.note(name, f"{len(values)} entries", expected)
+            for i, value in enumerate(values):
+                self._check(name, value, -_HUGE, _HUGE, "a number", column=i + 1)
             return (math.nan,) * len(bounds)
         places = where or [{"column": i + 1} for i in range(len(bounds))]
         return tuple(
-            self._check(name, one, low, high, f"a number {_bounds(low, high, unit)}", **place)
-            for one, (low, high), place in zip(value, bounds, places, strict=True)
+            self._check(name, value, low, high, f"a number {_bounds(low, high, unit)}", **place)
+            for value, (low, high), place in zip(values, bounds, places, strict=True)
         )
 
     def text(self, name: str, longest: int) -> str:

@@ -47,6 +47,12 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
     """Drawn in another colour, to show where the front is (workshop 3-1)."""
 
     @property
+    def range_deg(self) -> tuple[float, float]:
+        """The range as the file has it: 60 degrees, not 59.99999999999999."""
+        low, high = self.range_rad
+        return round(math.degrees(low), 9), round(math.degrees(high), 9)
+
+    @property
     def side(self) -> int:
         """+1 for a leg on the right, -1 for one on the left: the sign of its root axis.
 

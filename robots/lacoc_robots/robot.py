@@ -57,6 +57,11 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
         return tuple(leg.range_rad for _ in range(JOINTS_PER_LEG) for leg in self.legs)
 
     @property
+    def ranges_deg(self) -> tuple[tuple[float, float], ...]:
+        """(joints,) the same in the file's degrees."""
+        return tuple(leg.range_deg for _ in range(JOINTS_PER_LEG) for leg in self.legs)
+
+    @property
     def mass_kg(self) -> float:
         """Mass of the whole robot."""
         return self.body_mass_kg + sum(mass for leg in self.legs for mass in leg.masses_kg)

@@ -129,7 +129,7 @@ def _legs(root: Entries, limits: Limits) -> tuple[LegSpec, ...]:
     expected = f"an even number of legs from {low} to {high}, each begun by the line [[leg]]"
     tables = root.tables("leg", expected)
     if tables and (len(tables) % 2 or not low <= len(tables) <= high):
-        root.note("leg", f"{len(tables)} legs", expected)
+        root.note("leg", f"{len(tables)} of them", expected)
     legs: list[LegSpec] = []
     for table in tables[:high]:
         leg = _leg(table, default, limits)
@@ -209,7 +209,7 @@ def _posture(start: Entries, legs: tuple[LegSpec, ...], limits: Limits) -> Postu
     bounds, where = [], []
     for joint in range(JOINTS_PER_LEG * len(legs)):
         leg = legs[leg_and_level(joint, len(legs))[0]]
-        low, high = (math.degrees(angle) for angle in leg.range_rad)
+        low, high = leg.range_deg
         known = low < high
         bounds.append((low, high) if known else (-limits.range_deg, limits.range_deg))
         where.append({"joint": joint, "leg": leg.label or None})
@@ -241,7 +241,7 @@ def _check_mass(root: Entries, robot: RobotSpec, limits: Limits) -> None:
 
 def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits) -> None:
     """The robot at angle 0 fits in its box, and it starts on the floor, or a little above."""
-    low, high = robot.bounds((0.0,) * robot.joints)
+    low, high = _bounds(robot, (0.0,) * robot.joints)
     most = (limits.width_m, limits.length_m, limits.height_m)
     for name, a, b, most_m in zip(("wide", "long", "high"), low, high, most, strict=True):
         if b - a > most_m + _ROUNDING_M:
@@ -250,7 +250,7 @@ def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits)
                 f"a robot {b - a:.3f} m {name} with every angle 0",
                 f"at most {most_m:g} m, with legs and their radius",
             )
-    lowest = robot.bounds(robot.start_posture)[0].z + robot.start_z_m
+    lowest = _bounds(robot, robot.start_posture)[0].z + robot.start_z_m
     if lowest < -_ROUNDING_M or lowest > limits.drop_m + _ROUNDING_M:
         least_m = robot.start_height_m - lowest
         start.note(
@@ -259,3 +259,13 @@ def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits)
             f"{math.ceil(least_m * 1e3) / 1e3:g} to {least_m + limits.drop_m:.3f} m "
             "for this start posture",
         )
+
+
+def _bounds(robot: RobotSpec, posture: Posture) -> tuple[Point, Point]:
+    """Lowest and highest x, y and z of all parts; NaN unless every number is known."""
+    ends = (c for capsule in robot.capsules(posture) for c in (*capsule.start, *capsule.end))
+    radii = (leg.radius_m for leg in robot.legs)
+    if any(map(math.isnan, (*robot.size_m, *ends, *radii))):
+        unknown = Point(math.nan, math.nan, math.nan)
+        return unknown, unknown
+    return robot.bounds(posture)

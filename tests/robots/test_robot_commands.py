@@ -1,0 +1,96 @@
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from lacoc_robots.library import find_robot
+from lacoc_shared import cli
+
+HEXAPOD = find_robot("hexapod")[1].decode()
+
+
+def lacoc(*words: str) -> int:
+    """Run the command line; return its exit code, however it ends."""
+    with pytest.raises(SystemExit) as end:
+        sys.exit(cli.main(words))
+    assert isinstance(end.value.code, int)
+    return end.value.code
+
+
+def test_check_weighs_in(capsys: pytest.CaptureFixture[str]) -> None:
+    """A robot that is right: legs, joints, mass, footprint, AngMin."""
+    assert lacoc("robot", "check", "hexapod") == 0
+    out = capsys.readouterr().out
+    for fact in (
+        "R,F  R,C  R,B  L,B  L,C  L,F",
+        "18",
+        "1.115 kg",
+        "0.300 x 0.120 x 0.105 m",
+        "120",
+    ):
+        assert fact in out
+
+
+def test_check_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
+    """--json prints the same facts for a program."""
+    assert lacoc("robot", "check", "quadruped", "--json") == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert (facts["legs"], facts["joints"], facts["mass_kg"]) == (4, 12, 0.76)
+
+
+def test_check_names_every_mistake(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Rules 2: a table of mistakes, exit code 2."""
+    file = tmp_path / "mine.toml"
+    file.write_text(HEXAPOD.replace("kp = 20.0", "kp = nan").replace('"Hexapod"', "6"))
+    assert lacoc("robot", "check", str(file)) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    for word in ("2 mistakes", "mine.toml", "servo.kp", "nan", "from 1 to 200", "name"):
+        assert word in printed.err
+
+
+def test_check_by_a_contest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Rules 1: with --contest the contest's limits count."""
+    contest = tmp_path / "contest.toml"
+    assert lacoc("contest", "init", str(contest)) == 0
+    assert lacoc("robot", "check", "hexapod", "--contest", str(contest)) == 0
+    contest.write_text(contest.read_text().replace("[limits]", "[limits]\nang_min_deg_s = 100\n#"))
+    assert lacoc("robot", "check", "hexapod", "--contest", str(contest)) == 2
+    assert "drive.ang_min_deg_s" in capsys.readouterr().err
+
+
+def test_list(capsys: pytest.CaptureFixture[str]) -> None:
+    """Every installed robot, with its legs, mass and AngMin."""
+    assert lacoc("robot", "list") == 0
+    out = capsys.readouterr().out
+    assert all(name in out for name in ("hexapod", "long-legs", "octopod", "quadruped"))
+    assert lacoc("robot", "list", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["octopod"]["legs"] == 8
+
+
+def test_export_keeps_the_older_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Plain MJCF is written; rules 2: writing never overwrites a file."""
+    out = tmp_path / "out.xml"
+    out.write_text("mine")
+    assert lacoc("robot", "export", "hexapod", str(out)) == 0
+    assert out.read_text().startswith("<mujoco")
+    assert (tmp_path / "out.1.xml").read_text() == "mine"
+    assert "out.1.xml" in capsys.readouterr().err
+
+
+def test_export_without_mujoco(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without MuJoCo one line says how to install it."""
+    monkeypatch.delitem(sys.modules, "lacoc_robots.model", raising=False)
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    assert lacoc("robot", "export", "hexapod", str(tmp_path / "out.xml")) == 2
+    assert 'pip install "lacoc[server]"' in capsys.readouterr().err
+    assert not (tmp_path / "out.xml").exists()
+
+
+def test_nothing_there(capsys: pytest.CaptureFixture[str]) -> None:
+    """A name that is no robot's: one line, exit code 2."""
+    assert lacoc("robot", "check", "centipede") == 2
+    assert "'centipede'" in capsys.readouterr().err
