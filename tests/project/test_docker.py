@@ -1,0 +1,147 @@
+"""The composition in docker/ works: each of its commands is run as a process on this machine."""
+
+import json
+import os
+import queue
+import re
+import socket
+import subprocess
+import sys
+import threading
+import time
+import tomllib
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+COMPOSE = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text(encoding="utf-8"))
+SERVICES: dict[str, dict[str, Any]] = COMPOSE["services"]
+DOCKERFILE = (ROOT / "docker" / "Dockerfile").read_text(encoding="utf-8")
+PORT = "7447"
+
+
+def free_port() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return str(probe.getsockname()[1])
+
+
+def order() -> list[str]:
+    """The services, each after those it depends on."""
+    ordered: list[str] = []
+    while len(ordered) < len(SERVICES):
+        ready = [
+            name
+            for name, service in SERVICES.items()
+            if name not in ordered and set(service.get("depends_on", ())) <= set(ordered)
+        ]
+        assert ready, "the services depend on each other in a circle"
+        ordered += ready
+    return ordered
+
+
+def test_the_image_installs_what_a_court_needs() -> None:
+    """The image's command is lacoc, with an extra and a Python that the project has."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+    assert 'ENTRYPOINT ["lacoc"]' in DOCKERFILE
+    assert set(re.findall(r"\[(\w+)\]\"", DOCKERFILE)) <= set(project["optional-dependencies"])
+    assert project["requires-python"] == ">=3.11"
+    assert set(re.findall(r"FROM (\S+)", DOCKERFILE)) == {"python:3.11-slim"}
+
+
+def test_the_services_hang_together() -> None:
+    """Every service runs the image; the port that is opened is the one that is connected to."""
+    assert {service["image"] for service in SERVICES.values()} == {"lacoc"}
+    assert SERVICES["court"]["ports"] == [f"{PORT}:{PORT}"]
+    connects = {service["environment"].get("LACOC_CONNECT") for service in SERVICES.values()}
+    assert connects == {None, f"tcp/court:{PORT}"}
+    assert (ROOT / "docker" / SERVICES["court"]["build"]["context"]).resolve() == ROOT
+    assert order()[:2] == ["contest", "court"]
+
+
+@pytest.mark.slow
+def test_the_composition_plays(tmp_path: Path) -> None:
+    """Started in their order, the services come to a match that is being played."""
+    port = free_port()
+
+    def here(text: str) -> str:
+        """What a container sees, as this machine has it."""
+        text = text.replace("/contest", str(tmp_path)).replace("tcp/court:", "tcp/127.0.0.1:")
+        return text.replace(PORT, port)
+
+    with ExitStack() as running:
+        lines: queue.Queue[str] = queue.Queue()
+        for name in order():
+            service = SERVICES[name]
+            environment = {key: here(value) for key, value in service["environment"].items()}
+            command = [here(word) for word in service["command"]]
+            process = running.enter_context(lacoc(command, environment, lines, tmp_path))
+            conditions = {
+                other["depends_on"][name]["condition"]
+                for other in SERVICES.values()
+                if name in other.get("depends_on", ())
+            }
+            if "service_completed_successfully" in conditions:
+                assert process.wait(60) == 0
+                file = tmp_path / "contest.toml"
+                file.write_text(here(file.read_text()))
+            if "service_healthy" in conditions:
+                wait_until_healthy([here(word) for word in service["healthcheck"]["test"]])
+        heard = wait_for(lines, "PLAYING.", timeout_s=60)
+
+    assert any("takes the left seat" in line for line in heard)
+    assert any("takes the right seat" in line for line in heard)
+    assert any("compose" in line for line in heard)  # who decided to start
+
+
+@contextmanager
+def lacoc(
+    command: list[str], environment: dict[str, str], lines: "queue.Queue[str]", folder: Path
+) -> Iterator[subprocess.Popen[str]]:
+    """A running subcommand whose output goes to a queue."""
+    clean = {key: value for key, value in os.environ.items() if not key.startswith("LACOC_")}
+    with subprocess.Popen(
+        [sys.executable, "-u", "-m", "lacoc_shared", *command],
+        env={**clean, **environment},
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    ) as process:
+        assert process.stdout is not None
+        reader = threading.Thread(target=lambda out: [*map(lines.put, out)], args=[process.stdout])
+        reader.start()
+        try:
+            yield process
+        finally:
+            process.terminate()
+            try:
+                process.wait(20)
+            except subprocess.TimeoutExpired:
+                process.kill()
+            reader.join()
+
+
+def wait_until_healthy(check: list[str], timeout_s: float = 60) -> None:
+    assert check[:2] == ["CMD", "python"]
+    until_s = time.monotonic() + timeout_s
+    while subprocess.run([sys.executable, *check[2:]], capture_output=True, check=False).returncode:
+        assert time.monotonic() < until_s, "the court did not become healthy"
+
+
+def wait_for(lines: "queue.Queue[str]", word: str, timeout_s: float) -> list[str]:
+    """Everything that was said until a word."""
+    heard: list[str] = []
+    until_s = time.monotonic() + timeout_s
+    while not heard or word not in heard[-1]:
+        try:
+            heard.append(lines.get(timeout=max(0.0, until_s - time.monotonic())))
+        except queue.Empty:
+            pytest.fail(f"{word!r} was not said, but:\n{json.dumps(heard, indent=1)}")
+    return heard
