@@ -40,8 +40,8 @@ SILENT_AFTER_S = 1.0
 """A joined seat without a valid command for longer than this is silent (rules 3)."""
 COMMANDS_PER_BEAT = 16
 """More of a seat's commands are not looked at in one beat: the newest count."""
-COMMANDS_HZ = 100.0
-"""Nor more than this in the long run; a controller sends 10 and what is pressed."""
+COMMANDS_HZ = 200.0
+"""Nor more than this in the long run; a controller sends 10 and what is pressed, a bot 60."""
 NAME_MAX = 24
 
 _JOINS_HZ, _JOINS_BURST = 1.0, 5  # each may cost the reading of three files
