@@ -85,7 +85,8 @@ class History:
         """
         before = self.state
         self.state = self._game.set(before, marker, value)
-        self._append(Step(ticks, SetMarker(marker, value), before, (), (number,)))
+        step = Step(ticks, SetMarker(marker, value), before, (), (number,), over=self.over)
+        self._append(step)
 
     def knows(self, number: int) -> bool:
         """Whether an event can be taken back: it stands, and the game or a `set` made it."""

@@ -25,7 +25,6 @@ class Pace:
 
     def __init__(self, now_s: float, speed: float = 1.0, offset_s: float = 0.0) -> None:
         self._beat_s = BEAT_S / speed
-        self._speed = speed
         self._due_s = now_s + offset_s % self._beat_s
         self._starts_s: deque[float] = deque(maxlen=_WINDOW_BEATS)
         self.slow_beats = 0

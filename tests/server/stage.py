@@ -1,0 +1,276 @@
+"""A match under test: whom it seats, how it gets from phase to phase, and a physics by script."""
+
+import hashlib
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.arena import Arena
+from lacoc_arenas.game import Place
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.entry import Entry, weigh_in
+from lacoc_server.match import Beat, Match, Outcome
+from lacoc_server.physics import Fault, MakePhysics
+from lacoc_server.world import World
+from lacoc_shared import decisions as d
+from lacoc_shared.codec import encode, unpack_states
+from lacoc_shared.gait import Level, Posture
+from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
+from lacoc_shared.messages import MARKER_STATES, Event, Frame, Scene, SentFile
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import RESTART_KEY, Phase
+
+LEFT, RIGHT = 0, 1
+A, B = Level.POSTURE, Level.LOCOMOTION
+X = RESTART_KEY
+STAND, TURN_LEFT, FORWARD, TURN_RIGHT = range(4)
+"""Keys of level B in the sample gait (rules 2)."""
+QUICK = {"match": {"countdown_s": 0.0}}
+"""For tests in which the countdown is not the point."""
+
+
+def setup(arena: str, overrides: Mapping[str, Any] | None = None) -> Setup:
+    ground = arenas.load(arena, overrides)
+    return Setup(
+        match_id="m", court="main", match=1, arena=arena, settings=ground.settings, limits={}
+    )
+
+
+def join(
+    seat: int, team: str | None = None, robot: str = "hexapod", robot_file: bytes | None = None
+) -> JoinSeat:
+    """A team with a sample robot and its gait, or with a robot file of its own."""
+    name, data = find_robot(robot)
+    return JoinSeat(
+        seat,
+        team or ("Ants", "Bees")[seat],
+        SentFile(name, robot_file or data),
+        *sample_gait_files(robot),
+        token_hash="",
+    )
+
+
+def entry(robot: str = "hexapod") -> Entry:
+    was = join(0, robot=robot)
+    return weigh_in(was.robot, was.postures, was.locomotion, {})
+
+
+def decide(decision: d.Decision, reason: str = "agreed", by: str = "Kubota") -> Decide:
+    return Decide(by, reason, decision)
+
+
+@dataclass
+class Script:
+    """Where robots are and what they touch after the ticks of PLAYING, counted from 1."""
+
+    poses: dict[int, dict[int, tuple[float, float]]] = field(default_factory=dict)
+    """Tick -> seat -> x, y; a robot stays until the next."""
+    touches: dict[int, dict[int, tuple[int, ...]]] = field(default_factory=dict)
+    """Tick -> seat -> markers; nobody touches anything in other ticks."""
+    faults: dict[int, Fault] = field(default_factory=dict)
+    """Tick -> what goes wrong in it, once."""
+
+
+class ScriptedPhysics:
+    """Robots that go where a script says.
+
+    Honest in all that a match may ask of a physics: between ticks it stands still, a fault
+    changes nothing, and the digest chains its state.
+    """
+
+    scene = Scene(bodies=(), geoms=())
+
+    def __init__(self, arena: Arena, entries: Sequence[Entry], script: Script) -> None:
+        self.scene_hash = hashlib.blake2b(
+            repr([entry.robot.name for entry in entries]).encode(), digest_size=8
+        ).digest()
+        self.model_hash = self.scene_hash.hex()
+        self.digest = bytes(8)
+        self.steps = 0
+        self.ticks = 0
+        self._script = script
+        self._places = [arena.game.starts[seat][0][:2] for seat in range(len(entries))]
+        self._angles: list[Posture] = [entry.robot.start_posture for entry in entries]
+
+    def begin(self) -> None:
+        """From now on ticks are ticks of PLAYING."""
+        self.ticks = 0
+
+    def place(self, seat: int, place: Place) -> None:
+        self._places[seat] = place[:2]
+
+    def step(self, angles: Sequence[Posture]) -> Fault | None:
+        if (fault := self._script.faults.pop(self.ticks + 1, None)) is not None:
+            return fault
+        self.steps += 1
+        self.ticks += 1
+        for seat, at in self._script.poses.get(self.ticks, {}).items():
+            self._places[seat] = at
+        self._angles = list(angles)
+        self.digest = hashlib.blake2b(self.poses(), key=self.digest, digest_size=8).digest()
+        return None
+
+    def poses(self) -> bytes:
+        return b"".join(
+            struct.pack(f"<{7 + len(angles)}f", x_m, y_m, 0.07, 1.0, 0.0, 0.0, 0.0, *angles)
+            for (x_m, y_m), angles in zip(self._places, self._angles, strict=True)
+        )
+
+    def touched(self) -> Sequence[tuple[int, ...]]:
+        now = self._script.touches.get(self.ticks, {})
+        return [tuple(now.get(seat, ())) for seat in range(len(self._places))]
+
+
+class Stage:
+    """A match and all that it has made."""
+
+    def __init__(
+        self,
+        arena: str = "othello",
+        overrides: Mapping[str, Any] | None = None,
+        make_physics: MakePhysics | None = None,
+        script: Script | None = None,
+    ) -> None:
+        self.script = script or Script()
+        self.scripted: list[ScriptedPhysics] = []
+        self.match = Match(setup(arena, overrides), make_physics or self._make)
+        self.beats: list[Beat] = []
+
+    @classmethod
+    def real(cls, arena: str = "othello", overrides: Mapping[str, Any] | None = None) -> "Stage":
+        """With MuJoCo."""
+        return cls(arena, overrides, World)
+
+    def _make(self, arena: Arena, entries: Sequence[Entry]) -> ScriptedPhysics:
+        self.scripted.append(ScriptedPhysics(arena, entries, self.script))
+        return self.scripted[-1]
+
+    @property
+    def physics(self) -> ScriptedPhysics:
+        return self.scripted[-1]
+
+    @property
+    def frame(self) -> Frame:
+        return self.beats[-1].frame
+
+    @property
+    def phase(self) -> Phase:
+        return self.match.phase
+
+    @property
+    def events(self) -> list[Event]:
+        return [event for beat in self.beats for event in beat.events]
+
+    @property
+    def scores(self) -> tuple[int, ...]:
+        return tuple(seat.score for seat in self.frame.seats)
+
+    @property
+    def board(self) -> dict[str, str]:
+        """State of each marker that is not neutral."""
+        markers = self.match.game.markers
+        states = unpack_states(self.frame.markers, len(markers))
+        return {
+            m.name: MARKER_STATES[state] for m, state in zip(markers, states, strict=True) if state
+        }
+
+    def beat(self, *inputs: Input) -> Beat:
+        self.beats.append(self.match.beat(inputs))
+        return self.beats[-1]
+
+    def send(self, item: Input) -> Outcome:
+        """One beat with one input; what became of it."""
+        return self.beat(item).outcomes[0]
+
+    def decide(self, decision: d.Decision, reason: str = "agreed") -> Any:
+        return self.send(decide(decision, reason))
+
+    def run(self, beats: int) -> None:
+        for _ in range(beats):
+            self.beat()
+
+    def until(self, phase: Phase, at_most: int = 10_000) -> None:
+        for _ in range(at_most):
+            if self.phase is phase:
+                return
+            self.beat()
+        raise AssertionError(f"no {phase.name}, still {self.phase.name}")
+
+    def numbers(self, *kinds: str) -> list[int]:
+        """Numbers of the events of some kinds."""
+        return [event.number for event in self.events if event.kind in kinds]
+
+    # From phase to phase.
+
+    def to_ready(self, *joins: JoinSeat) -> "Stage":
+        seats = range(len(self.match.seats))
+        self.beat(*(joins or [join(seat) for seat in seats]))
+        self.beat(*(ReadySeat(seat, True) for seat in seats))
+        assert self.phase is Phase.READY
+        return self
+
+    def to_playing(self, *joins: JoinSeat) -> "Stage":
+        """To PLAYING with no tick played yet, or as few as the arena lets."""
+        self.to_ready(*joins)
+        if self.match.rules.start == "referee":
+            self.beat(decide(d.Start()))
+        while self.phase is Phase.COUNTDOWN and self.match.countdown_beats > 1:
+            self.beat()
+        if self.scripted:
+            self.physics.begin()
+        return self
+
+    def to(self, phase: Phase) -> "Stage":
+        """To a phase, the straight way."""
+        match phase:
+            case Phase.LOBBY:
+                self.beat(join(LEFT), join(RIGHT))
+            case Phase.READY:
+                self.to_ready()
+            case Phase.COUNTDOWN:
+                self.to_ready()
+                self.beat(decide(d.Start()))
+            case Phase.PLAYING:
+                self.to_playing()
+                self.run(3)
+            case Phase.HALTED:
+                self.to(Phase.PLAYING)
+                self.beat(decide(d.Halt()))
+            case Phase.FINISHED:
+                self.to(Phase.PLAYING)
+                self.beat(decide(d.Clock(3600.0)))
+            case Phase.OFFICIAL:
+                self.to(Phase.FINISHED)
+                self.beat(decide(d.Official()))
+            case Phase.VOID:
+                self.to(Phase.PLAYING)
+                self.beat(decide(d.Abort()))
+        assert self.phase is phase, self.phase
+        return self
+
+
+def key(seat: int, digit: int, seq: int = 1, level: int = B) -> KeySeat:
+    return KeySeat(seat, seq, int(level), digit)
+
+
+def seen(stage: Stage) -> tuple[bytes, ...]:
+    """All that anybody can see of a match, but for the number of the beat."""
+    frame = stage.frame
+    result = stage.match.result()
+    return (
+        encode(Frame(frame.match, 0, *(getattr(frame, f) for f in frame.__struct_fields__[2:]))),
+        encode(stage.match.sheet()),
+        encode(type(result)(**{**_fields(result), "beats": 0})),
+        encode(stage.match.legality()),
+    )
+
+
+def _fields(struct: Any) -> dict[str, Any]:
+    return {name: getattr(struct, name) for name in struct.__struct_fields__}
+
+
+def after(event: Event) -> str:
+    """Of a phase event: the phase that begins."""
+    return str(event.data["after"])

@@ -1,0 +1,69 @@
+"""The pace of a court: due times, catching up, and what counts as slow (design.md, "Time")."""
+
+import pytest
+
+from lacoc_server.pace import CATCH_UP_BEATS, Pace
+
+
+def test_a_beat_every_20_ms_of_the_clock() -> None:
+    """Rules 4: a beat comes every 20 ms; how long beats take does not shift the next ones."""
+    pace = Pace(100.0)
+    for beat in range(50):
+        now_s = 100.0 + 0.02 * beat
+        assert pace.wait_s(now_s - 0.005) == pytest.approx(0.005)
+        assert pace.wait_s(now_s + 0.001) == 0.0
+        pace.begin(now_s + 0.003)
+    assert pace.slow_beats == 0
+    assert pace.worst_late_s == pytest.approx(0.003)
+
+
+def test_speed() -> None:
+    """With speed 2, two beats of 20 ms pass in 20 ms."""
+    pace = Pace(0.0, speed=2.0)
+    for _ in range(10):
+        pace.begin(pace._due_s)
+    assert pace.wait_s(0.0) == pytest.approx(0.1)
+    assert pace.real_time_factor == pytest.approx(1.0)
+
+
+def test_offset_shifts_the_phase_by_less_than_a_beat() -> None:
+    """Design, "Time": courts on one machine do not wake together."""
+    waits = [Pace(0.0, offset_s=offset_s).wait_s(0.0) for offset_s in (0.0, 0.013, 0.055)]
+    assert waits == pytest.approx([0.0, 0.013, 0.015])
+
+
+def test_after_a_stall_at_most_five_beats_come_without_a_pause() -> None:
+    """Design, "Time": it catches up at most 5 beats, and then lets the match run late."""
+    pace = Pace(0.0)
+    pace.begin(0.0)
+    now_s = 1.0  # stalled: 49 beats are overdue
+    pace.begin(now_s)
+    without_pause = 0
+    while pace.wait_s(now_s) == 0.0:
+        pace.begin(now_s)
+        without_pause += 1
+    assert without_pause == CATCH_UP_BEATS == 5
+    assert pace.wait_s(now_s) == pytest.approx(0.02)
+
+
+def test_slow_beats() -> None:
+    """Design, "Time": a slow beat is one that starts more than 20 ms late."""
+    pace = Pace(0.0)
+    pace.begin(0.019)
+    assert pace.slow_beats == 0
+    pace.begin(0.02 + 0.021)
+    assert pace.slow_beats == 1
+    assert pace.worst_late_s == pytest.approx(0.021)
+
+
+def test_real_time_factor() -> None:
+    """Design, "Time": beats of the last seconds per 20 ms of wall time; a stall is forgotten."""
+    pace = Pace(0.0)
+    assert pace.real_time_factor == 1.0
+    for beat in range(300):
+        pace.begin(0.04 * beat)
+    assert pace.real_time_factor == pytest.approx(0.5)
+    start_s = 0.04 * 299
+    for beat in range(1, 300):
+        pace.begin(start_s + 0.02 * beat)
+    assert pace.real_time_factor == pytest.approx(1.0)

@@ -1,0 +1,368 @@
+"""The phases of a match as a table (rules 4)."""
+
+import pytest
+from stage import FORWARD, LEFT, RIGHT, B, Script, Stage, X, join, key, seen
+
+from lacoc_server.match import TRANSITIONS
+from lacoc_server.physics import Fault
+from lacoc_shared import decisions as d
+from lacoc_shared.codec import encode
+from lacoc_shared.inputs import HeardSeat, LeaveSeat, ReadySeat, SilentSeat
+from lacoc_shared.messages import DecisionReply, Done, Event, Refusal
+from lacoc_shared.seat import No, Phase, SeatFlag
+
+P = Phase
+COUNTDOWN_BEATS = 150
+"""3 s (rules 4)."""
+
+
+def steps(events: list[Event]) -> list[tuple[str, str]]:
+    return [(e.data["before"], e.data["after"]) for e in events if e.kind == "phase"]
+
+
+def test_the_table() -> None:
+    """Rules 4: CREATED, LOBBY, READY, COUNTDOWN, PLAYING, HALTED, FINISHED, OFFICIAL or VOID."""
+    forward = [(a.name, b.name) for a in TRANSITIONS for b in sorted(TRANSITIONS[a])]
+    assert forward == [
+        ("CREATED", "LOBBY"),
+        ("LOBBY", "READY"),
+        ("LOBBY", "VOID"),
+        ("READY", "LOBBY"),
+        ("READY", "COUNTDOWN"),
+        ("READY", "VOID"),
+        ("COUNTDOWN", "PLAYING"),
+        ("COUNTDOWN", "HALTED"),
+        ("COUNTDOWN", "VOID"),
+        ("PLAYING", "HALTED"),
+        ("PLAYING", "FINISHED"),
+        ("PLAYING", "VOID"),
+        ("HALTED", "COUNTDOWN"),
+        ("HALTED", "FINISHED"),
+        ("HALTED", "VOID"),
+        ("FINISHED", "HALTED"),
+        ("FINISHED", "OFFICIAL"),
+        ("FINISHED", "VOID"),
+    ]
+
+
+def test_every_transition_happens() -> None:
+    """Rules 4: each arrow of the table is walked by what the rules say."""
+    walked = set()
+
+    def walk(stage: Stage) -> None:
+        walked.update(steps(stage.events))
+
+    stage = Stage().to(P.READY)
+    stage.beat(ReadySeat(LEFT, False))
+    stage.beat(ReadySeat(LEFT, True))
+    stage.decide(d.Start())
+    stage.decide(d.Halt())
+    stage.decide(d.Resume())
+    stage.until(P.PLAYING)
+    stage.decide(d.Halt())
+    stage.decide(d.Declare("left"))
+    stage.decide(d.Official())
+    walk(stage)
+    for phase in (P.LOBBY, P.READY, P.COUNTDOWN, P.PLAYING, P.HALTED, P.FINISHED):
+        stage = Stage().to(phase)
+        stage.decide(d.Abort())
+        assert stage.phase is P.VOID
+        walk(stage)
+    stage = Stage("flag-strike", script=_all_corners()).to_playing()
+    stage.until(P.FINISHED)
+    stage.decide(d.TakeBack(stage.numbers("capture")[-1]))
+    walk(stage)
+    assert walked == {(a.name, b.name) for a in TRANSITIONS for b in TRANSITIONS[a]}
+
+
+def _all_corners() -> Script:
+    corners = ((-0.8, -0.8), (0.8, -0.8), (-0.8, 0.8), (0.8, 0.8))
+    return Script(poses={10 * n: {LEFT: at} for n, at in enumerate(corners, start=1)})
+
+
+# Beginning: CREATED, LOBBY, READY.
+
+
+def test_the_first_beat_is_lobby() -> None:
+    """Rules 4: CREATED leads to LOBBY; beats are counted from 0 in every phase."""
+    stage = Stage()
+    assert stage.phase is P.CREATED
+    stage.run(3)
+    assert [beat.frame.beat for beat in stage.beats] == [0, 1, 2]
+    assert {beat.frame.phase for beat in stage.beats} == {P.LOBBY}
+
+
+def test_ready_needs_every_seat_joined_and_ready() -> None:
+    """Rules 4: LOBBY to READY when every seat is joined and has said ready."""
+    stage = Stage()
+    assert isinstance(stage.send(ReadySeat(LEFT, True)), Refusal)
+    stage.beat(join(LEFT))
+    stage.beat(ReadySeat(LEFT, True))
+    assert stage.match.missing() == ["nobody has joined right"]
+    stage.beat(join(RIGHT))
+    assert stage.match.missing() == ["right (Bees) has not said ready"]
+    assert stage.phase is P.LOBBY
+    stage.beat(ReadySeat(RIGHT, True))
+    assert stage.phase is P.READY
+    assert stage.match.missing() == []
+
+
+@pytest.mark.parametrize("phase", [P.LOBBY, P.READY])
+@pytest.mark.parametrize("item", [LeaveSeat(LEFT), ReadySeat(LEFT, False)])
+def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
+    """Rules 4: back to LOBBY when one leaves or takes ready back; frames lose their robots."""
+    stage = Stage().to_ready()
+    stage.beat(item)
+    assert stage.phase is P.LOBBY
+    assert stage.frame.poses == b""
+    stage.beat(join(LEFT))
+    stage.beat(ReadySeat(LEFT, True))
+    assert stage.phase is P.READY
+
+
+def test_joining_again_with_other_files_takes_ready_back() -> None:
+    """Rules 4: ready is for the robots that one sees; a new robot has to say it again."""
+    stage = Stage().to_ready()
+    stage.beat(join(LEFT))  # the same files
+    assert stage.phase is P.READY
+    stage.beat(join(LEFT, robot="quadruped"))
+    assert stage.phase is P.LOBBY
+    assert not stage.frame.seats[LEFT].flags & SeatFlag.READY
+    assert stage.frame.seats[RIGHT].flags & SeatFlag.READY
+
+
+@pytest.mark.parametrize("first", [(), (LeaveSeat(LEFT),)])
+def test_a_new_robot_in_ready_is_built_even_if_ready_is_said_in_the_same_beat(
+    first: tuple[LeaveSeat, ...],
+) -> None:
+    """Rules 4: in READY the model is always that of the robots that have joined."""
+    stage = Stage().to_ready()
+    before = stage.frame.scene
+    stage.beat(*first, join(LEFT, robot="quadruped"), ReadySeat(LEFT, True))
+    assert stage.phase is P.READY
+    assert stage.frame.scene != before
+    assert len(stage.frame.poses) == 4 * (7 + 12 + 7 + 18)
+
+
+def test_files_with_mistakes_are_refused_and_the_seat_stays_as_it_was() -> None:
+    """Rules 2: a file that is wrong is refused whole, with every mistake; nothing changes."""
+    stage, twin = Stage().to(P.LOBBY), Stage().to(P.LOBBY)
+    bad = join(LEFT, robot_file=b"name = 3")
+    outcome = stage.send(bad)
+    assert isinstance(outcome, Refusal)
+    assert len(outcome.mistakes) > 1
+    twin.beat()
+    assert seen(stage) == seen(twin)
+
+
+def test_frames_before_ready_have_no_robots() -> None:
+    """Rules 4: frames before READY have no robots."""
+    stage = Stage.real().to(P.LOBBY)
+    assert stage.frame.poses == b""
+    stage.beat(ReadySeat(LEFT, True), ReadySeat(RIGHT, True))
+    assert len(stage.frame.poses) == 4 * 2 * (7 + 18)
+
+
+# Countdown and play.
+
+
+@pytest.mark.parametrize("again", [False, True])
+def test_every_start_and_every_resume_has_a_countdown_of_150_beats(again: bool) -> None:
+    """Rules 4: every start and every resume has a countdown of 3 s, counted in beats."""
+    stage = Stage().to_ready()
+    stage.decide(d.Start())
+    if again:
+        stage.until(P.PLAYING)
+        stage.decide(d.Halt())
+        stage.run(7)
+        stage.decide(d.Resume())
+    first = len(stage.beats) - 1
+    stage.until(P.PLAYING)
+    counted = [(b.frame.phase, b.frame.countdown_beats) for b in stage.beats[first:-1]]
+    assert counted == [(P.COUNTDOWN, n) for n in range(COUNTDOWN_BEATS, 0, -1)]
+    assert stage.frame.countdown_beats == 0
+    assert stage.beats[-1].ticked
+
+
+def test_a_countdown_also_where_the_seats_start_themselves() -> None:
+    """Rules 4: every start has its countdown, with start = "ready" too."""
+    stage = Stage(overrides={"match": {"start": "ready"}}).to_ready()
+    stage.until(P.PLAYING)
+    counted = [b.frame.countdown_beats for b in stage.beats if b.frame.phase is int(P.COUNTDOWN)]
+    assert counted == list(range(COUNTDOWN_BEATS, 0, -1))
+
+
+def test_physics_runs_in_ready_and_playing_only() -> None:
+    """Rules 4: a tick is a beat with physics; frozen in COUNTDOWN, HALTED and after the end."""
+    stage = Stage()
+    ran: dict[int, set[bool]] = {}
+    still: dict[int, set[bytes]] = {}
+
+    def note(count: int) -> None:
+        for _ in range(count):
+            stage.beat()
+            ran.setdefault(stage.frame.phase, set()).add(stage.beats[-1].ticked)
+            still.setdefault(stage.frame.phase, set()).add(stage.frame.digest + stage.frame.poses)
+
+    note(3)
+    stage.to_ready()
+    note(5)
+    stage.decide(d.Start())
+    note(149)
+    note(5)
+    stage.decide(d.Halt())
+    note(5)
+    stage.decide(d.Declare("draw"))
+    note(5)
+    stage.decide(d.Official())
+    note(5)
+    frozen = (P.LOBBY, P.COUNTDOWN, P.HALTED, P.FINISHED, P.OFFICIAL)
+    assert ran == {p: {p in (P.READY, P.PLAYING)} for p in (*frozen, P.READY, P.PLAYING)}
+    assert all(len(still[phase]) == 1 for phase in frozen)
+    assert len(still[P.PLAYING]) == len(still[P.READY]) == 5
+
+
+def test_tick_9000_is_played_and_judged() -> None:
+    """Workshop 5-1 rule 2, 5-2 rule 1, rules 4: 180 s; tick 9000 is played and judged."""
+    script = Script(poses={8999: {LEFT: (-0.15, -0.15)}, 9000: {LEFT: (0.15, -0.15)}})
+    stage = Stage(script=script).to_playing()
+    stage.until(P.FINISHED)
+    assert (stage.match.ticks, stage.frame.clock_ticks) == (9000, 9000)
+    assert stage.beats[-1].ticked
+    flip = next(event for event in stage.events if event.kind == "flip")
+    assert (flip.clock_ticks, flip.seat) == (9000, LEFT)
+    assert stage.beats[-1].result is not None
+    assert (stage.match.ended, stage.match.winner()) == ("time is up", "left")
+    kinds = [event.kind for event in stage.beats[-1].events]
+    assert kinds == ["flip", "phase", "result"]
+
+
+def test_a_match_that_is_over_ends_at_once() -> None:
+    """Workshop 5-2 rule 4, rules 4: end conditions are looked at after the tick's events."""
+    stage = Stage("flag-strike", script=_all_corners()).to_playing()
+    stage.until(P.FINISHED)
+    assert stage.frame.clock_ticks == 40
+    assert stage.match.ended == "the left team holds all corners"
+
+
+def test_a_fault_halts_before_the_tick() -> None:
+    """Design, "Failure policy": the state before the tick, HALTED, which robot and when."""
+    script = Script(faults={4: Fault(RIGHT, "a velocity became not a number")})
+    stage, twin = Stage(script=script).to_playing(), Stage().to_playing()
+    stage.until(P.PLAYING)
+    twin.until(P.PLAYING)
+    stage.run(3)
+    twin.run(2)
+    assert stage.phase is P.HALTED
+    assert not stage.beats[-1].ticked
+    assert (stage.frame.poses, stage.frame.digest) == (twin.frame.poses, twin.frame.digest)
+    fault = next(event for event in stage.events if event.kind == "fault")
+    assert (fault.seat, fault.clock_ticks, fault.beat) == (RIGHT, 3, stage.frame.beat)
+    stage.decide(d.Resume())
+    stage.until(P.PLAYING)
+    assert stage.frame.clock_ticks == 4
+
+
+def test_a_fault_in_ready_goes_back_to_lobby() -> None:
+    """Rules 4: without physics there is no READY; both say it again."""
+    stage = Stage(script=Script(faults={5: Fault(LEFT, "broken")})).to_ready()
+    stage.until(P.LOBBY, at_most=10)
+    assert not any(seat.flags & SeatFlag.READY for seat in stage.frame.seats)
+
+
+# Keys.
+
+
+@pytest.mark.parametrize("phase", [p for p in P if p not in (P.CREATED, P.PLAYING)])
+@pytest.mark.parametrize("digit", [FORWARD, X])
+def test_keys_work_only_in_playing(phase: Phase, digit: int) -> None:
+    """Rules 4: keys in READY, COUNTDOWN and HALTED are refused with the reason."""
+    stage, twin = Stage().to(phase), Stage().to(phase)
+    outcome = stage.send(key(LEFT, digit, seq=7))
+    twin.beat()
+    assert outcome == Refusal(No.NOT_PLAYING.name)
+    seat = stage.frame.seats[LEFT]
+    assert (seat.refused_seq, seat.refused_why, seat.applied_seq) == (7, No.NOT_PLAYING, 0)
+    was = twin.frame.seats[LEFT]
+    assert (seat.level, seat.key, seat.score) == (was.level, was.key, was.score)
+    assert (stage.frame.poses, stage.frame.digest) == (twin.frame.poses, twin.frame.digest)
+
+
+def test_on_resume_each_drive_goes_on_where_it_stopped() -> None:
+    """Rules 4: on resume each drive goes on where it stopped."""
+    halted, straight = Stage().to(P.PLAYING), Stage().to(P.PLAYING)
+    for stage in (halted, straight):
+        stage.beat(key(LEFT, FORWARD))
+        stage.run(29)
+    halted.decide(d.Halt())
+    halted.run(40)
+    halted.decide(d.Resume())
+    halted.until(P.PLAYING)
+    straight.beat()
+    for _ in range(50):
+        assert halted.frame.poses == straight.frame.poses
+        assert halted.frame.seats[LEFT].posture == straight.frame.seats[LEFT].posture
+        halted.beat()
+        straight.beat()
+
+
+def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
+    """Rules 4: seats are taken in LOBBY; a team that is back keeps its robot."""
+    stage = Stage().to(P.PLAYING)
+    assert stage.send(join(LEFT)) == Done()
+    changed = stage.send(join(LEFT, robot="quadruped"))
+    assert isinstance(changed, Done)
+    assert "keeps the files" in changed.text
+    assert stage.match.sheet().seats[LEFT].robot == "Hexapod"
+    assert isinstance(stage.send(ReadySeat(LEFT, False)), Refusal)
+    left = stage.send(LeaveSeat(LEFT))
+    assert isinstance(left, Done)
+    assert stage.match.sheet().seats[LEFT].team == "Ants"
+
+
+def test_a_void_match_with_an_empty_seat_cannot_be_joined() -> None:
+    """Rules 4: after the end nobody takes a seat; that is for the next match."""
+    stage = Stage().to(P.LOBBY)
+    stage.beat(LeaveSeat(RIGHT))
+    stage.decide(d.Abort())
+    assert isinstance(stage.send(join(RIGHT)), Refusal)
+
+
+def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
+    """Workshop 4-4, rules 4: one seat, no referee; [z] leaves and ends it."""
+    stage = Stage("practice")
+    stage.beat(join(LEFT), ReadySeat(LEFT, True))
+    stage.run(1)
+    assert stage.phase is P.PLAYING
+    stage.run(10_000)
+    assert stage.phase is P.PLAYING
+    stage.beat(LeaveSeat(LEFT))
+    assert stage.phase is P.FINISHED
+    assert stage.match.ended == "everybody has left"
+
+
+def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
+    """Rules 4: refused with the reason; the match that goes on is the same."""
+    stage, twin = Stage().to(P.READY), Stage().to(P.READY)
+    assert isinstance(stage.decide(d.Resume()), Refusal)
+    twin.beat()
+    for both in (stage, twin):
+        assert isinstance(both.decide(d.Start()), DecisionReply)
+        both.run(200)
+    assert encode(stage.frame) == encode(twin.frame)
+    assert encode(stage.events) == encode(twin.events)
+
+
+def test_silence_and_hearing_are_only_told_once() -> None:
+    """Rules 3: "silent" is an input like any other, and so is "heard"."""
+    stage = Stage().to(P.PLAYING)
+    for item in (SilentSeat(LEFT), SilentSeat(LEFT), HeardSeat(LEFT), HeardSeat(LEFT)):
+        stage.beat(item)
+    assert [e.kind for e in stage.events if e.kind in ("silent", "heard")] == ["silent", "heard"]
+
+
+def test_levels_begin_with_the_arenas_first() -> None:
+    """Rules 3: the arena says which levels are open; default B in a match."""
+    stage = Stage().to(P.PLAYING)
+    assert [seat.level for seat in stage.frame.seats] == [B, B]
+    assert Stage("practice").match.rules.open_levels == (0, 1)
