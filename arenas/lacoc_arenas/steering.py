@@ -30,6 +30,9 @@ _NEAR_M = 0.10
 _NEAR_STRAY_RAD = math.radians(45)
 
 _FALLEN_TICKS = 2 * BEATS_PER_S
+_TANGLED_TICKS = 8 * BEATS_PER_S
+_TANGLED_M = 0.36
+"""Two robots that stay so near for so long have caught each other's legs."""
 _STUCK_TICKS = 4 * BEATS_PER_S
 _STUCK_M = 0.06
 """A robot that walks for so long comes farther than this, or something is in its way."""
@@ -89,7 +92,7 @@ def _pose(x: float, y: float, z: float, qw: float, qx: float, qy: float, qz: flo
 
 
 class Pilot:
-    """Brings one robot to points: turns, walks, passes the other robot, gets up, frees itself.
+    """Brings one robot to points: turns, walks, passes the other robot, frees itself.
 
     A key is left only where its sequence ends: a step that is broken off brings a robot
     nowhere, and a turn in pieces turns it the wrong way.
@@ -100,8 +103,7 @@ class Pilot:
         self._postures = sheet.seats[seat].postures
         self._limits_m = tuple(size / 2 - _WALL_M for size in size_m)
         self._posture = 0
-        self._fallen_since: int | None = None
-        self._seen = 0
+        self._upright_at = self._apart_at = self._seen = 0  # clock
         self._walked_ticks = 0
         self._mark_m = (0.0, 0.0)  # where it made its last progress
         self._evade: tuple[int, float] | None = None  # until when, and with which heading
@@ -116,8 +118,8 @@ class Pilot:
             poses: where all robots are in it.
             target_m: the point (x, y); None to stand.
         """
-        seat, pose, now = frame.seats[self._seat], poses[self._seat], frame.clock_ticks
-        if self._must_restart(pose, now):
+        seat, now = frame.seats[self._seat], frame.clock_ticks
+        if self._must_restart(poses, now):
             return RESTART
         self._watch_progress(poses, now, (seat.level, seat.key) == FORWARD)
         if not self._sequence_ended(seat) or seat.locked_ticks:
@@ -132,16 +134,19 @@ class Pilot:
             return True
         return seat.posture < before or self._postures[seat.key] == 1
 
-    def _must_restart(self, pose: Pose, now: int) -> bool:
+    def _must_restart(self, poses: list[Pose], now: int) -> bool:
+        """Does it lie on its back, or hang on the other robot, for too long?"""
+        pose = poses[self._seat]
+        others = [other for other in poses if other is not pose]
+        tangled = any(pose.distance_m(other.x_m, other.y_m) < _TANGLED_M for other in others)
         if pose.up >= 0:
-            self._fallen_since = None
-            return False
-        if self._fallen_since is None:
-            self._fallen_since = now
-        if now - self._fallen_since < _FALLEN_TICKS:
-            return False
-        self._fallen_since = now
-        return True
+            self._upright_at = now
+        if not tangled:
+            self._apart_at = now
+        restart = now - self._upright_at >= _FALLEN_TICKS or now - self._apart_at >= _TANGLED_TICKS
+        if restart:
+            self._upright_at = self._apart_at = now
+        return restart
 
     def _watch_progress(self, poses: list[Pose], now: int, walks: bool) -> None:
         """Where a long walk comes nowhere: choose another heading for a while."""
