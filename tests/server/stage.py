@@ -27,8 +27,8 @@ A, B = Level.POSTURE, Level.LOCOMOTION
 X = RESTART_KEY
 STAND, TURN_LEFT, FORWARD, TURN_RIGHT = range(4)
 """Keys of level B in the sample gait (rules 2)."""
-QUICK = {"match": {"countdown_s": 0.0}}
-"""For tests in which the countdown is not the point."""
+QUICK = {"match": {"countdown_s": 0.02}}
+"""For tests in which the countdown is not the point: one beat."""
 
 
 def setup(arena: str, overrides: Mapping[str, Any] | None = None) -> Setup:
@@ -212,7 +212,7 @@ class Stage:
         return self
 
     def to_playing(self, *joins: JoinSeat) -> "Stage":
-        """To PLAYING with no tick played yet, or as few as the arena lets."""
+        """To the last beat before PLAYING: the next is tick 1 (but practice has no countdown)."""
         self.to_ready(*joins)
         if self.match.rules.start == "referee":
             self.beat(decide(d.Start()))

@@ -1,0 +1,364 @@
+"""Seats in play: [x], silence, refused keys, the order of a beat, and frames (rules 3 and 4)."""
+
+import math
+import random
+import struct
+
+import msgspec
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stage import (
+    FORWARD,
+    LEFT,
+    QUICK,
+    RIGHT,
+    STAND,
+    TURN_LEFT,
+    A,
+    B,
+    Script,
+    Stage,
+    X,
+    decide,
+    join,
+    key,
+)
+
+from lacoc_arenas import arena as arenas
+from lacoc_shared import decisions as d
+from lacoc_shared.codec import encode
+from lacoc_shared.inputs import HeardSeat, Input, KeySeat, LeaveSeat, SilentSeat
+from lacoc_shared.messages import Done, Frame, Refusal
+from lacoc_shared.seat import No, Phase, SeatFlag
+
+P = Phase
+LOCK_TICKS = 250
+"""5 s (rules 4, [x])."""
+BOTH_LEVELS = {"match": {"levels": ["A", "B"], "countdown_s": 0.02}}
+
+
+def at(frame: Frame, seat: int) -> tuple[float, ...]:
+    """A hexapod's x, y, z, quaternion and angles."""
+    return struct.unpack_from("<25f", frame.poses, seat * 100)
+
+
+def playing(
+    arena: str = "othello", script: Script | None = None, ticks: int = 1, **more: object
+) -> Stage:
+    stage = Stage(arena, more or QUICK, script=script).to_playing()
+    stage.run(ticks)
+    return stage
+
+
+# [x]
+
+
+def test_x_puts_the_robot_back_as_it_started() -> None:
+    """Rules 4, [x]: start place and posture, commanded angles equal to it, at rest, key 0."""
+    stage = Stage.real(overrides=QUICK).to(P.PLAYING)
+    fresh = at(stage.beats[1].frame, LEFT)  # its first tick in READY
+    stage.beat(key(LEFT, FORWARD))
+    stage.run(150)
+    walked = at(stage.frame, LEFT)
+    assert math.dist(walked[:2], fresh[:2]) > 0.05
+    stage.beat(key(LEFT, X, seq=2))
+    assert at(stage.frame, LEFT) == pytest.approx(fresh, abs=2e-6)
+    seat = stage.frame.seats[LEFT]
+    assert (seat.level, seat.key, seat.posture) == (B, STAND, 0)
+    assert stage.match.seats[LEFT].state.angles == stage.match.seats[LEFT].entry.robot.start_posture
+    text = next(event.text for event in stage.events if event.kind == "restart")
+    assert text == "Ants goes back to the start."
+    stage.run(50)
+    assert math.dist(at(stage.frame, LEFT)[:2], fresh[:2]) < 0.01
+
+
+def test_x_keeps_the_level() -> None:
+    """Rules 4, [x]: key 0 at the same level."""
+    stage = playing(**BOTH_LEVELS)
+    for seat, level in ((LEFT, B), (RIGHT, A)):
+        stage.beat(key(seat, 3, level=level))
+        stage.beat(key(seat, X, seq=2, level=1 - level))
+    assert [(s.level, s.key) for s in stage.frame.seats] == [(B, 0), (A, 0)]
+
+
+def test_x_locks_for_5_s_of_clock() -> None:
+    """Rules 4, [x]: x and digits are refused for 5 s of clock, and taken again then."""
+    stage = playing(ticks=3)
+    stage.beat(key(LEFT, X, seq=1))
+    assert stage.frame.seats[LEFT].locked_ticks == LOCK_TICKS - 1
+    assert stage.send(key(LEFT, FORWARD, seq=2)) == Refusal("RESTARTED")
+    assert stage.send(key(LEFT, X, seq=3)) == Refusal("RESTARTED")
+    assert stage.send(key(RIGHT, FORWARD, seq=1)) == Done()
+    stage.decide(d.Halt())
+    stage.run(300)  # the clock stands still
+    stage.decide(d.Resume())
+    stage.until(P.PLAYING)
+    while stage.frame.seats[LEFT].locked_ticks:
+        assert stage.send(key(LEFT, FORWARD, seq=4)) == Refusal("RESTARTED")
+    assert stage.match.ticks == 3 + LOCK_TICKS
+    assert stage.send(key(LEFT, FORWARD, seq=5)) == Done()
+
+
+def test_the_lock_is_a_setting() -> None:
+    """Rules 4, [x]: 5 s is a setting; 0 in practice, where x and then a digit work at once."""
+    stage = playing(match={"restart_freeze_s": 0.1, "countdown_s": 0.02})
+    stage.beat(key(LEFT, X))
+    stage.run(4)
+    assert stage.send(key(LEFT, FORWARD, seq=2)) == Done()
+    practice = Stage("practice").to_playing(join(0))
+    practice.run(2)
+    inputs = [key(0, FORWARD, seq=3), key(0, X, seq=2)]
+    assert practice.beat(*inputs).outcomes == (Done(), Done())
+    assert practice.frame.seats[0].key == FORWARD
+    assert practice.frame.seats[0].applied_seq == 3
+
+
+def test_x_comes_before_the_digit_of_its_tick() -> None:
+    """Rules 3: in one tick a seat's x is applied first, then its digit; a match refuses that."""
+    stage = playing(ticks=2)
+    beat = stage.beat(key(LEFT, FORWARD, seq=2), key(LEFT, X, seq=1))
+    assert beat.outcomes == (Refusal("RESTARTED"), Done())
+    seat = stage.frame.seats[LEFT]
+    assert (seat.key, seat.applied_seq, seat.refused_seq) == (STAND, 1, 2)
+
+
+def test_x_also_when_it_lies_on_its_back() -> None:
+    """Rules 4, [x]: allowed at any time in PLAYING, also when it lies on its back."""
+    stage = Stage.real(overrides=QUICK).to(P.PLAYING)
+    world = stage.match.physics
+    robot = world._robots[LEFT]
+    world.data.qpos[robot.root_qpos + 2] = 0.2
+    world.data.qpos[robot.root_qpos + 3 : robot.root_qpos + 7] = 0.0, 1.0, 0.0, 0.0
+    stage.run(50)
+    _, qx, qy, _ = at(stage.frame, LEFT)[3:7]
+    assert 1 - 2 * (qx * qx + qy * qy) < -0.9
+    assert stage.send(key(LEFT, X)) == Done()
+    stage.run(25)
+    assert at(stage.frame, LEFT)[3:7] == pytest.approx(
+        at(stage.beats[1].frame, LEFT)[3:7], abs=0.01
+    )
+
+
+@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("taken", [0, 1, 2])
+def test_the_first_free_start_place_is_used(arena: str, taken: int) -> None:
+    """Rules 4, [x]: the first place at least 0.35 m, and both radii, from the other's centre."""
+    starts = arenas.load(arena).game.starts[LEFT]
+    # The other robot stands so that the first `taken` places are too near, and no others.
+    near = {
+        ("othello", 0): (0.5, 0.5),
+        ("othello", 1): (starts[0].x_m - 0.1, starts[0].y_m - 0.06),
+        ("othello", 2): (starts[0].x_m, 0.0),
+        ("flag-strike", 0): (0.5, 0.5),
+        ("flag-strike", 1): (starts[0].x_m + 0.2, 0.0),
+        ("flag-strike", 2): (starts[0].x_m, 0.2),
+    }[arena, taken]
+    free = [place for place in starts if math.dist(place[:2], near) >= 0.35]
+    stage = playing(arena, Script(poses={1: {RIGHT: near, LEFT: (0.0, 0.9)}}), ticks=2)
+    stage.beat(key(LEFT, X))
+    assert at(stage.frame, LEFT)[:2] == pytest.approx(free[0][:2])
+    assert taken == 0 or free[0] != starts[0]
+
+
+def test_a_wide_robot_needs_more_room() -> None:
+    """Rules 4, [x]: at least both robots' radii from the other robot's centre."""
+    stage = Stage("flag-strike", QUICK)
+    radii = {}
+    for robot in ("hexapod", "long-legs"):
+        stage = Stage("flag-strike", QUICK)
+        stage.to_playing(join(LEFT, robot=robot), join(RIGHT, robot=robot))
+        radii[robot] = sum(s.entry.robot.radius_m for s in stage.match.seats if s.entry)
+    assert radii["hexapod"] < radii["long-legs"]
+    between = (0.35 + radii["long-legs"]) / 2
+    assert between > max(0.35, radii["hexapod"])
+    for robot, place in (("hexapod", (-0.6, 0.0)), ("long-legs", (-0.6, 0.4))):
+        other = (-0.6 + between, -0.1)
+        stage = Stage("flag-strike", QUICK, script=Script(poses={1: {RIGHT: other}}))
+        stage.to_playing(join(LEFT, robot=robot), join(RIGHT, robot=robot))
+        stage.run(2)
+        stage.beat(key(LEFT, X))
+        assert struct.unpack_from("<2f", stage.frame.poses) == pytest.approx(place), robot
+
+
+def test_both_restart_at_once() -> None:
+    """Rules 4: nobody comes first; robots that both go back are not in each other's way."""
+    for order in ((LEFT, RIGHT), (RIGHT, LEFT)):
+        swapped = {LEFT: (0.6, 0.0), RIGHT: (-0.6, 0.0)}
+        stage = playing("flag-strike", Script(poses={1: swapped}), ticks=2)
+        stage.beat(*(key(seat, X) for seat in order))
+        assert at(stage.frame, LEFT)[:2] == pytest.approx((-0.6, 0.0))
+        assert at(stage.frame, RIGHT)[:2] == pytest.approx((0.6, 0.0))
+
+
+def test_where_no_place_is_free_the_roomiest_is_used() -> None:
+    """Rules 4, [x]: with every place taken the robot goes where there is most room."""
+    one = {"game": {"starts": [[-0.6, 0.0], [-0.6, 0.1]]}, "match": {"countdown_s": 0.02}}
+    script = Script(poses={1: {RIGHT: (-0.6, -0.05)}})
+    stage = Stage("flag-strike", one, script=script).to_playing()
+    stage.run(2)
+    stage.beat(key(LEFT, X))
+    assert at(stage.frame, LEFT)[:2] == pytest.approx((-0.6, 0.1))
+
+
+def test_being_put_back_claims_nothing() -> None:
+    """Rules 5, start: the cell a robot is put on is its last cell; it flips nothing there."""
+    own = (-0.75, -0.15)
+    script = Script(poses={1: {LEFT: (-0.15, -0.15)}, 2: {LEFT: own}})
+    stage = playing(script=script, ticks=3)
+    stage.beat(key(LEFT, X))
+    assert stage.match.history.state.last[LEFT] == 12
+    assert stage.numbers("flip") == []
+
+
+# Silence, refusals.
+
+
+def test_a_silent_seat_stands_until_a_new_command() -> None:
+    """Rules 3: silent is key 0 at the same level, until a command with a new sequence number."""
+    stage = playing(ticks=1)
+    stage.beat(key(LEFT, FORWARD, seq=5))
+    stage.run(30)
+    stage.beat(SilentSeat(LEFT))
+    seat = stage.frame.seats[LEFT]
+    assert (seat.key, seat.level, bool(seat.flags & SeatFlag.SILENT)) == (STAND, B, True)
+    assert not stage.frame.seats[RIGHT].flags & SeatFlag.SILENT
+    stage.beat(HeardSeat(LEFT))
+    seat = stage.frame.seats[LEFT]
+    assert (seat.key, seat.flags & SeatFlag.SILENT) == (STAND, 0)
+    stage.beat(key(LEFT, TURN_LEFT, seq=6))
+    assert stage.frame.seats[LEFT].key == TURN_LEFT
+
+
+def test_leaving_a_match_is_standing_and_the_seat_stays_ones_own() -> None:
+    """Rules 4, design "Failure policy": the robot stands; the seat stays the team's."""
+    stage = playing(ticks=1)
+    stage.beat(key(LEFT, FORWARD))
+    stage.beat(LeaveSeat(LEFT))
+    assert stage.frame.seats[LEFT].key == STAND
+    stage.beat(join(LEFT), HeardSeat(LEFT), key(LEFT, FORWARD, seq=2))
+    assert stage.frame.seats[LEFT].key == FORWARD
+
+
+@pytest.mark.parametrize(
+    ("item", "why"),
+    [
+        (key(LEFT, FORWARD, level=A), No.LEVEL_CLOSED),
+        (key(LEFT, FORWARD, level=9), No.LEVEL_CLOSED),
+        (key(LEFT, 4), No.NO_SUCH_KEY),
+        (key(LEFT, 9), No.NO_SUCH_KEY),
+        (key(LEFT, -1), No.NO_SUCH_KEY),
+        (key(LEFT, 11), No.NO_SUCH_KEY),
+    ],
+)
+def test_refused_keys(item: KeySeat, why: No) -> None:
+    """Rules 3: which levels are open is the arena's to say, which keys there are, the file's."""
+    stage, twin = playing(ticks=3), playing(ticks=3)
+    for both in (stage, twin):
+        both.beat(key(LEFT, TURN_LEFT, seq=1))
+    assert stage.send(KeySeat(LEFT, 2, item.level, item.key)) == Refusal(why.name)
+    twin.beat()
+    seat, was = stage.frame.seats[LEFT], twin.frame.seats[LEFT]
+    assert (seat.refused_seq, seat.refused_why) == (2, why)
+    assert (seat.key, seat.posture, seat.applied_seq) == (was.key, was.posture, was.applied_seq)
+    assert stage.frame.poses == twin.frame.poses
+
+
+def test_frames_tell_which_command_was_applied_when() -> None:
+    """Design, "Network": a controller can show its round trip."""
+    stage = playing(ticks=3)
+    beat = stage.beat(key(LEFT, FORWARD, seq=41))
+    stage.run(5)
+    seat = stage.frame.seats[LEFT]
+    assert (seat.applied_seq, seat.applied_beat) == (41, beat.frame.beat)
+
+
+# The order of a beat.
+
+seats = st.sampled_from([LEFT, RIGHT])
+
+
+def _beat_of_inputs() -> st.SearchStrategy[list[Input]]:
+    """What may arrive in one beat: for each seat an [x], a digit, silence."""
+
+    def of(seat: int) -> st.SearchStrategy[list[Input]]:
+        return st.tuples(
+            st.lists(st.just(key(seat, X, seq=8)), max_size=1),
+            st.lists(st.integers(0, 4).map(lambda n: key(seat, n, seq=9)), max_size=1),
+            st.lists(st.just(SilentSeat(seat)), max_size=1),
+        ).map(lambda parts: [item for part in parts for item in part])
+
+    frozen = st.lists(st.just(decide(d.Freeze("left", 1.0))), max_size=1)
+    return st.tuples(of(LEFT), of(RIGHT), frozen).map(lambda parts: [i for p in parts for i in p])
+
+
+@pytest.mark.slow
+@settings(max_examples=40, deadline=None)
+@given(_beat_of_inputs(), st.randoms(use_true_random=False))
+def test_the_order_of_arrival_favours_no_seat(inputs: list[Input], mix: random.Random) -> None:
+    """Rules 4: however a beat's inputs arrive, the frames are the same bytes."""
+    shuffled = list(inputs)
+    mix.shuffle(shuffled)
+    one, other = playing(ticks=2), playing(ticks=2)
+    one.beat(*inputs)
+    other.beat(*shuffled)
+    for _ in range(3):
+        assert encode(one.frame) == encode(other.frame)
+        one.beat()
+        other.beat()
+
+
+def test_decisions_come_before_keys() -> None:
+    """Design, "One beat": a key in the beat of a halt is too late."""
+    stage = playing(ticks=2)
+    beat = stage.beat(key(LEFT, FORWARD), decide(d.Halt()))
+    assert isinstance(beat.outcomes[0], Refusal)
+    assert stage.phase is P.HALTED
+
+
+def test_a_key_takes_effect_in_its_tick() -> None:
+    """Design, "One beat": commands, drive, physics, rules, in one beat."""
+    stage = playing(ticks=2)
+    before = at(stage.frame, LEFT)[7:]
+    stage.beat(key(LEFT, FORWARD))
+    moved = [abs(b - a) for a, b in zip(before, at(stage.frame, LEFT)[7:], strict=True)]
+    assert max(moved) == pytest.approx(math.radians(2.4), abs=1e-6)
+
+
+# Frames.
+
+
+@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+def test_a_frame_has_at_most_320_bytes(arena: str) -> None:
+    """Issue 2, "Network": at most 320 bytes for two hexapods in either game, in every phase."""
+    sizes = {}
+    for phase in list(P)[1:]:
+        stage = Stage.real(arena, QUICK if phase is not P.COUNTDOWN else None)
+        stage.match.beats = 10_000_000  # two days
+        stage.match.setup = msgspec.structs.replace(stage.match.setup, match=100_000)
+        stage.to(phase)
+        seq = 2**31
+        stage.beat(key(LEFT, X, seq=seq), key(RIGHT, X, seq=seq))
+        stage.beat(key(LEFT, 1, seq=seq), key(RIGHT, 1, seq=seq))
+        sizes[phase.name] = len(encode(stage.frame))
+    assert max(sizes.values()) <= 320, sizes
+
+
+def test_scores_and_board_are_in_every_frame() -> None:
+    """Rules 5 rule 6: the score is the number of discs; frames carry board and score."""
+    script = Script(poses={1: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}})
+    stage = playing(script=script, ticks=3)
+    assert stage.scores == (19, 17)
+    assert stage.board["c3r2"] == "left"
+
+
+def test_a_touch_is_recorded_only_where_there_is_one() -> None:
+    """Design, "Record": what the rules saw beside the poses, in the ticks that have it."""
+    script = Script(touches={3: {RIGHT: (4, 9)}})
+    stage = playing("flag-strike", script, ticks=4)
+    stage.beat(key(LEFT, X))
+    noted = {b.frame.clock_ticks: b.touch for b in stage.beats if b.touch}
+    assert noted[3].touched == ((), (4, 9))
+    assert noted[5].placed == ((-0.6, 0.0, 0.0), None)
+    assert set(noted) == {3, 5}
+    assert stage.scores[RIGHT] > 0
