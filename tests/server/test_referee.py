@@ -1,0 +1,400 @@
+"""The referee's decisions: when each is legal, why not, and what it does (rules 4).
+
+Workshop 5-1 rule 8 and 5-2 rule 9.
+"""
+
+import math
+
+import pytest
+from stage import (
+    FORWARD,
+    LEFT,
+    QUICK,
+    RIGHT,
+    STAND,
+    Script,
+    Stage,
+    X,
+    decide,
+    join,
+    key,
+    seen,
+)
+
+from lacoc_shared import decisions as d
+from lacoc_shared.codec import encode
+from lacoc_shared.inputs import ReadySeat
+from lacoc_shared.messages import DecisionReply, Done, Refusal
+from lacoc_shared.seat import Phase, SeatFlag
+
+P = Phase
+PHASES = list(P)[1:]
+
+LEGAL: dict[str, tuple[d.Decision, set[Phase]]] = {
+    "ready": (d.Ready("left"), {P.LOBBY}),
+    "start": (d.Start(), {P.READY}),
+    "halt": (d.Halt(), {P.COUNTDOWN, P.PLAYING}),
+    "resume": (d.Resume(), {P.HALTED}),
+    "restart": (d.Restart("left"), {P.PLAYING, P.HALTED}),
+    "freeze": (d.Freeze("left", 5.0), {P.PLAYING, P.HALTED}),
+    "unfreeze": (d.Unfreeze("left"), {P.PLAYING, P.HALTED}),
+    "adjust": (d.Adjust("left", 3), {P.PLAYING, P.HALTED, P.FINISHED}),
+    "set": (d.Set("c0r0", "right"), {P.PLAYING, P.HALTED, P.FINISHED}),
+    "take-back": (d.TakeBack(1), {P.HALTED, P.FINISHED}),
+    "clock": (d.Clock(5.0), {P.PLAYING, P.HALTED}),
+    "abort": (d.Abort(), {P.LOBBY, P.READY, P.COUNTDOWN, P.PLAYING, P.HALTED, P.FINISHED}),
+    "declare": (d.Declare("left"), {P.HALTED, P.FINISHED}),
+    "official": (d.Official(), {P.FINISHED}),
+    "next": (d.Next(), {P.OFFICIAL, P.VOID}),
+}
+NEED_A_REASON = {
+    "restart",
+    "freeze",
+    "adjust",
+    "set",
+    "take-back",
+    "clock",
+    "abort",
+    "declare",
+}
+
+
+def stage_in(phase: Phase, script: Script | None = None) -> Stage:
+    return Stage(overrides=QUICK if phase is not P.COUNTDOWN else None, script=script).to(phase)
+
+
+def refused(stage: Stage, decision: d.Decision, reason: str = "agreed") -> str:
+    """The reason of a refusal, after a look that it changed nothing at all."""
+    before = encode(stage.match.result()), stage.match.history.state
+    outcome = stage.decide(decision, reason)
+    assert isinstance(outcome, Refusal), outcome
+    assert not any(event.kind == "decision" for event in stage.beats[-1].events)
+    assert stage.match.history.state is before[1]
+    return outcome.reason
+
+
+def done(stage: Stage, decision: d.Decision) -> DecisionReply:
+    outcome = stage.decide(decision)
+    assert isinstance(outcome, DecisionReply), outcome
+    return outcome
+
+
+def test_every_decision_is_in_the_table() -> None:
+    """Rules 4: the decisions of a referee, each."""
+    assert list(LEGAL) == list(d.DECISIONS)
+
+
+@pytest.mark.parametrize("phase", PHASES, ids=lambda phase: phase.name)
+def test_what_is_legal_is_published(phase: Phase) -> None:
+    """Rules 4: legal when and why not is the match's to say, and is published."""
+    published = stage_in(phase).match.legality()
+    assert list(published) == list(LEGAL)
+    for name, (_, phases) in LEGAL.items():
+        if phase in phases:
+            assert published[name] == ""
+        else:
+            assert f"the match is {phase.name}" in published[name]
+            assert all(legal.name in published[name] for legal in phases)
+
+
+@pytest.mark.parametrize("name", LEGAL)
+@pytest.mark.parametrize("phase", PHASES, ids=lambda phase: phase.name)
+def test_an_illegal_decision_is_refused_and_changes_nothing(phase: Phase, name: str) -> None:
+    """Rules 4: the illegal are answered with the reason; the whole visible state stays."""
+    decision, phases = LEGAL[name]
+    stage, twin = stage_in(phase), stage_in(phase)
+    if phase in phases:
+        if name not in ("take-back", "unfreeze"):
+            done(stage, decision)
+        return
+    why = stage.match.legality()[name]
+    assert stage.decide(decision) == Refusal(f"{name}: {why}.")
+    twin.beat()
+    for _ in range(3):
+        assert seen(stage) == seen(twin)
+        stage.beat()
+        twin.beat()
+    assert encode(stage.events) == encode(twin.events)
+
+
+def test_why_a_match_cannot_start_names_all_that_is_missing() -> None:
+    """Rules 4: why not is published: everything that is missing, at once."""
+    stage = Stage()
+    stage.beat(join(LEFT))
+    assert stage.match.legality()["start"] == (
+        "only in READY; the match is LOBBY; left (Ants) has not said ready; nobody has joined right"
+    )
+
+
+@pytest.mark.parametrize("name", sorted(LEGAL))
+def test_which_need_a_reason(name: str) -> None:
+    """Rules 4: each decision has a reason; what is routine may do without."""
+    decision, phases = LEGAL[name]
+    if name in ("take-back", "unfreeze"):
+        return
+    for blank in ("", "  \n"):
+        outcome = stage_in(min(phases)).decide(decision, reason=blank)
+        if name in NEED_A_REASON:
+            assert outcome == Refusal(f"{name}: give a reason; it goes into the record.")
+        else:
+            assert isinstance(outcome, DecisionReply)
+
+
+BAD_ARGUMENTS: list[tuple[d.Decision, Phase, str]] = [
+    (d.Ready("solo"), P.LOBBY, "no seat 'solo'"),
+    (d.Restart("Left"), P.HALTED, "no seat 'Left'; there are left, right"),
+    (d.Freeze("middle", 1.0), P.PLAYING, "no seat"),
+    (d.Freeze("left", 0.0), P.PLAYING, "more than 0"),
+    (d.Freeze("left", -1.0), P.PLAYING, "more than 0"),
+    (d.Freeze("left", 600.1), P.PLAYING, "at most 600"),
+    (d.Freeze("left", math.nan), P.PLAYING, "nan s?"),
+    (d.Freeze("left", math.inf), P.PLAYING, "inf s?"),
+    (d.Unfreeze("left"), P.PLAYING, "Ants is not frozen"),
+    (d.Unfreeze("top"), P.HALTED, "no seat"),
+    (d.Adjust("left", 0), P.PLAYING, "not 0"),
+    (d.Adjust("left", 1001), P.PLAYING, "between -1000 and 1000"),
+    (d.Adjust("left", -1001), P.FINISHED, "between -1000 and 1000"),
+    (d.Adjust("none", 1), P.HALTED, "no seat"),
+    (d.Set("c9r9", "left"), P.HALTED, "no 'c9r9' on this board; there are c0r0, "),
+    (d.Set("c0r0", "blue"), P.HALTED, "'blue' is no state; there are neutral, left, right, down"),
+    (d.Set("c0r0", "down"), P.HALTED, "a disc is neutral, left or right"),
+    (d.Clock(0.0), P.PLAYING, "not 0"),
+    (d.Clock(math.nan), P.PLAYING, "nan"),
+    (d.Clock(3601.0), P.PLAYING, "between -3600 and 3600"),
+    (d.Declare("Ants"), P.FINISHED, "'Ants' can't win; there are left, right, draw"),
+    (d.TakeBack(0), P.HALTED, "event 0 can't be taken back"),
+    (d.TakeBack(1), P.HALTED, "event 1 can't be taken back"),
+    (d.TakeBack(-5), P.FINISHED, "can't be taken back"),
+    (d.TakeBack(10**9), P.FINISHED, "can't be taken back"),
+]
+
+
+@pytest.mark.parametrize(("decision", "phase", "words"), BAD_ARGUMENTS)
+def test_wrong_arguments(decision: d.Decision, phase: Phase, words: str) -> None:
+    """Rules 4: refused with what was found and what there is; nothing changes."""
+    stage, twin = stage_in(phase), stage_in(phase)
+    assert words in refused(stage, decision)
+    twin.beat()
+    assert seen(stage) == seen(twin)
+
+
+def test_a_decision_is_an_event_with_who_beat_and_reason() -> None:
+    """Rules 4: each decision with who, beat, reason, and a reply with the scores."""
+    stage = stage_in(P.PLAYING)
+    beat = stage.beat(decide(d.Adjust("right", -2), "pushed the table", by="Takeda"))
+    (reply,) = beat.outcomes
+    event = next(event for event in beat.events if event.kind == "decision")
+    assert isinstance(reply, DecisionReply)
+    assert (
+        (reply.beat, reply.event) == (event.beat, event.number) == (stage.frame.beat, event.number)
+    )
+    assert reply.scores == (18, 16)
+    assert event.text == "Referee Takeda: -2 for Bees. Reason: pushed the table"
+    assert event.data["by"] == "Takeda"
+    assert event.data["reason"] == "pushed the table"
+    assert event.data["decision"] == "adjust"
+    assert event.data["arguments"] == {"type": "adjust", "seat": "right", "points": -2}
+
+
+# What each does.
+
+
+def test_ready_for_a_seat() -> None:
+    """Rules 4, `ready`: in the place of a contestant who cannot."""
+    stage = Stage()
+    stage.beat(join(LEFT), join(RIGHT))
+    assert "nobody" not in stage.match.legality()["start"]
+    done(stage, d.Ready("left"))
+    assert stage.frame.seats[LEFT].flags & SeatFlag.READY
+    done(stage, d.Ready("right"))
+    assert stage.phase is P.READY
+    empty = Stage()
+    empty.beat()
+    assert refused(empty, d.Ready("left")) == "ready: nobody has joined left."
+
+
+@pytest.mark.parametrize("phase", [P.PLAYING, P.HALTED])
+def test_restart(phase: Phase) -> None:
+    """Rules 4, `restart`: the robot is at its start place with key 0; its keys work at once."""
+    stage = Stage(overrides=QUICK, script=Script(poses={1: {LEFT: (0.1, 0.5)}})).to(P.PLAYING)
+    stage.beat(key(LEFT, FORWARD))
+    if phase is P.HALTED:
+        done(stage, d.Halt())
+    done(stage, d.Restart("left"))
+    assert stage.physics._places[LEFT] == stage.match.game.starts[LEFT][0][:2]
+    assert stage.frame.seats[LEFT].key == STAND
+    if phase is P.HALTED:
+        done(stage, d.Resume())
+        stage.until(P.PLAYING)
+    assert stage.match.history.state.last[LEFT] == 12
+    assert stage.send(key(LEFT, FORWARD, seq=2)) == Done()
+
+
+def test_freeze_and_its_end() -> None:
+    """Rules 4, `freeze` n s: key 0, keys refused, for n s of clock."""
+    stage = stage_in(P.PLAYING)
+    stage.beat(key(LEFT, FORWARD))
+    done(stage, d.Freeze("left", 1.0))
+    seat = stage.frame.seats[LEFT]
+    assert (seat.key, seat.locked_ticks) == (STAND, 49)
+    assert seat.flags & SeatFlag.FROZEN
+    assert stage.send(key(LEFT, FORWARD, seq=2)) == Refusal("FROZEN")
+    assert stage.send(key(LEFT, X, seq=3)) == Refusal("FROZEN")
+    assert stage.send(key(RIGHT, FORWARD)) == Done()
+    done(stage, d.Halt())
+    stage.run(60)
+    done(stage, d.Resume())
+    stage.until(P.PLAYING)
+    left = stage.frame.seats[LEFT].locked_ticks
+    assert left == 45
+    stage.run(left - 1)
+    assert stage.frame.seats[LEFT].flags & SeatFlag.FROZEN
+    stage.run(1)
+    assert not stage.frame.seats[LEFT].flags & SeatFlag.FROZEN
+    assert stage.send(key(LEFT, FORWARD, seq=4)) == Done()
+
+
+def test_unfreeze() -> None:
+    """Rules 4, `unfreeze`: keys work again; the robot stands until one comes."""
+    stage = stage_in(P.PLAYING)
+    done(stage, d.Freeze("right", 600.0))
+    stage.run(5)
+    done(stage, d.Unfreeze("right"))
+    assert not stage.frame.seats[RIGHT].flags & SeatFlag.FROZEN
+    assert stage.send(key(RIGHT, FORWARD)) == Done()
+
+
+def test_adjust() -> None:
+    """Rules 4, `adjust`: points are added; computed and shown with them."""
+    stage = stage_in(P.HALTED)
+    assert done(stage, d.Adjust("left", 5)).scores == (23, 18)
+    assert done(stage, d.Adjust("right", -1)).scores == (23, 17)
+    assert stage.scores == (23, 17)
+    assert stage.match.winner() == "left"
+
+
+@pytest.mark.parametrize(
+    ("arena", "marker", "state", "scores"),
+    [
+        ("othello", "c0r0", "right", (17, 19)),
+        ("othello", "c5r5", "neutral", (18, 17)),
+        ("flag-strike", "corner2", "left", (5, 0)),
+        ("flag-strike", "flag18", "right", (0, 5)),
+        ("flag-strike", "flag18", "down", (0, 0)),
+    ],
+)
+def test_set(arena: str, marker: str, state: str, scores: tuple[int, ...]) -> None:
+    """Rules 4, `set` a disc, corner or flag."""
+    stage = Stage(arena, QUICK).to(P.HALTED)
+    assert done(stage, d.Set(marker, state)).scores == scores == stage.scores
+    assert stage.board.get(marker, "neutral") == state
+
+
+def test_set_in_a_game_without_a_board() -> None:
+    """Rules 4: why not is published."""
+    stage = Stage("practice", {"match": {"start": "referee"}})
+    assert stage.to_ready().match.phase is P.READY
+    stage.decide(d.Start())
+    assert stage.match.legality()["set"] == "this game has no board"
+    assert stage.match.legality()["clock"] == "this match has no end"
+
+
+def test_clock_moves_the_end() -> None:
+    """Rules 4, `clock` ±s: an offset to the ticks played; the end comes so much sooner or later."""
+    stage = stage_in(P.PLAYING)
+    was = stage.frame.clock_ticks
+    done(stage, d.Clock(-10.0))
+    assert stage.frame.clock_ticks == was + 1 - 500
+    done(stage, d.Clock(100.0))
+    assert stage.frame.clock_ticks == was + 2 - 500 + 5000
+    stage.until(P.FINISHED)
+    assert stage.match.ticks == 9000 + 500 - 5000
+    assert stage.frame.clock_ticks == 9000
+
+
+def test_clock_past_the_end() -> None:
+    """Rules 4: the tick that is going on is played and judged, then it is over."""
+    stage = stage_in(P.HALTED)
+    done(stage, d.Clock(3600.0))
+    assert stage.phase is P.HALTED
+    done(stage, d.Resume())
+    stage.until(P.FINISHED, at_most=5)
+    assert stage.match.ticks == 4
+
+
+def test_abort_is_void() -> None:
+    """Rules 4, `abort` (VOID): nobody wins; what was computed is kept."""
+    stage = stage_in(P.PLAYING)
+    done(stage, d.Abort())
+    result = stage.beats[-1].result
+    assert result is not None
+    assert (result.official, result.reason) == ("void", "aborted by the referee")
+    finished = stage_in(P.FINISHED)
+    done(finished, d.Adjust("left", 1))
+    done(finished, d.Abort())
+    result = finished.beats[-1].result
+    assert result is not None
+    assert (result.official, result.computed, result.reason) == ("void", "left", "time is up")
+
+
+@pytest.mark.parametrize("phase", [P.HALTED, P.FINISHED])
+@pytest.mark.parametrize("winner", ["left", "right", "draw"])
+def test_declare_keeps_both_results(phase: Phase, winner: str) -> None:
+    """Rules 4, `declare`: the computed result and the official one are both kept."""
+    stage = stage_in(phase)
+    done(stage, d.Adjust("right", 4))
+    done(stage, d.Declare(winner))
+    assert stage.phase is P.FINISHED
+    assert stage.match.ended == ("time is up" if phase is P.FINISHED else "ended by the referee")
+    done(stage, d.Official())
+    result = stage.beats[-1].result
+    assert result is not None
+    assert (result.computed, result.official, result.scores) == ("right", winner, (18, 22))
+
+
+def test_official_without_a_word_is_what_was_computed() -> None:
+    """Rules 4, `official`: makes the result official."""
+    stage = stage_in(P.FINISHED)
+    reply = done(stage, d.Official())
+    assert reply.text == "the result is official: draw."
+    assert stage.phase is P.OFFICIAL
+
+
+@pytest.mark.parametrize("phase", [P.OFFICIAL, P.VOID])
+def test_next(phase: Phase) -> None:
+    """Rules 4, `next`: a new match, which the court opens."""
+    stage = stage_in(phase)
+    assert not stage.match.next_wanted
+    done(stage, d.Next())
+    assert stage.match.next_wanted
+    assert stage.phase is phase
+
+
+def test_a_halt_in_the_countdown() -> None:
+    """Rules 4: a countdown can be halted; the next one is whole again."""
+    stage = stage_in(P.COUNTDOWN)
+    stage.run(100)
+    done(stage, d.Halt())
+    assert stage.frame.countdown_beats == 0
+    done(stage, d.Resume())
+    assert stage.frame.countdown_beats == 150
+    assert stage.match.ticks == 0
+
+
+def test_two_decisions_of_one_beat_are_taken_in_the_order_they_came() -> None:
+    """Rules 4: what is legal is asked when a decision is reached."""
+    stage = stage_in(P.PLAYING)
+    beat = stage.beat(decide(d.Halt()), decide(d.Halt()), decide(d.Adjust("left", 1)))
+    assert [type(outcome) for outcome in beat.outcomes] == [DecisionReply, Refusal, DecisionReply]
+    numbers = [event.number for event in stage.events]
+    assert numbers == list(range(1, len(numbers) + 1))
+
+
+def test_ready_can_be_taken_back_after_the_referee_gave_it() -> None:
+    """Rules 4: back to LOBBY when one takes ready back, whoever said it."""
+    stage = Stage()
+    stage.beat(join(LEFT), join(RIGHT))
+    done(stage, d.Ready("left"))
+    stage.beat(ReadySeat(RIGHT, True))
+    stage.beat(ReadySeat(LEFT, False))
+    assert stage.phase is P.LOBBY
