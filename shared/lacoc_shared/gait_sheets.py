@@ -128,6 +128,8 @@ def _write_mirror(
         values = cells[row] if row < len(cells) else ()
         for column in range(columns):
             value = values[column] if column < len(values) else ""
+            if isinstance(value, float) and value.is_integer():
+                value = int(value)  # the file says 45, as a spreadsheet program does, not 45.0
             look = centred if column else label
             sheet.write_formula(row, column, f'=IF({cell}="","",{cell})', look, value)
     sheet.protect()  # no password: only so that nobody edits the wrong sheet by mistake

@@ -87,7 +87,7 @@ def read_workbook(
 
 
 def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
-    """Write a Loco-data workbook, ready to edit.
+    """Write a Loco-data workbook, ready to edit; numbers keep the 15 digits of spreadsheets.
 
     Args:
         table: the postures.

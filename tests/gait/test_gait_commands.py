@@ -1,0 +1,211 @@
+"""`lacoc gait check` and `lacoc gait convert` (issue 2, rules 2)."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from lacoc_shared.cli import main
+from lacoc_shared.gait import SAMPLE_KEYS, PostureTable, to_locomotion
+from lacoc_shared.gait_cells import leg_labels
+from lacoc_shared.gait_text import read_gait, write_gait
+from lacoc_shared.gait_workbook import read_gait_file, write_workbook
+
+
+@pytest.fixture
+def lacoc(capsys):
+    """Runs the command line; returns its exit code, standard output and standard error."""
+
+    def run(*words: object) -> tuple[int, str, str]:
+        try:
+            code = main([str(word) for word in words])
+        except SystemExit as end:
+            code = end.code
+        output = capsys.readouterr()
+        return code, output.out, output.err
+
+    return run
+
+
+@pytest.fixture
+def folder(tmp_path, workshop, legs) -> Path:
+    """A folder with the workshop's gait in all three kinds of file."""
+    (tmp_path / "Loco-data.txt").write_bytes(write_gait(workshop, legs))
+    locomotion = to_locomotion(workshop, SAMPLE_KEYS)
+    (tmp_path / "LocoTra-data.txt").write_bytes(write_gait(locomotion, legs))
+    (tmp_path / "Loco-data.xlsx").write_bytes(write_workbook(workshop, legs))
+    return tmp_path
+
+
+def test_check_says_what_each_key_does(lacoc, folder):
+    """Issue 2: a short summary of each file: keys, postures, and which feet are lifted."""
+    code, out, err = lacoc("gait", "check", *sorted(folder.iterdir()))
+    assert (code, err) == (0, "")
+    assert "Loco-data.txt: right. Level A, postures, 6 legs." in out
+    assert "Loco-data.xlsx: right. Level A, postures, 6 legs." in out
+    _, locomotion = out.split("LocoTra-data.txt: right. Level B, locomotion, 6 legs.")
+    rows = [[c.strip() for c in line.split("│")[1:-1]] for line in locomotion.splitlines()]
+    assert [row for row in rows if row] == [
+        ["0", "1", "none"],
+        ["1", "4", "R,C L,B L,F, then R,F R,B L,C"],
+        ["2", "4", "R,F R,B L,C, then R,C L,B L,F"],
+        ["3", "4", "R,F R,B L,C, then R,C L,B L,F"],
+    ]
+
+
+def test_check_lists_every_mistake_of_every_file(lacoc, folder):
+    """Issue 2: mistakes as a table of file, row, column, joint and leg, found, expected; code 2."""
+    for name in ("a.txt", "b.txt"):
+        text = (folder / "Loco-data.txt").read_text().replace("-45\t-45", "-451\tx", 1)
+        (folder / name).write_text(text)
+    code, out, err = lacoc("gait", "check", folder / "a.txt", folder / "b.txt")
+    assert code == 2
+    assert out == ""
+    assert "4 mistakes" in err
+    cells = [[c.strip() for c in line.split("│")[1:-1]] for line in err.splitlines()]
+    angle = "an angle from -150 to 150 degrees"
+    assert [row for row in cells if row] == [
+        [name, "2", *place, angle]
+        for name in ("a.txt", "b.txt")
+        for place in (("4", "2", "R,B", "-451"), ("5", "3", "L,B", '"x"'))
+    ]
+
+
+def test_check_shows_right_files_beside_wrong_ones(lacoc, folder):
+    """Every file that is named is looked at."""
+    (folder / "bad.txt").write_text("?")
+    code, out, err = lacoc("gait", "check", folder / "bad.txt", folder / "Loco-data.txt")
+    assert code == 2
+    assert "Loco-data.txt: right" in out
+    assert "bad.txt" in err
+
+
+def test_check_for_a_robot(lacoc, folder):
+    """Rules 2: with --legs, a gait for another robot is a mistake."""
+    assert lacoc("gait", "check", folder / "Loco-data.txt", "--legs", 6)[0] == 0
+    code, _, err = lacoc("gait", "check", folder / "Loco-data.txt", "--legs", 4)
+    assert code == 2
+    assert "a gait for a robot with 6 legs" in err
+
+
+def test_check_takes_a_robot_of_any_number_of_legs(lacoc, folder):
+    """A robot whose legs have no usual labels is shown with numbers."""
+    table = PostureTable({0: (0.0,) * 10 + (1.0,) * 5})
+    (folder / "five.txt").write_bytes(write_gait(table, leg_labels(5)))
+    code, out, _ = lacoc("gait", "check", folder / "five.txt", "--legs", 5)
+    assert (code, "5 legs" in out) == (0, True)
+
+
+def test_check_json(lacoc, folder):
+    """Issue 2: --json wherever a program may read: files without mistakes, and the mistakes."""
+    (folder / "bad.txt").write_text("Num of Posture\t1\n0 Key" + "\t0" * 17 + "\t200\n")
+    code, out, err = lacoc(
+        "gait", "check", "--json", folder / "LocoTra-data.txt", folder / "bad.txt"
+    )
+    assert (code, err) == (2, "")
+    assert json.loads(out) == {
+        "files": [
+            {
+                "file": "LocoTra-data.txt",
+                "kind": "locomotion",
+                "legs": 6,
+                "keys": {"0": 1, "1": 4, "2": 4, "3": 4},
+            }
+        ],
+        "mistakes": [
+            {
+                "file": "bad.txt",
+                "row": 2,
+                "column": 19,
+                "joint": 17,
+                "leg": "L,F",
+                "found": "200",
+                "expected": "an angle from -150 to 150 degrees",
+            }
+        ],
+    }
+    assert lacoc("gait", "check", "--json", folder / "Loco-data.xlsx")[0] == 0
+
+
+def test_check_of_a_file_that_is_not_there(lacoc, folder):
+    """Issue 2, done 6: one sentence, code 2."""
+    code, _, err = lacoc("gait", "check", folder / "none.txt")
+    assert code == 2
+    assert err.count("\n") == 1
+    assert "none.txt: No such file or directory." in err
+
+
+KINDS = ("Loco-data.txt", "LocoTra-data.txt", "Loco-data.xlsx")
+
+
+@pytest.mark.parametrize("source", KINDS)
+@pytest.mark.parametrize("target", KINDS)
+def test_any_of_the_three_becomes_any_other(lacoc, folder, workshop, source, target):
+    """Issue 2: convert A B; the kind of B is told by its name; the sample's keys by default."""
+    (folder / "out").mkdir()
+    written = folder / "out" / target
+    code, out, err = lacoc("gait", "convert", folder / source, written)
+    assert (code, out) == (0, "")
+    assert err == f"{written} written.\n"
+    locomotion = to_locomotion(workshop, SAMPLE_KEYS)
+    table = read_gait_file(written)
+    if target == "LocoTra-data.txt":
+        assert table == locomotion
+    elif source == "LocoTra-data.txt":
+        assert set(table.postures.values()) == set(workshop.postures.values())
+        assert table.postures[0] == workshop.postures[0]
+    else:
+        assert table == workshop
+
+
+def test_convert_with_keys(lacoc, folder, workshop):
+    """Issue 2: --keys says which postures each key takes."""
+    target = folder / "LocoTra-data-new.txt"
+    code, *_ = lacoc(
+        "gait", "convert", folder / "Loco-data.xlsx", target, "--keys", "0; 1,2,3,4 ;5"
+    )
+    assert code == 0
+    table = read_gait(target.read_bytes(), "x")
+    assert table == to_locomotion(workshop, ((0,), (1, 2, 3, 4), (5,)))
+
+
+def test_convert_never_overwrites(lacoc, folder, workshop):
+    """Rules 2: the older file is kept with a number, and convert says so."""
+    target = folder / "LocoTra-data.txt"
+    before = target.read_bytes()
+    code, _, err = lacoc("gait", "convert", folder / "Loco-data.txt", target, "--keys", "0")
+    assert code == 0
+    kept = folder / "LocoTra-data.1.txt"
+    assert f"{target} was there: it is {kept} now." in err
+    assert kept.read_bytes() == before
+    assert read_gait_file(target) == to_locomotion(workshop, ((0,),))
+
+
+@pytest.mark.parametrize(
+    ("source", "target", "keys", "message"),
+    [
+        ("Loco-data.txt", "LocoTra.txt", "0;9", "use posture 9, but Loco-data.txt has only 0, 1,"),
+        ("Loco-data.txt", "LocoTra.txt", "", "is no list of postures"),
+        ("Loco-data.txt", "LocoTra.txt", "0;;1", "is no list of postures"),
+        ("Loco-data.txt", "LocoTra.txt", "0;12", "is no list of postures"),
+        ("Loco-data.txt", "LocoTra.txt", "0" + ";0" * 10, "--keys has 11 keys"),
+        ("Loco-data.txt", "LocoTra.txt", "0" + ",0" * 100, "the longest of 101 postures"),
+        ("Loco-data.txt", "Loco-data.xlsx", "0", "--keys is for making locomotion from postures"),
+        ("LocoTra-data.txt", "LocoTra.txt", "0", "--keys is for making locomotion from postures"),
+        ("Loco-data.txt", "Loco-data.ods", None, "the name of B must end with .txt or .xlsx"),
+        ("Loco-data.txt", "no/folder.txt", None, "No such file or directory"),
+        ("many.txt", "Loco-data.txt", None, "many.txt has 11 different postures"),
+        ("bad.txt", "Loco-data.txt", None, "1 mistake."),
+    ],
+)
+def test_convert_says_what_is_wrong(lacoc, folder, source, target, keys, message):
+    """Issue 2, done 6: one clear message, code 2, nothing written or renamed."""
+    rows = "".join("\t".join([str(n)] * 18) + "\n" for n in range(11))
+    (folder / "many.txt").write_text(f"1\n11\n{rows}")
+    (folder / "bad.txt").write_text("no gait")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    options = [] if keys is None else ["--keys", keys]
+    code, out, err = lacoc("gait", "convert", folder / source, folder / target, *options)
+    assert (code, out) == (2, "")
+    assert message in err
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before

@@ -1,0 +1,234 @@
+"""Reading and writing Loco-data.txt and LocoTra-data.txt (rules 2)."""
+
+import math
+
+import pytest
+
+from lacoc_shared.gait import SAMPLE_KEYS, LocomotionTable, PostureTable, to_locomotion
+from lacoc_shared.gait_text import MAX_BYTES, read_gait, write_gait
+from lacoc_shared.mistakes import FileRefused
+
+FIGURE_4_1 = """\
+Num of Posture	9
+0 Key	45	0	-45	-45	0	45	20	20	20	20	20	20	0	0	0	0	0	0
+1 Key	0	0	-45	0	0	45	20	20	20	20	20	20	40	0	40	0	40	0
+2 Key	45	0	0	-45	0	0	20	20	20	20	20	20	40	0	40	0	40	0
+3 Key	45	0	0	-45	0	0	20	20	20	20	20	20	0	40	0	40	0	40
+4 Key	0	0	-45	0	0	45	20	20	20	20	20	20	0	40	0	40	0	40
+5 Key	45	0	0	0	0	45	20	20	20	20	20	20	40	0	40	0	40	0
+6 Key	45	45	0	-45	0	0	20	20	20	20	20	20	40	0	40	0	40	0
+7 Key	45	45	0	-45	0	0	20	20	20	20	20	20	0	40	0	40	0	40
+8 Key	45	0	0	0	0	45	20	20	20	20	20	20	0	40	0	40	0	40
+ID of Joint	0	1	2	3	4	5	6	7	8	9	10	11	12	13	14	15	16	17
+Position	R,F	R,C	R,B	L,B	L,C	L,F	R,F	R,C	R,B	L,B	L,C	L,F	R,F	R,C	R,B	L,B	L,C	L,F
+	Root						1st						2nd
+"""
+FIGURE_4_2 = """\
+4
+1
+45	0	-45	-45	0	45	20	20	20	20	20	20	0	0	0	0	0	0
+4
+45	0	0	0	0	45	20	20	20	20	20	20	0	40	0	40	0	40
+45	45	0	-45	0	0	20	20	20	20	20	20	0	40	0	40	0	40
+45	45	0	-45	0	0	20	20	20	20	20	20	40	0	40	0	40	0
+45	0	0	0	0	45	20	20	20	20	20	20	40	0	40	0	40	0
+4
+0	0	-45	0	0	45	20	20	20	20	20	20	40	0	40	0	40	0
+45	0	0	-45	0	0	20	20	20	20	20	20	40	0	40	0	40	0
+45	0	0	-45	0	0	20	20	20	20	20	20	0	40	0	40	0	40
+0	0	-45	0	0	45	20	20	20	20	20	20	0	40	0	40	0	40
+4
+45	0	0	0	0	45	20	20	20	20	20	20	40	0	40	0	40	0
+45	45	0	-45	0	0	20	20	20	20	20	20	40	0	40	0	40	0
+45	45	0	-45	0	0	20	20	20	20	20	20	0	40	0	40	0	40
+45	0	0	0	0	45	20	20	20	20	20	20	0	40	0	40	0	40
+"""
+
+
+def _row(first: str) -> bytes:
+    """A Loco-data text of one posture, whose first angle is written in some way."""
+    return f"Num of Posture\t1\n0 Key\t{first}{chr(9)}0".encode() + b"\t0" * 16 + b"\n"
+
+
+def test_figure_4_1_is_read(workshop, legs):
+    """Fig. 4-1, rules 2: the workshop's Loco-data is its nine postures."""
+    assert read_gait(FIGURE_4_1.encode(), "Loco-data.txt", legs=legs) == workshop
+
+
+def test_figure_4_2_is_read(workshop, legs):
+    """Fig. 4-2, rules 2: 18 lines; stand, turn left, forward, turn right."""
+    assert len(FIGURE_4_2.splitlines()) == 18
+    table = read_gait(FIGURE_4_2.encode(), "LocoTra-data.txt", legs=legs)
+    assert table == to_locomotion(workshop, SAMPLE_KEYS)
+
+
+def test_the_figures_are_written(workshop, legs):
+    """Rules 2: a writer writes the layout of Fig. 4-1 and Fig. 4-2, legend rows and all."""
+    assert write_gait(workshop, legs).decode() == FIGURE_4_1
+    assert write_gait(to_locomotion(workshop, SAMPLE_KEYS), legs).decode() == FIGURE_4_2
+
+
+def test_writing_for_other_legs_is_an_error(workshop):
+    """A table is never written with labels that don't fit it."""
+    with pytest.raises(ValueError, match="18 joints is not for 4 legs"):
+        write_gait(workshop, ("a", "b", "c", "d"))
+
+
+@pytest.mark.parametrize(
+    ("cell", "degrees"),
+    [
+        ("45", 45),
+        ("45.0", 45),
+        ("4.5E+01", 45),
+        ("4.5e1", 45),
+        ("45,0", 45),
+        ("+45", 45),
+        ("-22.5", -22.5),
+        (".5", 0.5),
+        ("45.", 45),
+        ("４５", 45),
+        ("４５．５", 45.5),
+        ("－４５", -45),
+        ("−45", -45),
+        ("\N{FULLWIDTH HYPHEN-MINUS}45", -45),
+        ("＋４，５", 4.5),
+        ("４．５Ｅ＋０１", 45),
+        ('"45"', 45),
+        ('"-22,5"', -22.5),
+        ("  45 ", 45),
+        ("\N{IDEOGRAPHIC SPACE}45", 45),
+        ("150", 150),
+        ("-150", -150),
+        ("-0", 0),
+    ],
+)
+def test_numbers_may_be_written_in_many_ways(cell, degrees):
+    """Rules 2: points, commas, exponents, full-width digits, minus signs, quotes."""
+    assert read_gait(_row(cell), "x").postures[0][0] == math.radians(degrees)
+
+
+def test_zero_has_one_sign():
+    """A written -0 is 0: equal files give equal bits."""
+    assert math.copysign(1, read_gait(_row("-0.0"), "x").postures[0][0]) == 1
+
+
+@pytest.mark.parametrize("text", [FIGURE_4_1, FIGURE_4_2], ids=["Loco-data", "LocoTra-data"])
+@pytest.mark.parametrize(
+    "change",
+    [
+        pytest.param(lambda t: t.replace("\n", "\r\n"), id="CRLF"),
+        pytest.param(lambda t: t.replace("\n", "\r"), id="CR"),
+        pytest.param(lambda t: t.rstrip("\n"), id="no last line end"),
+        pytest.param(lambda t: "\n\n" + t.replace("\n", "\n \n\t\t\n") + "\n\n", id="blank lines"),
+        pytest.param(lambda t: t.replace("\n", "\t\t \t\n"), id="empty cells at the end"),
+        pytest.param(lambda t: t.replace("\t", " "), id="a space"),
+        pytest.param(lambda t: t.replace("\t", "   "), id="runs of spaces"),
+        pytest.param(lambda t: t.replace("\t", "　"), id="full-width spaces"),
+        pytest.param(lambda t: t.replace("0", "０").replace("-", "－"), id="full-width"),
+        pytest.param(lambda t: t.replace("-", "−"), id="U+2212"),
+        pytest.param(lambda t: t.replace("45", "45,0"), id="decimal commas"),
+        pytest.param(
+            lambda t: "\n".join(
+                "\t".join(f'"{c}"' if c else "" for c in line.split("\t"))
+                for line in t.splitlines()
+            ),
+            id="quoted cells",
+        ),
+        pytest.param(
+            lambda t: "\n".join(
+                " ".join(f'"{c}"' for c in line.split("\t") if c) for line in t.splitlines()
+            ),
+            id="quoted cells with spaces between",
+        ),
+        pytest.param(
+            lambda t: t.split("ID of Joint")[0],
+            id="no legend",
+        ),
+        pytest.param(
+            lambda t: t.replace("ID of Joint", "関節").replace("Position", "位置"),
+            id="legend in Japanese",
+        ),
+        pytest.param(lambda t: t.replace("Key", "KEY").replace("Num", "num"), id="case"),
+        pytest.param(lambda t: t.replace(" Key", "Key"), id="no space in the keys"),
+    ],
+)
+def test_layouts_that_mean_the_same(text, change):
+    """Rules 2: tabs or runs of spaces, line ends, blank lines, trailing cells, legend or none."""
+    plain = read_gait(text.encode(), "x")
+    assert read_gait(change(text).encode(), "x") == plain
+
+
+@pytest.mark.parametrize("text", [FIGURE_4_1, FIGURE_4_2], ids=["Loco-data", "LocoTra-data"])
+@pytest.mark.parametrize(
+    "encode",
+    [
+        pytest.param(lambda t: t.encode("utf-8"), id="UTF-8"),
+        pytest.param(lambda t: t.encode("utf-8-sig"), id="UTF-8 with BOM"),
+        pytest.param(lambda t: b"\xff\xfe" + t.encode("utf-16-le"), id="UTF-16 LE with BOM"),
+        pytest.param(lambda t: b"\xfe\xff" + t.encode("utf-16-be"), id="UTF-16 BE with BOM"),
+        pytest.param(lambda t: t.encode("utf-16-le"), id="UTF-16 LE"),
+        pytest.param(lambda t: t.encode("utf-16-be"), id="UTF-16 BE"),
+        pytest.param(lambda t: t.encode("cp932"), id="Shift-JIS"),
+    ],
+)
+def test_encodings(text, encode):
+    """Rules 2: BOM, else UTF-16 by its NUL pattern, else strict UTF-8, else cp932."""
+    japanese = text.replace("ID of Joint", "関節").replace("45", "４５").replace("-", "－")
+    assert read_gait(encode(japanese), "x") == read_gait(text.encode(), "x")
+
+
+def test_a_row_without_a_tab_is_split_by_spaces_on_its_own():
+    """Rules 2: tabs or spaces is decided for each row."""
+    lines = FIGURE_4_1.splitlines()
+    lines[3] = lines[3].replace("\t", "  ")
+    assert read_gait("\n".join(lines).encode(), "x") == read_gait(FIGURE_4_1.encode(), "x")
+
+
+def test_the_order_and_the_choice_of_keys_is_free():
+    """Rules 2: keys 0-9, each once; a file needs not have all, nor in order."""
+    angles = "\t0" * 18
+    table = read_gait(f"Num of Posture\t2\n9 Key{angles}\n3 Key{angles}\n".encode(), "x")
+    assert sorted(table.postures) == [3, 9]
+
+
+@pytest.mark.parametrize("legs", [4, 6, 8])
+def test_three_columns_a_leg(legs):
+    """Rules 2, issue 2: a robot with 4, 6 or 8 legs has 12, 18 or 24 columns."""
+    row = "\t".join(["10"] * (3 * legs))
+    data = f"1\n1\n{row}\n".encode()
+    for known in (None, legs, [str(leg) for leg in range(legs)]):
+        assert read_gait(data, "x", legs=known).joints == 3 * legs
+
+
+def test_the_largest_files_are_read():
+    """Rules 2: 10 postures; 10 keys, and 100 postures for a key."""
+    angles = "\t0" * 18
+    rows = "".join(f"{digit} Key{angles}\n" for digit in range(10))
+    assert len(read_gait(f"Num of Posture\t10\n{rows}".encode(), "x").postures) == 10
+    row = angles.strip() + "\n"
+    data = ("10\n" + "1\n" + row + f"100\n{row * 100}" + ("1\n" + row) * 8).encode()
+    assert [len(s) for s in read_gait(data, "x").sequences] == [1, 100, *[1] * 8]
+
+
+def test_at_most_32_kib():
+    """Rules 2: a file of 32 KiB is read, one of a byte more is refused."""
+    data = FIGURE_4_1.encode().ljust(MAX_BYTES, b"\n")
+    assert isinstance(read_gait(data, "x"), PostureTable)
+    with pytest.raises(FileRefused, match="32769 bytes, expected a gait file of at most 32 KiB"):
+        read_gait(data + b"\n", "x")
+
+
+def test_a_range_for_each_joint():
+    """Rules 1: a robot file may allow less than 150 degrees, and differently for each joint."""
+    data = FIGURE_4_2.encode()
+    limits = [(-45.0, 45.0)] * 6 + [(0.0, 20.0)] * 6 + [(0.0, 40.0)] * 6
+    assert isinstance(read_gait(data, "x", legs=6, range_deg=limits), LocomotionTable)
+    limits[6] = (0.0, 19.5)
+    with pytest.raises(FileRefused) as refusal:
+        read_gait(data, "x", legs=6, range_deg=limits)
+    assert {(m.column, m.joint, m.expected) for m in refusal.value.mistakes} == {
+        (7, 6, "an angle from 0 to 19.5 degrees")
+    }
+    assert len(refusal.value.mistakes) == 13
+    with pytest.raises(FileRefused):
+        read_gait(data, "x", range_deg=44.9)

@@ -1,0 +1,263 @@
+"""Loco-data.xlsx, read and written (workshop 4-1, rules 2)."""
+
+import io
+import math
+import zipfile
+
+import openpyxl
+import pytest
+
+from lacoc_shared.gait import SAMPLE_KEYS, to_locomotion
+from lacoc_shared.gait_text import write_gait
+from lacoc_shared.gait_workbook import (
+    INPUT_SHEET,
+    MAX_BYTES,
+    MIRROR_SHEET,
+    read_gait_file,
+    read_workbook,
+    write_workbook,
+)
+from lacoc_shared.mistakes import FileRefused, UserError
+
+
+@pytest.fixture(scope="module")
+def sample(workshop, legs) -> bytes:
+    """The workshop's table as we write it."""
+    return write_workbook(workshop, legs)
+
+
+def edited(data: bytes, sheet: str = INPUT_SHEET, **cells: object) -> bytes:
+    """A workbook with other values in some cells, saved by a program that doesn't calculate."""
+    book = openpyxl.load_workbook(io.BytesIO(data))
+    for cell, value in cells.items():
+        book[sheet][cell] = value
+    return saved(book)
+
+
+def saved(book: openpyxl.Workbook) -> bytes:
+    """The bytes of a workbook."""
+    stream = io.BytesIO()
+    book.save(stream)
+    return stream.getvalue()
+
+
+def refused(data: bytes, **robot: object) -> list[tuple[object, ...]]:
+    """Why a workbook is refused."""
+    with pytest.raises(FileRefused) as refusal:
+        read_workbook(data, "x.xlsx", **robot)
+    assert {m.file for m in refusal.value.mistakes} == {"x.xlsx"}
+    return [
+        (m.row, m.column, m.joint, m.leg, m.field, m.found, m.expected)
+        for m in refusal.value.mistakes
+    ]
+
+
+def test_both_sheets_have_the_cells_of_figure_4_1(sample, workshop, legs):
+    """Fig. 4-1, rules 2: both sheets hold the table from A1, one as values, one as formulas."""
+    values = openpyxl.load_workbook(io.BytesIO(sample), data_only=True)
+    assert values.sheetnames == [INPUT_SHEET, MIRROR_SHEET]
+    text = [line.split("\t") for line in write_gait(workshop, legs).decode().splitlines()]
+    for sheet in values:
+        shown = [
+            ["" if cell is None else str(cell) for cell in row]
+            for row in sheet.iter_rows(values_only=True)
+        ]
+        trimmed = [line[: max(i for i, cell in enumerate(line) if cell) + 1] for line in text]
+        for row, line in zip(shown, trimmed, strict=False):
+            assert row[: len(line)] == line
+            assert not any(row[len(line) :])
+        assert not any(cell for row in shown[len(text) :] for cell in row)
+
+
+def test_the_mirror_is_made_of_live_formulas_with_values(sample):
+    """Rules 2: live formulas, and cached values for programs that don't calculate."""
+    formulas = openpyxl.load_workbook(io.BytesIO(sample))[MIRROR_SHEET]
+    values = openpyxl.load_workbook(io.BytesIO(sample), data_only=True)
+    for row in formulas["A1:S13"]:
+        for cell in row:
+            assert str(cell.value).startswith("=IF(INDEX('EX (input)'!$A:$S,ROW(),COLUMN())")
+            shown, typed = (values[name][cell.coordinate].value for name in values.sheetnames)
+            assert shown == typed
+
+
+def test_a_workbook_is_the_same_file_each_time(sample, workshop, legs):
+    """The same table makes the same bytes: no date, no random name."""
+    assert write_workbook(workshop, legs) == sample
+
+
+def test_the_edited_sheet_is_what_counts(sample, workshop):
+    """Rules 2: "EX (input)" is read with no "Save as" step, whatever the mirror still shows."""
+    table = read_workbook(edited(sample, B2=-22.5, C2="３０,５"), "x")
+    assert table.postures[0][:3] == (
+        math.radians(-22.5),
+        math.radians(30.5),
+        workshop.postures[0][2],
+    )
+    assert table.postures[1] == workshop.postures[1]
+
+
+def test_loco_data_alone_is_read(sample, workshop):
+    """Rules 2: the sheet "Loco-data" is read where it is the only one."""
+    book = openpyxl.load_workbook(io.BytesIO(sample), data_only=True)
+    del book[INPUT_SHEET]
+    assert read_workbook(saved(book), "x") == workshop
+
+
+def test_a_typed_table_is_read():
+    """Rules 2: a plain workbook is enough: no legend, blank rows, numbers as text."""
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.title = INPUT_SHEET
+    sheet.append(["Num of Posture", "1"])
+    sheet.append([])
+    sheet.append(["0 Key", *["１"] * 6, *[2.0] * 6, *[3] * 6])
+    (posture,) = read_workbook(saved(book), "x").postures.values()
+    assert posture == tuple(math.radians(value) for value in [1] * 6 + [2] * 6 + [3] * 6)
+
+
+def test_three_planted_mistakes_are_three_mistakes_with_their_cells(sample, legs):
+    """Rules 2: every mistake, with row, column, cell, joint id and leg."""
+    data = edited(sample, E3=151, M6="abc", T2=1, S10=True)
+    angle = "an angle from -150 to 150 degrees"
+    many = "18 angles (3 for each of 6 legs)"
+    assert refused(data, legs=legs) == [
+        (2, None, None, None, "EX (input)", "19 angles", many),
+        (3, 5, 3, "L,B", "EX (input)!E3", "151", angle),
+        (6, 13, 11, "L,F", "EX (input)!M6", '"abc"', angle),
+        (10, 19, 17, "L,F", "EX (input)!S10", '"TRUE"', angle),
+    ]
+
+
+def test_empty_cells_and_formulas_without_a_value(sample):
+    """Rules 2: an empty cell is a mistake; a formula that nobody calculated says so."""
+    found = [mistake[4:6] for mistake in refused(edited(sample, B2=None, C2="=D2*2"))]
+    assert found == [
+        ("EX (input)!B2", "nothing"),
+        ("EX (input)!C2", '"uncalculated =D2*2"'),
+    ]
+
+
+def test_a_workbook_for_another_robot_is_called_so(sample):
+    """Rules 2: a gait for another robot says so clearly."""
+    ((row, column, *_, found, expected),) = refused(sample, legs=8)
+    assert (row, column) == (2, None)
+    assert found == "18 angles a row: a gait for a robot with 6 legs"
+    assert expected == "24 angles a row: this robot has 8 legs"
+
+
+def test_sequences_are_not_for_workbooks():
+    """Rules 2: a workbook holds Loco-data."""
+    book = openpyxl.Workbook()
+    book.active.title = INPUT_SHEET
+    for row in [1], [1], [0] * 18:
+        book.active.append(row)
+    assert refused(saved(book))[0][5:] == (
+        "sequences of postures",
+        '"Num of Posture" in cell A1 (Loco-data)',
+    )
+
+
+def test_other_sheets_are_named():
+    """Rules 2: a workbook without the sheet says which sheets it has."""
+    book = openpyxl.Workbook()
+    book.create_sheet(MIRROR_SHEET)
+    assert refused(saved(book))[0][5:] == (
+        'the sheets "Sheet", "Loco-data"',
+        'a sheet "EX (input)", or "Loco-data" alone',
+    )
+
+
+def zipped(parts: dict[str, bytes]) -> bytes:
+    """A zip file."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in parts.items():
+            archive.writestr(name, content)
+    return stream.getvalue()
+
+
+def locked(data: bytes) -> bytes:
+    """A zip whose parts say that they have a password."""
+    data = bytearray(data)
+    for signature, flags in ((b"PK\x01\x02", 8), (b"PK\x03\x04", 6)):
+        place = data.find(signature)
+        while place >= 0:
+            data[place + flags] |= 1
+            place = data.find(signature, place + 1)
+    return bytes(data)
+
+
+WANTED = "an .xlsx workbook without a password, as spreadsheet programs save it"
+
+
+@pytest.mark.parametrize(
+    ("data", "found", "expected"),
+    [
+        (b"", "a damaged file, or no workbook", WANTED),
+        (b"Num of Posture\t1\n", "a damaged file, or no workbook", WANTED),
+        (b"PK\x03\x04 and no more", "a damaged file, or no workbook", WANTED),
+        (
+            b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600),
+            "an old .xls workbook, or one with a password",
+            WANTED,
+        ),
+        (zipped({"mimetype": b"text/plain"}), "a workbook that can't be read", WANTED),
+        (zipped({"[Content_Types].xml": b"<no xml"}), "a workbook that can't be read", WANTED),
+        (locked(zipped({"xl/workbook.xml": b"<x/>"})), "a file with a password", WANTED),
+        (
+            zipped({"xl/workbook.xml": b" " * (8 * MAX_BYTES + 1)}),
+            "a workbook that unpacks to more than 8 MiB",
+            "a table of angles",
+        ),
+        (bytes(MAX_BYTES + 1), "more than 1048576 bytes", "a workbook of at most 1 MiB"),
+    ],
+    ids=["empty", "text", "cut", "old", "zip", "xml", "password", "bomb", "large"],
+)
+def test_what_is_no_workbook(data, found, expected):
+    """Rules 2: other files are refused in words."""
+    assert refused(data) == [(None, None, None, None, None, found, expected)]
+
+
+def test_an_entity_bomb_is_refused(sample):
+    """Design, failure policy: a part that would grow without end when parsed is refused."""
+    with zipfile.ZipFile(io.BytesIO(sample)) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    entities = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 20}">' for n in range(1, 12))
+    parts["xl/sharedStrings.xml"] = (
+        f'<!DOCTYPE sst [<!ENTITY e0 "ha">{entities}]>'
+        '<sst xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main">'
+        "<si><t>&e11;</t></si></sst>"
+    ).encode()
+    assert refused(zipped(parts))[0][5] == "a workbook that can't be read"
+
+
+def test_a_row_far_below_costs_nothing(sample):
+    """Design, failure policy: a sheet that says it is the largest there can be is read at once."""
+    with zipfile.ZipFile(io.BytesIO(sample)) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    sheet = parts["xl/worksheets/sheet1.xml"]
+    sheet = sheet.replace(b'ref="A1:S13"', b'ref="A1:XFD1048576"')
+    parts["xl/worksheets/sheet1.xml"] = sheet.replace(
+        b"</sheetData>", b'<row r="1048576"><c r="XFD1048576"><v>1</v></c></row></sheetData>'
+    )
+    assert len(read_workbook(zipped(parts), "x").postures) == 9
+
+
+def test_a_file_is_told_by_its_content(tmp_path, sample, workshop, legs):
+    """Rules 2: text and workbooks are told apart by what is in them, not by their names."""
+    locomotion = to_locomotion(workshop, SAMPLE_KEYS)
+    for name, data, table in (
+        ("Loco-data.xlsx", sample, workshop),
+        ("LocoTra-data.txt", sample, workshop),
+        ("Loco-data.txt", write_gait(workshop, legs), workshop),
+        ("book.xlsx", write_gait(locomotion, legs), locomotion),
+    ):
+        path = tmp_path / name
+        path.write_bytes(data)
+        assert read_gait_file(path, legs=legs) == table
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    """Issue 2, done 6: one sentence with the name and the reason."""
+    with pytest.raises(UserError, match=r"Cannot read .*none\.txt: No such file or directory\."):
+        read_gait_file(tmp_path / "none.txt")

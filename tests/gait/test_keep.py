@@ -1,0 +1,64 @@
+"""Writing never overwrites (workshop 4-1, rules 2)."""
+
+import threading
+
+import pytest
+
+from lacoc_shared.keep import make_room, save
+from lacoc_shared.mistakes import UserError
+
+
+def test_older_files_are_kept_with_numbers(tmp_path):
+    """Rules 2: the older file is kept with a number; a number is used once."""
+    path = tmp_path / "Loco-data.txt"
+    assert save(path, b"one") is None
+    assert save(path, b"two") == tmp_path / "Loco-data.1.txt"
+    assert save(path, b"three") == tmp_path / "Loco-data.2.txt"
+    contents = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
+    assert contents == {
+        "Loco-data.txt": b"three",
+        "Loco-data.1.txt": b"one",
+        "Loco-data.2.txt": b"two",
+    }
+
+
+def test_a_number_that_is_taken_is_left_alone(tmp_path):
+    """Rules 2: a file that has a number already is not overwritten either."""
+    (tmp_path / "a.1").write_bytes(b"mine")
+    (tmp_path / "a").write_bytes(b"old")
+    assert save(tmp_path / "a", b"new") == tmp_path / "a.2"
+    assert (tmp_path / "a.1").read_bytes() == b"mine"
+
+
+def test_making_room_without_a_file(tmp_path):
+    """Nothing is made where nothing is in the way."""
+    assert make_room(tmp_path / "a.txt") is None
+    assert make_room(tmp_path / "none" / "a.txt") is None
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_link_is_moved_not_followed(tmp_path):
+    """A link, even to nothing, is kept like a file; what it leads to stays."""
+    (tmp_path / "a.txt").symlink_to(tmp_path / "gone.txt")
+    assert save(tmp_path / "a.txt", b"new") == tmp_path / "a.1.txt"
+    assert (tmp_path / "a.1.txt").is_symlink()
+    assert not (tmp_path / "gone.txt").exists()
+
+
+def test_what_cannot_be_written_is_said(tmp_path):
+    """Issue 2, done 6: a folder of that name, or no folder to write in."""
+    with pytest.raises(UserError, match="a folder has this name"):
+        save(tmp_path, b"")
+    with pytest.raises(UserError, match="No such file or directory"):
+        save(tmp_path / "none" / "a.txt", b"")
+
+
+def test_writers_at_once_lose_nothing(tmp_path):
+    """Rules 2: programs that write the same file at once keep every version."""
+    path = tmp_path / "a.txt"
+    writers = [threading.Thread(target=save, args=(path, str(n).encode())) for n in range(8)]
+    for writer in writers:
+        writer.start()
+    for writer in writers:
+        writer.join()
+    assert sorted(file.read_text() for file in tmp_path.iterdir()) == list("01234567")
