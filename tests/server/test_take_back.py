@@ -1,0 +1,397 @@
+"""Take-back: one event is struck out and the match judged again (rules 4)."""
+
+from itertools import permutations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stage import LEFT, QUICK, RIGHT, Script, Stage, X, key, seen
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.game import Observation, Place, RobotView
+from lacoc_server.history import History
+from lacoc_shared import decisions as d
+from lacoc_shared.messages import DecisionReply, Event, Refusal
+from lacoc_shared.seat import Phase
+
+P = Phase
+CORNERS = ((-0.8, -0.8), (0.8, -0.8), (-0.8, 0.8), (0.8, 0.8))
+AWAY = (0.0, 0.0)
+
+
+def cell(name: str) -> tuple[float, float]:
+    """The centre of a disc."""
+    return (int(name[1]) - 2.5) * 0.3, (int(name[3]) - 2.5) * 0.3
+
+
+def othello(walks: dict[int, dict[int, str]], ticks: int = 100) -> Stage:
+    """A match of Othello played to a tick; walks: tick -> seat -> disc."""
+    poses = {tick: {s: cell(c) for s, c in step.items()} for tick, step in walks.items()}
+    return play(Stage("othello", QUICK, script=Script(poses=poses)), ticks)
+
+
+def flag_strike(
+    walks: dict[int, dict[int, tuple[float, float]]],
+    touches: dict[int, dict[int, tuple[int, ...]]] | None = None,
+    ticks: int = 100,
+) -> Stage:
+    script = Script(poses=dict(walks), touches=touches or {})
+    return play(Stage("flag-strike", QUICK, script=script), ticks)
+
+
+def play(stage: Stage, ticks: int) -> Stage:
+    """Play to a tick, or to the end, and halt."""
+    if not stage.beats:
+        stage.to_playing()
+    while stage.match.ticks < ticks and stage.phase is not P.FINISHED:
+        stage.beat()
+    if stage.phase is P.PLAYING:
+        stage.decide(d.Halt())
+    return stage
+
+
+def event(stage: Stage, kind: str, marker: str) -> Event:
+    """The newest event of a kind about a marker."""
+    return [e for e in stage.events if e.kind == kind and e.data.get("marker") == marker][-1]
+
+
+def take_back(stage: Stage, number: int, dry_run: bool = False) -> DecisionReply:
+    reply = stage.decide(d.TakeBack(number, dry_run))
+    assert isinstance(reply, DecisionReply), reply
+    return reply
+
+
+# A chain of flips, of which the later ones need the first.
+CHAIN = {10: {LEFT: "c2r2"}, 20: {LEFT: "c3r2"}, 30: {LEFT: "c4r2"}, 40: {RIGHT: "c5r2"}}
+
+
+def test_a_flip_and_what_came_of_it() -> None:
+    """Rules 4, take-back, workshop 5-1 rule 4: later captures may vanish; the reply lists them."""
+    stage = othello(CHAIN)
+    assert stage.scores == (20, 16)
+    first, second = event(stage, "flip", "c3r2"), event(stage, "flip", "c4r2")
+    reply = take_back(stage, first.number)
+    assert reply.changes == (
+        f"event {first.number} vanishes: flip c3r2",
+        f"event {second.number} vanishes: flip c4r2",
+    )
+    assert reply.scores == stage.scores == (18, 18)
+    assert stage.board["c3r2"] == stage.board["c4r2"] == "right"
+    logged = next(e for e in stage.beats[-1].events if e.kind == "decision")
+    assert logged.number == reply.event
+    assert tuple(logged.data["changes"]) == reply.changes
+    assert stage.phase is P.HALTED
+
+
+def test_an_event_may_appear() -> None:
+    """Rules 4, take-back: later captures may appear; they get numbers of their own."""
+    stage = othello(
+        {
+            5: {RIGHT: "c3r2", LEFT: "c2r1"},
+            10: {LEFT: "c2r2"},
+            15: {LEFT: "c3r2"},  # takes the disc that the right robot stands on
+            20: {RIGHT: "c2r2"},  # from a disc that is not its own any more: nothing
+        }
+    )
+    assert stage.scores == (19, 17)
+    reply = take_back(stage, event(stage, "flip", "c3r2").number)
+    assert reply.changes[1:] == ("appears: flip c2r2",)
+    assert reply.scores == stage.scores == (17, 19)
+    new = event(stage, "flip", "c2r2")
+    assert new.text.startswith("Judged again: Bees flips c2r2")
+    assert new.number == stage.match.next_number - 1
+    assert reply.event is not None
+    assert new.number > reply.event
+    assert take_back(stage, new.number).scores == (18, 18)
+
+
+def test_a_capture() -> None:
+    """Rules 4, take-back, workshop 5-2 rule 3: a robot is in a corner without having taken it."""
+    stage = flag_strike({10: {LEFT: CORNERS[0]}, 20: {LEFT: AWAY}, 30: {LEFT: CORNERS[0]}})
+    first = event(stage, "capture", "corner0")
+    assert stage.numbers("capture") == [first.number]
+    reply = take_back(stage, first.number)
+    assert reply.changes == (
+        f"event {first.number} vanishes: capture corner0",
+        "appears: capture corner0",
+    )
+    assert stage.scores == (5, 0)
+    assert take_back(stage, event(stage, "capture", "corner0").number).scores == (0, 0)
+
+
+def test_a_strike() -> None:
+    """Rules 4, take-back, workshop 5-2 rule 5: the flag stands again, also a tick later."""
+    on = {tick: {RIGHT: (22,)} for tick in range(10, 20)}  # flag18 has 5 points
+    stage = flag_strike({}, on)
+    assert stage.scores == (0, 5)
+    reply = take_back(stage, event(stage, "strike", "flag18").number)
+    assert (reply.scores, reply.changes) == (
+        (0, 0),
+        (f"event {stage.numbers('strike')[0]} vanishes: strike flag18",),
+    )
+    assert "flag18" not in stage.board
+
+
+def test_adjust_and_set() -> None:
+    """Rules 4, take-back: also of adjust and set."""
+    stage = othello(CHAIN)
+    adjust, put = stage.decide(d.Adjust("right", 7)), stage.decide(d.Set("c0r0", "right"))
+    assert stage.scores == (19, 24)
+    assert take_back(stage, adjust.event).scores == (19, 17)
+    assert take_back(stage, put.event).scores == (20, 16)
+    assert stage.scores == (20, 16)
+
+
+def test_a_set_that_a_later_flip_needed() -> None:
+    """Rules 4, take-back: the game is folded again from that event on."""
+    stage = Stage("othello", QUICK, script=Script(poses={20: {LEFT: cell("c2r2")}})).to_playing()
+    stage.run(10)
+    stage.decide(d.Set("c3r2", "left"))
+    number = stage.numbers("decision")[-1]
+    stage.script.poses.update({30: {LEFT: cell("c3r2")}, 40: {LEFT: cell("c4r2")}})
+    play(stage, 50)
+    assert stage.scores == (20, 16)
+    reply = take_back(stage, number)
+    assert reply.changes == ("appears: flip c3r2",)
+    assert stage.scores == (20, 16)
+
+
+@pytest.mark.parametrize("kind", ["flip", "adjust", "set"])
+def test_a_dry_run_changes_nothing_and_tells_the_truth(kind: str) -> None:
+    """Rules 4, take-back: dry_run shows it before it is done."""
+    stage, twin = othello(CHAIN), othello(CHAIN)
+    for both in (stage, twin):
+        both.decide(d.Set("c0r0", "right"))
+        both.decide(d.Adjust("left", 2))
+    number = {
+        "flip": event(stage, "flip", "c3r2").number,
+        "set": stage.numbers("decision")[-2],
+        "adjust": stage.numbers("decision")[-1],
+    }[kind]
+    dry = take_back(stage, number, dry_run=True)
+    twin.beat()
+    assert seen(stage) == seen(twin)
+    assert (dry.event, stage.beats[-1].events) == (None, ())
+    wet = take_back(stage, number)
+    assert (dry.scores, dry.changes, dry.text) == (wet.scores, wet.changes, wet.text)
+    assert stage.scores == wet.scores != twin.scores
+
+
+def test_what_is_gone_cannot_be_taken_back() -> None:
+    """Rules 4, take-back: an event that stands; not twice, and not one that has vanished."""
+    stage = othello(CHAIN)
+    gone = [event(stage, "flip", name).number for name in ("c3r2", "c4r2")]
+    gone += [stage.decide(d.Adjust("left", 1)).event, stage.decide(d.Set("c0r0", "right")).event]
+    taken = [take_back(stage, number).event for number in (gone[0], *gone[2:])]
+    before = seen(stage)
+    for number in (*gone, *taken, *stage.numbers("phase", "join")):
+        assert isinstance(stage.decide(d.TakeBack(number)), Refusal)
+    assert seen(stage) == before
+
+
+ALL_FOUR = {10 * n: {LEFT: at} for n, at in enumerate(CORNERS, start=1)}
+
+
+def test_a_match_that_the_event_had_ended_goes_on() -> None:
+    """Rules 4, take-back: if the struck event had ended the match, it is HALTED again."""
+    stage = flag_strike(ALL_FOUR)
+    assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
+    reply = take_back(stage, event(stage, "capture", "corner3").number)
+    assert stage.phase is P.HALTED
+    assert reply.scores == (15, 0)
+    result = stage.beats[-1].result
+    assert result is not None
+    assert (result.computed, result.reason) == ("", "")
+    stage.decide(d.Resume())
+    stage.script.poses.update({50: {LEFT: AWAY}, 60: {LEFT: CORNERS[3]}})
+    stage.until(P.FINISHED)
+    assert stage.match.ticks == 60
+    assert stage.match.winner() == "left"
+
+
+def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
+    """Rules 4, take-back: only the end that the struck event had made is undone."""
+    stage = flag_strike(ALL_FOUR)
+    numbers = [stage.decide(d.Set(flag, "right")).event for flag in ("flag0", "flag1")]
+    take_back(stage, numbers[1])
+    assert (stage.phase, stage.match.ended) == (P.FINISHED, "the left team holds all corners")
+    take_back(stage, numbers[0])
+    assert stage.phase is P.FINISHED
+    assert stage.scores == (20, 0)
+
+
+def test_a_match_may_turn_out_to_have_been_over() -> None:
+    """Rules 4, take-back: what would have ended the match ends it; what came later is void."""
+    walks = dict(ALL_FOUR)
+    walks[35] = {RIGHT: CORNERS[0]}
+    stage = flag_strike(walks, {60: {RIGHT: (22,)}})
+    assert (stage.phase, stage.scores) == (P.HALTED, (15, 10))
+    retaken, strike = event(stage, "capture", "corner0").number, stage.numbers("strike")[0]
+    reply = take_back(stage, retaken)
+    assert stage.phase is P.FINISHED
+    assert stage.match.ended == "the left team holds all corners"
+    assert reply.scores == stage.scores == (20, 0)
+    assert f"event {strike} vanishes: strike flag18" in reply.changes
+    # And back: without the last corner it was not over, and the strike counts again.
+    reply = take_back(stage, event(stage, "capture", "corner3").number)
+    assert stage.phase is P.HALTED
+    assert reply.scores == (15, 5)
+
+
+def test_time_is_up_stays_up() -> None:
+    """Rules 4, take-back: the clock stays as it was; the result is worked out again."""
+    short = {"match": {"duration_s": 1.0, "countdown_s": 0.02}}
+    poses = {10: {LEFT: cell("c2r2")}, 20: {LEFT: cell("c3r2")}}
+    stage = play(Stage("othello", short, script=Script(poses=poses)), 50)
+    assert (stage.phase, stage.match.winner()) == (P.FINISHED, "left")
+    take_back(stage, stage.numbers("flip")[0])
+    result = stage.beats[-1].result
+    assert result is not None
+    assert (stage.phase, result.computed, result.reason) == (P.FINISHED, "draw", "time is up")
+    assert stage.frame.clock_ticks == 50
+
+
+def test_a_declared_end_stays() -> None:
+    """Rules 4: the referee's own word is taken back by another word, not by a fold."""
+    stage = flag_strike(ALL_FOUR)
+    stage.decide(d.Declare("right"))
+    take_back(stage, event(stage, "capture", "corner3").number)
+    assert stage.phase is P.FINISHED
+    assert stage.match.declared == "right"
+
+
+def test_paths_restarts_clock_and_other_decisions_stay() -> None:
+    """Rules 4, take-back: body paths, restarts, clock and other decisions stay as they were."""
+    stage = Stage("othello", QUICK, script=Script()).to_playing()
+    stage.script.poses.update({10: {LEFT: cell("c2r2")}, 20: {LEFT: cell("c3r2")}})
+    stage.run(30)
+    stage.beat(key(LEFT, X))
+    stage.decide(d.Clock(3.0))
+    stage.decide(d.Adjust("right", 1))
+    stage.decide(d.Set("c5r5", "neutral"))
+    play(stage, 50)
+    was = stage.frame
+    take_back(stage, stage.numbers("flip")[0])
+    assert (stage.frame.poses, stage.frame.clock_ticks) == (was.poses, was.clock_ticks)
+    assert stage.match.history.state.last == (12, 23)  # put back on its start cell
+    assert stage.scores == (18, 17 + 1)
+
+
+def test_both_orders_give_the_same() -> None:
+    """Rules 4, take-back: of several events that stand apart, the order does not matter."""
+    walks = {
+        10: {LEFT: "c2r2", RIGHT: "c3r4"},
+        20: {LEFT: "c3r2", RIGHT: "c2r4"},
+        30: {LEFT: "c2r1"},
+        40: {LEFT: "c3r1", RIGHT: "c1r4"},
+    }
+    ends = set()
+    for order in permutations(range(3)):
+        stage = othello(walks)
+        put = stage.decide(d.Set("c0r5", "right")).event
+        numbers = [event(stage, "flip", "c3r1").number, event(stage, "flip", "c1r4").number, put]
+        for index in order:
+            take_back(stage, numbers[index])
+        ends.add((stage.match.history.state, stage.scores))
+    assert len(ends) == 1
+
+
+# The fold itself.
+
+NO_TOUCH: tuple[int, ...] = ()
+
+
+def view(x_m: float, y_m: float, touched: tuple[int, ...] = (), placed: bool = False) -> RobotView:
+    place = Place(x_m, y_m, 0.0) if placed else None
+    return RobotView(x_m, y_m, 0.07, 1.0, 0.0, 0.0, 0.0, place, touched)
+
+
+@st.composite
+def observations(draw: st.DrawFn, arena: str) -> list[Observation]:
+    """Robots that hop on a grid of the field's own places, touch flags and are put back."""
+    size = 6 if arena == "othello" else 3
+    pitch = 0.3 if arena == "othello" else 0.8
+    half = (size - 1) / 2
+    markers = range(4, 24)
+
+    def robot() -> st.SearchStrategy[RobotView]:
+        touched = st.sets(st.sampled_from(markers), max_size=2).map(lambda s: tuple(sorted(s)))
+        return st.builds(
+            lambda c, r, t, p: view((c - half) * pitch, (r - half) * pitch, t, p == 9),
+            st.integers(0, size - 1),
+            st.integers(0, size - 1),
+            touched if arena == "flag-strike" else st.just(NO_TOUCH),
+            st.integers(0, 9),
+        )
+
+    return draw(st.lists(st.tuples(robot(), robot()), min_size=5, max_size=60))
+
+
+GAMES = {name: arenas.load(name).game for name in ("othello", "flag-strike")}
+
+
+@settings(max_examples=60, deadline=None)
+@pytest.mark.parametrize("arena", list(GAMES))
+@given(data=st.data())
+def test_folding_with_nothing_struck_is_the_match_asplay(arena: str, data: st.DataObject) -> None:
+    """Rules 4, take-back: the fold is the same judging; what is not struck stays as it was."""
+    game = GAMES[arena]
+    history = History(game)
+    history.set(0, 0, game.board(game.start())[0], number=1)  # changes nothing
+    number = 2
+    judged = data.draw(observations(arena))
+    sets = data.draw(st.dictionaries(st.integers(0, len(judged)), st.integers(0, 23), max_size=3))
+    for tick, observation in enumerate(judged):
+        if tick in sets:
+            history.set(tick, sets[tick], data.draw(st.integers(0, 2)), number)
+            number += 1
+        number += len(history.observe(tick + 1, observation, number))
+        if history.over:
+            break
+    fold = history.without(1)
+    assert (fold.state, fold.over, fold.vanished, fold.appeared) == (
+        history.state,
+        history.over,
+        (),
+        (),
+    )
+    state = history.state
+    history.accept(fold, number)
+    assert history.state == state
+    assert all(history.knows(n) for n in range(2, number))
+    assert not history.knows(1)
+
+
+@settings(max_examples=40, deadline=None)
+@pytest.mark.parametrize("arena", list(GAMES))
+@given(data=st.data())
+def test_a_fold_leaves_the_history_alone_and_can_be_repeated(
+    arena: str, data: st.DataObject
+) -> None:
+    """Rules 4, take-back: what dry_run shows is what is done, whatever was played."""
+    history = History(GAMES[arena])
+    number = 1
+    for tick, observation in enumerate(data.draw(observations(arena)), start=1):
+        number += len(history.observe(tick, observation, number))
+        if history.over:
+            break
+    if number == 1:
+        return
+    struck = data.draw(st.integers(1, number - 1))
+    state, over = history.state, history.over
+    dry = history.without(struck)
+    assert (history.state, history.over) == (state, over)
+    assert history.knows(struck)
+    wet = history.without(struck)
+    assert (wet.state, wet.over, wet.vanished, wet.appeared) == (
+        dry.state,
+        dry.over,
+        dry.vanished,
+        dry.appeared,
+    )
+    history.accept(wet, number)
+    assert history.state == dry.state
+    gone = {old for old, _ in dry.vanished}
+    assert struck in gone
+    assert {n for n in range(1, number) if not history.knows(n)} == gone
+    assert all(history.knows(number + new) for new in range(len(dry.appeared)))
