@@ -7,7 +7,7 @@ what a spreadsheet program can save as text. The software reads the edited sheet
 import io
 import warnings
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -143,24 +143,28 @@ def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
         book[sheet].iter_rows(max_row=_MAX_ROWS, max_col=_MAX_COLUMNS, values_only=True)
         for book in books
     )
+    rows = [list(zip(*pair, strict=True)) for pair in zip(values, formulas, strict=True)]
+    # Programs keep the values of all formulas or of none. An empty value looks like none.
+    calculated = any(
+        value is not None and str(formula).startswith("=") for row in rows for value, formula in row
+    )
     return sheet, [
-        Row(number, list(_texts(*cells)))
-        for number, cells in enumerate(zip(values, formulas, strict=True), start=1)
+        Row(number, [_text(value, None if calculated else formula) for value, formula in row])
+        for number, row in enumerate(rows, start=1)
     ]
 
 
-def _texts(values: Sequence[object], formulas: Sequence[object]) -> Iterator[str]:
-    """Cells as a text file would have them."""
-    for value, formula in zip(values, formulas, strict=True):
-        match value:
-            case None:  # an empty cell, or a formula saved by a program that doesn't calculate
-                yield "" if formula is None else f"uncalculated {formula}"
-            case bool():
-                yield str(value).upper()
-            case int() | float():
-                yield number_text(value)
-            case _:
-                yield narrow(str(value))
+def _text(value: object, formula: object) -> str:
+    """A cell as a text file would have it; `formula` is told where no value was kept."""
+    match value:
+        case None:
+            return "" if formula is None else f"uncalculated {formula}"
+        case bool():
+            return str(value).upper()
+        case int() | float():
+            return number_text(value)
+        case _:
+            return narrow(str(value))
 
 
 def _at_cell(mistake: Mistake, sheet: str) -> Mistake:

@@ -103,6 +103,17 @@ def test_loco_data_alone_is_read(sample, workshop):
     assert read_workbook(saved(book), "x") == workshop
 
 
+def test_formulas_that_show_nothing_are_empty_cells(sample, workshop):
+    """Rules 2: of live formulas the kept values are read, and "" is an empty cell."""
+    with zipfile.ZipFile(io.BytesIO(sample)) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    mirror = b'<sheet name="Loco-data" sheetId="2" r:id="rId2"/>'
+    sheets = parts["xl/workbook.xml"].partition(b"<sheets>")[2].partition(b"</sheets>")[0]
+    assert sheets.endswith(mirror)
+    parts["xl/workbook.xml"] = parts["xl/workbook.xml"].replace(sheets, mirror)
+    assert read_workbook(zipped(parts), "x") == workshop
+
+
 def test_a_typed_table_is_read():
     """Rules 2: a plain workbook is enough: no legend, blank rows, numbers as text."""
     book = openpyxl.Workbook()
