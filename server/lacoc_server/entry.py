@@ -37,8 +37,12 @@ def weigh_in(
     Raises:
         FileRefused: with every mistake of every file.
     """
-    spec = read_robot(robot.data, robot.name, Limits(**limits))
     mistakes: list[Mistake] = []
+    spec = None
+    try:
+        spec = read_robot(robot.data, robot.name, Limits(**limits))
+    except FileRefused as refused:
+        mistakes += refused.mistakes
     tables: list[PostureTable | LocomotionTable] = []
     for file, kind, what in (
         (postures, PostureTable, "a Loco-data file (postures for [A])"),
@@ -47,7 +51,7 @@ def weigh_in(
         if file is None:
             continue
         try:
-            table = read_gait(file.data, file.name, legs=spec.labels)
+            table = _read_gait(file, spec)
         except FileRefused as refused:
             mistakes += refused.mistakes
             continue
@@ -57,7 +61,7 @@ def weigh_in(
             mistakes.append(Mistake(file=file.name, found="the other kind of table", expected=what))
     if not (tables or mistakes):
         mistakes.append(Mistake(file=robot.name, found="no gait file", expected="at least one"))
-    if mistakes:
+    if spec is None or mistakes:
         raise FileRefused(mistakes)
     return Entry(
         spec,
@@ -96,3 +100,10 @@ class Admission:
                 postures, locomotion = self.postures, self.locomotion
         weigh_in(robot, postures, locomotion, self.limits)
         return msgspec.structs.replace(join, robot=robot, postures=postures, locomotion=locomotion)
+
+
+def _read_gait(file: SentFile, robot: RobotSpec | None) -> PostureTable | LocomotionTable:
+    """Read a gait for a robot, or for any where the robot file itself is refused."""
+    if robot is None:
+        return read_gait(file.data, file.name)
+    return read_gait(file.data, file.name, legs=robot.labels, range_deg=robot.ranges_deg)

@@ -1,0 +1,96 @@
+"""Weighing in: a robot and its gait files, checked together (rules 1 and 2)."""
+
+import pytest
+from stage import join
+
+from lacoc_server.entry import weigh_in
+from lacoc_shared.inputs import JoinSeat
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import FileRefused, Mistake
+
+HEXAPOD = join(0)
+
+
+def mistakes_of(
+    robot: SentFile | None = None,
+    postures: SentFile | None = None,
+    locomotion: SentFile | None = None,
+    **limits: float,
+) -> list[Mistake]:
+    with pytest.raises(FileRefused) as refused:
+        weigh_in(robot or HEXAPOD.robot, postures, locomotion, limits)
+    return refused.value.mistakes
+
+
+def edited(file: SentFile | None, old: str, new: str) -> SentFile:
+    assert file is not None
+    assert old.encode() in file.data
+    return SentFile(file.name, file.data.replace(old.encode(), new.encode(), 1))
+
+
+@pytest.mark.parametrize("robot", ["hexapod", "long-legs", "quadruped", "octopod"])
+def test_every_sample_is_let_in(robot: str) -> None:
+    """Rules 1: the sample robots with their sample gaits."""
+    was: JoinSeat = join(0, robot=robot)
+    entry = weigh_in(was.robot, was.postures, was.locomotion, {})
+    assert entry.gait.joints == entry.robot.joints
+
+
+def test_one_gait_file_is_enough() -> None:
+    """Rules 2: a table for either level, or both."""
+    assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, None, {}).gait.locomotion is None
+    assert weigh_in(HEXAPOD.robot, None, HEXAPOD.locomotion, {}).gait.postures is None
+    (mistake,) = mistakes_of()
+    assert (mistake.found, mistake.expected) == ("no gait file", "at least one")
+
+
+def test_the_files_are_not_swapped() -> None:
+    """Rules 2: each file is the table that it is sent as."""
+    found = [m.expected for m in mistakes_of(None, HEXAPOD.locomotion, HEXAPOD.postures)]
+    assert found == [
+        "a Loco-data file (postures for [A])",
+        "a LocoTra-data file (sequences for [B])",
+    ]
+
+
+def test_a_gait_for_another_robot() -> None:
+    """Rules 2: more or fewer angles than the robot has joints is a mistake."""
+    other = join(0, robot="quadruped")
+    assert {m.file for m in mistakes_of(None, other.postures, other.locomotion)} == {
+        "Loco-data.txt",
+        "LocoTra-data.txt",
+    }
+
+
+def test_angles_out_of_the_robots_own_range() -> None:
+    """Rules 2: nothing is clamped silently: a joint's range is the robot file's."""
+    narrow = edited(HEXAPOD.robot, "range_deg = [-150, 150]", "range_deg = [-45, 45]")
+    assert weigh_in(narrow, HEXAPOD.postures, HEXAPOD.locomotion, {}).robot.name == "Hexapod"
+    far = edited(HEXAPOD.postures, "40", "45.5")
+    (mistake,) = mistakes_of(narrow, far)
+    assert (mistake.file, mistake.found) == ("Loco-data.txt", "45.5")
+    assert "-45" in mistake.expected
+    weigh_in(HEXAPOD.robot, far, None, {})
+
+
+def test_a_range_is_met_exactly() -> None:
+    """Rules 1: an angle at the end of the range is in it, whatever degrees become in radians."""
+    for end in ("127.8", "124.6", "120.1"):
+        robot = edited(HEXAPOD.robot, "range_deg = [-150, 150]", f"range_deg = [-{end}, {end}]")
+        gait = edited(HEXAPOD.postures, "40", end)
+        weigh_in(robot, gait, None, {})
+
+
+def test_all_mistakes_of_all_files_at_once() -> None:
+    """Issue 2, "Network": the server checks the files and answers with all mistakes."""
+    robot = edited(HEXAPOD.robot, "mass_kg = 0.125", "mass_kg = 7")
+    postures = edited(HEXAPOD.postures, "45", "abc")
+    locomotion = edited(HEXAPOD.locomotion, "45", "def")
+    found = mistakes_of(robot, postures, locomotion)
+    assert [m.file for m in found] == ["robot.toml", "Loco-data.txt", "LocoTra-data.txt"]
+
+
+def test_the_contests_limits() -> None:
+    """Rules 1: each limit is a setting of the contest."""
+    (mistake,) = mistakes_of(None, HEXAPOD.postures, ang_min_deg_s=100.0)
+    assert mistake.field == "drive.ang_min_deg_s"
