@@ -59,7 +59,7 @@ def demo_command(
             words = ("referee", decision, "--by", "demo", *wait, *where)
             processes.enter_context(_process(*words, token=court.referee))
         if show_live:
-            processes.enter_context(_process("watch", "--terminal", *where, output=None))
+            processes.enter_context(_process("watch", "--terminal", "--board", *where, output=None))
         result = _follow(court, quiet=show_live)
     screen.show(f"\n{result}")
     record = court.record(recordings)

@@ -1,0 +1,1 @@
+"""The subcommands of `lacoc` for everyone but the court."""

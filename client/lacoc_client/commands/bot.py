@@ -1,0 +1,123 @@
+"""`lacoc bot`: a bot or a ghost in a seat."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas import brains
+from lacoc_client.bot_player import BotPlayer
+from lacoc_client.commands import entrance
+from lacoc_client.controller import Controller, Hold
+from lacoc_client.seat_files import SeatFiles, gather
+from lacoc_client.stopping import stop_signals
+from lacoc_shared import options, screen
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.session import open_client
+
+app = typer.Typer()
+
+_GONE_S = 120.0
+"""A court that is silent for so long does not come back by itself."""
+_NAME_MAX = 24
+
+
+@app.command(name="bot")
+def bot_command(
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="A bot of the arena (such as 'straight' or 'planner'), your my_bot.py, or "
+            "'ghost:RECORD.mcap:left', which presses the keys of a recorded match again."
+        ),
+    ],
+    contest: options.ContestFile = None,
+    court: options.CourtName = None,
+    connect: options.Connect = None,
+    seat: options.SeatName = None,
+    token: options.Token = None,
+    arena: Annotated[
+        str | None,
+        typer.Option(
+            envvar="LACOC_ARENA",
+            help="The arena to look for the bot in; by default the one the court plays.",
+        ),
+    ] = None,
+    team: Annotated[
+        str | None,
+        typer.Option("--name", metavar="TEAM", help="The team's name; by default the bot's."),
+    ] = None,
+    robot: Annotated[
+        str | None,
+        typer.Option(help="An installed robot or a robot file; by default the contest's."),
+    ] = None,
+    gait: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="A gait file; give it again for the other level. By default the robot's own.",
+        ),
+    ] = None,
+) -> None:
+    """Let a bot hold a seat: it joins, says ready and plays, match after match.
+
+    It ends with Ctrl-C, or when the court is gone for two minutes. A bot is a Python file with a
+    function bot(sheet, seat) that returns a function from a frame to a key.
+    """
+    access = entrance.seat(contest, court, connect, seat, token)
+    files, own_team = _brings(name, robot, gait or [])
+    with open_client([access.connect]) as session, stop_signals() as stopping:
+        controller = Controller(
+            session,
+            access.court,
+            access.seat,
+            access.token,
+            (team or own_team)[:_NAME_MAX],
+            **files._asdict(),
+        )
+        player = BotPlayer(controller, arenas.load(arena or controller.view.sheet.arena), name)
+        for note in controller.join():
+            screen.show(note)
+        screen.show(f"{name} holds seat {access.seat} of court {access.court}.")
+        try:
+            _play(controller, player, stopping)
+        finally:
+            if controller.hold is Hold.HELD:
+                _leave(controller)
+
+
+def _brings(name: str, robot: str | None, gaits: list[Path]) -> tuple[SeatFiles, str]:
+    """The files a bot plays with, and its name; a ghost has those of its match."""
+    if not name.startswith(brains.GHOST):
+        return gather(robot, gaits), Path(name).stem
+    join = brains.ghost_join(*brains.open_ghost(name))
+    ghost = f"{join.team}'s ghost"
+    if robot or gaits:
+        return gather(robot, gaits), ghost
+    return SeatFiles(join.robot, join.postures, join.locomotion), ghost
+
+
+def _play(controller: Controller, player: BotPlayer, stopping: Callable[[], bool]) -> None:
+    while not stopping():
+        frame = controller.wait_frame(0.1)
+        if frame is not None:
+            player.see(frame)
+        for refused in controller.take_refused():
+            screen.show(f"Key {refused.key} was refused: {refused.why}.")
+        for event in controller.view.take_events():
+            if event.kind in ("phase", "result"):
+                screen.show(event.text)
+        if controller.hold in (Hold.REPLACED, Hold.REFUSED):
+            raise UserError(f"The seat is lost: {controller.reason}.")
+        if controller.view.silent_s(time.monotonic()) > _GONE_S:
+            raise UserError(f"No word from the court for {_GONE_S:.0f} s.")
+
+
+def _leave(controller: Controller) -> None:
+    try:
+        controller.leave()
+    except UserError as error:
+        screen.show(str(error))

@@ -1,0 +1,349 @@
+"""`lacoc referee`: decisions, the log, and how the court is.
+
+The subcommands of the decisions are made from `lacoc_shared.decisions`: a new decision
+there is a new subcommand here, with its arguments.
+"""
+
+import getpass
+import inspect
+import time
+from collections.abc import Callable
+from typing import Annotated, Any
+
+import msgspec
+import typer
+from msgspec.structs import FieldInfo
+from rich.table import Table
+from rich.text import Text
+
+from lacoc_client import words
+from lacoc_client.commands import entrance
+from lacoc_client.line_view import event_columns
+from lacoc_client.plain import event_dict, frame_dict
+from lacoc_client.referee import RefereeClient
+from lacoc_client.spectator import Spectator
+from lacoc_client.stopping import stop_signals
+from lacoc_shared import options, screen
+from lacoc_shared.contest import Access
+from lacoc_shared.decisions import DECISIONS, Decision
+from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import Phase, SeatFlag
+from lacoc_shared.session import Session, open_client
+
+app = typer.Typer(
+    help="Referee a match: decide, read the log, see how the court is.\n\n"
+    "'status' says which decisions are legal now, and why the others are not. Every decision goes "
+    "into the record with who and why.",
+    no_args_is_help=True,
+)
+
+_HEALTH_S = 5.0
+"""A court says how it is twice a second; one that needs longer is in trouble."""
+_HISTORY_S = 3.0
+_QUIET_S = 0.3
+"""The history of events is complete when for so long no more of it comes."""
+
+_FIELDS = {
+    "seat": "The seat, such as 'left'.",
+    "seconds": "How many seconds.",
+    "points": "How many points; -2 takes two away.",
+    "marker": "Name of the disc, corner or flag: c2r3, corner0, flag7.",
+    "state": "What it becomes: neutral, left, right or down.",
+    "event": "Number of the event, as in 'lacoc referee log'.",
+    "dry_run": "Only say what would change.",
+    "winner": "The seat that wins, or 'draw'.",
+}
+_TYPES = {int: "A whole number.", float: "A number.", bool: "Yes or no."}
+
+_TokenUnused = Annotated[
+    str | None,
+    typer.Option("--token", envvar="LACOC_TOKEN", metavar="TOKEN", help="Not needed to look."),
+]
+
+
+def _default_name() -> str:
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError, ImportError):  # an account without a name
+        return "referee"
+
+
+_COMMON: dict[str, tuple[Any, Any]] = {
+    "reason": (
+        Annotated[str, typer.Option(metavar="TEXT", help="Why; it goes into the record.")],
+        "",
+    ),
+    "by": (
+        Annotated[
+            str,
+            typer.Option(metavar="NAME", help="Who decides; by default your name on this machine."),
+        ],
+        "",
+    ),
+    "wait": (
+        Annotated[
+            float | None,
+            typer.Option(
+                metavar="SECONDS", min=0, help="Wait so long until the decision is legal."
+            ),
+        ],
+        None,
+    ),
+    "contest": (options.ContestFile, None),
+    "court": (options.CourtName, None),
+    "connect": (options.Connect, None),
+    "token": (options.Token, None),
+    "json": (options.Json, False),
+}
+"""Options of every decision: annotation and default."""
+
+
+def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
+    """The function of a decision's subcommand; its parameters are the decision's fields."""
+    fields = {field.name: field for field in msgspec.structs.fields(kind)}
+
+    def run(**given: Any) -> None:
+        decision = kind(**{field: given[field] for field in fields})
+        _decide(name, decision, **{option: given[option] for option in _COMMON})
+
+    parameters = [(field.name, _annotation(field), field.default) for field in fields.values()]
+    parameters += [(option, *spec) for option, spec in _COMMON.items()]
+    run.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+        [
+            inspect.Parameter(
+                parameter,
+                inspect.Parameter.KEYWORD_ONLY,
+                annotation=annotation,
+                default=inspect.Parameter.empty if default is msgspec.NODEFAULT else default,
+            )
+            for parameter, annotation, default in parameters
+        ]
+    )
+    run.__doc__ = kind.__doc__
+    return run
+
+
+def _annotation(field: FieldInfo) -> Any:
+    """A required field is an argument, any other an option."""
+    help = _FIELDS.get(field.name) or _TYPES.get(field.type, "A word.")
+    if field.required:
+        return Annotated[field.type, typer.Argument(help=help)]
+    return Annotated[
+        field.type, typer.Option(f"--{field.encode_name.replace('_', '-')}", help=help)
+    ]
+
+
+for _name, _kind in DECISIONS.items():
+    # Ignoring unknown options lets a negative number be an argument.
+    app.command(
+        _name, context_settings={"ignore_unknown_options": True}, rich_help_panel="Decisions"
+    )(_command(_name, _kind))
+
+
+@app.command(rich_help_panel="Look")
+def status(
+    contest: options.ContestFile = None,
+    court: options.CourtName = None,
+    connect: options.Connect = None,
+    token: _TokenUnused = None,
+    json: options.Json = False,
+) -> None:
+    """Show phase, clock, score, links, and which decisions are legal."""
+    with open_client([(access := entrance.spectator(contest, court, connect)).connect]) as session:
+        view = Spectator(session, access.court)
+        frame, health = _look(view)
+        if json:
+            found = frame_dict(frame, view.sheet)
+            screen.print_json({"court": access.court, **found, "health": health})
+            return
+        _show_status(frame, view.sheet, health)
+
+
+@app.command(rich_help_panel="Look")
+def log(
+    contest: options.ContestFile = None,
+    court: options.CourtName = None,
+    connect: options.Connect = None,
+    token: _TokenUnused = None,
+    follow: Annotated[
+        bool, typer.Option("--follow", help="Go on with the events that come, until Ctrl-C.")
+    ] = False,
+    json: options.Json = False,
+) -> None:
+    """List the events of the match with their numbers; --json: one object a line."""
+    access = entrance.spectator(contest, court, connect)
+    with open_client([access.connect]) as session:
+        view = Spectator(session, access.court)
+        events = _history(view)
+        if json:
+            for event in events:
+                screen.print_json(event_dict(event, view.sheet))
+        elif follow:
+            for event in events:
+                screen.show(_log_line(event))
+        else:
+            screen.show(_log_table(events, view.sheet))
+        with stop_signals() as stopping:
+            while follow and not stopping():
+                view.wait_frame(0.1)
+                for event in view.take_events():
+                    if json:
+                        screen.print_json(event_dict(event, view.sheet))
+                    else:
+                        screen.show(_log_line(event))
+
+
+def _decide(
+    name: str,
+    decision: Decision,
+    *,
+    reason: str,
+    by: str,
+    wait: float | None,
+    json: bool,
+    **where: Any,
+) -> None:
+    access = entrance.referee(**where)
+    with open_client([access.connect]) as session:
+        referee = RefereeClient(session, access.court, access.token)
+        if wait is None:
+            reply = referee.decide(decision, reason, by or _default_name())
+        else:
+            reply = _decide_when_legal(
+                session,
+                access,
+                wait,
+                name,
+                lambda: referee.decide(decision, reason, by or _default_name()),
+            )
+    if json:
+        screen.print_json(reply)
+    else:
+        _show_reply(reply)
+
+
+def _decide_when_legal(
+    session: Session,
+    access: Access,
+    wait_s: float,
+    name: str,
+    decide: Callable[[], DecisionReply],
+) -> DecisionReply:
+    """Decide as soon as the court says that it is legal.
+
+    What it says is half a second old at most: a decision that is refused although it was legal is
+    tried again if it is no longer.
+    """
+    view = Spectator(session, access.court)
+    deadline_s = time.monotonic() + wait_s
+    seen: Health | None = None
+    refused: UserError | None = None
+    reason = "the court does not say how it is"
+    while True:
+        view.wait_frame(0.1)
+        if view.health is not None and view.health is not seen:
+            seen = view.health
+            reason = seen.decisions.get(name, "the court does not know this decision")
+            if not reason and refused is not None:
+                raise refused
+            refused = None
+            if not reason:
+                try:
+                    return decide()
+                except UserError as error:
+                    refused = error
+        if time.monotonic() >= deadline_s:
+            raise refused or UserError(f"{name} is not legal after {wait_s:g} s: {reason}.")
+
+
+def _look(view: Spectator) -> tuple[Frame, Health]:
+    """The newest frame and the health of a court.
+
+    Raises:
+        UserError: if the court does not say how it is.
+    """
+    deadline_s = time.monotonic() + _HEALTH_S
+    while view.frame is None or view.health is None:
+        if time.monotonic() > deadline_s:
+            raise UserError("The court is there but does not say how it is: is it overloaded?")
+        view.wait_frame(0.1)
+    return view.frame, view.health
+
+
+def _history(view: Spectator) -> tuple[Event, ...]:
+    """All events so far; they come in the order they happened, a moment after the connection."""
+    now_s = time.monotonic()
+    deadline_s, quiet_since_s = now_s + _HISTORY_S, now_s
+    while (now_s := time.monotonic()) < deadline_s:
+        view.wait_frame(0.05)
+        if view.take_events():
+            quiet_since_s = now_s
+        numbers = [event.number for event in view.events]
+        whole = bool(numbers) and numbers == [*range(1, len(numbers) + 1)]
+        if whole and now_s - quiet_since_s > _QUIET_S:
+            break
+    return view.events
+
+
+def _log_line(event: Event) -> Text:
+    return Text.assemble((f"{event.number:>4} ", "bold"), *event_columns(event))
+
+
+def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
+    table = Table("no.", "clock", "kind", "seat", "what")
+    for event in events:
+        plain = event_dict(event, sheet)
+        table.add_row(
+            str(event.number),
+            words.log_clock(event.clock_ticks),
+            event.kind,
+            Text(plain["seat"] or ""),
+            Text(event.text),
+        )
+    return table
+
+
+def _show_reply(reply: DecisionReply) -> None:
+    number = "dry run" if reply.event is None else f"event {reply.event}"
+    screen.show(f"{reply.text[:1].upper()}{reply.text[1:]} ({number}, beat {reply.beat})")
+    for change in reply.changes:
+        screen.show(f"  {change}")
+    screen.show(f"Score: {' : '.join(map(str, reply.scores))}")
+
+
+def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:
+    names = words.teams(sheet)
+    left = " left" if sheet.duration_s else " played"
+    hint = words.phase_hint(frame, sheet)
+    screen.show(
+        Text.assemble(
+            (f"{sheet.title}, court {sheet.court}, match {sheet.match}: ", "bold"),
+            (Phase(frame.phase).name, "bold cyan"),
+            f", {words.match_clock(frame, sheet)}{left}" + (f" ({hint})" if hint else ""),
+        )
+    )
+    speed = f"{health.real_time_factor:.2f} of real time, {health.slow_beats} slow beats"
+    screen.show(f"The court runs at {speed}, the latest by {health.worst_late_ms:.0f} ms.")
+    for why, count in health.dropped.items():
+        screen.show(f"  dropped {count}: {why}")
+    seats = Table("seat", "team", "score", "ready", "key", "link", "refused")
+    for index, (seat, link) in enumerate(zip(frame.seats, health.seats, strict=True)):
+        ready = "yes" if seat.flags & SeatFlag.READY else "no"
+        team = Text(names[index] if sheet.seats[index].team else "-")
+        row = (link.id, team, str(seat.score), ready)
+        refused = ", ".join(f"{count} {why}" for why, count in link.refused.items())
+        seats.add_row(*row, words.standing_key(seat, sheet, index), _link(link), refused)
+    screen.show(seats)
+    decisions = Table("decision", "legal", "why not")
+    for name, why in health.decisions.items():
+        decisions.add_row(name, Text("no", "dim") if why else Text("yes", "bold green"), Text(why))
+    screen.show(decisions)
+
+
+def _link(link: SeatHealth) -> str:
+    if not link.joined:
+        return "nobody"
+    if link.heard_ms is None:
+        return "not heard yet"
+    return f"{link.commands_hz:.0f} commands/s, heard {link.heard_ms:.0f} ms ago"

@@ -1,0 +1,136 @@
+"""`lacoc watch`: see a match in the terminal, or read it as JSON."""
+
+import time
+from collections.abc import Callable
+from contextlib import nullcontext
+from typing import Annotated
+
+import typer
+from rich.live import Live
+from rich.text import Text
+
+from lacoc_client.board_view import BoardView
+from lacoc_client.commands import entrance
+from lacoc_client.line_view import LineView, event_columns
+from lacoc_client.plain import event_dict, frame_dict
+from lacoc_client.spectator import Spectator
+from lacoc_client.stopping import stop_signals
+from lacoc_shared import options, screen
+from lacoc_shared.messages import Event
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import open_client
+
+app = typer.Typer()
+
+_DRAW_HZ = 10.0
+_LAST_WORD_S = 2.0
+"""How long the event that ends a match may come after the frame that shows the end."""
+_ENDED = (Phase.OFFICIAL, Phase.VOID)
+
+
+@app.command(name="watch")
+def watch_command(
+    contest: options.ContestFile = None,
+    court: options.CourtName = None,
+    connect: options.Connect = None,
+    terminal: Annotated[
+        bool,
+        typer.Option(
+            "--terminal",
+            help="Watch in this terminal: the only way for now, but say it in a script, because a "
+            "later version opens a page in the browser without it.",
+        ),
+    ] = False,
+    board: Annotated[bool, typer.Option("--board", help="Draw the field from above, too.")] = False,
+    json: Annotated[
+        bool,
+        typer.Option(
+            "--json", help="Print every event, and frames, as JSON for a program: one a line."
+        ),
+    ] = False,
+    hz: Annotated[
+        float,
+        typer.Option(min=0, max=50, help="With --json: so many frames a second; 0: none."),
+    ] = 2.0,
+    forever: Annotated[
+        bool, typer.Option("--forever", help="Go on with the next match, until Ctrl-C.")
+    ] = False,
+) -> None:
+    """Watch a match: clock, score and events as they come.
+
+    It ends when the result is official or the match is void. Anybody may watch; it needs no token.
+    """
+    access = entrance.spectator(contest, court, connect)
+    with open_client([access.connect]) as session, stop_signals() as stopping:
+        view = Spectator(session, access.court)
+        end = _End(view, forever, stopping)
+        if json:
+            _print_json(view, hz, end)
+        else:
+            _draw(view, BoardView() if board else LineView(), end)
+
+
+class _End:
+    """Says when there is nothing more to see."""
+
+    def __init__(self, view: Spectator, forever: bool, stopping: Callable[[], bool]) -> None:
+        self._view = view
+        self._forever = forever
+        self._stopping = stopping
+        self._ended_s: float | None = None
+
+    def __call__(self) -> bool:
+        """Whether to end: somebody asks for it, or the match is over and its last event here."""
+        if self._stopping():
+            return True
+        frame = self._view.frame
+        if self._forever or frame is None or frame.phase not in _ENDED:
+            return False
+        now_s = time.monotonic()
+        self._ended_s = self._ended_s or now_s
+        last = {event.data.get("after") for event in self._view.events[-8:]}
+        return Phase(frame.phase).name in last or now_s - self._ended_s > _LAST_WORD_S
+
+
+def _print_json(view: Spectator, hz: float, end: _End) -> None:
+    frame_s = -1.0
+    while True:
+        frame = view.wait_frame(0.1)
+        for event in view.take_events():
+            screen.print_json({"type": "event", **event_dict(event, view.sheet)})
+        ended = end()
+        now_s = time.monotonic()
+        if frame is not None and hz and (ended or now_s - frame_s >= 1 / hz):
+            frame_s = now_s
+            screen.print_json({"type": "frame", **frame_dict(frame, view.sheet)})
+        if ended:
+            return
+
+
+def _draw(view: Spectator, terminal: LineView | BoardView, end: _End) -> None:
+    """Draw in one place; where that can't be (a pipe), events come as lines, and the end."""
+    console = screen.stdout
+    in_place = console.is_terminal
+    drawn_s = 0.0
+    events: list[Event] = []
+    live = Live(console=console, auto_refresh=False, vertical_overflow="crop")
+    with live if in_place else nullcontext():
+        while True:
+            view.wait_frame(0.1)
+            new = view.take_events()
+            if terminal.events_above or not in_place:
+                for event in new:
+                    console.print(Text.assemble(*event_columns(event)))
+            events += new
+            ended = end()
+            now_s = time.monotonic()
+            if ended or (in_place and now_s - drawn_s >= 1 / _DRAW_HZ):
+                drawn_s = now_s
+                drawn = terminal.draw(view, events, view.silent_s(now_s))
+                events = []
+                if in_place:
+                    live.update(drawn, refresh=True)
+                else:
+                    console.print(drawn)
+            if ended:
+                return

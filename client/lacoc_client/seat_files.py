@@ -1,0 +1,83 @@
+"""What a contestant brings: a robot file and gait files, from where they lie (rules 2)."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_shared.gait import JOINTS_PER_LEG, LocomotionTable, PostureTable
+from lacoc_shared.gait_cells import leg_labels
+from lacoc_shared.gait_text import write_gait
+from lacoc_shared.gait_workbook import read_gait_file
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import FileRefused, Mistake, UserError
+
+_POSTURES = ("Loco-data.txt", "Loco-data.xlsx", "Loco-data-6legs.txt")
+_LOCOMOTION = ("LocoTra-data.txt", "LocoTra-data*.txt")
+
+_ZIP = b"PK\x03\x04"  # a workbook
+
+_Table = PostureTable | LocomotionTable
+
+
+class SeatFiles(NamedTuple):
+    """What goes with a join; None: the contest's robot, or its sample gait."""
+
+    robot: SentFile | None = None
+    postures: SentFile | None = None
+    locomotion: SentFile | None = None
+
+
+def gather(robot: str | None, gaits: Sequence[Path]) -> SeatFiles:
+    """Read the files that were named.
+
+    Args:
+        robot: an installed robot, a folder or a robot file; None: the contest's.
+        gaits: gait files, at most one for each level; none: those beside the robot file.
+
+    Raises:
+        FileRefused: with every mistake of every gait file.
+        UserError: if a file can't be read, or two are for the same level.
+    """
+    robot_file = SentFile(*find_robot(robot)) if robot else None
+    if gaits:
+        return SeatFiles(robot_file, *_read(gaits))
+    return SeatFiles(robot_file, *(sample_gait_files(robot) if robot else (None, None)))
+
+
+def gaits_in(folder: Path) -> list[Path]:
+    """The gait files of a folder (workshop 4-1): for each level the one that was saved last."""
+    found = (
+        [path for pattern in patterns for path in sorted(folder.glob(pattern))]
+        for patterns in (_POSTURES, _LOCOMOTION)
+    )
+    return [max(paths, key=lambda path: path.stat().st_mtime) for paths in found if paths]
+
+
+def _read(paths: Iterable[Path]) -> tuple[SentFile | None, SentFile | None]:
+    """The posture file and the locomotion file, a workbook as the text it stands for."""
+    files: dict[type[_Table], SentFile] = {}
+    mistakes: list[Mistake] = []
+    for path in paths:
+        try:
+            table = read_gait_file(path)
+        except FileRefused as refused:
+            mistakes += refused.mistakes
+            continue
+        if type(table) in files:
+            raise UserError(
+                f"{files[type(table)].name} and {path.name} are for the same keys: choose one. "
+                "A robot has one Loco-data file (level A) and one LocoTra-data file (level B)."
+            )
+        files[type(table)] = _sent(path, table)
+    if mistakes:
+        raise FileRefused(mistakes)
+    return files.get(PostureTable), files.get(LocomotionTable)
+
+
+def _sent(path: Path, table: _Table) -> SentFile:
+    data = path.read_bytes()
+    if not data.startswith(_ZIP):
+        return SentFile(path.name, data)
+    text = write_gait(table, leg_labels(table.joints // JOINTS_PER_LEG))
+    return SentFile(f"{path.stem}.txt", text)
