@@ -1,0 +1,101 @@
+"""Key to the frame that shows it, over Zenoh on loopback, against a bare Zenoh echo."""
+
+import json
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import IO, Any
+
+from benchmarks.echo import PING, PONG
+from lacoc_client.controller import Controller
+from lacoc_shared.seat import BEAT_S, Phase
+from lacoc_shared.session import Mailbox, Publisher, open_client
+
+_COURT = ("lacoc_shared", "serve", "--json", "--arena", "practice", "--listen", "tcp/127.0.0.1:0")
+
+
+def latency(rounds: int) -> dict[str, Any]:
+    """Press keys in a court of its own process and wait for the frame that shows each.
+
+    Court and echo take turns. A key waits for the next beat, 10 ms on average: `over_echo_ms`
+    less that is what the court itself takes.
+
+    Returns:
+        Milliseconds.
+    """
+    keys_ms, echoes_ms = [], []
+    chance = random.Random(1)  # presses must not fall in step with the beats
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        _process(*_COURT, "--recordings", folder) as court_out,
+        _process("benchmarks.echo") as echo_out,
+    ):
+        opened = json.loads(court_out.readline())
+        (seat, token), *_ = opened["tokens"].items()
+        with (
+            open_client(opened["locators"]) as session,
+            open_client(json.loads(echo_out.readline())["locators"]) as echo_session,
+        ):
+            controller = Controller(session, opened["court"], seat, token, "Benchmark")
+            controller.join()
+            controller.ready()
+            while (frame := controller.wait_frame(1.0)) is None or frame.phase != Phase.PLAYING:
+                pass
+            ping, pong = echo_session.publisher(PING), echo_session.mailbox(PONG, 16)
+            for number in range(rounds):
+                _idle(controller, chance.uniform(0.02, 0.06))
+                keys_ms.append(_key_ms(controller, 1 + number % 3))
+                echoes_ms.append(_echo_ms(ping, pong))
+            controller.leave()
+    return {
+        "key_p50_ms": statistics.median(keys_ms),
+        "key_p95_ms": statistics.quantiles(keys_ms, n=20)[-1],
+        "echo_p50_ms": statistics.median(echoes_ms),
+        "echo_p95_ms": statistics.quantiles(echoes_ms, n=20)[-1],
+        "over_echo_ms": statistics.median(keys_ms) - statistics.median(echoes_ms),
+        "mean_wait_for_beat_ms": BEAT_S / 2 * 1000,
+    }
+
+
+def _idle(controller: Controller, seconds: float) -> None:
+    end_s = time.monotonic() + seconds
+    while (left_s := end_s - time.monotonic()) > 0:
+        controller.wait_frame(left_s)
+
+
+def _key_ms(controller: Controller, digit: int) -> float:
+    begin = time.perf_counter()
+    seq = controller.press(1, digit)
+    while True:
+        frame = controller.wait_frame(1.0)
+        if frame is not None and frame.seats[0].applied_seq >= seq:
+            return (time.perf_counter() - begin) * 1000
+
+
+def _echo_ms(ping: Publisher, pong: Mailbox) -> float:
+    begin = time.perf_counter()
+    ping.put(bytes(48))
+    while pong.take() is None:
+        pong.wait(1.0)
+    return (time.perf_counter() - begin) * 1000
+
+
+@contextmanager
+def _process(module: str, *words: str) -> Iterator[IO[str]]:
+    process = subprocess.Popen(
+        [sys.executable, "-m", module, *words],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    try:
+        yield process.stdout
+    finally:
+        process.terminate()
+        process.wait(20)
