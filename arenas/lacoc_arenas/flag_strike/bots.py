@@ -21,7 +21,7 @@ _DEPTH, _BEAM = 4, 14
 """How many targets a plan looks ahead, and how many plans are kept at each."""
 _PATIENCE_S = 30.0
 """A point this much later is worth 1 / e of one now: much can happen until then."""
-_RIVAL = 0.5
+_RIVAL = 0.8
 """What is left of a target's worth where the other robot will be there first."""
 _DECISIVE = 100.0
 """Worth of the corner that ends the match with a win."""
