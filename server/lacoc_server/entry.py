@@ -1,15 +1,22 @@
 """A seat's entry: the robot and gait files, weighed in together (rules 1 and 2)."""
 
-from collections.abc import Mapping
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import msgspec
 
 from lacoc_robots.spec import Limits, RobotSpec, read_robot
-from lacoc_shared.gait import Gait, LocomotionTable, PostureTable
+from lacoc_shared.gait import Gait, Level, LocomotionTable, PostureTable
 from lacoc_shared.gait_text import read_gait
 from lacoc_shared.messages import Join, SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake
+
+DEFAULT_LIMITS = Limits()
+
+_TABLES: dict[Level, tuple[type[PostureTable] | type[LocomotionTable], str]] = {
+    Level.POSTURE: (PostureTable, "a Loco-data file (postures for level A)"),
+    Level.LOCOMOTION: (LocomotionTable, "a LocoTra-data file (sequences for level B)"),
+}
 
 
 @dataclass(frozen=True)
@@ -24,7 +31,8 @@ def weigh_in(
     robot: SentFile,
     postures: SentFile | None,
     locomotion: SentFile | None,
-    limits: Mapping[str, float],
+    limits: Limits = DEFAULT_LIMITS,
+    levels: Collection[Level] = tuple(Level),
 ) -> Entry:
     """Read and check what a contestant brings.
 
@@ -32,7 +40,8 @@ def weigh_in(
         robot: the robot file.
         postures: a Loco-data file, or None.
         locomotion: a LocoTra-data file, or None.
-        limits: contest limits that differ from the defaults of rules 1.
+        limits: what the contest allows.
+        levels: levels of control that are open: a gait must have keys at one of them.
 
     Raises:
         FileRefused: with every mistake of every file.
@@ -40,14 +49,11 @@ def weigh_in(
     mistakes: list[Mistake] = []
     spec = None
     try:
-        spec = read_robot(robot.data, robot.name, Limits(**limits))
+        spec = read_robot(robot.data, robot.name, limits)
     except FileRefused as refused:
         mistakes += refused.mistakes
     tables: list[PostureTable | LocomotionTable] = []
-    for file, kind, what in (
-        (postures, PostureTable, "a Loco-data file (postures for [A])"),
-        (locomotion, LocomotionTable, "a LocoTra-data file (sequences for [B])"),
-    ):
+    for file, (kind, what) in zip((postures, locomotion), _TABLES.values(), strict=True):
         if file is None:
             continue
         try:
@@ -59,17 +65,16 @@ def weigh_in(
             tables.append(table)
         else:
             mistakes.append(Mistake(file=file.name, found="the other kind of table", expected=what))
-    if not (tables or mistakes):
-        mistakes.append(Mistake(file=robot.name, found="no gait file", expected="at least one"))
+    gait = Gait(
+        next((t for t in tables if isinstance(t, PostureTable)), None),
+        next((t for t in tables if isinstance(t, LocomotionTable)), None),
+    )
+    if not (mistakes or any(gait.keys(level) for level in levels)):
+        expected = " or ".join(_TABLES[level][1] for level in sorted(levels))
+        mistakes.append(Mistake(file="gait files", found="none for this arena", expected=expected))
     if spec is None or mistakes:
         raise FileRefused(mistakes)
-    return Entry(
-        spec,
-        Gait(
-            next((t for t in tables if isinstance(t, PostureTable)), None),
-            next((t for t in tables if isinstance(t, LocomotionTable)), None),
-        ),
-    )
+    return Entry(spec, gait)
 
 
 @dataclass(frozen=True)
@@ -84,8 +89,9 @@ class Admission:
     postures: SentFile | None
     locomotion: SentFile | None
     """Its sample gait."""
-    limits: Mapping[str, float]
-    """Contest limits that differ from the defaults of rules 1."""
+    limits: Limits
+    levels: Collection[Level]
+    """Levels of control that the arena opens."""
 
     def __call__(self, join: Join) -> Join:
         """Complete a join.
@@ -98,7 +104,7 @@ class Admission:
             robot = self.robot
             if postures is None and locomotion is None:
                 postures, locomotion = self.postures, self.locomotion
-        weigh_in(robot, postures, locomotion, self.limits)
+        weigh_in(robot, postures, locomotion, self.limits, self.levels)
         return msgspec.structs.replace(join, robot=robot, postures=postures, locomotion=locomotion)
 
 

@@ -17,6 +17,7 @@ from typing import Any
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.game import Observation, Place, RobotView
+from lacoc_robots.limits import Limits
 from lacoc_server import referee
 from lacoc_server.drive import Drive
 from lacoc_server.entry import weigh_in
@@ -105,6 +106,7 @@ class Match:
         self.setup = setup
         self.arena = arenas.from_settings(setup.arena, setup.settings)
         self.game = self.arena.game
+        self._limits = Limits.of(setup.limits)
         self.rules = self.arena.match
         self.phase = Phase.CREATED
         self.beats = -1
@@ -334,7 +336,13 @@ class Match:
         seat = self.seats[join.seat]
         if self.phase in (Phase.LOBBY, Phase.READY):
             try:
-                entry = weigh_in(join.robot, join.postures, join.locomotion, self.setup.limits)
+                entry = weigh_in(
+                    join.robot,
+                    join.postures,
+                    join.locomotion,
+                    self._limits,
+                    self.rules.open_levels,
+                )
             except FileRefused as refused:
                 return Refusal("Your files have mistakes.", tuple(refused.mistakes))
             same = seat.join is not None and _files(seat.join) == _files(join)
@@ -409,7 +417,8 @@ class Match:
         if why is not No.NONE:
             seat.refused = (key.seq, why)
             return Refusal(why.name)
-        seat.applied = (key.seq, self.beats)
+        # An older digit may come after a newer [x]: that is the order of a tick (rules 3).
+        seat.applied = (max(key.seq, seat.applied[0]), self.beats)
         if key.key == RESTART_KEY:
             seat.restart()
             seat.locked_until = self.ticks + round(self.rules.restart_freeze_s * BEATS_PER_S)

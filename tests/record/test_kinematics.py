@@ -104,7 +104,7 @@ def test_frames_of_a_court_show_its_robots(arena: str) -> None:
     """
     names = ("quadruped", "hexapod")
     entries = [
-        weigh_in(SentFile(*find_robot(name)), *sample_gait_files(name), limits={}) for name in names
+        weigh_in(SentFile(*find_robot(name)), *sample_gait_files(name)) for name in names
     ]
     world = World(load(arena), entries)
     joints = [entry.robot.joints for entry in entries]

@@ -3,7 +3,9 @@
 import pytest
 from stage import join
 
+from lacoc_robots.limits import Limits
 from lacoc_server.entry import weigh_in
+from lacoc_shared.gait import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake
@@ -18,7 +20,7 @@ def mistakes_of(
     **limits: float,
 ) -> list[Mistake]:
     with pytest.raises(FileRefused) as refused:
-        weigh_in(robot or HEXAPOD.robot, postures, locomotion, limits)
+        weigh_in(robot or HEXAPOD.robot, postures, locomotion, Limits.of(limits))
     return refused.value.mistakes
 
 
@@ -32,16 +34,22 @@ def edited(file: SentFile | None, old: str, new: str) -> SentFile:
 def test_every_sample_is_let_in(robot: str) -> None:
     """Rules 1: the sample robots with their sample gaits."""
     was: JoinSeat = join(0, robot=robot)
-    entry = weigh_in(was.robot, was.postures, was.locomotion, {})
+    entry = weigh_in(was.robot, was.postures, was.locomotion)
     assert entry.gait.joints == entry.robot.joints
 
 
 def test_one_gait_file_is_enough() -> None:
     """Rules 2: a table for either level, or both."""
-    assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, None, {}).gait.locomotion is None
-    assert weigh_in(HEXAPOD.robot, None, HEXAPOD.locomotion, {}).gait.postures is None
+    assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, None).gait.locomotion is None
+    assert weigh_in(HEXAPOD.robot, None, HEXAPOD.locomotion).gait.postures is None
     (mistake,) = mistakes_of()
-    assert (mistake.found, mistake.expected) == ("no gait file", "at least one")
+    assert mistake.found == "none for this arena"
+
+
+def test_a_gait_needs_keys_at_an_open_level() -> None:
+    """Rules 3: where only level B is open, postures alone would leave the robot standing."""
+    with pytest.raises(FileRefused, match="LocoTra-data"):
+        weigh_in(HEXAPOD.robot, HEXAPOD.postures, None, levels=(Level.LOCOMOTION,))
 
 
 def test_the_files_are_not_swapped() -> None:
@@ -65,12 +73,12 @@ def test_a_gait_for_another_robot() -> None:
 def test_angles_out_of_the_robots_own_range() -> None:
     """Rules 2: nothing is clamped silently: a joint's range is the robot file's."""
     narrow = edited(HEXAPOD.robot, "range_deg = [-150, 150]", "range_deg = [-45, 45]")
-    assert weigh_in(narrow, HEXAPOD.postures, HEXAPOD.locomotion, {}).robot.name == "Hexapod"
+    assert weigh_in(narrow, HEXAPOD.postures, HEXAPOD.locomotion).robot.name == "Hexapod"
     far = edited(HEXAPOD.postures, "40", "45.5")
     (mistake,) = mistakes_of(narrow, far)
     assert (mistake.file, mistake.found) == ("Loco-data.txt", "45.5")
     assert "-45" in mistake.expected
-    weigh_in(HEXAPOD.robot, far, None, {})
+    weigh_in(HEXAPOD.robot, far, None)
 
 
 def test_a_range_is_met_exactly() -> None:
@@ -78,7 +86,7 @@ def test_a_range_is_met_exactly() -> None:
     for end in ("127.8", "124.6", "120.1"):
         robot = edited(HEXAPOD.robot, "range_deg = [-150, 150]", f"range_deg = [-{end}, {end}]")
         gait = edited(HEXAPOD.postures, "40", end)
-        weigh_in(robot, gait, None, {})
+        weigh_in(robot, gait, None)
 
 
 def test_all_mistakes_of_all_files_at_once() -> None:

@@ -9,6 +9,7 @@ import typer
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.limits import Limits
 from lacoc_server.court import Court, CourtSettings
 from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.entry import Admission
@@ -74,7 +75,10 @@ def serve_command(
     _check_seats(name, entry, loaded)
     keys = Keys(name)
     admission = Admission(
-        SentFile(*find_robot(plan.robot)), *sample_gait_files(plan.robot), plan.limits
+        SentFile(*find_robot(plan.robot)),
+        *sample_gait_files(plan.robot),
+        Limits.of(plan.limits),
+        loaded.match.open_levels,
     )
     inbox = Inbox(
         keys,
