@@ -72,7 +72,7 @@ def test_the_composition_plays(tmp_path: Path) -> None:
 
     def here(text: str) -> str:
         """What a container sees, as this machine has it."""
-        text = text.replace("/contest", str(tmp_path)).replace("tcp/court:", "tcp/127.0.0.1:")
+        text = text.replace("/contest/", f"{tmp_path}/").replace("tcp/court:", "tcp/127.0.0.1:")
         return text.replace(PORT, port)
 
     with ExitStack() as running:

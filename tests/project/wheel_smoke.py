@@ -12,6 +12,7 @@ import tempfile
 import venv
 from pathlib import Path
 
+_LIMIT_S = 300  # no command takes so long, unless it hangs
 SAMPLE = "import lacoc_robots.samples.hexapod as robot; print(robot.__path__[0])"
 IMPORT_ALL = """
 import importlib, pkgutil
@@ -40,6 +41,7 @@ class Environment:
             capture_output=True,
             text=True,
             check=False,
+            timeout=_LIMIT_S,
         )
         if done.returncode != code:
             sys.exit(
