@@ -56,8 +56,8 @@ def test_the_files_are_not_swapped() -> None:
     """Rules 2: each file is the table that it is sent as."""
     found = [m.expected for m in mistakes_of(None, HEXAPOD.locomotion, HEXAPOD.postures)]
     assert found == [
-        "a Loco-data file (postures for [A])",
-        "a LocoTra-data file (sequences for [B])",
+        "a Loco-data file (postures for level A)",
+        "a LocoTra-data file (sequences for level B)",
     ]
 
 
