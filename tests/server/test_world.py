@@ -1,0 +1,400 @@
+"""The world: exact to the bit, touch without force, and no silent reset (design.md, rules 6)."""
+
+import math
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from types import SimpleNamespace
+
+import mujoco
+import numpy as np
+import pytest
+from stage import FORWARD, LEFT, QUICK, RIGHT, TURN_LEFT, B, Stage, X, entry, key
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas import field
+from lacoc_arenas.game import Place
+from lacoc_server.drive import Drive
+from lacoc_server.entry import Entry
+from lacoc_server.physics import Fault
+from lacoc_server.world import World
+from lacoc_shared import decisions as d
+from lacoc_shared.gait import Posture
+from lacoc_shared.seat import NOBODY, Phase
+
+HEXAPOD = entry()
+KEYS = {0: (FORWARD, FORWARD), 150: (TURN_LEFT, FORWARD), 220: (FORWARD, FORWARD)}
+
+
+def commands(
+    ticks: int, keys: dict[int, tuple[int, int]] = KEYS, entries: Sequence[Entry] = (HEXAPOD,) * 2
+) -> Iterator[list[Posture]]:
+    """Commanded angles of both seats, tick by tick."""
+    drives = [
+        Drive(e.gait, e.robot.start_posture, e.robot.ang_min_rad_s, e.robot.advance, 0)
+        for e in entries
+    ]
+    states = [it.begin(B) for it in drives]
+    for tick in range(ticks):
+        if tick in keys:
+            states = [
+                it.press(s, B, k) for it, s, k in zip(drives, states, keys[tick], strict=True)
+            ]
+        states = [it.tick(state) for it, state in zip(drives, states, strict=True)]
+        yield [state.angles for state in states]
+
+
+def world(arena: str = "flag-strike", robot: str = "hexapod") -> World:
+    return World(arenas.load(arena), [entry(robot)] * 2)
+
+
+def run(it: World, ticks: int) -> bytes:
+    for angles in commands(ticks):
+        assert it.step(angles) is None
+    return it.digest
+
+
+# Exact to the bit.
+
+
+def test_the_same_bits_in_the_same_and_in_a_new_process() -> None:
+    """Issue 2, Done 5: the same angles give one state hash, also in a new process."""
+    digest = run(world(), 100)
+    assert run(world(), 100) == digest
+    code = "import sys; sys.path.append(sys.argv[1]); import test_world as t; "
+    code += "print(t.run(t.world(), 100).hex(), t.world().model_hash)"
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(Path(__file__).parent)],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == [digest.hex(), world().model_hash]
+
+
+def test_the_digest_tells_every_difference_and_never_forgets_it() -> None:
+    """Design, "Record": a chained hash of the state."""
+    one, other = world(), world()
+    for tick, angles in enumerate(commands(20)):
+        one.step(angles)
+        if tick == 5:
+            angles = [angles[LEFT], tuple(np.nextafter(angles[RIGHT], 9.0))]
+        other.step(angles)
+        assert (one.digest == other.digest) is (tick < 5)
+    other.load(one.digest + other.save()[8:])
+    assert other.digest == one.digest
+
+
+def test_save_and_load_at_any_tick() -> None:
+    """Design, "Record": a restored state goes on bit for bit (mjSTATE_INTEGRATION)."""
+    it = world()
+    saved, digests, poses = [], [], []
+    angles = list(commands(120))
+    for commanded in angles:
+        saved.append(it.save())
+        it.step(commanded)
+        it.touched()
+        digests.append(it.digest)
+        poses.append(it.poses())
+    other = world()
+    for tick in (119, 60, 0, 1, 37, 118):
+        other.load(saved[tick])
+        for later in range(tick, min(tick + 30, 120)):
+            other.step(angles[later])
+            assert (other.digest, other.poses()) == (digests[later], poses[later])
+
+
+def test_a_state_of_another_model_is_refused() -> None:
+    """A snapshot fits only the model it was taken of."""
+    with pytest.raises(ValueError, match="this model has"):
+        world().load(world(robot="quadruped").save())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+def test_flags_and_discs_change_no_bit_of_a_path(arena: str) -> None:
+    """Rules 6, strike: the paths with and without flags are the same bits, touched or not."""
+    full = arenas.load(arena)
+    bare = SimpleNamespace(
+        seats=full.seats,
+        game=SimpleNamespace(markers=(), starts=full.game.starts),
+        build_field=lambda spec: field.ground(spec, full.game.size_m),
+    )
+    with_markers, without = World(full, [HEXAPOD] * 2), World(bare, [HEXAPOD] * 2)  # type: ignore[arg-type]
+    assert with_markers.model.ngeom > without.model.ngeom
+    touched = set()
+    for angles in commands(700):
+        with_markers.step(angles)
+        touched.update(*with_markers.touched())
+        without.step(angles)
+        assert with_markers.digest == without.digest
+    assert bool(touched) is (arena == "flag-strike")
+
+
+def test_the_model_is_compiled_before_the_match() -> None:
+    """Design, "Robot and world": compiled once before a match, never in the loop."""
+    built: list[Phase] = []
+
+    def make(arena: arenas.Arena, entries: Sequence[Entry]) -> World:
+        built.append(stage.match.phase if built else Phase.CREATED)
+        return World(arena, entries)
+
+    stage = Stage("othello", QUICK, make)
+    stage.to(Phase.PLAYING)
+    stage.beat(key(LEFT, X))
+    stage.decide(d.Restart("right"))
+    stage.decide(d.Halt())
+    stage.decide(d.Resume())
+    stage.run(20)
+    assert built == [Phase.CREATED, Phase.LOBBY]
+
+
+# Start places.
+
+
+@pytest.mark.parametrize("seat", [LEFT, RIGHT])
+def test_place(seat: int) -> None:
+    """Rules 4, [x]: the start place in the start posture, at rest; nobody else moves."""
+    it = world()
+    run(it, 40)
+    before = it.data.qpos.copy(), it.data.qvel.copy()
+    it.place(seat, Place(0.1, -0.7, math.radians(30)))
+    mine, other = it._robots[seat], it._robots[1 - seat]
+    x_m, y_m, z_m, qw, _, _, qz = it.data.qpos[mine.root_qpos : mine.root_qpos + 7]
+    assert (x_m, y_m, z_m) == (0.1, -0.7, HEXAPOD.robot.start_z_m)
+    assert 2 * math.atan2(qz, qw) == pytest.approx(math.radians(30 - 90))  # forward is +y
+    assert tuple(it.data.qpos[mine.joint_qpos]) == HEXAPOD.robot.start_posture
+    at = mine.root_dof
+    assert not it.data.qvel[at : at + 6].any()
+    assert not it.data.qvel[mine.joint_dofs].any()
+    at = other.root_qpos
+    assert (it.data.qpos[at : at + 7] == before[0][at : at + 7]).all()
+    assert (it.data.qvel[other.joint_dofs] == before[1][other.joint_dofs]).all()
+
+
+def test_a_place_is_a_part_of_the_state() -> None:
+    """A restart is in the next snapshot, and in what a fault goes back to."""
+    it, other = world(), world()
+    it.place(LEFT, Place(0.3, 0.3, 0.0))
+    other.load(it.save())
+    assert other.poses() == it.poses()
+    it.data.qvel[3] = math.nan
+    assert it.step(next(commands(1))) is not None
+    assert other.poses() == it.poses()
+
+
+# Faults.
+
+
+def _spoil(name: str, value: float, seat: int, offset: int) -> Callable[[World], None]:
+    def spoil(it: World) -> None:
+        robot = it._robots[seat]
+        start = robot.root_qpos if name == "qpos" else robot.root_dof
+        getattr(it.data, name)[start + offset] = value
+
+    return spoil
+
+
+@pytest.mark.parametrize("seat", [LEFT, RIGHT])
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("qpos", math.nan, "a position"),
+        ("qpos", 1e11, "a position"),
+        ("qvel", math.nan, "a velocity"),
+        ("qvel", -1e11, "a velocity"),
+        ("qvel", math.inf, "a velocity"),
+    ],
+)
+@pytest.mark.parametrize("offset", [0, 8, 23])
+def test_mujocos_silent_reset_is_caught(
+    name: str, value: float, words: str, seat: int, offset: int
+) -> None:
+    """Design, "Failure policy", physics 6.1: the state before the tick, and which robot."""
+    it, twin = world(), world()
+    run(it, 20)
+    run(twin, 20)
+    before = it.save(), it.poses()
+    _spoil(name, value, seat, offset)(it)
+    fault = it.step(next(commands(1)))
+    assert fault is not None
+    assert fault.seat == seat
+    assert fault.text.startswith(words)
+    assert (it.save(), it.poses()) == before
+    for angles in commands(10):  # and it goes on as if nothing had been
+        assert it.step(angles) is None
+        twin.step(angles)
+    assert it.digest == twin.digest
+
+
+@pytest.mark.parametrize("seat", [LEFT, RIGHT])
+def test_a_command_that_is_no_number(seat: int) -> None:
+    """Physics 6.1: MuJoCo replaces it without a word; here it is a fault."""
+    it = world()
+    run(it, 5)
+    before = it.save()
+    angles = next(commands(1))
+    angles[seat] = (*angles[seat][:7], math.nan, *angles[seat][8:])
+    fault = it.step(angles)
+    assert fault == Fault(seat, "a commanded angle was not a number")
+    assert it.save() == before
+
+
+def test_a_fault_of_no_seat() -> None:
+    """A warning that names no robot is nobody's."""
+    it = world()
+    it.data.warning.number[int(mujoco.mjtWarning.mjWARN_CONTACTFULL)] += 1
+    assert it.step(next(commands(1))) == Fault(NOBODY, "too many contacts")
+    assert it.step(next(commands(1))) is None
+
+
+def test_a_fault_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Design, "Failure policy": the referee is told; nothing else is disturbed."""
+    monkeypatch.chdir(tmp_path)
+    it = world()
+    it.data.qvel[0] = math.nan
+    assert it.step(next(commands(1))) is not None
+    assert list(tmp_path.iterdir()) == []
+
+
+# Touch.
+
+POLE_M, REACH_M = 0.01, 0.25
+
+
+def gaps_m(it: World, seat: int, poles: Sequence[tuple[float, float]]) -> np.ndarray:
+    """Horizontal distance of poles and a robot's nearest leg or (upright) body, from its pose.
+
+    Where all parts are lower than the poles, this is the distance.
+    """
+    robot = it._robots[seat]
+    at = robot.root_qpos
+    here, (w, *v) = it.data.qpos[at : at + 3], it.data.qpos[at + 3 : at + 7]
+
+    def turned(points: Sequence[Sequence[float]]) -> np.ndarray:
+        twice = 2 * np.cross(v, points)
+        return (here + points + w * twice + np.cross(v, twice))[:, None, :2]
+
+    shapes = robot.entry.robot.capsules(tuple(it.data.qpos[robot.joint_qpos]))
+    a, b = turned([shape.start for shape in shapes]), turned([shape.end for shape in shapes])
+    from_a, along = np.array(poles) - a, b - a
+    length2 = np.maximum((along**2).sum(-1), 1e-12)
+    part = np.clip((from_a * along).sum(-1) / length2, 0, 1)
+    far = np.linalg.norm(from_a - part[..., None] * along, axis=-1)
+    legs = (far - np.array([[shape.radius_m] for shape in shapes])).min(0)
+    yaw = 2 * math.atan2(v[2], w)
+    axes = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
+    half = np.array(robot.entry.robot.size_m[:2]) / 2
+    local = np.abs((np.array(poles) - here[:2]) @ axes.T)
+    body = np.linalg.norm(np.maximum(local - half, 0.0), axis=-1)
+    return np.minimum(legs, body) - POLE_M
+
+
+def test_touch_is_where_the_shapes_meet() -> None:
+    """Rules 6, strike: a flag whose pole the robot touches with any part, and no other."""
+    it = world()
+    flags = arenas.load("flag-strike").game.markers[4:]
+    poles = [(flag.x_m, flag.y_m) for flag in flags]
+    rng = np.random.default_rng(1)
+    it.place(RIGHT, Place(0.9, 0.9, 0.0))
+    seen, near = [0, 0], 0
+    for _ in range(400):
+        x_m, y_m = poles[rng.integers(len(poles))] + rng.uniform(-0.15, 0.15, 2)
+        it.place(LEFT, Place(x_m, y_m, rng.uniform(0, math.tau)))
+        touched = it.touched()[LEFT]
+        for index, gap in enumerate(gaps_m(it, LEFT, poles).tolist(), start=4):
+            if abs(gap) > 1e-5:
+                assert (index in touched) is (gap < 0), (index, gap)
+                seen[gap < 0] += 1
+                near += abs(gap) < 2e-3
+    assert min(seen) > 100
+    assert near > 3
+
+
+@pytest.mark.parametrize("seat", [LEFT, RIGHT])
+def test_touching_and_just_not_touching(seat: int) -> None:
+    """Rules 6, strike: 0.05 mm before the pole nothing, 0.05 mm into it the flag is touched."""
+    it = world()
+    flag = arenas.load("flag-strike").game.markers[22]
+    it.place(1 - seat, Place(-0.9, -0.9, 0.0))
+
+    def at(x_m: float) -> Sequence[tuple[int, ...]]:
+        it.place(seat, Place(x_m, flag.y_m, math.pi / 2))
+        return it.touched()
+
+    low, high = flag.x_m - 0.3, flag.x_m  # from clear of the pole to over it
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (low, middle) if at(middle)[seat] else (middle, high)
+    at(low)
+    assert gaps_m(it, seat, [(flag.x_m, flag.y_m)])[0] == pytest.approx(0.0, abs=1e-6)
+    assert at(low - 5e-5) == [(), ()]
+    assert at(low + 5e-5)[seat] == (22,)
+    assert at(low + 5e-5)[1 - seat] == ()
+
+
+def test_both_touching() -> None:
+    """Rules 6, strike: what both touch is seen of both, so that the flag can stand."""
+    it = world()
+    flag = arenas.load("flag-strike").game.markers[22]
+    seen = []
+    for far_m in np.linspace(0.3, 0.05, 100):
+        it.place(LEFT, Place(flag.x_m - far_m, flag.y_m, math.pi / 2))
+        it.place(RIGHT, Place(flag.x_m + far_m, flag.y_m, -math.pi / 2))
+        seen.append(tuple(it.touched()))
+    assert set(seen) == {((), ()), ((22,), (22,))}
+
+
+def test_a_robot_on_its_back_touches_with_its_legs() -> None:
+    """Rules 6, strike: with any part, however the robot lies."""
+    it = world()
+    markers = arenas.load("flag-strike").game.markers
+    flag = markers[22]
+    it.place(RIGHT, Place(-0.9, -0.9, 0.0))
+    at = it._robots[LEFT].root_qpos
+    rng = np.random.default_rng(2)
+    seen = [0, 0]
+    for _ in range(300):
+        turn = rng.normal(size=4)
+        it.place(LEFT, Place(flag.x_m + rng.uniform(-0.2, 0.2), flag.y_m + 0.09, 0.0))
+        it.data.qpos[at + 2] = 0.13
+        it.data.qpos[at + 3 : at + 7] = turn / np.linalg.norm(turn)
+        if math.dist(it.data.qpos[at : at + 2], (flag.x_m, flag.y_m)) < 0.1:
+            continue  # the body may touch, which `gap_m` knows only upright
+        (gap,) = gaps_m(it, LEFT, [(flag.x_m, flag.y_m)]).tolist()
+        if abs(gap) > 1e-5 and _lower_than_a_pole(it):
+            assert (22 in it.touched()[LEFT]) is (gap < 0)
+            seen[gap < 0] += 1
+    assert min(seen) > 10
+
+
+def _lower_than_a_pole(it: World) -> bool:
+    it.touched()  # brings the geoms to where they are
+    geoms = it._robots[LEFT].geoms
+    heights = it.data.geom_xpos[geoms, 2]
+    reach = it.model.geom_rbound[geoms]
+    return bool((heights + reach).max() < REACH_M and (heights - reach).min() > -0.05)
+
+
+def test_touch_costs_no_bit() -> None:
+    """Rules 6, strike: asking what is touched changes no path."""
+    asked, quiet = world(), world()
+    for it in (asked, quiet):
+        it.place(LEFT, Place(-0.3, 0.0, 0.0))
+    touched = set()
+    for angles in commands(150):
+        asked.step(angles)
+        touched.update(asked.touched()[LEFT])
+        quiet.step(angles)
+        assert asked.digest == quiet.digest
+        assert asked.save() == quiet.save()
+    assert touched
+
+
+def test_the_empty_field() -> None:
+    """Rules 4: frames before READY have no robots."""
+    it = World(arenas.load("flag-strike"), [])
+    assert it.poses() == b""
+    assert list(it.touched()) == []
+    assert it.scene.bodies[0].parent == -1
