@@ -17,6 +17,7 @@ from lacoc_server.journal import Journal
 from lacoc_server.match import Match
 from lacoc_server.network import Arrival, CourtNetwork
 from lacoc_server.pace import Pace
+from lacoc_server.recovery import Unfinished
 from lacoc_server.world import World
 from lacoc_shared.decisions import Next, Official
 from lacoc_shared.inputs import Decide, Input
@@ -50,10 +51,15 @@ class Court:
         settings: what to play.
         network: how others reach it; opened by the caller.
         say: told every event, for the organiser's screen.
+        left: a match that an earlier court left behind, to go on with.
     """
 
     def __init__(
-        self, settings: CourtSettings, network: CourtNetwork, say: Callable[[Event], None]
+        self,
+        settings: CourtSettings,
+        network: CourtNetwork,
+        say: Callable[[Event], None],
+        left: Unfinished | None = None,
     ) -> None:
         self._settings = settings
         self._network = network
@@ -61,25 +67,33 @@ class Court:
         self._scene = b""
         self._packing: list[Any] = []
         self._pace = Pace(time.monotonic(), settings.speed, _offset_s(settings.name))
-        self._journal = self._open(1)
+        self._inputs: list[Input] = []
+        """The court's own, for the next beat."""
+        if left is None:
+            self._journal = self._open(1)
+        else:
+            self._journal = self._journal_of(left.match, left.segment)
+            self._inputs = left.inputs
+            network.publish_sheet(left.match.sheet())
+            for event in left.events:
+                network.publish_event(event)
 
     def run(self, stopping: Callable[[], bool]) -> None:
         """Give the match its beats until `stopping` says so; then finish the record."""
         pace = self._pace
-        inputs: list[Input] = []
         try:
             while not stopping():
                 time.sleep(pace.wait_s(time.monotonic()))
                 now_s = time.monotonic()
                 pace.begin(now_s)
-                inputs = self._beat(now_s, inputs)
+                self._beat(now_s)
         finally:
             self._close()
             for packing in self._packing:
                 packing.wait()
 
-    def _beat(self, now_s: float, own: list[Input]) -> list[Input]:
-        """One beat; returns the court's own inputs for the next."""
+    def _beat(self, now_s: float) -> None:
+        own, self._inputs = self._inputs, []
         match, network = self._journal.match, self._network
         arrivals: list[Arrival] = network.poll(now_s)
         beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
@@ -97,7 +111,7 @@ class Court:
             network.publish_sheet(match.sheet())
         if match.beats % HEALTH_BEATS == 0:
             network.publish_health(self._health(now_s))
-        return self._follow()
+        self._inputs = self._follow()
 
     def _follow(self) -> list[Input]:
         """What comes after a beat that ended something."""
@@ -125,7 +139,10 @@ class Court:
             settings=settings.arena.settings,
             limits=dict(settings.limits),
         )
-        journal = Journal(Match(setup, World), settings.recordings)
+        return self._journal_of(Match(setup, World))
+
+    def _journal_of(self, match: Match, segment: int = 0) -> Journal:
+        journal = Journal(match, self._settings.recordings, segment)
         journal.verdict = self._verdict
         return journal
 

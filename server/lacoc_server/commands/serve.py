@@ -15,6 +15,7 @@ from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.entry import Admission
 from lacoc_server.inbox import Inbox
 from lacoc_server.network import CourtNetwork
+from lacoc_server.recovery import unfinished
 from lacoc_shared import contest as contests
 from lacoc_shared import options, screen
 from lacoc_shared.address import endpoint
@@ -62,18 +63,30 @@ def serve_command(
     speed: Annotated[
         float, typer.Option(help="2 plays twice as fast as real time.", min=0.1, max=50)
     ] = 1.0,
+    fresh: Annotated[
+        bool,
+        typer.Option("--fresh", help="Open a new match, even if an unfinished one was left here."),
+    ] = False,
     json: options.Json = False,
 ) -> None:
     """Run a court: it steps the robots, keeps the clock, scores and records.
 
     Without a contest file the court makes its own tokens and prints the line for each contestant
     and for the referee. Ctrl-C closes the court; the record is finished first.
+
+    If the court was killed in a match, start it again in the same way: the match goes on from
+    where it was, halted, with its seats, clock and score.
     """
     plan, made_here = _contest(contest, arena, listen)
     name, entry = plan.court(court)
     loaded = arenas.load(entry.arena, _overrides(entry.settings, seconds))
     _check_seats(name, entry, loaded)
     keys = Keys(name)
+    folder = recordings or plan.recordings
+    left = None if fresh else unfinished(folder, name)
+    if left is not None:
+        loaded = left.match.arena
+        screen.note(f"Going on with match {left.match.setup.match_id}. --fresh opens a new one.")
     admission = Admission(
         SentFile(*find_robot(plan.robot)),
         *sample_gait_files(plan.robot),
@@ -83,16 +96,17 @@ def serve_command(
     inbox = Inbox(
         keys,
         [seat.id for seat in loaded.seats],
-        {seat: hash_token(holder.token) for seat, holder in entry.seat.items()},
+        {seat: hash_token(holder.token) for seat, holder in entry.seat.items()}
+        | (left.token_hashes if left else {}),
         admission,
+        last_seqs=left.last_seqs if left else None,
+        joined=left.token_hashes if left else (),
     )
     desk = DecisionDesk([hash_token(entry.referee.token)])
     addresses = (endpoint(listen),) if listen else entry.listen
     with CourtNetwork(keys, addresses, inbox, desk) as network:
-        settings = CourtSettings(
-            name, loaded, plan.limits, recordings or plan.recordings, speed=speed
-        )
-        running = Court(settings, network, screen.print_json if json else _say)
+        settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed)
+        running = Court(settings, network, screen.print_json if json else _say, left)
         _open_doors(name, entry, loaded, network.locators, made_here=made_here, json=json)
         stop = _stop_on_signal()
         running.run(lambda: bool(stop))
