@@ -60,6 +60,8 @@ def status_line(frame: Frame, sheet: Sheet) -> Text:
         (f" {words.match_clock(frame, sheet)} ", "bold"),
     )
     names = words.teams(sheet)
+    if len(frame.seats) == 1:  # practice: no points to win
+        return line.append_text(Text.assemble(("■ ", sheet.seats[0].colour), names[0]))
     for index, (info, seat) in enumerate(zip(sheet.seats, frame.seats, strict=False)):
         if index:
             line.append(" : ", "dim")

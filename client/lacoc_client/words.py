@@ -1,6 +1,7 @@
 """Clocks, scores, keys and links in words, the same on every screen of the terminal."""
 
 from lacoc_client.controller import SILENT_AFTER_S
+from lacoc_client.plain import poses
 from lacoc_shared.gait import Level
 from lacoc_shared.messages import Frame, SeatFrame, Sheet
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, NO_SENTENCES, Phase, SeatFlag
@@ -61,6 +62,16 @@ def standing_key(seat: SeatFrame, sheet: Sheet, index: int) -> str:
     if seat.level == Level.LOCOMOTION and seat.key < len(counts) and counts[seat.key] > 1:
         text += f", posture {seat.posture + 1}/{counts[seat.key]}"
     return text
+
+
+def place(frame: Frame, sheet: Sheet, seat: str) -> str:
+    """Where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" while it has none."""
+    pose = poses(frame, sheet).get(seat)
+    if pose is None:
+        return ""
+    # Adding zero turns -0.00 into 0.00 once it is rounded.
+    x_m, y_m = (round(pose[name], 2) + 0.0 for name in ("x_m", "y_m"))
+    return f"  x {x_m:.2f} m  y {y_m:.2f} m  heading {pose['heading_deg']:.0f}°"
 
 
 def seat_state(seat: SeatFrame) -> str:

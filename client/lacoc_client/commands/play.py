@@ -1,0 +1,149 @@
+"""`lacoc play`: a contestant at the terminal."""
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Group
+from rich.text import Text
+
+from lacoc_client.commands import entrance
+from lacoc_client.controller import Controller
+from lacoc_client.seat_files import SeatFiles, gaits_in, gather
+from lacoc_client.stopping import stop_signals
+from lacoc_client.terminal_keys import open_keys
+from lacoc_client.terminal_play import TerminalPlay, keys_table
+from lacoc_shared import options, screen
+from lacoc_shared.contest import Access
+from lacoc_shared.gait import Level
+from lacoc_shared.session import open_client
+
+app = typer.Typer()
+
+TeamName = Annotated[
+    str,
+    typer.Option(
+        "--name", envvar="LACOC_NAME", metavar="TEAM", help="Your team's name, 1-24 characters."
+    ),
+]
+Robot = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE|NAME", help="Your robot file, or an installed robot; else the contest's."
+    ),
+]
+Gaits = Annotated[
+    list[Path] | None,
+    typer.Option(
+        metavar="FILE",
+        help="A gait file: Loco-data.txt, Loco-data.xlsx or LocoTra-data.txt; give it again for "
+        "the other level. By default those in this folder, the one saved last of each kind.",
+    ),
+]
+
+_SHEET_S = 2.0
+
+
+@app.command(name="play")
+def play_command(
+    contest: options.ContestFile = None,
+    court: options.CourtName = None,
+    connect: options.Connect = None,
+    seat: options.SeatName = None,
+    token: options.Token = None,
+    name: TeamName = "",
+    robot: Robot = None,
+    gait: Gaits = None,
+    ready: Annotated[
+        bool, typer.Option("--ready", help="Say ready at once, without the key r.")
+    ] = False,
+    terminal: Annotated[
+        bool,
+        typer.Option(
+            "--terminal",
+            help="Play in this terminal: the only way for now, but say it in a script, because a "
+            "later version opens a page in the browser without it.",
+        ),
+    ] = False,
+) -> None:
+    """Hold a seat and steer your robot with the keyboard.
+
+    0-9 move it, the arrows are 2 1 3 0 of level B, Tab changes the level, x restarts, r says
+    ready, z leaves and writes Pos-data.txt, q leaves.
+
+    Keys can come from a pipe, too. A line holds keys: '2', 'tab 1', or '1234' for four keys one
+    after another. With a time in front, as in '1.5 3', they come so many seconds of play after the
+    keys before. Keys that move the robot wait until the match is played. After the last one its
+    key stands until the match is over.
+    """
+    access = entrance.seat(contest, court, connect, seat, token)
+    play(access, name or f"Team {access.seat}", choose_files(robot, gait or []), ready=ready)
+
+
+def choose_files(robot: str | None, gaits: list[Path]) -> SeatFiles:
+    """The files that were named, or the gait files of the current folder, and say so (rules 2).
+
+    Raises:
+        FileRefused: with every mistake of every gait file.
+        UserError: if a file can't be read, or two are for the same level.
+    """
+    found = [] if gaits else gaits_in(Path())
+    if found:
+        screen.note(f"Taken from this folder: {', '.join(path.name for path in found)}.")
+    return gather(robot, gaits or found)
+
+
+def play(
+    access: Access, team: str, files: SeatFiles, *, ready: bool, greeting: Text | None = None
+) -> None:
+    """Join, and play at the terminal until the contestant leaves.
+
+    Args:
+        access: the way to the seat.
+        team: the team's name.
+        files: what it brings.
+        ready: say ready at once.
+        greeting: printed before the keys.
+
+    Raises:
+        FileRefused: if the court finds mistakes in the files.
+        UserError: if the court refuses, does not answer, or the seat is lost.
+    """
+    with open_client([access.connect]) as session:
+        controller = Controller(
+            session, access.court, access.seat, access.token, team, **files._asdict()
+        )
+        for note in controller.join():
+            screen.note(note)
+        _await_own_entry(controller, team)
+        if ready:
+            controller.ready()
+        _greet(controller, team, greeting)
+        with stop_signals() as stopping, open_keys() as keys:
+            TerminalPlay(controller, keys, Path()).run(stopping)
+
+
+def _await_own_entry(controller: Controller, team: str) -> None:
+    """The sheet with the own robot comes a moment after the join."""
+    deadline_s = time.monotonic() + _SHEET_S
+    while time.monotonic() < deadline_s:
+        controller.wait_frame(0.05)
+        if controller.view.sheet.seats[controller.index].team:
+            return
+
+
+def _greet(controller: Controller, team: str, greeting: Text | None) -> None:
+    sheet = controller.view.sheet
+    screen.show(
+        greeting
+        or Text.assemble(
+            (team, "bold"), f" holds seat {controller.seat} of court {sheet.court}: {sheet.title}."
+        )
+    )
+    screen.show(Group(keys_table(controller), Text()))
+    keys = sheet.seats[controller.index].keys
+    if not any(keys[level] for level in sheet.levels):
+        levels = " and ".join("AB"[level] for level in sheet.levels)
+        wanted = "Loco-data" if Level.POSTURE in sheet.levels else "LocoTra-data"
+        screen.warn(f"No key will move your robot: level {levels} is open. Bring a {wanted} file.")

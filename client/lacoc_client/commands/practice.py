@@ -1,0 +1,111 @@
+"""`lacoc practice`: a court of one's own (workshop 4-4)."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.text import Text
+
+from lacoc_client.commands.play import Gaits, Robot, TeamName, choose_files, play
+from lacoc_client.seat_files import SeatFiles
+from lacoc_shared.contest import Access
+from lacoc_shared.mistakes import UserError
+
+app = typer.Typer()
+
+_OPEN_S = 60.0
+"""Within this a court opens, also on a slow machine."""
+_CLOSE_S = 10.0
+
+
+@app.command(name="practice")
+def practice_command(
+    name: TeamName = "",
+    robot: Robot = None,
+    gait: Gaits = None,
+    recordings: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER", help="Keep the record of this practice there; by default it is not."
+        ),
+    ] = None,
+) -> None:
+    """Walk your robot on a field of its own, with all keys, as long as you like.
+
+    Both levels are open: postures (A) and locomotion (B); Tab changes. x puts the robot back to the
+    start, z leaves and writes Pos-data.txt, q leaves. Keys can come from a pipe as in 'lacoc play';
+    after the last one practice ends.
+    """
+    files = choose_files(robot, gait or [])
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="lacoc-practice-")))
+        access = stack.enter_context(_court(folder, recordings or folder / "recordings"))
+        play(access, name or "Practice", files, ready=True, greeting=_greeting(files))
+
+
+def _greeting(files: SeatFiles) -> Text:
+    sample = files.postures is None and files.locomotion is None
+    hint = (
+        "Slowly press 1 2 3 4, again and again: it walks forward. 4 3 2 1 walks back, 5 6 7 8 "
+        "turns right, 8 7 6 5 turns left, 0 stands. Tab, and one key does it all."
+        if sample
+        else "Your own gait is loaded: press its keys and see where it goes."
+    )
+    return Text.assemble(("Practice. ", "bold"), hint)
+
+
+@contextmanager
+def _court(folder: Path, recordings: Path) -> Iterator[Access]:
+    """A court with the practice arena, as a process that ends with this."""
+    # What it says goes into a file: a pipe that nobody empties would stop it.
+    said = folder / "court.log"
+    words = ["serve", "--json", "--arena", "practice", "--listen", "tcp/127.0.0.1:0"]
+    environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
+    with said.open("wb") as log:
+        court = subprocess.Popen(
+            [sys.executable, "-m", "lacoc_shared", *words, "--recordings", str(recordings)],
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,  # Ctrl-C is for the player: the court ends when they have left
+        )
+    try:
+        opened = _opened(court, said)
+        ((seat, token),) = opened["tokens"].items()
+        yield Access(court=opened["court"], connect=opened["locators"][0], seat=seat, token=token)
+    finally:
+        court.terminate()
+        try:
+            court.wait(_CLOSE_S)
+        except subprocess.TimeoutExpired:
+            court.kill()
+            court.wait()
+
+
+def _opened(court: subprocess.Popen[bytes], said: Path) -> dict[str, Any]:
+    """What a court says when it is open.
+
+    Raises:
+        UserError: if it does not open; the message is its own.
+    """
+    deadline_s = time.monotonic() + _OPEN_S
+    while time.monotonic() < deadline_s:
+        ended = court.poll() is not None
+        first, end, _ = said.read_text(encoding="utf-8", errors="replace").partition("\n")
+        if ended:
+            reason = first.removeprefix("Error: ") or f"its process ended with {court.returncode}"
+            raise UserError(f"The practice court does not open: {reason}")
+        if end:
+            opened: dict[str, Any] = json.loads(first)
+            return opened
+        time.sleep(0.02)
+    raise UserError(f"The practice court does not open within {_OPEN_S:.0f} s.")

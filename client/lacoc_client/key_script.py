@@ -1,0 +1,146 @@
+"""Keys from a pipe: a little language, so that a file or a program can play.
+
+A line holds keys: `2`, or `tab 1`, or `1234` for four keys one after another. A number
+before them is a time: `1.5 3` presses 3 a second and a half after the keys before. The time
+runs only while the match is played, and keys that move the robot wait until it is.
+`#` begins a remark.
+"""
+
+import math
+import os
+import queue
+import threading
+from collections import deque
+from typing import NamedTuple
+
+NAMED = ("tab", "space", "up", "down", "left", "right")
+MOVING = frozenset("0123456789x") | {"up", "down", "left", "right"}
+"""Keys that mean something only while the match is played."""
+_LETTERS = frozenset("xzrq")
+_READ_BYTES = 4096
+
+
+class _Step(NamedTuple):
+    wait_s: float
+    key: str
+
+
+class KeyScript:
+    """The keys of a script, each when it is its turn."""
+
+    def __init__(self) -> None:
+        self._steps: deque[_Step] = deque()
+        self._since_s = 0.0
+        """Seconds of play at which the last key was due: times are counted from there."""
+        self._moved_s = -1.0
+        """Seconds of play at which the last key that moves the robot was pressed."""
+        self._lines = 0
+
+    def add(self, line: str) -> str:
+        """Take a line in.
+
+        Returns:
+            What is wrong with it, if it is left out; else "".
+        """
+        self._lines += 1
+        words = line.partition("#")[0].lower().split()
+        wait_s = _number(words[0]) if len(words) > 1 else None
+        keys = [key for word in words[wait_s is not None :] for key in _keys(word)]
+        wrong = next((key for key in keys if not _known(key)), None)
+        if wrong is not None:
+            return f"Line {self._lines} is left out: {wrong!r} is no key and no time in seconds."
+        if wait_s is not None and not 0 <= wait_s < math.inf:
+            return f"Line {self._lines} is left out: {words[0]} is no time in seconds."
+        for index, key in enumerate(keys):
+            self._steps.append(_Step(0.0 if index else wait_s or 0.0, key))
+        return ""
+
+    def due(self, playing_s: float, playing: bool) -> list[str]:
+        """The keys whose turn it is: of those that move the robot one for each tick.
+
+        Args:
+            playing_s: for how long the match has been played.
+            playing: whether it is being played.
+        """
+        keys: list[str] = []
+        while self._steps:
+            wait_s, key = self._steps[0]
+            if playing_s < self._since_s + wait_s:
+                break
+            if key in MOVING and not (playing and playing_s > self._moved_s):
+                break
+            self._steps.popleft()
+            keys.append(key)
+            if key in MOVING:
+                self._moved_s = playing_s
+            self._since_s = self._since_s + wait_s if wait_s else max(self._since_s, playing_s)
+        return keys
+
+    @property
+    def empty(self) -> bool:
+        """No key waits."""
+        return not self._steps
+
+
+class PipeKeys:
+    """The keys of a script that comes through a pipe.
+
+    A pipe can't be looked into on every system, so a thread reads it; it does nothing else.
+    """
+
+    def __init__(self, descriptor: int) -> None:
+        self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._script = KeyScript()
+        self._said: list[str] = []
+        self._read_all = False
+        threading.Thread(target=_read_lines, args=(descriptor, self._lines), daemon=True).start()
+
+    @property
+    def ended(self) -> bool:
+        """The script was read and every key of it was pressed."""
+        return self._read_all and self._script.empty
+
+    def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
+        """See `terminal_keys.Keys`."""
+        try:
+            while True:
+                line = self._lines.get(timeout=timeout_s)
+                timeout_s = 0.0
+                if line is None:
+                    self._read_all = True
+                elif wrong := self._script.add(line):
+                    self._said.append(wrong)
+        except queue.Empty:
+            return self._script.due(playing_s, playing)
+
+    def take_said(self) -> list[str]:
+        """See `terminal_keys.Keys`."""
+        said, self._said = self._said, []
+        return said
+
+
+def _read_lines(descriptor: int, lines: "queue.SimpleQueue[str | None]") -> None:
+    """Put each line into the queue, and None after the last."""
+    rest = b""
+    while data := os.read(descriptor, _READ_BYTES):
+        *whole, rest = (rest + data).split(b"\n")
+        for line in whole:
+            lines.put(line.decode("utf-8", "replace"))
+    if rest:
+        lines.put(rest.decode("utf-8", "replace"))
+    lines.put(None)
+
+
+def _keys(word: str) -> list[str]:
+    return [word] if word in NAMED or len(word) == 1 else list(word)
+
+
+def _known(key: str) -> bool:
+    return key in MOVING or key in _LETTERS or key in NAMED
+
+
+def _number(word: str) -> float | None:
+    try:
+        return float(word)
+    except ValueError:
+        return None
