@@ -82,15 +82,18 @@ def test_every_entry_point_is_there() -> None:
 
 
 def test_nothing_of_the_machine_it_was_made_on_is_in_it() -> None:
-    """No tracked file names this checkout's path, this home folder or this host."""
-    host = re.escape(socket.gethostname())
+    """No tracked text names this checkout's path, this home folder or this host."""
+    host = socket.gethostname()
     own = [re.escape(f"{path}/") for path in (ROOT, Path.home()) if len(path.parts) > 1]
-    pattern = re.compile("|".join([*own, rf"\b{host}\b"] if host != "localhost" else own))
-    found = []
-    for path in tracked():
-        text = path.read_bytes().decode("utf-8", "replace")
-        found += [f"{path.relative_to(ROOT)}: {hit}" for hit in pattern.findall(text)]
-
+    if len(host) > 3 and host != "localhost":  # "vm" says nothing of anybody
+        own.append(rf"\b{re.escape(host)}\b")
+    pattern = re.compile("|".join(own).encode())
+    found = [
+        f"{path.relative_to(ROOT)}: {hit.decode()}"
+        for path in tracked()
+        if b"\0" not in (data := path.read_bytes())
+        for hit in pattern.findall(data)
+    ]
     assert found == []
 
 
