@@ -1,0 +1,296 @@
+"""Replay: a record verified, or taken up where it ended (design.md, "Record")."""
+
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+
+import msgspec
+import pytest
+from stage import FORWARD, LEFT, QUICK, RIGHT, TURN_LEFT, TURN_RIGHT, X, decide, join, key, setup
+
+from lacoc_arenas import arena as arenas
+from lacoc_server.journal import SNAPSHOT_TICKS, Journal
+from lacoc_server.match import Beat, Match
+from lacoc_server.replay import Verdict, resume, verify
+from lacoc_server.simulate import player, simulate
+from lacoc_server.world import World
+from lacoc_shared import decisions as d
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.inputs import HeardSeat, Input, KeySeat, ReadySeat, SilentSeat
+from lacoc_shared.messages import Event, Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.writer import RecordWriter
+from lacoc_shared.seat import Phase
+
+INPUTS: dict[int, list[Input]] = {
+    0: [join(LEFT), join(RIGHT)],
+    1: [ReadySeat(LEFT, True), ReadySeat(RIGHT, True)],
+    8: [decide(d.Start())],
+    12: [key(LEFT, FORWARD, 1), key(RIGHT, FORWARD, 1)],
+    260: [key(RIGHT, TURN_LEFT, 2), decide(d.Adjust("right", 2))],
+    300: [SilentSeat(RIGHT)],
+    310: [HeardSeat(RIGHT), key(LEFT, X, 2), key(LEFT, FORWARD, 3)],
+    330: [decide(d.Halt()), decide(d.Start())],  # the second is refused
+    340: [decide(d.Restart("right")), decide(d.Set("flag18", "left"))],
+    341: [decide(d.Start())],  # refused; nothing else happens in this beat
+    350: [decide(d.TakeBack(17)), decide(d.Resume())],
+    353: [key(RIGHT, TURN_RIGHT, 3)],
+}
+"""A match of Flag-Strike in which a bit of everything happens."""
+BEATS = 420
+
+
+@pytest.fixture(scope="module")
+def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, list[Beat]]]:
+    """The segment of a match that is still going on, and its beats."""
+    journal = Journal(Match(setup("flag-strike", QUICK), World), tmp_path_factory.mktemp("live"))
+    assert journal.writer is not None
+    beats = [journal.beat(INPUTS.get(number, ()))[0] for number in range(BEATS)]
+    assert {Phase(beat.frame.phase).name for beat in beats} == {
+        "LOBBY",
+        "READY",
+        "COUNTDOWN",
+        "PLAYING",
+        "HALTED",
+    }
+    yield journal.writer.path, beats
+    journal.close()
+
+
+def verdict(record: Record) -> Verdict:
+    *beats, last = verify(record)
+    assert beats == list(range(len(beats)))
+    assert isinstance(last, Verdict)
+    return last
+
+
+def boundaries(data: bytes) -> list[int]:
+    """Where the records of an unchunked MCAP file begin."""
+    places, at = [], 8
+    while at < len(data):
+        places.append(at)
+        at += 9 + struct.unpack_from("<Q", data, at + 1)[0]
+    return places
+
+
+# Verify.
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+def test_a_simulated_match_verifies(arena: str, tmp_path: Path) -> None:
+    """Issue 2, Done 2: `replay verify` says same, for both games."""
+    made = setup(arena, {"match": {"duration_s": 20.0}})
+    ground = arenas.load(arena)
+    bots = list(ground.bots)
+    simulate(made, [player(ground, 0, bots[1]), player(ground, 1, bots[0])], tmp_path)
+    record = Record.read(tmp_path / "m.mcap")
+    assert (record.cut, record.result is not None) == ("", True)
+    found = verdict(record)
+    assert (found.text, found.differs_at) == ("same", None)
+    assert found.beats == record.last_beat + 1
+    assert found.frames > 1000
+
+
+def test_a_match_that_goes_on_verifies_up_to_where_it_is(live: tuple[Path, list[Beat]]) -> None:
+    """Design, "Record": a killed court's record gives every whole message."""
+    record = Record.read(live[0])
+    assert record.cut
+    assert verdict(record) == Verdict(BEATS, len(record.frames))
+
+
+def test_a_changed_key_is_named(live: tuple[Path, list[Beat]]) -> None:
+    """Design, "Record": verify names the first beat that differs."""
+    record = Record.read(live[0])
+    record.inputs[260] = tuple(
+        KeySeat(item.seat, item.seq, item.level, TURN_RIGHT) if isinstance(item, KeySeat) else item
+        for item in record.inputs[260]
+    )
+    found = verdict(record)
+    assert found.differs_at == 260
+    assert found.text.startswith("beat 260 differs: seats, poses, state hash")
+
+
+def test_a_missing_input_is_named(live: tuple[Path, list[Beat]]) -> None:
+    """Design, "Record": also where an input was taken out."""
+    record = Record.read(live[0])
+    del record.inputs[300]
+    assert verdict(record).differs_at == 300
+
+
+@pytest.mark.parametrize("beat", [5, 9, 200, 335, 419])
+def test_one_flipped_bit_of_a_pose_is_named(
+    beat: int, live: tuple[Path, list[Beat]], tmp_path: Path
+) -> None:
+    """Design, "Record": one bit in one frame of the file."""
+    path, beats = live
+    data = bytearray(path.read_bytes())
+    recorded = [at for at, _ in Record.read(path).frames]
+    beat = max(at for at in recorded if at <= beat)
+    frame = beats[beat].frame
+    at = data.index(encode(frame)) + encode(frame).index(frame.poses)
+    data[at + 17] ^= 1 << 2
+    copy = tmp_path / path.name
+    copy.write_bytes(data)
+    found = verdict(Record.read(copy))
+    assert (found.differs_at, found.text) == (beat, f"beat {beat} differs: poses")
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ("event", "its events"),
+        ("touch", "what the robots touched"),
+        ("snapshot", "the snapshot"),
+    ],
+)
+def test_nothing_of_a_record_can_be_changed_unseen(
+    what: str, words: str, live: tuple[Path, list[Beat]]
+) -> None:
+    """Design, "Record": not only frames are compared, but all that a resumed match is built of."""
+    record = Record.read(live[0])
+    if what == "event":
+        event = record.events[-1]
+        record.events[-1] = msgspec.structs.replace(event, text=event.text + "!")
+        beat = event.beat
+    elif what == "touch":
+        beat = max(record.touches)
+        del record.touches[beat]
+    else:
+        beat, saved = record.snapshots[-1]
+        record.snapshots[-1] = beat, saved[:-1] + bytes([saved[-1] ^ 1])
+    assert verdict(record).text == f"beat {beat} differs: {words}"
+
+
+@pytest.mark.slow
+def test_a_changed_result_is_named(tmp_path: Path) -> None:
+    """Issue 2: the recording replays to the same result; its health verdict is not judged."""
+    made = setup("othello", {"match": {"duration_s": 0.5}})
+    ground = arenas.load("othello")
+    simulate(made, [player(ground, seat, "straight") for seat in (0, 1)], tmp_path)
+    record = Record.read(tmp_path / "m.mcap")
+    assert record.result is not None
+    record.result = msgspec.structs.replace(record.result, health={"slow_beats": 3})
+    assert verdict(record).text == "same"
+    record.result = msgspec.structs.replace(record.result, scores=(36, 0))
+    assert verdict(record).text == f"beat {record.last_beat} differs: the result"
+
+
+def test_another_mujoco_is_refused(live: tuple[Path, list[Beat]]) -> None:
+    """Rules 4, physics 1: exact only within one version; the sentence says what to install."""
+    record = Record.read(live[0])
+    versions = {**record.header.versions, "mujoco": "3.9.9"}
+    record.headers[0] = msgspec.structs.replace(record.header, versions=versions)
+    for attempt in (lambda: next(verify(record)), lambda: resume(record)):
+        with pytest.raises(UserError, match=r"made with MuJoCo 3\.9\.9.*pip install mujoco==3\.9"):
+            attempt()
+
+
+# Cut anywhere, and taken up again.
+
+
+def go_on(match: Match, beats: list[Beat]) -> None:
+    """Play a resumed match on; it makes what the uncut one made, to the last bit."""
+    for number in range(match.beats + 1, len(beats)):
+        beat = match.beat(INPUTS.get(number, ()))
+        assert encode(beat.frame) == encode(beats[number].frame), number
+        assert encode(beat.events) == encode(beats[number].events)
+        assert beat.touch == beats[number].touch
+
+
+@pytest.mark.parametrize("part", [0.12, 0.31, 0.5, 0.73, 0.9, 1.0])
+def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
+    """Issue 2, Done 5: verified to its end, resumed with the same hash, and on from there."""
+    path, beats = live
+    data = path.read_bytes()
+    copy = tmp_path / path.name
+    copy.write_bytes(data[: int(len(data) * part)])
+    record = Record.read(copy)
+    assert verdict(record).text == "same"
+    match = resume(record)
+    assert match.beats in (record.last_beat, record.last_beat - 1)
+    assert match.physics.digest == (
+        beats[match.beats].frame.digest if match.beats >= 0 else bytes(8)
+    )
+    go_on(match, beats)
+
+
+@pytest.mark.slow
+def test_a_beat_is_whole_or_not_at_all(live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
+    """Design, "Record": a court killed in the middle of a beat does that beat again.
+
+    Cut after every single message around beats with inputs, decisions and events.
+    """
+    path, beats = live
+    data = path.read_bytes()
+    whole = Record.read(path)
+    frames = dict(whole.frames)
+    for beat in (259, 309, 329, 339, 340, 349, 352):
+        start = data.index(frames[max(at for at in frames if at <= beat)])
+        for cut in [at for at in boundaries(data) if start < at][:9]:
+            copy = tmp_path / path.name
+            copy.write_bytes(data[:cut])
+            record = Record.read(copy)
+            match = resume(record)
+            answered = max(at for at, _ in record.frames)
+            assert match.beats == max(answered, record.last_beat - 1)
+            again = match.beat(INPUTS.get(match.beats + 1, ()))
+            assert encode(again.frame) == encode(beats[match.beats].frame)
+            assert encode(again.events) == encode(beats[match.beats].events)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("snapshot", [0, 1])
+def test_restored_from_any_snapshot(snapshot: int, live: tuple[Path, list[Beat]]) -> None:
+    """Issue 2, Done 5: restored from any snapshot: one state hash."""
+    path, beats = live
+    record = Record.read(path)
+    assert len(record.snapshots) == 2
+    match = resume(record, at=record.snapshots[snapshot][0])
+    assert isinstance(match.physics, World)
+    assert match.physics.digest == beats[-1].frame.digest
+    before = resume(record, at=record.snapshots[0][0] - 1)  # from the very beginning
+    assert before.physics.digest == beats[-1].frame.digest
+
+
+def test_snapshots_come_every_5_s_of_physics(live: tuple[Path, list[Beat]]) -> None:
+    """Design, "One beat": a full snapshot every 5 s."""
+    path, beats = live
+    ticked = [beat.frame.beat for beat in beats if beat.ticked]
+    expected = [ticked[n] for n in range(0, len(ticked), SNAPSHOT_TICKS)]
+    assert [beat for beat, _ in Record.read(path).snapshots] == expected
+
+
+def test_the_court_goes_on_in_a_new_segment(live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
+    """Design, "Record": killed twice, each time in a beat; the whole verifies, no event is lost."""
+    path, beats = live
+    data = path.read_bytes()
+    segment = tmp_path / path.name
+    at = data.index(dict(Record.read(path).frames)[309])
+    segment.write_bytes(data[: [b for b in boundaries(data) if b > at][2]])  # in beat 310
+    for number, last in enumerate((345, 400), start=1):
+        match = resume(Record.read(segment))
+        journal = Journal(match, tmp_path, number)
+        while match.beats < last:
+            journal.beat(INPUTS.get(match.beats + 1, ()))
+        assert journal.writer is not None
+        if number == 1:  # killed in the middle of beat 346
+            journal.writer.input(346, key(LEFT, TURN_LEFT, 9))
+            _abandon(journal.writer)
+        else:
+            journal.close()
+    record = Record.read(segment)
+    assert [header.segment for header in record.headers] == [0, 1, 2]
+    assert verdict(record).text == "same"
+    events: list[Event] = [e for beat in beats[:401] for e in beat.events]
+    assert encode(record.events) == encode(events)
+    assert decode(record.frames[-1][1], Frame) == beats[400].frame
+
+
+def _abandon(writer: RecordWriter) -> None:
+    """Leave a record as a kill does: nothing more is written."""
+    writer._file.flush()
+    writer._closing.set()
+    writer._syncer.join()
+    writer._file.close()
