@@ -78,6 +78,11 @@ class Court:
             for event in left.events:
                 network.publish_event(event)
 
+    @property
+    def match_id(self) -> str:
+        """Names the record of the match that is on."""
+        return self._journal.match.setup.match_id
+
     def run(self, stopping: Callable[[], bool]) -> None:
         """Give the match its beats until `stopping` says so; then finish the record."""
         pace = self._pace
@@ -150,8 +155,8 @@ class Court:
         """Finish the record of this match; it is packed in a process of its own."""
         self._journal.close()
         if self._settings.recordings is not None:
-            match_id = self._journal.match.setup.match_id
-            self._packing.append(pack_in_background(self._settings.recordings, match_id))
+            packing = pack_in_background(self._settings.recordings, self.match_id)
+            self._packing.append(packing)
 
     def _verdict(self) -> dict[str, Any]:
         pace = self._pace

@@ -8,7 +8,7 @@ from lacoc_server.replay import resume
 from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Decide, Input, KeySeat
 from lacoc_shared.messages import Event
-from lacoc_shared.record.files import record_paths
+from lacoc_shared.record.files import is_held, record_paths
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
 
@@ -38,10 +38,16 @@ class Unfinished:
 def unfinished(folder: Path, court: str) -> Unfinished | None:
     """Find the newest match of a court whose record was not finished; None if there is none.
 
+    A record that a running court of this name writes right now was not left behind.
+
     Raises:
         UserError: if there is one and it can't go on here; the message says why.
     """
-    segments = sorted(folder.glob(f"*-{court}-[0-9][0-9][0-9].*.live.mcap"))
+    segments = [
+        path
+        for path in sorted(folder.glob(f"*-{court}-[0-9][0-9][0-9].*.live.mcap"))
+        if not is_held(path)
+    ]
     if not segments:
         return None
     paths = record_paths(segments[-1])

@@ -106,7 +106,7 @@ class ScriptedPhysics:
             return fault
         self.steps += 1
         self.ticks += 1
-        for seat, at in self._script.poses.get(self.ticks).items():
+        for seat, at in self._script.poses.get(self.ticks, {}).items():
             self._places[seat] = at
         self._angles = list(angles)
         self.digest = hashlib.blake2b(self.poses(), key=self.digest, digest_size=8).digest()
@@ -119,7 +119,7 @@ class ScriptedPhysics:
         )
 
     def touched(self) -> Sequence[tuple[int, ...]]:
-        now = self._script.touches.get(self.ticks)
+        now = self._script.touches.get(self.ticks, {})
         return [tuple(now.get(seat, ())) for seat in range(len(self._places))]
 
 

@@ -2,22 +2,29 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+import threading
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from queue import Empty, Queue
 from typing import IO, Annotated, Any
 
 import typer
 
 from lacoc_shared import screen
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.files import packed_path
 
 app = typer.Typer()
 
 _READY_S = 60
 """Within this the bots have joined and said ready, also on a slow machine."""
+_DAY_S = 86_400
+_LOOK_S = 0.5
+"""How often it is looked whether all processes are alive."""
 _END_S = 10
 """Within this a process that was asked to end has ended."""
 
@@ -47,20 +54,22 @@ def demo_command(
     Every part is a process of its own, as in a contest. At the end the record is simulated again
     and must give the same match, bit for bit.
     """
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that all that was started ends
     with ExitStack() as processes:
         court = processes.enter_context(_court(arena, seconds, speed, recordings))
         where = ("--court", court.name, "--connect", court.address)
         show_live = not headless and sys.stdout.isatty()
+        needed = []
         for seat, bot in (("left", left), ("right", right)):
             join = ("--arena", arena, "--seat", seat, *where)
-            processes.enter_context(_process("bot", bot, *join, token=court.tokens[seat]))
-        for decision, wait_s in (("start", _READY_S), ("official", None)):
-            wait = ("--wait", str(wait_s)) if wait_s else ("--wait", "86400")
-            words = ("referee", decision, "--by", "demo", *wait, *where)
-            processes.enter_context(_process(*words, token=court.referee))
+            bot_process = _process("bot", bot, *join, token=court.tokens[seat])
+            needed.append(processes.enter_context(bot_process))
+        for decision, wait_s in (("start", _READY_S), ("official", _DAY_S)):
+            words = ("referee", decision, "--by", "demo", "--wait", str(wait_s), *where)
+            needed.append(processes.enter_context(_process(*words, token=court.referee)))
         if show_live:
             processes.enter_context(_process("watch", "--terminal", "--board", *where, output=None))
-        result = _follow(court, quiet=show_live)
+        result = _follow(court, needed, quiet=show_live)
     screen.show(f"\n{result}")
     record = court.record(recordings)
     screen.show(f"Record: {record}")
@@ -69,41 +78,63 @@ def demo_command(
 
 
 class _Court:
-    """The court's process and what it said when it opened."""
+    """The court's process and what it says."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
-        assert process.stdout is not None
-        self._process = process
-        self._lines: IO[str] = process.stdout
-        opened = next(self.lines(), None)
+        self._said: Queue[dict[str, Any] | None] = Queue()
+        threading.Thread(target=self._listen, args=(process.stdout,), daemon=True).start()
+        opened = self._said.get()
         if opened is None:
             raise UserError("The court did not open; what it says is above.")
         self.name: str = opened["court"]
+        self._match_id: str = opened["match_id"]
         self.address: str = opened["locators"][0]
         self.tokens: Mapping[str, str] = opened["tokens"]
         self.referee: str = opened["referee"]
 
-    def lines(self) -> Iterator[dict[str, Any]]:
-        """Everything the court says, as it says it."""
-        for line in self._lines:
-            yield json.loads(line)
+    def hear(self, timeout_s: float) -> dict[str, Any] | None:
+        """The next event; None if there is none in time.
+
+        Raises:
+            UserError: if the court has ended.
+        """
+        try:
+            event = self._said.get(timeout=timeout_s)
+        except Empty:
+            return None
+        if event is None:
+            raise UserError("The court ended before the match did; what it says is above.")
+        return event
 
     def record(self, folder: Path) -> Path:
         """The record of its match."""
-        return max(folder.glob(f"*-{self.name}-*.mcap"), key=lambda path: path.stat().st_mtime)
+        return packed_path(folder, self._match_id)
+
+    def _listen(self, lines: IO[str]) -> None:
+        for line in lines:
+            self._said.put(json.loads(line))
+        self._said.put(None)
 
 
-def _follow(court: _Court, *, quiet: bool) -> str:
-    """Show events until the result is official; returns the sentence of the result."""
+def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bool) -> str:
+    """Show events until the result is official; returns the sentence of the result.
+
+    Raises:
+        UserError: if a process that is needed ends badly.
+    """
     result = ""
-    for event in court.lines():
+    while True:
+        event = court.hear(_LOOK_S)
+        if event is None:
+            if any(process.poll() for process in needed):
+                raise UserError("A bot or the referee gave up; what it says is above.")
+            continue
         if event["kind"] == "result":
             result = event["text"]
         if not quiet:
             screen.show(f"{_clock(event['clock_ticks'])}  {event['text']}")
         if event["kind"] == "phase" and event["data"]["after"] in ("OFFICIAL", "VOID"):
             return result
-    raise UserError("The court ended before the match did; what it says is above.")
 
 
 def _clock(ticks: int) -> str:
@@ -113,7 +144,7 @@ def _clock(ticks: int) -> str:
 
 @contextmanager
 def _court(arena: str, seconds: float | None, speed: float, recordings: Path) -> Iterator[_Court]:
-    words = ["serve", "--json", "--arena", arena, "--listen", "tcp/127.0.0.1:0"]
+    words = ["serve", "--json", "--fresh", "--arena", arena, "--listen", "tcp/127.0.0.1:0"]
     words += ["--recordings", str(recordings), "--speed", str(speed)]
     words += ["--seconds", str(seconds)] if seconds else []
     with _ended(_lacoc(*words, output=subprocess.PIPE)) as process:
@@ -123,9 +154,9 @@ def _court(arena: str, seconds: float | None, speed: float, recordings: Path) ->
 @contextmanager
 def _process(
     *words: str, token: str = "", output: int | None = subprocess.DEVNULL
-) -> Iterator[None]:
-    with _ended(_lacoc(*words, output=output, token=token)):
-        yield
+) -> Iterator[subprocess.Popen[str]]:
+    with _ended(_lacoc(*words, output=output, token=token)) as process:
+        yield process
 
 
 @contextmanager

@@ -107,7 +107,7 @@ def serve_command(
     with CourtNetwork(keys, addresses, inbox, desk) as network:
         settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed)
         running = Court(settings, network, screen.print_json if json else _say, left)
-        _open_doors(name, entry, loaded, network.locators, made_here=made_here, json=json)
+        _open_doors(name, entry, running.match_id, network.locators, made_here=made_here, json=json)
         stop = _stop_on_signal()
         running.run(lambda: bool(stop))
 
@@ -145,21 +145,21 @@ def _names(seats: set[str]) -> str:
 def _open_doors(
     name: str,
     entry: contests.Court,
-    arena: Arena,
+    match_id: str,
     locators: tuple[str, ...],
     *,
     made_here: bool,
     json: bool,
 ) -> None:
     if json:
-        opened: dict[str, Any] = {"kind": "open", "court": name, "arena": arena.name}
+        opened: dict[str, Any] = {"kind": "open", "court": name, "match_id": match_id}
         opened["locators"] = locators
         if made_here:
             opened["tokens"] = {seat: holder.token for seat, holder in entry.seat.items()}
             opened["referee"] = entry.referee.token
         screen.print_json(opened)
         return
-    screen.show(f"Court {name} plays {arena.title} at {', '.join(locators)}.")
+    screen.show(f"Court {name} opens match {match_id} at {', '.join(locators)}.")
     if made_here:
         open_court = contests.Court(
             arena=entry.arena, listen=locators, seat=entry.seat, referee=entry.referee

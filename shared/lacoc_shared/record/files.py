@@ -2,10 +2,13 @@
 
 import os
 import re
+import sys
 from pathlib import Path
+from typing import BinaryIO
 
 from lacoc_shared.mistakes import UserError
 
+_LOCKED_BYTE = 2**40  # beyond any record: Windows keeps readers out of a locked part
 _SEGMENT = re.compile(r"(?P<match_id>.+)\.(?P<segment>\d{3,})\.live\.mcap")
 
 
@@ -42,6 +45,40 @@ def record_paths(path: Path) -> list[Path]:
         raise UserError(f"There is no record {path}. Give the path of a .mcap file.")
     name = _SEGMENT.fullmatch(path.name)
     return segment_paths(path.parent, name["match_id"]) if name else [path]
+
+
+def hold(file: BinaryIO) -> None:
+    """Mark an open segment as being written, until it is closed or its process ends."""
+    try:
+        _lock(file)
+    except OSError:  # a file system without locks: nobody can be told
+        return
+
+
+def is_held(path: Path) -> bool:
+    """Whether a running court writes a segment: it is not one that was left behind."""
+    with path.open("rb+") as file:
+        try:
+            _lock(file)
+        except OSError:
+            return True
+    return False
+
+
+def _lock(file: BinaryIO) -> None:
+    if sys.platform == "win32":
+        import msvcrt
+
+        at = file.tell()
+        file.seek(_LOCKED_BYTE)
+        try:
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        finally:
+            file.seek(at)
+    else:
+        import fcntl
+
+        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def sync_folder(folder: Path) -> None:

@@ -62,6 +62,7 @@ class RecordWriter:
                 else f"No record can be written to {folder}: {error.strerror}. "
                 "Name a folder that this user may write to."
             ) from None
+        files.hold(self._file)
         self._backlog = bytearray()
         self._write_error = ""
         self._sync_error = ""
