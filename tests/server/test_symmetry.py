@@ -1,0 +1,187 @@
+"""Fairness: turned by 180 degrees with the seats swapped, everything is the same (Done 4)."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from stage import FORWARD, LEFT, QUICK, RIGHT, TURN_LEFT, TURN_RIGHT, Script, Stage, X, key
+
+from lacoc_shared.inputs import Input
+from lacoc_shared.seat import Phase
+
+Keys = dict[int, tuple[int, int]]
+"""Tick -> seat, key."""
+
+
+def swapped(keys: Keys) -> Keys:
+    return {tick: (1 - seat, digit) for tick, (seat, digit) in keys.items()}
+
+
+def inputs(keys: Keys, tick: int) -> list[Input]:
+    if tick not in keys:
+        return []
+    seat, digit = keys[tick]
+    return [key(seat, digit, seq=tick)]
+
+
+def robots(stage: Stage) -> np.ndarray:
+    """(2, 25) pose and angles, in the precision of physics."""
+    world = stage.match.physics
+    return world.data.qpos[world._pose_qpos].reshape(2, 25).copy()
+
+
+def turned(poses: np.ndarray) -> np.ndarray:
+    """The poses when the field is turned by 180 degrees and the seats are swapped."""
+    out = poses[::-1].copy()
+    out[:, :2] *= -1
+    w, x, y, z = out[:, 3:7].T.copy()
+    out[:, 3:7] = np.stack([-z, -y, x, w], axis=1)  # half a turn about z, times the pose
+    return out
+
+
+def distance(one: np.ndarray, other: np.ndarray) -> float:
+    """How far apart, with q and -q the same turn."""
+    sign = np.sign((one[:, 3:7] * other[:, 3:7]).sum(1, keepdims=True))
+    other = other.copy()
+    other[:, 3:7] *= sign
+    return float(np.abs(one - other).max())
+
+
+COLLIDING: Keys = {
+    2: (LEFT, FORWARD),
+    3: (RIGHT, FORWARD),
+    1500: (LEFT, TURN_LEFT),
+    1700: (RIGHT, TURN_RIGHT),
+    1900: (LEFT, FORWARD),
+    2050: (RIGHT, FORWARD),
+    3000: (LEFT, TURN_RIGHT),
+    3300: (LEFT, FORWARD),
+    3900: (RIGHT, TURN_LEFT),
+    4300: (RIGHT, FORWARD),
+    4900: (RIGHT, X),
+    5000: (LEFT, X),
+    5300: (LEFT, FORWARD),
+    5301: (RIGHT, TURN_LEFT),
+    5900: (RIGHT, FORWARD),
+    6800: (LEFT, TURN_RIGHT),
+    7100: (LEFT, FORWARD),
+    7500: (RIGHT, TURN_RIGHT),
+    7900: (RIGHT, FORWARD),
+}
+"""Straight at each other, pushing and scraping along, into the walls, back to the start, again.
+
+Contact multiplies the last bit of rounding. Two robots that stay entangled for a minute part
+from their turned twins by more than this; nobody can foresee such a path anyhow.
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arena", ["flag-strike", "othello"])
+def test_the_physics_gives_the_turned_path(arena: str) -> None:
+    """Rules 4, Done 4: within 1e-6 m over 180 s, contacts allowed; and so the turned events."""
+    one, other = (Stage.real(arena, QUICK).to_playing() for _ in range(2))
+    mirrored = swapped(COLLIDING)
+    worst, contacts = 0.0, 0
+    while one.phase is not Phase.FINISHED:
+        tick = one.match.ticks + 1
+        one.beat(*inputs(COLLIDING, tick))
+        other.beat(*inputs(mirrored, tick))
+        worst = max(worst, distance(turned(robots(one)), robots(other)))
+        contacts += tick % 10 == 0 and _touching(one)
+    assert one.match.ticks == 9000
+    assert contacts > 50
+    assert worst < 1e-6
+    assert claims(other) == [(1 - seat, *rest) for seat, *rest in _turned_claims(one)]
+    assert other.scores == one.scores[::-1]
+
+
+def _touching(stage: Stage) -> int:
+    """Whether the robots touch each other."""
+    world = stage.match.physics
+    body = world.model.geom_bodyid
+    root = world.model.body_rootid
+    pairs = {frozenset(root[body[list(c.geom)]].tolist()) for c in world.data.contact}
+    return any(len(pair) == 2 and 0 not in pair for pair in pairs)
+
+
+def claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], int]]:
+    """What the game gave: (seat, kind, marker, also, tick), in an order of no seat's."""
+    return sorted(
+        (e.seat, e.kind, e.data["marker"], tuple(sorted(e.data["also"])), e.clock_ticks)
+        for e in stage.events
+        if "marker" in e.data
+    )
+
+
+def _opposite(stage: Stage) -> dict[str, str]:
+    """For each marker the one on the other side of the field."""
+    markers = stage.match.game.markers
+    at = {(round(m.x_m, 6) + 0.0, round(m.y_m, 6) + 0.0): m.name for m in markers}
+    return {m.name: at[round(-m.x_m, 6) + 0.0, round(-m.y_m, 6) + 0.0] for m in markers}
+
+
+def _turned_claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], int]]:
+    other = _opposite(stage)
+    return sorted(
+        (
+            (seat, kind, other[marker], tuple(sorted(other[name] for name in also)), tick)
+            for seat, kind, marker, also, tick in claims(stage)
+        ),
+        key=lambda claim: (1 - claim[0], *claim[1:]),
+    )
+
+
+def wander(arena: str, seed: int) -> Script:
+    """Two robots that walk about the whole board in straight lines and touch flags."""
+    rng = np.random.default_rng(seed)
+    script = Script()
+    at = np.array([[-0.6, 0.0], [0.6, 0.0]])
+    goal = at.copy()
+    half = 0.9
+    for tick in range(1, 1500):
+        for seat in (LEFT, RIGHT):
+            if np.linalg.norm(goal[seat] - at[seat]) < 0.02:
+                goal[seat] = rng.uniform(-half, half, 2)
+            step = goal[seat] - at[seat]
+            at[seat] += 0.02 * step / max(np.linalg.norm(step), 1e-9)
+        script.poses[tick] = {seat: (float(at[seat][0]), float(at[seat][1])) for seat in (0, 1)}
+        if arena == "flag-strike" and tick % 50 == 0:
+            touching = [set(rng.integers(4, 24, 2).tolist()) for _ in range(2)]
+            script.touches[tick] = {s: tuple(sorted(touching[s])) for s in (0, 1)}
+    return script
+
+
+def turned_script(stage: Stage, script: Script) -> Script:
+    markers = [marker.name for marker in stage.match.game.markers]
+    other = _opposite(stage)
+    flip = [markers.index(other[name]) for name in markers]
+
+    def sides(values: dict[int, Sequence[int]]) -> dict[int, tuple[int, ...]]:
+        return {1 - seat: tuple(sorted(flip[m] for m in ms)) for seat, ms in values.items()}
+
+    return Script(
+        poses={t: {1 - s: (-x, -y) for s, (x, y) in p.items()} for t, p in script.poses.items()},
+        touches={tick: sides(touch) for tick, touch in script.touches.items()},
+    )
+
+
+@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("seed", range(6))
+def test_the_rules_give_exactly_the_turned_match(arena: str, seed: int) -> None:
+    """Rules 4, Done 4: no rule depends on which seat is evaluated first."""
+    script = wander(arena, seed)
+    half_minute = {"match": {"duration_s": 30.0, "countdown_s": 0.02}}
+    one = Stage(arena, half_minute, script=script)
+    other = Stage(arena, half_minute, script=turned_script(one, script))
+    restarts: Keys = {300: (LEFT, X), 800: (RIGHT, X), 1100: (LEFT, X)}
+    mirrored = swapped(restarts)
+    for stage, keys in ((one, restarts), (other, mirrored)):
+        stage.to_playing()
+        while stage.phase is not Phase.FINISHED:
+            stage.beat(*inputs(keys, stage.match.ticks + 1))
+    assert len(claims(one)) > 3
+    assert claims(other) == [(1 - seat, *rest) for seat, *rest in _turned_claims(one)]
+    assert other.scores == one.scores[::-1]
+    sides = {"left": "right", "right": "left", "draw": "draw"}
+    assert other.match.winner() == sides[one.match.winner()]
+    assert other.match.ticks == one.match.ticks
