@@ -1,0 +1,157 @@
+"""A court that is killed and started again (rules 4, design.md "Record")."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import pytest
+
+from lacoc_client.controller import Controller
+from lacoc_client.referee import RefereeClient
+from lacoc_server.recovery import unfinished
+from lacoc_server.replay import Verdict, verify
+from lacoc_shared.contest import load
+from lacoc_shared.decisions import Resume, Start
+from lacoc_shared.gait import Level
+from lacoc_shared.messages import Frame
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import open_client
+
+pytestmark = pytest.mark.slow
+
+WAIT_S = 30.0
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@contextmanager
+def served(contest: Path, folder: Path) -> Iterator[subprocess.Popen[str]]:
+    """A court's process that has opened."""
+    words = ["serve", "--json", "--contest", str(contest), "--recordings", str(folder)]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "lacoc_shared", *words], stdout=subprocess.PIPE, text=True
+    )
+    try:
+        assert process.stdout is not None
+        assert json.loads(process.stdout.readline())["kind"] == "open"
+        yield process
+    finally:
+        process.terminate()
+        process.communicate(timeout=WAIT_S)
+
+
+def until(controllers: list[Controller], true: Callable[[], bool]) -> None:
+    """Let the controllers do their work until something is true."""
+    end_s = time.monotonic() + WAIT_S
+    while not true():
+        assert time.monotonic() < end_s, "it did not come true"
+        for controller in controllers:
+            controller.wait_frame(0.02)
+
+
+def frame(controller: Controller) -> Frame:
+    """The newest frame; waits for the first."""
+    until([controller], lambda: controller.view.frame is not None)
+    assert controller.view.frame is not None
+    return controller.view.frame
+
+
+def phase(controller: Controller) -> int:
+    return frame(controller).phase
+
+
+@pytest.fixture
+def contest(tmp_path: Path) -> Path:
+    path = tmp_path / "contest.toml"
+    path.write_text(f"""
+[court.main]
+arena = "othello"
+listen = ["tcp/127.0.0.1:{free_port()}"]
+settings.match.countdown_s = 0.2
+seat.left.token = "the token of left"
+seat.right.token = "the token of right"
+referee.token = "the token of the referee"
+""")
+    return path
+
+
+def test_a_killed_court_goes_on(contest: Path, tmp_path: Path) -> None:
+    """Kill -9 in PLAYING: the match comes back HALTED with seats, clock and robots, and goes on."""
+    folder = tmp_path / "recordings"
+    name, court = load(contest).court()
+    with ExitStack() as stack:
+        first = stack.enter_context(served(contest, folder))
+        session = stack.enter_context(open_client([court.address()]))
+        controllers = [
+            Controller(session, name, seat, holder.token, f"Team {seat}")
+            for seat, holder in court.seat.items()
+        ]
+        left = controllers[0]
+        for controller in controllers:
+            controller.join()
+            controller.ready()
+        until(controllers, lambda: phase(left) == Phase.READY)
+        referee = RefereeClient(session, name, court.referee.token)
+        referee.decide(Start(), "", "Kubota")
+        until(controllers, lambda: phase(left) == Phase.PLAYING)
+        for controller in controllers:
+            controller.press(Level.LOCOMOTION, 2)
+        until(controllers, lambda: frame(left).clock_ticks > 60)
+        os.kill(first.pid, signal.SIGKILL)
+        first.wait()
+        for controller in controllers:
+            controller.poll(time.monotonic())
+        seen = frame(left)
+        applied = [seat.applied_seq for seat in seen.seats]
+
+        stack.enter_context(served(contest, folder))
+        until(controllers, lambda: phase(left) == Phase.HALTED)
+        after = frame(left)
+        assert after.clock_ticks >= seen.clock_ticks
+        assert [seat.applied_seq for seat in after.seats] == applied
+        if after.clock_ticks == seen.clock_ticks:  # else the last frame died with the court
+            assert (after.poses, after.digest) == (seen.poses, seen.digest)
+        until(controllers, lambda: sum("is back" in e.text for e in left.view.events) == 2)
+        referee.decide(Resume(), "", "Kubota")
+        until(controllers, lambda: phase(left) == Phase.PLAYING)
+        seq = left.press(Level.LOCOMOTION, 1)
+        until(controllers, lambda: frame(left).seats[0].applied_seq == seq)
+    end_s = time.monotonic() + WAIT_S
+    while not (packed := list(folder.glob("*main-001.mcap"))):
+        assert time.monotonic() < end_s, "the record was not packed"
+        time.sleep(0.05)
+    *_, verdict = verify(Record.read(packed[0]))
+    assert isinstance(verdict, Verdict)
+    assert verdict.text == "same"
+
+
+def test_a_running_court_is_not_taken_over(contest: Path, tmp_path: Path) -> None:
+    """The record of a court that lives was not left behind."""
+    folder = tmp_path / "recordings"
+    with served(contest, folder) as process:
+        assert unfinished(folder, "main") is None
+        process.kill()
+        process.wait()
+        left = unfinished(folder, "main")
+    assert left is not None
+    assert left.match.phase in (Phase.CREATED, Phase.LOBBY)  # killed before or after beat 0
+    assert left.inputs == []
+
+
+def test_no_record_nothing_left(tmp_path: Path) -> None:
+    """A folder that is empty, or not there yet, has no match to go on with."""
+    assert unfinished(tmp_path, "main") is None
+    assert unfinished(tmp_path / "none", "main") is None
