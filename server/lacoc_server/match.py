@@ -9,24 +9,19 @@ silences, the referee's decisions, every seat's [x], every seat's digit, one tic
 physics, the rules.
 """
 
-import math
-import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from lacoc_arenas import arena as arenas
-from lacoc_arenas.game import Observation, Place, RobotView
 from lacoc_robots.limits import Limits
-from lacoc_server import referee
-from lacoc_server.drive import Drive
-from lacoc_server.entry import weigh_in
+from lacoc_server import contestant, referee
 from lacoc_server.history import History
 from lacoc_server.physics import Fault, MakePhysics, Physics
 from lacoc_server.seat_state import Seat
+from lacoc_server.staging import Staging
 from lacoc_shared import __version__
 from lacoc_shared.codec import pack_states
-from lacoc_shared.gait import Level
 from lacoc_shared.inputs import (
     Decide,
     HeardSeat,
@@ -46,9 +41,8 @@ from lacoc_shared.messages import (
     Refusal,
     Sheet,
 )
-from lacoc_shared.mistakes import FileRefused
 from lacoc_shared.record.schema import Result, Setup, Touch
-from lacoc_shared.seat import BEAT_S, BEATS_PER_S, NOBODY, RESTART_KEY, No, Phase
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, NOBODY, RESTART_KEY, Phase
 
 TRANSITIONS: dict[Phase, frozenset[Phase]] = {
     Phase.CREATED: frozenset({Phase.LOBBY}),
@@ -64,11 +58,6 @@ TRANSITIONS: dict[Phase, frozenset[Phase]] = {
 """Where a match can go from each phase; `next` is a new match."""
 
 PHYSICS_RUNS = frozenset({Phase.READY, Phase.PLAYING})
-
-MIN_START_DISTANCE_M = 0.35
-"""A start place is free if the other robot's centre is at least this far, and both radii."""
-
-_BODY = struct.Struct("<7f")
 
 Outcome = Done | DecisionReply | Refusal
 """What became of an input."""
@@ -106,7 +95,7 @@ class Match:
         self.setup = setup
         self.arena = arenas.from_settings(setup.arena, setup.settings)
         self.game = self.arena.game
-        self._limits = Limits.of(setup.limits)
+        self.limits = Limits.of(setup.limits)
         self.rules = self.arena.match
         self.phase = Phase.CREATED
         self.beats = -1
@@ -127,14 +116,9 @@ class Match:
         self.ended = ""
         """Why play ended."""
         self.next_wanted = False
-        self.make_physics = make_physics
-        self.physics: Physics = make_physics(self.arena, ())
-        self._poses = b""
+        self.staging = Staging(self.arena, make_physics)
         self._shown: tuple[Any, bytes] = (None, b"")
         """A state of the game and its board as frames carry it."""
-        self._views: tuple[RobotView, ...] = ()
-        self._pose_offsets: tuple[int, ...] = ()
-        self._placed: list[Place | None] = [None] * len(self.seats)
         self._event_count = 0
         self._events: list[Event] = []
         self._touch: Touch | None = None
@@ -142,6 +126,11 @@ class Match:
         self._sheet_changed = True
 
     # What can be asked.
+
+    @property
+    def physics(self) -> Physics:
+        """The robots on their field; before READY the empty field."""
+        return self.staging.physics
 
     @property
     def clock_ticks(self) -> int:
@@ -237,7 +226,7 @@ class Match:
         outcomes: list[Outcome] = [Done()] * len(inputs)
         for index in sorted(range(len(inputs)), key=lambda index: _rank(inputs[index])):
             outcomes[index] = self._take(inputs[index])
-        self._put_back()
+        self.staging.put_back(self.seats)
         self._move_on()
         ticked = self.phase in PHYSICS_RUNS and self._tick()
         sheet_changed, self._sheet_changed = self._sheet_changed, False
@@ -254,19 +243,19 @@ class Match:
     def _take(self, item: Input) -> Outcome:
         match item:
             case JoinSeat():
-                return self._join(item)
+                return contestant.join(self, item)
             case LeaveSeat():
-                return self._leave(self.seats[item.seat])
+                return contestant.leave(self, self.seats[item.seat])
             case ReadySeat():
-                return self.say_ready(self.seats[item.seat], item.ready)
+                return contestant.ready(self, self.seats[item.seat], item.ready)
             case SilentSeat():
-                return self._silent(self.seats[item.seat])
+                return contestant.silent(self, self.seats[item.seat])
             case HeardSeat():
-                return self._heard(self.seats[item.seat])
+                return contestant.heard(self, self.seats[item.seat])
             case Decide():
                 return referee.decide(self, item)
             case KeySeat():
-                return self._key(self.seats[item.seat], item)
+                return contestant.key(self, self.seats[item.seat], item)
 
     def _move_on(self) -> None:
         """Change phase where that needs nobody's word."""
@@ -274,7 +263,7 @@ class Match:
             self._build()
             self.enter(Phase.READY, model=self.physics.model_hash)
         elif self.phase is Phase.READY and self.missing():
-            self._clear()
+            self.back_to_lobby()
         elif self.phase is Phase.READY and self.rules.start == "ready":
             self.begin_countdown()
         if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
@@ -289,24 +278,14 @@ class Match:
             return False
         for seat, state in zip(self.seats, states, strict=True):
             seat.state = state
-        self._look()
+        self.staging.look()
         if self.phase is Phase.PLAYING:
             self._judge()
         return True
 
     def _judge(self) -> None:
         self.ticks += 1
-        touched = self.physics.touched()
-        placed = self._placed
-        if any(touched) or any(placed):
-            self._touch = Touch(tuple(touched), tuple(placed))
-            observation: Observation = tuple(
-                view._replace(placed=place, touched=touch)
-                for view, place, touch in zip(self._views, placed, touched, strict=True)
-            )
-            self._placed = [None] * len(self.seats)
-        else:
-            observation = self._views
+        observation, self._touch = self.staging.observe()
         for event in self.history.observe(self.ticks, observation, self.next_number):
             self.tell(
                 event.kind,
@@ -330,103 +309,6 @@ class Match:
             for seat in self.seats:
                 seat.ready = False
 
-    # What seats ask for.
-
-    def _join(self, join: JoinSeat) -> Outcome:
-        seat = self.seats[join.seat]
-        if self.phase in (Phase.LOBBY, Phase.READY):
-            try:
-                entry = weigh_in(
-                    join.robot,
-                    join.postures,
-                    join.locomotion,
-                    self._limits,
-                    self.rules.open_levels,
-                )
-            except FileRefused as refused:
-                return Refusal("Your files have mistakes.", tuple(refused.mistakes))
-            same = seat.join is not None and _files(seat.join) == _files(join)
-            if not same:
-                seat.ready = False
-                if self.phase is Phase.READY:  # also if everybody says ready again in this beat
-                    self._clear()
-            seat.join, seat.entry, seat.silent = join, entry, False
-            self._sheet_changed = True
-            self.tell(
-                "join",
-                f"{join.team} takes the {seat.id} seat with {entry.robot.name}.",
-                seat=join.seat,
-            )
-            return Done()
-        if seat.join is None:
-            return Refusal(f"The match is on ({self.phase.name}): join when the next one opens.")
-        seat.left = False
-        self.tell("join", f"{seat.team} is back.", seat=join.seat)
-        if _files(seat.join) == _files(join):
-            return Done()
-        return Done("The match is on: your robot keeps the files that it began with.")
-
-    def _leave(self, seat: Seat) -> Outcome:
-        if self.phase in (Phase.LOBBY, Phase.READY):
-            self.tell("leave", f"{seat.team} leaves the {seat.id} seat.", seat=seat.index)
-            seat.join = seat.entry = None
-            seat.ready = seat.silent = False
-            self._sheet_changed = True
-            return Done()
-        self.tell("leave", f"{seat.team} has left; the seat stays theirs.", seat=seat.index)
-        seat.silent = seat.left = True
-        seat.stand()
-        if (
-            self.rules.start == "ready"
-            and self.phase in (Phase.PLAYING, Phase.HALTED)
-            and all(other.left for other in self.seats)
-        ):
-            self.finish("everybody has left")
-        return Done("The seat stays yours.")
-
-    def say_ready(self, seat: Seat, ready: bool) -> Outcome:
-        """Take a contestant's ready, or take it back."""
-        if self.phase not in (Phase.LOBBY, Phase.READY):
-            return Refusal(f"The match is on ({self.phase.name}).")
-        if seat.join is None:
-            return Refusal(f"Nobody has joined the {seat.id} seat.")
-        if seat.ready != ready:
-            seat.ready = ready
-            word = "is ready" if ready else "is not ready after all"
-            self.tell("ready", f"{seat.team} {word}.", seat=seat.index, ready=ready)
-        return Done()
-
-    def _silent(self, seat: Seat) -> Outcome:
-        if not seat.silent:
-            seat.silent = True
-            seat.stand()
-            self.tell("silent", f"{seat.team} is not heard any more: it stands.", seat=seat.index)
-        return Done()
-
-    def _heard(self, seat: Seat) -> Outcome:
-        if seat.silent:
-            seat.silent = False
-            self.tell("heard", f"{seat.team} is heard again.", seat=seat.index)
-        return Done()
-
-    def _key(self, seat: Seat, key: KeySeat) -> Outcome:
-        if self.phase is not Phase.PLAYING:
-            why = No.NOT_PLAYING
-        else:
-            why = seat.why_not(key, self.ticks, self.rules.open_levels)
-        if why is not No.NONE:
-            seat.refused = (key.seq, why)
-            return Refusal(why.name)
-        # An older digit may come after a newer [x]: that is the order of a tick (rules 3).
-        seat.applied = (max(key.seq, seat.applied[0]), self.beats)
-        if key.key == RESTART_KEY:
-            seat.restart()
-            seat.locked_until = self.ticks + round(self.rules.restart_freeze_s * BEATS_PER_S)
-            self.tell("restart", f"{seat.team} goes back to the start.", seat=seat.index)
-        elif seat.drive and seat.state:
-            seat.state = seat.drive.press(seat.state, Level(key.level), key.key)
-        return Done()
-
     # What the match does.
 
     def enter(self, phase: Phase, **data: Any) -> None:
@@ -442,6 +324,20 @@ class Match:
         )
         if phase in (Phase.FINISHED, Phase.OFFICIAL, Phase.VOID):
             self._result_changed = True
+
+    def back_to_lobby(self) -> None:
+        """Leave READY: a robot of the model that was built is not there any more."""
+        if self.phase is not Phase.READY:
+            return
+        self.staging.clear()
+        for seat in self.seats:
+            seat.drive = seat.state = None
+        self._sheet_changed = True
+        self.enter(Phase.LOBBY)
+
+    def sheet_changed(self) -> None:
+        """Have this beat carry the sheet."""
+        self._sheet_changed = True
 
     def begin_countdown(self) -> None:
         """Start or resume: play begins after the countdown."""
@@ -482,76 +378,11 @@ class Match:
         return next(seat.team for seat in self.seats if seat.id == seat_id)
 
     def _build(self) -> None:
-        """Compile the model: once, before the match (design.md, "Robot and world")."""
-        entries = [seat.entry for seat in self.seats if seat.entry]
-        self.physics = self.make_physics(self.arena, entries)
-        offset, offsets = 0, []
-        for seat, entry in zip(self.seats, entries, strict=True):
-            robot = entry.robot
-            seat.drive = Drive(
-                entry.gait,
-                robot.start_posture,
-                robot.ang_min_rad_s,
-                robot.advance,
-                robot.hold_us,
-                self.rules.repeat,
-            )
-            seat.state = seat.drive.begin(self.rules.open_levels[0])
-            offsets.append(offset)
-            offset += 4 * (7 + robot.joints)
-        self._pose_offsets = tuple(offsets)
-        self._sheet_changed = True
-        self._look()
-
-    def _clear(self) -> None:
-        """Back to the empty field: a robot of the model that was built is not there any more."""
-        self.physics, self._poses, self._views = self.make_physics(self.arena, ()), b"", ()
-        self._sheet_changed = True
+        self.staging.build(self.seats)
+        level = self.rules.open_levels[0]
         for seat in self.seats:
-            seat.drive = seat.state = None
-        self.enter(Phase.LOBBY)
-
-    def _look(self) -> None:
-        """Take the robots' poses: exactly the numbers that everybody sees."""
-        self._poses = self.physics.poses()
-        self._views = tuple(
-            RobotView(*_BODY.unpack_from(self._poses, offset)) for offset in self._pose_offsets
-        )
-
-    def _put_back(self) -> None:
-        """Put the robots that restart in this beat at their start places."""
-        going = [seat for seat in self.seats if seat.restarting]
-        if not going:
-            return
-        for seat in going:
-            place = self._free_place(seat)
-            self.physics.place(seat.index, place)
-            self._placed[seat.index] = place
-        for seat in going:
-            seat.restarting = False
-        self._look()
-
-    def _free_place(self, seat: Seat) -> Place:
-        """The first start place that is far enough from the other robots (rules 4).
-
-        Robots that restart in the same beat are not in the way: each goes to its own side, and
-        so no seat comes first.
-        """
-        others = [other for other in self.seats if other is not seat and not other.restarting]
-
-        def room_m(place: Place) -> float:
-            return min(
-                (
-                    math.hypot(place.x_m - view.x_m, place.y_m - view.y_m)
-                    - max(MIN_START_DISTANCE_M, _radius_m(seat) + _radius_m(other))
-                    for other in others
-                    for view in (self._views[other.index],)
-                ),
-                default=math.inf,
-            )
-
-        places = self.game.starts[seat.index]
-        return next((place for place in places if room_m(place) >= 0), max(places, key=room_m))
+            seat.begin(self.rules.repeat, level)
+        self._sheet_changed = True
 
     def _frame(self) -> Frame:
         state = self.history.state
@@ -569,7 +400,7 @@ class Match:
                 for seat, score in zip(self.seats, scores, strict=True)
             ),
             self._shown[1],
-            self._poses,
+            self.staging.poses,
             self.physics.scene_hash,
             self.physics.digest,
         )
@@ -586,11 +417,3 @@ def _rank(item: Input) -> int:
             return 2
         case KeySeat():
             return 3 if item.key == RESTART_KEY else 4
-
-
-def _files(join: JoinSeat) -> tuple[Any, ...]:
-    return join.robot, join.postures, join.locomotion
-
-
-def _radius_m(seat: Seat) -> float:
-    return seat.entry.robot.radius_m if seat.entry else 0.0

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from lacoc_server import contestant
 from lacoc_shared import decisions as d
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import MARKER_STATES, DecisionReply, Refusal
@@ -113,7 +114,7 @@ def _ready(match: Match, decision: d.Ready) -> str:
     seat = _seat(match, decision.seat)
     if seat.join is None:
         raise Illegal(f"nobody has joined {seat.id}.")
-    match.say_ready(seat, True)
+    contestant.ready(match, seat, True)
     return f"ready for {seat.team}."
 
 

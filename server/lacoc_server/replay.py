@@ -181,8 +181,8 @@ def resume(record: Record, at: int | None = None) -> Match:
             match.physics.world.load(snapshots[number])
             cursor.live = True
     if isinstance(match.physics, _Recorded):
-        match.physics = match.physics.world
-    match.make_physics = World
+        match.staging.physics = match.physics.world
+    match.staging.make_physics = World
     return match
 
 

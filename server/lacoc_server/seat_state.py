@@ -25,6 +25,8 @@ class Seat:
     pattern: str
     join: JoinSeat | None = None
     entry: Entry | None = None
+    coming: JoinSeat | None = None
+    """Who joined since the match began: sits here in the next one."""
     ready: bool = False
     silent: bool = False
     left: bool = False
@@ -47,6 +49,21 @@ class Seat:
     def team(self) -> str:
         """The team's name, or the seat's while nobody has joined."""
         return self.join.team if self.join else self.id
+
+    def begin(self, repeat: bool, level: Level) -> None:
+        """Stand in the start posture, with the drive that robot and files make."""
+        if self.entry is None:
+            return
+        robot = self.entry.robot
+        self.drive = Drive(
+            self.entry.gait,
+            robot.start_posture,
+            robot.ang_min_rad_s,
+            robot.advance,
+            robot.hold_us,
+            repeat,
+        )
+        self.state = self.drive.begin(level)
 
     def stand(self) -> None:
         """Key 0 at the same level, as if pressed (silence, freeze)."""

@@ -312,7 +312,9 @@ def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
     assert stage.send(join(LEFT)) == Done()
     changed = stage.send(join(LEFT, robot="quadruped"))
     assert isinstance(changed, Done)
-    assert "keeps the files" in changed.text
+    assert "the next takes your new ones" in changed.text
+    coming = stage.match.seats[LEFT].coming
+    assert coming == join(LEFT, robot="quadruped")
     assert stage.match.sheet().seats[LEFT].robot == "Hexapod"
     assert isinstance(stage.send(ReadySeat(LEFT, False)), Refusal)
     left = stage.send(LeaveSeat(LEFT))
@@ -320,12 +322,16 @@ def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
     assert stage.match.sheet().seats[LEFT].team == "Ants"
 
 
-def test_a_void_match_with_an_empty_seat_cannot_be_joined() -> None:
-    """Rules 4: after the end nobody takes a seat; that is for the next match."""
+def test_who_joins_after_the_end_plays_in_the_next_match() -> None:
+    """Rules 4: after the end nobody takes a seat of this match any more."""
     stage = Stage().to(P.LOBBY)
     stage.beat(LeaveSeat(RIGHT))
     stage.decide(d.Abort())
-    assert isinstance(stage.send(join(RIGHT)), Refusal)
+    answer = stage.send(join(RIGHT))
+    assert isinstance(answer, Done)
+    assert "next" in answer.text
+    assert stage.match.seats[RIGHT].join is None
+    assert stage.match.seats[RIGHT].coming == join(RIGHT)
 
 
 def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
