@@ -77,6 +77,9 @@ class _Version(msgspec.Struct):
     protocol: int
 
 
+_MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one message
+
+
 class Inbox:
     """The seats of a court and who holds them.
 
@@ -171,7 +174,12 @@ class Inbox:
             checked = self._check_files(join)
         except FileRefused as refused:
             seat.refused[Why.BAD_FILES] += 1
-            return Refusal("Your files have mistakes.", tuple(refused.mistakes))
+            mistakes = refused.mistakes
+            first = f"; the first {_MISTAKES_TOLD} follow" if len(mistakes) > _MISTAKES_TOLD else ""
+            return Refusal(
+                f"Your files have {len(mistakes)} mistakes{first}.",
+                tuple(mistakes[:_MISTAKES_TOLD]),
+            )
         assert checked.robot is not None, "check_files fills the robot file in"
         return JoinSeat(
             seat=index,
