@@ -4,6 +4,7 @@ Whose a marker is, and which robot is whose, is told by letters too: nothing dep
 colours, and a terminal without colours shows shades instead.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -161,6 +162,12 @@ class BoardPicture:
         inner_m = _ROBOT_RADIUS_M - self._grid.pixel_m
         self._fill(self._grid.circle(x_m, y_m, _ROBOT_RADIUS_M), INK_LIGHT, " ")
         self._fill(self._grid.circle(x_m, y_m, inner_m), colour, " ")
+        # What lies below it is hidden.
+        self._marks = [
+            mark
+            for mark in self._marks
+            if math.hypot(mark.x_m - x_m, mark.y_m - y_m) > _ROBOT_RADIUS_M
+        ]
         arrow = _ARROWS[round(heading_deg / 45) % 8]
         ink = _ink(colour)
         self._marks.append(_Mark(x_m, y_m, arrow, ink, bold=True))

@@ -75,7 +75,7 @@ def bot_command(
             access.court,
             access.seat,
             access.token,
-            (team or own_team)[:_NAME_MAX],
+            team or own_team[:_NAME_MAX],
             **files._asdict(),
         )
         player = BotPlayer(controller, arenas.load(arena or controller.view.sheet.arena), name)

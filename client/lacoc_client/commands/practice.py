@@ -24,6 +24,7 @@ app = typer.Typer()
 _OPEN_S = 60.0
 """Within this a court opens, also on a slow machine."""
 _CLOSE_S = 10.0
+_LOOK_S = 0.02
 
 
 @app.command(name="practice")
@@ -66,20 +67,20 @@ def _greeting(files: SeatFiles) -> Text:
 def _court(folder: Path, recordings: Path) -> Iterator[Access]:
     """A court with the practice arena, as a process that ends with this."""
     # What it says goes into a file: a pipe that nobody empties would stop it.
-    said = folder / "court.log"
+    said, complained = folder / "court.out", folder / "court.err"
     words = ["serve", "--json", "--arena", "practice", "--listen", "tcp/127.0.0.1:0"]
     environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
-    with said.open("wb") as log:
+    with said.open("wb") as out, complained.open("wb") as err:
         court = subprocess.Popen(
             [sys.executable, "-m", "lacoc_shared", *words, "--recordings", str(recordings)],
             env=environment,
             stdin=subprocess.DEVNULL,
-            stdout=log,
-            stderr=subprocess.STDOUT,
+            stdout=out,
+            stderr=err,
             start_new_session=True,  # Ctrl-C is for the player: the court ends when they have left
         )
     try:
-        opened = _opened(court, said)
+        opened = _opened(court, said, complained)
         ((seat, token),) = opened["tokens"].items()
         yield Access(court=opened["court"], connect=opened["locators"][0], seat=seat, token=token)
     finally:
@@ -91,7 +92,7 @@ def _court(folder: Path, recordings: Path) -> Iterator[Access]:
             court.wait()
 
 
-def _opened(court: subprocess.Popen[bytes], said: Path) -> dict[str, Any]:
+def _opened(court: subprocess.Popen[bytes], said: Path, complained: Path) -> dict[str, Any]:
     """What a court says when it is open.
 
     Raises:
@@ -100,12 +101,16 @@ def _opened(court: subprocess.Popen[bytes], said: Path) -> dict[str, Any]:
     deadline_s = time.monotonic() + _OPEN_S
     while time.monotonic() < deadline_s:
         ended = court.poll() is not None
-        first, end, _ = said.read_text(encoding="utf-8", errors="replace").partition("\n")
-        if ended:
-            reason = first.removeprefix("Error: ") or f"its process ended with {court.returncode}"
-            raise UserError(f"The practice court does not open: {reason}")
+        first, end, _ = _text(said).partition("\n")
         if end:
             opened: dict[str, Any] = json.loads(first)
             return opened
-        time.sleep(0.02)
+        if ended:
+            reason = _text(complained).strip() or f"its process ended with {court.returncode}."
+            raise UserError(f"The practice court does not open. {reason.removeprefix('Error: ')}")
+        time.sleep(_LOOK_S)
     raise UserError(f"The practice court does not open within {_OPEN_S:.0f} s.")
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8", errors="replace")

@@ -1,0 +1,74 @@
+"""A court as a process of its own, and the commands that go to it."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+LACOC = (sys.executable, "-m", "lacoc_shared")
+
+
+def environment(**changes: str) -> dict[str, str]:
+    """This process's environment without what would tell a command where to go."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("LACOC_")}
+    return kept | changes
+
+
+class CourtProcess:
+    """`lacoc serve` on a free port."""
+
+    def __init__(self, folder: Path, *words: str) -> None:
+        self.folder = folder
+        where = ("--listen", "tcp/127.0.0.1:0", "--recordings", str(folder / "recordings"))
+        with (folder / "court.log").open("wb") as log:
+            self.process = subprocess.Popen(
+                [*LACOC, "serve", "--json", *where, *words],
+                stdout=subprocess.PIPE,
+                stderr=log,
+                text=True,
+                env=environment(),
+            )
+        assert self.process.stdout is not None
+        opened = json.loads(self.process.stdout.readline())
+        self.address: str = opened["locators"][0]
+        self.tokens: dict[str, str] = opened["tokens"]
+        self.referee: str = opened["referee"]
+        self._commands: list[subprocess.Popen[str]] = []
+
+    def where(self, seat: str = "") -> list[str]:
+        """Options that lead to the court, and to one of its seats."""
+        if not seat:
+            return ["--connect", self.address]
+        return ["--connect", self.address, "--seat", seat, "--token", self.tokens[seat]]
+
+    def start(self, *words: str, **options: Any) -> subprocess.Popen[str]:
+        """Start a command; it ends with the court."""
+        settings: dict[str, Any] = {
+            "stdin": subprocess.DEVNULL,
+            "stdout": subprocess.PIPE,
+            "stderr": subprocess.STDOUT,
+            "text": True,
+            "cwd": self.folder,
+            "env": environment(),
+        }
+        command = subprocess.Popen([*LACOC, *words], **settings | options)
+        self._commands.append(command)
+        return command
+
+    def bots(self, left: str = "straight", right: str = "straight") -> None:
+        """Put a bot in each seat."""
+        for seat, name in (("left", left), ("right", right)):
+            self.start("bot", name, *self.where(seat), stdout=subprocess.DEVNULL)
+
+    def close(self) -> None:
+        for process in (*self._commands, self.process):
+            process.terminate()
+        for process in (*self._commands, self.process):
+            process.communicate(timeout=30)
+
+
+OpenCourt = Callable[..., CourtProcess]
+"""Opens a court with these words for `lacoc serve`."""

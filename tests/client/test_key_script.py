@@ -1,0 +1,107 @@
+"""The little language of keys that come through a pipe."""
+
+import os
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_client.key_script import KeyScript, PipeKeys
+
+BEAT_S = 0.02
+
+
+def played(script: KeyScript, seconds: float) -> Iterator[tuple[float, str]]:
+    """When each key comes while a match is played from its start."""
+    for tick in range(1, round(seconds / BEAT_S) + 1):
+        for key in script.due(tick * BEAT_S, True):
+            yield round(tick * BEAT_S, 2), key
+
+
+def script_of(*lines: str) -> KeyScript:
+    script = KeyScript()
+    for line in lines:
+        assert script.add(line) == ""
+    return script
+
+
+@pytest.mark.parametrize(
+    ("lines", "expected"),
+    [
+        (["2"], [(0.02, "2")]),
+        (["1234"], [(0.02, "1"), (0.04, "2"), (0.06, "3"), (0.08, "4")]),
+        (["1.5 3", "0.5 x"], [(1.5, "3"), (2.0, "x")]),
+        (["tab 1"], [(0.02, "tab"), (0.02, "1")]),
+        (
+            ["0.5 up left", "# a remark", "", "1 0  # stand"],
+            [(0.5, "up"), (0.52, "left"), (1.52, "0")],
+        ),
+        (["TAB X"], [(0.02, "tab"), (0.02, "x")]),
+        (["1 z"], [(1.0, "z")]),
+    ],
+)
+def test_a_script_presses_each_key_in_its_time(
+    lines: list[str], expected: list[tuple[float, str]]
+) -> None:
+    """Keys one a tick, times counted from the keys before."""
+    assert list(played(script_of(*lines), 3.0)) == expected
+
+
+def test_keys_that_move_the_robot_wait_for_play() -> None:
+    """Rules 4: keys before PLAYING are refused, so a script does not send them."""
+    script = script_of("r", "2", "q")
+
+    assert script.due(0.0, False) == ["r"]
+    assert script.due(0.0, False) == []
+    assert script.due(0.02, True) == ["2", "q"]
+    assert script.empty
+
+
+def test_time_stands_still_while_the_match_is_halted() -> None:
+    """A time is one of play, so a halt shifts what comes after it."""
+    script = script_of("2", "1 3")
+
+    assert script.due(0.02, True) == ["2"]
+    assert [script.due(0.5, False) for _ in range(100)] == [[]] * 100
+    assert script.due(1.02, True) == ["3"]
+
+
+@pytest.mark.parametrize("line", ["hello", "-1 2", "nan 2", "inf 3", "2 up down jump", "²"])
+def test_a_wrong_line_is_left_out_and_named(line: str) -> None:
+    """What is wrong is said with the number of the line; the rest is played."""
+    script = script_of("1")
+
+    assert script.add(line).startswith("Line 2 is left out: ")
+    assert script.add("3") == ""
+    assert [key for _, key in played(script, 1.0)] == ["1", "3"]
+
+
+@given(st.lists(st.text()))
+def test_no_line_breaks_a_script(lines: list[str]) -> None:
+    """Bad input is answered, never an exception, and no key comes that there is not."""
+    script = KeyScript()
+    for line in lines:
+        script.add(line)
+    known = set("0123456789xzrq") | {"tab", "space", "up", "down", "left", "right"}
+
+    assert {key for _, key in played(script, 1.0)} <= known
+
+
+def test_a_pipe_is_read_to_its_end() -> None:
+    """The last line needs no line end; a wrong one is said once."""
+    read, write = os.pipe()
+    keys = PipeKeys(read)
+    os.write(write, b"r\nwhat\n2")
+    pressed: list[str] = []
+    while "r" not in pressed:
+        pressed += keys.read(1.0, 0.0, False)
+    assert not keys.ended
+    os.close(write)
+    while not keys.ended:
+        pressed += keys.read(1.0, 0.02, True)
+    os.close(read)
+
+    assert pressed == ["r", "2"]
+    assert [said[:6] for said in keys.take_said()] == ["Line 2"]
+    assert keys.take_said() == []

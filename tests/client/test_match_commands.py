@@ -1,0 +1,218 @@
+"""Whole matches by commands: bots, the referee, spectators, each a process as in a contest."""
+
+import json
+import subprocess
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from court_process import CourtProcess, OpenCourt
+
+from lacoc_shared import cli
+from lacoc_shared.decisions import DECISIONS
+
+pytestmark = pytest.mark.slow
+
+
+class Referee:
+    """`lacoc referee` at a court, in this process: an interpreter less to start."""
+
+    def __init__(self, court: CourtProcess, capsys: pytest.CaptureFixture[str]) -> None:
+        self._where = court.where()
+        self._token = court.referee
+        self._capsys = capsys
+        self.decided: set[str] = set()
+
+    def run(self, *words: str) -> tuple[int, str, str]:
+        """Exit code, standard output, standard error."""
+        self._capsys.readouterr()
+        try:
+            code = cli.main(["referee", *words, *self._where])
+        except SystemExit as stop:
+            code = int(stop.code or 0)
+        shown = self._capsys.readouterr()
+        return code, shown.out, shown.err
+
+    def decide(self, *words: str) -> dict[str, Any]:
+        """Decide as soon as it is legal; the reply."""
+        self.decided.add(words[0])
+        common = ("--reason", "a test", "--by", "kim", "--wait", "20", "--json")
+        code, out, err = self.run(*words, *common, "--token", self._token)
+        assert (code, err) == (0, "")
+        reply: dict[str, Any] = json.loads(out)
+        return reply
+
+    def refused(self, *words: str) -> str:
+        """Decide something that the court refuses; its reason."""
+        code, out, err = self.run(*words, "--token", self._token)
+        assert (code, out) == (2, "")
+        assert err.count("Error: ") == 1
+        return " ".join(err.split())
+
+
+def test_the_referee_has_every_decision(
+    open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Rules 4: each decision once, with its arguments, from the lobby to the next match."""
+    court = open_court("--arena", "othello", "--seconds", "30", "--speed", "4")
+    referee = Referee(court, capsys)
+    assert "only in READY; the match is LOBBY; nobody has joined left" in referee.refused("start")
+    court.bots()
+
+    assert referee.decide("start")["text"] == "play begins in 3 s."
+    assert referee.decide("freeze", "left", "2")["scores"] == [18, 18]
+    referee.decide("unfreeze", "left")
+    referee.decide("restart", "right")
+    referee.decide("halt")
+    assert "give a reason" in referee.refused("adjust", "left", "2")
+    taken = referee.decide("adjust", "left", "-2")
+    assert taken["scores"] == [16, 18]
+    assert "there is no seat 'middle'" in referee.refused("adjust", "middle", "1", "--reason", "x")
+    assert referee.decide("set", "c0r0", "neutral")["scores"] == [15, 18]
+    tried = referee.decide("take-back", str(taken["event"]), "--dry-run")
+    assert (tried["event"], tried["scores"]) == (None, [17, 18])
+    assert referee.decide("take-back", str(taken["event"]))["scores"] == [17, 18]
+    referee.decide("clock", "-0.5")
+    referee.decide("resume")
+    referee.decide("halt")
+    assert "Go" not in referee.refused("official")
+    referee.decide("declare", "left")
+    assert "official: left" in referee.decide("official")["text"]
+    referee.decide("next")
+    referee.decide("abort")
+    referee.decide("next")
+    assert referee.decided == set(DECISIONS) - {"ready"}  # the bots have said it: see below
+
+
+def test_ready_for_a_contestant_who_cannot(
+    open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Rules 4: `ready` for a seat; status shows the links and what is legal, log what was."""
+    court = open_court("--arena", "othello")
+    referee = Referee(court, capsys)
+    person = court.start(
+        *("play", "--terminal", "--name", "Slow Hands", *court.where("left")), stdin=subprocess.PIPE
+    )
+    referee.decide("ready", "left")
+
+    code, out, _ = referee.run("status", "--json")
+    status = json.loads(out)
+    assert code == 0
+    assert status["phase"] == "LOBBY"
+    assert [seat["ready"] for seat in status["seats"]] == [True, False]
+    assert status["health"]["decisions"]["abort"] == ""
+    assert "nobody has joined right" in status["health"]["decisions"]["start"]
+    code, out, _ = referee.run("status")
+    assert "Slow Hands" in out
+    assert "commands/s" in out
+    code, out, _ = referee.run("log", "--json")
+    events = [json.loads(line) for line in out.splitlines()]
+    assert [event["kind"] for event in events] == ["phase", "join", "ready", "decision"]
+    assert [event["number"] for event in events] == [1, 2, 3, 4]
+    code, out, _ = referee.run("log")
+    assert "ready for Slow Hands. Reason: a test" in out
+    assert person.poll() is None
+
+
+def test_a_waiting_referee_gives_up_in_time(
+    open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With --wait the reason is that of the last moment."""
+    court = open_court("--arena", "othello")
+    reason = Referee(court, capsys).refused("official", "--wait", "0.7")
+
+    assert "official is not legal after 0.7 s: only in FINISHED; the match is LOBBY." in reason
+
+
+def test_bots_play_match_after_match(
+    open_court: OpenCourt, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """`lacoc bot` says ready, plays, and is there in the next match; `watch --json` sees it all."""
+    court = open_court("--arena", "othello", "--seconds", "6", "--speed", "4")
+    court.bots("planner", "nearest")
+    watch = court.start("watch", "--json", "--hz", "5", *court.where())
+    text = court.start("watch", "--terminal", *court.where())
+    referee = Referee(court, capsys)
+    referee.decide("start")
+    referee.decide("official")
+    out, _ = watch.communicate(timeout=30)
+    lines = [json.loads(line) for line in out.splitlines()]
+    events = [line for line in lines if line["type"] == "event"]
+    frames = [line for line in lines if line["type"] == "frame"]
+
+    assert watch.returncode == 0
+    assert [event["number"] for event in events] == [*range(1, len(events) + 1)]
+    assert events[-1]["text"].startswith("Referee kim: the result is official")
+    assert [seat["team"] for seat in frames[-1]["seats"]] == ["planner", "nearest"]
+    assert frames[-1]["phase"] == "OFFICIAL"
+    assert (frames[-1]["clock_s"], frames[-1]["left_s"]) == (6.0, 0.0)
+    assert len(frames[-1]["markers"]) == 36
+    played = [frame for frame in frames if frame["phase"] == "PLAYING"]
+    assert played[-1]["poses"]["left"]["x_m"] > played[0]["poses"]["left"]["x_m"] + 0.1
+    shown, _ = text.communicate(timeout=30)
+    assert "Referee kim: the result is official" in shown.splitlines()[-2]
+    assert "OFFICIAL" in shown.splitlines()[-1]
+
+    referee.decide("next")
+    referee.decide("start")  # they have said ready again
+    referee.decide("abort")
+    referee.decide("next")
+    _a_ghost_plays_the_record_again(court, referee, tmp_path)
+
+
+def _a_ghost_plays_the_record_again(court: CourtProcess, referee: Referee, folder: Path) -> None:
+    """A ghost takes the seat from the bot, with the files and the keys of the first match."""
+    record = next((folder / "recordings").glob("*-001.mcap"))
+    court.start("bot", f"ghost:{record}:left", *court.where("left"), stdout=subprocess.DEVNULL)
+    deadline_s = time.monotonic() + 20
+    teams: list[str] = []
+    while "planner's ghost" not in teams:
+        assert time.monotonic() < deadline_s
+        teams = [seat["team"] for seat in json.loads(referee.run("status", "--json")[1])["seats"]]
+    referee.decide("start")
+    referee.decide("official")
+
+
+def test_a_bot_ends_when_its_seat_is_taken(open_court: OpenCourt) -> None:
+    """The newest joins wins (design.md, failure policy); the older one says so and ends."""
+    court = open_court("--arena", "othello")
+    first = court.start("bot", "straight", *court.where("left"))
+    assert first.stdout is not None
+    assert "holds seat left" in first.stdout.readline()
+    court.start("bot", "straight", *court.where("left"), stdout=subprocess.DEVNULL)
+    out, _ = first.communicate(timeout=30)
+
+    assert first.returncode == 2
+    assert "joined again from another window or machine" in out
+
+
+def test_a_bot_leaves_when_it_is_asked_to_end(
+    open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A kind kill: the seat is free again in the lobby."""
+    court = open_court("--arena", "othello")
+    bot = court.start("bot", "straight", *court.where("left"))
+    assert bot.stdout is not None
+    assert "holds seat left" in bot.stdout.readline()
+    bot.terminate()
+    bot.communicate(timeout=20)
+
+    assert bot.returncode == 0
+    _, out, _ = Referee(court, capsys).run("log", "--json")
+    assert json.loads(out.splitlines()[-1])["kind"] == "leave"
+
+
+def test_a_student_s_bot_is_a_file(open_court: OpenCourt, tmp_path: Path) -> None:
+    """`lacoc bot my_bot.py`: a function bot(sheet, seat), seen to be called with both."""
+    (tmp_path / "my_bot.py").write_text(
+        "def bot(sheet, seat):\n"
+        "    print('made for', sheet.seats[seat].id, flush=True)\n"
+        "    return lambda frame: None\n"
+    )
+    court = open_court("--arena", "practice")
+    bot = court.start("bot", "my_bot.py", *court.where("solo"))
+    assert bot.stdout is not None
+    lines = iter(bot.stdout.readline, "")
+
+    assert any("made for solo" in line for line in lines)

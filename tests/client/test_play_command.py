@@ -1,0 +1,281 @@
+"""`lacoc play` and `lacoc practice` at a real terminal, and from a pipe."""
+
+import os
+import signal
+import subprocess
+import termios
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from court_process import LACOC, CourtProcess, OpenCourt, environment
+
+from lacoc_robots.library import sample_gait_files
+
+pexpect: Any = pytest.importorskip("pexpect")
+
+pytestmark = pytest.mark.slow
+
+TIMEOUT_S = 30
+SHOW_CURSOR = "\x1b[?25h"
+
+
+class Terminal:
+    """A command at a terminal of its own."""
+
+    def __init__(self, folder: Path, *words: str) -> None:
+        self.child = pexpect.spawn(
+            *(LACOC[0], [*LACOC[1:], *words]),
+            cwd=str(folder),
+            timeout=TIMEOUT_S,
+            dimensions=(30, 110),
+            encoding="utf-8",
+            env=environment(TERM="xterm-256color"),
+        )
+        self.usual = self.modes()
+
+    def modes(self) -> list[Any]:
+        """How the terminal treats keys: echo, lines and so on."""
+        return termios.tcgetattr(self.child.child_fd)[:4]
+
+    def sees(self, *texts: str) -> None:
+        """Wait until the texts are on the screen, one after another."""
+        for text in texts:
+            self.child.expect_exact(text)
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            self.child.send(key)
+
+    def ended(self) -> int:
+        """The exit code; the terminal is as it was before."""
+        self.child.expect(pexpect.EOF)
+        self.child.close()
+        code = self.child.exitstatus
+        return -self.child.signalstatus if code is None else int(code)
+
+
+@pytest.fixture
+def started(open_court: OpenCourt, tmp_path: Path) -> Iterator[tuple[CourtProcess, Terminal]]:
+    """A player at a terminal in a short match against a bot, and the match is on."""
+    court = open_court("--arena", "othello", "--seconds", "60", "--speed", "2")
+    terminal = Terminal(tmp_path, "play", "--terminal", "--name", "Ants", *court.where("left"))
+    terminal.sees("Ants", " holds seat left of court main: Robot-Othello.")
+    court.start("bot", "straight", *court.where("right"), stdout=subprocess.DEVNULL)
+    terminal.sees("press r when you are ready")
+    terminal.press("2")
+    terminal.sees("[2] refused: keys work only while the match is being played.")
+    terminal.press("r")
+    terminal.sees("Ants is ready.", "READY")
+    words = ("--token", court.referee, "--wait", "20", *court.where())
+    assert court.start("referee", "start", *words).wait(TIMEOUT_S) == 0
+    terminal.sees("PLAYING")
+    yield court, terminal
+    terminal.child.close(force=True)
+
+
+def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Path) -> None:
+    """Rules 3, workshop 4-4: every key; an older Pos-data.txt is kept."""
+    _, terminal = started
+    (tmp_path / "Pos-data.txt").write_text("older")
+    terminal.press("1")
+    terminal.sees("B key 1, posture")
+    terminal.press("\x1b[A")
+    terminal.sees("B key 2, posture", "round trip")
+    terminal.press("7")
+    terminal.sees("[7] refused: your gait file has no such key.")
+    terminal.press("\t")
+    terminal.sees("This arena opens level B locomotion only.")
+    terminal.press(" ")
+    terminal.sees("The terminal has no views")
+    terminal.press("k")
+    terminal.sees("[k] does nothing.")
+    terminal.press("x")
+    terminal.sees("Ants goes back to the start.")
+    terminal.press("3")
+    terminal.sees("[3] refused: your robot was restarted a moment ago")
+    terminal.press("r")
+    terminal.sees("The match is on (PLAYING).")
+    terminal.press("z")
+    terminal.sees("You have left.", "Pos-data.1.txt", "Pos-data.txt written")
+
+    assert terminal.ended() == 0
+    assert (tmp_path / "Pos-data.1.txt").read_text() == "older"
+    header, *rows = (tmp_path / "Pos-data.txt").read_text().splitlines()
+    assert header.split("\t")[:4] == ["time_s", "x_m", "y_m", "z_m"]
+    assert len(header.split("\t")) == 7 + 18
+    assert len(rows) > 50
+
+
+@pytest.mark.parametrize("way", ["q", "\x03", signal.SIGTERM, signal.SIGHUP])
+def test_the_terminal_is_as_before_however_one_leaves(
+    open_court: OpenCourt, tmp_path: Path, way: str | signal.Signals
+) -> None:
+    """The keys echo again and the cursor is there: after q, Ctrl-C, a kill, a closed window."""
+    court = open_court("--arena", "othello")
+    terminal = Terminal(tmp_path, "play", *court.where("left"))
+    terminal.sees("press r when you are ready")
+    assert terminal.modes() != terminal.usual
+    if isinstance(way, str):
+        terminal.press(way)
+    else:
+        terminal.child.kill(way)
+    terminal.sees(SHOW_CURSOR, "You have left.")
+
+    terminal.child.expect(pexpect.EOF)
+    assert terminal.modes() == terminal.usual
+    assert terminal.ended() == 0
+    assert not (tmp_path / "Pos-data.txt").exists()
+
+
+def test_a_court_that_is_gone_is_said_and_comes_back(
+    started: tuple[CourtProcess, Terminal],
+) -> None:
+    """interface.md 8: a red banner while no frame comes; the match goes on after it."""
+    court, terminal = started
+    os.kill(court.process.pid, signal.SIGSTOP)
+    try:
+        terminal.sees("No word from the court for 1 s - trying again")
+    finally:
+        os.kill(court.process.pid, signal.SIGCONT)
+    terminal.press("2")
+    terminal.sees("B key 2, posture")
+
+
+def piped(folder: Path, script: str, *words: str, **options: Any) -> tuple[int, str]:
+    """Run a command with keys from a pipe: exit code, and all that it said."""
+    done = subprocess.run(
+        [*LACOC, *words],
+        input=script,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        cwd=folder,
+        **{"env": environment()} | options,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) -> None:
+    """`printf '2' | lacoc play`: the key stands until the match is over."""
+    court = open_court("--arena", "othello", "--seconds", "6", "--speed", "4")
+    court.start("bot", "straight", *court.where("right"), stdout=subprocess.DEVNULL)
+    words = ("start", "--token", court.referee, "--wait", "30", *court.where())
+    court.start("referee", *words, stdout=subprocess.DEVNULL)
+    script = "what is this\n1 3\n0.5 2"
+    code, said = piped(tmp_path, script, "play", "--terminal", "--ready", *court.where("left"))
+
+    assert code == 0
+    assert "Line 1 is left out: 'w' is no key" in said
+    assert "FINISHED: time is up." in said
+    assert said.rstrip().endswith("You have left. The seat stays yours.")
+    assert "refused" not in said
+
+
+def test_practice_walks_with_the_sample_keys(tmp_path: Path) -> None:
+    """Workshop 4-4: 1, 2, 3, 4 again and again walks forward (level A), 2 alone at level B; z."""
+    steps = "".join(f"0.5 {key}\n" for key in "12341234")
+    code, said = piped(tmp_path, f"0.2 0\n{steps}tab\n0.5 2\n2 z\n", "practice", "--name", "Me")
+
+    assert code == 0, said
+    assert "Pos-data.txt written" in said
+    rows = [line.split("\t") for line in (tmp_path / "Pos-data.txt").read_text().splitlines()[1:]]
+    by_time = {float(row[0]): float(row[2]) for row in rows}
+    middle_m = by_time[min(by_time, key=lambda time_s: abs(time_s - 4.6))]
+    assert middle_m > 0.08  # 42 mm/s (the start takes a little)
+    assert float(rows[-1][2]) > middle_m + 0.06
+    times_s = [float(row[0]) for row in rows]
+    assert times_s[-1] > 6
+    assert [*tmp_path.iterdir()] == [tmp_path / "Pos-data.txt"]  # the record was not asked for
+
+
+def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
+    """Rules 2, workshop 4-1: without a file named, those of the current folder, and says so."""
+    sample = sample_gait_files("hexapod")
+    assert sample.postures is not None
+    (tmp_path / "Loco-data.txt").write_bytes(sample.postures.data)
+    words = ("practice", "--recordings", "kept")
+    code, said = piped(tmp_path, "0.1 1\n0.3 tab 2\n0.1 q\n", *words)
+
+    assert code == 0, said
+    assert "Taken from this folder: Loco-data.txt." in said
+    assert "[2] refused: your gait file has no such key." in said
+    assert [path.suffix for path in (tmp_path / "kept").iterdir()] == [".mcap"]
+
+
+def test_practice_without_mujoco_says_what_to_install(tmp_path: Path) -> None:
+    """A contestant's machine has no MuJoCo: one line, exit code 2."""
+    (tmp_path / "mujoco.py").write_text("raise ModuleNotFoundError('no mujoco', name='mujoco')")
+    code, said = piped(tmp_path, "", "practice", env=environment(PYTHONPATH=str(tmp_path)))
+
+    assert code == 2
+    assert said.count("\n") == 1
+    assert 'pip install "lacoc[server]"' in said
+
+
+@pytest.fixture(scope="module")
+def quiet_court(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CourtProcess]:
+    """A court in the lobby that nobody joins."""
+    court = CourtProcess(tmp_path_factory.mktemp("court"), "--arena", "othello")
+    yield court
+    court.close()
+
+
+def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
+    given = {"connect": court.address, "seat": "left", "token": court.tokens["left"]} | changes
+    return [word for name, value in given.items() for word in (f"--{name}", value)]
+
+
+@pytest.mark.parametrize("command", [["play", "--terminal"], ["bot", "straight"]])
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"token": "not-the-token-of-it"}, "token"),
+        ({"seat": "middle"}, "has no seat 'middle'; it has left, right."),
+        ({"court": "centre"}, "There is no court 'centre' at"),
+        ({"connect": "tcp/127.0.0.1:1"}, "Nobody listens at tcp/127.0.0.1:1."),
+        ({"connect": "my court"}, "'my court' is not an address."),
+        ({"name": "x" * 25}, "1-24"),
+        ({"robot": "centipede"}, "centipede"),
+        ({"contest": "missing.toml"}, "missing.toml"),
+    ],
+)
+def test_a_wrong_start_is_one_clear_message(
+    quiet_court: CourtProcess,
+    tmp_path: Path,
+    command: list[str],
+    changes: dict[str, str],
+    expected: str,
+) -> None:
+    """Issue 2, done means 6: what is wrong, exit code 2, nothing else."""
+    code, said = piped(tmp_path, "", *command, *_where(quiet_court, changes))
+
+    assert code == 2, said
+    assert said.count("Error: ") == 1
+    assert expected in said
+    assert "Traceback" not in said
+
+
+def test_wrong_files_are_a_table(quiet_court: CourtProcess, tmp_path: Path) -> None:
+    """Rules 2: a file that only the court can judge, because it is another robot's gait."""
+    sample = sample_gait_files("quadruped")
+    assert sample.postures is not None
+    (tmp_path / "four.txt").write_bytes(sample.postures.data)
+    words = ("play", "--gait", "four.txt", *quiet_court.where("left"))
+    code, said = piped(tmp_path, "", *words)
+
+    assert code == 2
+    assert "1 mistake. Nothing of the file is used until it is right." in said
+    assert "│ four.txt │" in said
+    assert "6 legs" in said
+
+
+def test_the_board_at_a_terminal(quiet_court: CourtProcess, tmp_path: Path) -> None:
+    """`watch --board` draws, and leaves the terminal in order when it is killed."""
+    terminal = Terminal(tmp_path, "watch", "--terminal", "--board", *quiet_court.where())
+    terminal.sees("Robot-Othello, match 1", "LOBBY", "waiting for left to join", "L", "R", "R")
+    terminal.child.kill(signal.SIGTERM)
+    terminal.sees(SHOW_CURSOR)
+
+    assert terminal.ended() == 0

@@ -1,0 +1,122 @@
+"""The files that a contestant brings (rules 2, workshop 4-1)."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from lacoc_client.seat_files import SeatFiles, gaits_in, gather
+from lacoc_robots.library import sample_gait_files
+from lacoc_shared.gait import PostureTable
+from lacoc_shared.gait_cells import leg_labels
+from lacoc_shared.gait_text import read_gait
+from lacoc_shared.gait_workbook import write_workbook
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import FileRefused, UserError
+
+SAMPLE = sample_gait_files("hexapod")
+assert SAMPLE.postures is not None
+assert SAMPLE.locomotion is not None
+POSTURES, LOCOMOTION = SAMPLE.postures.data, SAMPLE.locomotion.data
+
+
+def write(path: Path, data: bytes, at_s: int = 1000) -> Path:
+    path.write_bytes(data)
+    os.utime(path, (at_s, at_s))
+    return path
+
+
+def workbook() -> bytes:
+    table = read_gait(POSTURES, "Loco-data.txt")
+    assert isinstance(table, PostureTable)
+    return write_workbook(table, leg_labels(6))
+
+
+@pytest.mark.parametrize(
+    ("there", "expected"),
+    [
+        ([], []),
+        (["Loco-data.txt"], ["Loco-data.txt"]),
+        (
+            ["LocoTra-data-6legs.txt", "Loco-data-6legs.txt"],
+            ["Loco-data-6legs.txt", "LocoTra-data-6legs.txt"],
+        ),
+        (["Loco-data.txt", "Loco-data.xlsx"], ["Loco-data.xlsx"]),
+        (["LocoTra-data.txt", "LocoTra-data2.txt"], ["LocoTra-data2.txt"]),
+        (["LocoTra-data2.txt", "LocoTra-data.txt", "notes.txt"], ["LocoTra-data.txt"]),
+    ],
+)
+def test_a_folder_s_gaits_are_the_ones_saved_last(
+    tmp_path: Path, there: list[str], expected: list[str]
+) -> None:
+    """Rules 2, workshop 4-1 and 4-3: without a file named, those of the current folder."""
+    for age, name in enumerate(there):
+        write(tmp_path / name, b"", 1000 + age)
+
+    assert [path.name for path in gaits_in(tmp_path)] == expected
+
+
+def test_files_saved_in_one_moment_go_by_their_names(tmp_path: Path) -> None:
+    """Loco-data.txt and LocoTra-data.txt, the names of the workshop, come first."""
+    for name in ("Loco-data-6legs.txt", "Loco-data.txt", "LocoTra-data.txt", "LocoTra-data1.txt"):
+        write(tmp_path / name, b"")
+
+    assert [path.name for path in gaits_in(tmp_path)] == ["Loco-data.txt", "LocoTra-data.txt"]
+
+
+def test_nothing_named_leaves_all_to_the_contest() -> None:
+    """The contest's robot walks with its own sample gait."""
+    assert gather(None, []) == SeatFiles()
+
+
+def test_a_robot_brings_the_gait_beside_it() -> None:
+    """An installed robot comes with its own sample gait."""
+    files = gather("quadruped", [])
+
+    assert files.robot is not None
+    assert files[1:] == sample_gait_files("quadruped")
+
+
+def test_each_file_goes_to_its_level(tmp_path: Path) -> None:
+    """What a file is for is seen in it, not in its name; text goes as it is."""
+    first = write(tmp_path / "b.txt", LOCOMOTION)
+    second = write(tmp_path / "a.txt", POSTURES)
+
+    assert gather(None, [first, second]) == SeatFiles(
+        None, SentFile("a.txt", POSTURES), SentFile("b.txt", LOCOMOTION)
+    )
+
+
+def test_a_workbook_goes_as_the_text_it_stands_for(tmp_path: Path) -> None:
+    """Rules 2: the workbook is read with no "Save as" step; a court reads text only."""
+    files = gather(None, [write(tmp_path / "Loco-data.xlsx", workbook())])
+
+    assert files.postures is not None
+    assert files.postures.name == "Loco-data.txt"
+    assert read_gait(files.postures.data, "") == read_gait(POSTURES, "")
+
+
+def test_two_files_for_one_level_are_refused(tmp_path: Path) -> None:
+    """Which one is meant is the contestant's to say."""
+    paths = [write(tmp_path / name, POSTURES) for name in ("a.txt", "b.txt")]
+
+    with pytest.raises(UserError, match=r"a\.txt and b\.txt are for the same keys"):
+        gather(None, paths)
+
+
+def test_the_mistakes_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
+    """Rules 2: every mistake, of every file."""
+    paths = [
+        write(tmp_path / "a.txt", POSTURES.replace(b"45", b"451")),
+        write(tmp_path / "b.txt", b"1\n1\n5\n"),
+    ]
+    with pytest.raises(FileRefused) as refused:
+        gather(None, paths)
+
+    assert {mistake.file for mistake in refused.value.mistakes} == {"a.txt", "b.txt"}
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+    """A wrong path is said."""
+    with pytest.raises(UserError, match=r"missing\.txt"):
+        gather(None, [tmp_path / "missing.txt"])

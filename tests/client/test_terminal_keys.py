@@ -1,0 +1,44 @@
+"""What a terminal sends, as names of keys."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_client.terminal_keys import KeyDecoder
+
+
+@pytest.mark.parametrize(
+    ("data", "expected"),
+    [
+        (b"2", ["2"]),
+        (b"xZ", ["x", "z"]),
+        (b"\x1b[A\x1b[B\x1b[C\x1b[D", ["up", "down", "right", "left"]),
+        (b"\x1bOA\x1bOD", ["up", "left"]),
+        (b"\t ", ["tab", "space"]),
+        ("２ｘ\u3000".encode(), ["2", "x", "space"]),  # with a Japanese input method
+        (b"\x1b[1;5A\x1b[15~3", ["3"]),  # Ctrl-up and F5 are no keys here
+        (b"\x1bx2", ["x", "2"]),  # Alt-x
+        (b"\x00\x7f\r4", ["4"]),
+    ],
+)
+def test_bytes_become_keys(data: bytes, expected: list[str]) -> None:
+    """Rules 3: digits, arrows, Tab, space, x and z, whatever the input method."""
+    assert KeyDecoder().feed(data) == expected
+
+
+@given(st.lists(st.sampled_from([b"2", b"\x1b[A", b"\x1bOD", "２".encode(), b"\t"])), st.data())
+def test_a_sequence_may_come_in_pieces(keys: list[bytes], data: st.DataObject) -> None:
+    """However the bytes are cut, the keys are the same."""
+    whole = b"".join(keys)
+    cuts = sorted(data.draw(st.lists(st.integers(0, len(whole)))))
+    pieces = [whole[a:b] for a, b in zip([0, *cuts], [*cuts, len(whole)], strict=True)]
+    decoder = KeyDecoder()
+
+    assert [key for piece in pieces for key in decoder.feed(piece)] == KeyDecoder().feed(whole)
+
+
+@given(st.lists(st.binary()))
+def test_no_bytes_break_it(pieces: list[bytes]) -> None:
+    """A terminal may send anything."""
+    decoder = KeyDecoder()
+    assert all(key for piece in pieces for key in decoder.feed(piece))
