@@ -134,9 +134,14 @@ def test_a_court_that_is_gone_is_said_and_comes_back(
 ) -> None:
     """interface.md 8: a red banner while no frame comes; the match goes on after it."""
     court, terminal = started
+    watch = court.start("watch", "--json", "--hz", "0", *court.where())
+    assert watch.stdout is not None
+    lines = iter(watch.stdout.readline, "")
+    assert any('"PLAYING."' in line for line in lines)
     os.kill(court.process.pid, signal.SIGSTOP)
     try:
         terminal.sees("No word from the court for 1 s - trying again")
+        assert any('{"type":"link","silent_s":1' in line for line in lines)
     finally:
         os.kill(court.process.pid, signal.SIGCONT)
     terminal.press("2")

@@ -25,6 +25,7 @@ app = typer.Typer()
 _DRAW_HZ = 10.0
 _LAST_WORD_S = 2.0
 """How long the event that ends a match may come after the frame that shows the end."""
+_SILENT_S = 1.0
 _ENDED = (Phase.OFFICIAL, Phase.VOID)
 
 
@@ -93,13 +94,17 @@ class _End:
 
 
 def _print_json(view: Spectator, hz: float, end: _End) -> None:
-    frame_s = -1.0
+    """A line for every event, for frames, and each second in which the court is silent."""
+    frame_s = silent_s = 0.0
     while True:
         frame = view.wait_frame(0.1)
         for event in view.take_events():
             screen.print_json({"type": "event", **event_dict(event, view.sheet)})
         ended = end()
         now_s = time.monotonic()
+        if view.silent_s(now_s) > _SILENT_S and now_s - silent_s > _SILENT_S:
+            silent_s = now_s
+            screen.print_json({"type": "link", "silent_s": round(view.silent_s(now_s), 1)})
         if frame is not None and hz and (ended or now_s - frame_s >= 1 / hz):
             frame_s = now_s
             screen.print_json({"type": "frame", **frame_dict(frame, view.sheet)})
