@@ -101,8 +101,21 @@ def _load(entry: EntryPoint) -> Any:
     except Exception as error:
         command = _broken(error)  # it must not hide the other commands
     command.name = entry.name
+    _join_lines(command)
     command.params = [param for param in command.params if param.name not in _COMPLETION]
     return command
+
+
+def _join_lines(command: Any) -> None:
+    """Let help break its lines where the terminal is full, not where the source does."""
+    if command.help:
+        paragraphs = command.help.split("\n\n")
+        command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
+    subcommands = getattr(command, "commands", {})
+    loaded = subcommands.data if isinstance(subcommands, _Commands) else subcommands
+    for subcommand in loaded.values():
+        if not isinstance(subcommand, EntryPoint):  # it has its turn when it is loaded
+            _join_lines(subcommand)
 
 
 def _broken(error: Exception) -> TyperCommand:
