@@ -67,7 +67,8 @@ def decide(match: Match, item: Decide) -> DecisionReply | Refusal:
     name = str(decision.__struct_config__.tag)
     if reason := rule.why_not(match):
         return Refusal(f"{name}: {reason}.")
-    if rule.needs_reason and not item.reason.strip():
+    only_asks = isinstance(decision, d.TakeBack) and decision.dry_run
+    if rule.needs_reason and not only_asks and not item.reason.strip():
         return Refusal(f"{name}: give a reason; it goes into the record.")
     try:
         if isinstance(decision, d.TakeBack):
@@ -110,6 +111,13 @@ def _number(value: float, limit: float, what: str) -> float:
     return value
 
 
+def _ticks(seconds: float) -> int:
+    ticks = round(seconds * BEATS_PER_S)
+    if ticks == 0:
+        raise Illegal(f"{seconds:g} s is less than a tick of 20 ms.")
+    return ticks
+
+
 def _ready(match: Match, decision: d.Ready) -> str:
     seat = _seat(match, decision.seat)
     if seat.join is None:
@@ -143,8 +151,8 @@ def _freeze(match: Match, decision: d.Freeze) -> str:
     seat = _seat(match, decision.seat)
     if not 0 < decision.seconds <= MAX_FREEZE_S:
         raise Illegal(f"{decision.seconds:g} s? Freeze for more than 0 and at most 600 s.")
+    seat.frozen_until = match.ticks + _ticks(decision.seconds)
     seat.stand()
-    seat.frozen_until = match.ticks + round(decision.seconds * BEATS_PER_S)
     return f"{seat.team} is frozen for {decision.seconds:g} s."
 
 
@@ -183,7 +191,7 @@ def _set(match: Match, decision: d.Set) -> str:
 
 def _clock(match: Match, decision: d.Clock) -> str:
     seconds = _number(decision.seconds, MAX_CLOCK_S, "s")
-    match.clock_offset += round(seconds * BEATS_PER_S)
+    match.clock_offset += _ticks(seconds)
     return f"the clock moves by {seconds:+g} s."
 
 

@@ -11,7 +11,7 @@ from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.journal import Journal
 from lacoc_server.match import Beat, Match
 from lacoc_server.world import World
-from lacoc_shared.decisions import Official, Start
+from lacoc_shared.decisions import Abort, Official, Start
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.messages import Frame, Refusal, SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
@@ -129,6 +129,8 @@ def _play(match: Match, journal: Journal, players: Sequence[Player]) -> Iterator
                 keys.append(KeySeat(player.join.seat, seqs[index], int(key.level), key.key))
     if match.phase is Phase.FINISHED:
         yield _beat(journal, [Decide("simulate", "", Official())])
+    else:
+        yield _beat(journal, [Decide("simulate", "physics stopped", Abort())])
 
 
 def _beat(journal: Journal, inputs: Sequence[Input] = ()) -> Beat:

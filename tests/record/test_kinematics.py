@@ -103,9 +103,7 @@ def test_frames_of_a_court_show_its_robots(arena: str) -> None:
     Robots of different joint counts, so that a seat's angles are looked for in their place.
     """
     names = ("quadruped", "hexapod")
-    entries = [
-        weigh_in(SentFile(*find_robot(name)), *sample_gait_files(name)) for name in names
-    ]
+    entries = [weigh_in(SentFile(*find_robot(name)), *sample_gait_files(name)) for name in names]
     world = World(load(arena), entries)
     joints = [entry.robot.joints for entry in entries]
     kinematics = ForwardKinematics(world.scene, joints)

@@ -398,3 +398,9 @@ def test_ready_can_be_taken_back_after_the_referee_gave_it() -> None:
     stage.beat(ReadySeat(RIGHT, True))
     stage.beat(ReadySeat(LEFT, False))
     assert stage.phase is P.LOBBY
+
+
+@pytest.mark.parametrize("decision", [d.Freeze("left", 0.004), d.Clock(-0.009)])
+def test_less_than_a_tick_is_no_decision(decision: d.Decision) -> None:
+    """Rules 4: what would change nothing is refused, not answered as if it were done."""
+    assert "less than a tick" in refused(stage_in(P.HALTED), decision)

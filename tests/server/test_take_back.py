@@ -170,6 +170,10 @@ def test_a_dry_run_changes_nothing_and_tells_the_truth(kind: str) -> None:
     }[kind]
     dry = take_back(stage, number, dry_run=True)
     twin.beat()
+    unexplained = stage.decide(d.TakeBack(number, dry_run=True), reason="")
+    assert isinstance(unexplained, DecisionReply), "asking needs no reason"
+    assert (unexplained.changes, unexplained.scores) == (dry.changes, dry.scores)
+    twin.beat()
     assert seen(stage) == seen(twin)
     assert (dry.event, stage.beats[-1].events) == (None, ())
     wet = take_back(stage, number)
