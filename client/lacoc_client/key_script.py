@@ -1,8 +1,8 @@
 """Keys from a pipe: a little language, so that a file or a program can play.
 
-A line holds keys: `2`, or `tab 1`, or `1234` for four keys one after another. A number
-before them is a time: `1.5 3` presses 3 a second and a half after the keys before. The time
-runs only while the match is played, and keys that move the robot wait until it is.
+A line holds keys: `2`, or `tab 1`, or `1 2 3 4` (also `1234`), one after another. A number
+with a point before them is a time: `1.5 3` presses 3 a second and a half after the keys before.
+The time runs only while the match is played, and keys that move the robot wait until it is.
 `#` begins a remark.
 """
 
@@ -140,6 +140,8 @@ def _known(key: str) -> bool:
 
 
 def _number(word: str) -> float | None:
+    if "." not in word:  # "1 2 3 4" are keys
+        return None
     try:
         return float(word)
     except ValueError:

@@ -39,6 +39,8 @@ class _Rule:
     phases: frozenset[Phase]
     act: Callable[[Match, Any], str]
     """Does it and returns the sentence for the log; raises `Illegal` before changing anything."""
+    then: Callable[[Match, Any], object] = lambda match, decision: None
+    """What follows and is told as events of its own, after the decision."""
     needs_reason: bool = False
     also: Callable[[Match], str] = lambda match: ""
     """Further reason why not; "" if there is none."""
@@ -77,6 +79,7 @@ def decide(match: Match, item: Decide) -> DecisionReply | Refusal:
     except Illegal as illegal:
         return Refusal(f"{name}: {illegal}")
     number = _log(match, item, name, text)
+    rule.then(match, decision)
     return DecisionReply(beat=match.beats, event=number, text=text, scores=match.scores())
 
 
@@ -122,22 +125,14 @@ def _ready(match: Match, decision: d.Ready) -> str:
     seat = _seat(match, decision.seat)
     if seat.join is None:
         raise Illegal(f"nobody has joined {seat.id}.")
-    contestant.ready(match, seat, True)
     return f"ready for {seat.team}."
 
 
 def _start(match: Match, decision: d.Start) -> str:
-    match.begin_countdown()
     return f"play begins in {match.rules.countdown_s:g} s."
 
 
-def _halt(match: Match, decision: d.Halt) -> str:
-    match.enter(Phase.HALTED)
-    return "halted."
-
-
 def _resume(match: Match, decision: d.Resume) -> str:
-    match.begin_countdown()
     return f"play goes on in {match.rules.countdown_s:g} s."
 
 
@@ -197,7 +192,6 @@ def _clock(match: Match, decision: d.Clock) -> str:
 
 def _abort(match: Match, decision: d.Abort) -> str:
     match.ended = match.ended or "aborted by the referee"
-    match.enter(Phase.VOID)
     return "the match is void."
 
 
@@ -205,17 +199,19 @@ def _declare(match: Match, decision: d.Declare) -> str:
     choices = [*(seat.id for seat in match.seats), "draw"]
     if decision.winner not in choices:
         raise Illegal(f"{decision.winner!r} can't win; there are {_list(choices)}.")
-    if match.phase is Phase.HALTED:
-        match.finish("ended by the referee")
     match.declared = decision.winner
     if decision.winner == "draw":
         return "the match is declared a draw."
     return f"{_seat(match, decision.winner).team} is declared the winner."
 
 
+def _end_play(match: Match, decision: d.Declare) -> None:
+    if match.phase is Phase.HALTED:
+        match.finish("ended by the referee")
+
+
 def _official(match: Match, decision: d.Official) -> str:
-    match.enter(Phase.OFFICIAL)
-    return f"the result is official: {match.result().official}."
+    return f"the result is official: {match.declared or match.winner()}."
 
 
 def _next(match: Match, decision: d.Next) -> str:
@@ -285,6 +281,10 @@ def _no_board(match: Match) -> str:
     return "" if match.game.markers else "this game has no board"
 
 
+def _nobody(match: Match) -> str:
+    return "" if any(seat.join for seat in match.seats) else "nobody has joined"
+
+
 def _no_end(match: Match) -> str:
     return "" if match.duration_ticks else "this match has no end"
 
@@ -293,11 +293,29 @@ _PLAY = frozenset({Phase.PLAYING, Phase.HALTED})
 _SCORED = _PLAY | {Phase.FINISHED}
 _OPEN = _SCORED | {Phase.LOBBY, Phase.READY, Phase.COUNTDOWN}
 
+
+def _begin_countdown(match: Match, decision: d.Decision) -> None:
+    match.begin_countdown()
+
+
+def _enter(phase: Phase) -> Callable[[Match, d.Decision], None]:
+    return lambda match, decision: match.enter(phase)
+
+
 _RULES: dict[type[d.Decision], _Rule] = {
-    d.Ready: _Rule(frozenset({Phase.LOBBY}), _ready),
-    d.Start: _Rule(frozenset({Phase.READY}), _start),
-    d.Halt: _Rule(frozenset({Phase.COUNTDOWN, Phase.PLAYING}), _halt),
-    d.Resume: _Rule(frozenset({Phase.HALTED}), _resume),
+    d.Ready: _Rule(
+        frozenset({Phase.LOBBY}),
+        _ready,
+        lambda match, decision: contestant.ready(match, _seat(match, decision.seat), True),
+        also=_nobody,
+    ),
+    d.Start: _Rule(frozenset({Phase.READY}), _start, _begin_countdown),
+    d.Halt: _Rule(
+        frozenset({Phase.COUNTDOWN, Phase.PLAYING}),
+        lambda match, decision: "halted.",
+        _enter(Phase.HALTED),
+    ),
+    d.Resume: _Rule(frozenset({Phase.HALTED}), _resume, _begin_countdown),
     d.Restart: _Rule(_PLAY, _restart, needs_reason=True),
     d.Freeze: _Rule(_PLAY, _freeze, needs_reason=True),
     d.Unfreeze: _Rule(_PLAY, _unfreeze),
@@ -309,8 +327,10 @@ _RULES: dict[type[d.Decision], _Rule] = {
         needs_reason=True,
     ),
     d.Clock: _Rule(_PLAY, _clock, needs_reason=True, also=_no_end),
-    d.Abort: _Rule(_OPEN, _abort, needs_reason=True),
-    d.Declare: _Rule(frozenset({Phase.HALTED, Phase.FINISHED}), _declare, needs_reason=True),
-    d.Official: _Rule(frozenset({Phase.FINISHED}), _official),
+    d.Abort: _Rule(_OPEN, _abort, _enter(Phase.VOID), needs_reason=True),
+    d.Declare: _Rule(
+        frozenset({Phase.HALTED, Phase.FINISHED}), _declare, _end_play, needs_reason=True
+    ),
+    d.Official: _Rule(frozenset({Phase.FINISHED}), _official, _enter(Phase.OFFICIAL)),
     d.Next: _Rule(frozenset({Phase.OFFICIAL, Phase.VOID}), _next),
 }

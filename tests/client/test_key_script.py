@@ -30,15 +30,16 @@ def script_of(*lines: str) -> KeyScript:
     ("lines", "expected"),
     [
         (["2"], [(0.02, "2")]),
+        (["1 2 3 4"], [(0.02, "1"), (0.04, "2"), (0.06, "3"), (0.08, "4")]),
         (["1234"], [(0.02, "1"), (0.04, "2"), (0.06, "3"), (0.08, "4")]),
         (["1.5 3", "0.5 x"], [(1.5, "3"), (2.0, "x")]),
         (["tab 1"], [(0.02, "tab"), (0.02, "1")]),
         (
-            ["0.5 up left", "# a remark", "", "1 0  # stand"],
+            ["0.5 up left", "# a remark", "", "1.0 0  # stand"],
             [(0.5, "up"), (0.52, "left"), (1.52, "0")],
         ),
         (["TAB X"], [(0.02, "tab"), (0.02, "x")]),
-        (["1 z"], [(1.0, "z")]),
+        (["1.0 z"], [(1.0, "z")]),
     ],
 )
 def test_a_script_presses_each_key_in_its_time(
@@ -60,14 +61,14 @@ def test_keys_that_move_the_robot_wait_for_play() -> None:
 
 def test_time_stands_still_while_the_match_is_halted() -> None:
     """A time is one of play, so a halt shifts what comes after it."""
-    script = script_of("2", "1 3")
+    script = script_of("2", "1.0 3")
 
     assert script.due(0.02, True) == ["2"]
     assert [script.due(0.5, False) for _ in range(100)] == [[]] * 100
     assert script.due(1.02, True) == ["3"]
 
 
-@pytest.mark.parametrize("line", ["hello", "-1 2", "nan 2", "inf 3", "2 up down jump", "²"])
+@pytest.mark.parametrize("line", ["hello", "-1.5 2", "nan 2", "1e999.0 3", "2 up down jump", "²"])
 def test_a_wrong_line_is_left_out_and_named(line: str) -> None:
     """What is wrong is said with the number of the line; the rest is played."""
     script = script_of("1")

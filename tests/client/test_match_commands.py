@@ -108,7 +108,7 @@ def test_ready_for_a_contestant_who_cannot(
     assert "commands/s" in out
     code, out, _ = referee.run("log", "--json")
     events = [json.loads(line) for line in out.splitlines()]
-    assert [event["kind"] for event in events] == ["phase", "join", "ready", "decision"]
+    assert [event["kind"] for event in events] == ["phase", "join", "decision", "ready"]
     assert [event["number"] for event in events] == [1, 2, 3, 4]
     code, out, _ = referee.run("log")
     assert "ready for Slow Hands. Reason: a test" in out
@@ -143,7 +143,8 @@ def test_bots_play_match_after_match(
 
     assert watch.returncode == 0
     assert [event["number"] for event in events] == [*range(1, len(events) + 1)]
-    assert events[-1]["text"].startswith("Referee kim: the result is official")
+    assert events[-2]["text"].startswith("Referee kim: the result is official")
+    assert events[-1]["text"] == "OFFICIAL."
     assert [seat["team"] for seat in frames[-1]["seats"]] == ["planner", "nearest"]
     assert frames[-1]["phase"] == "OFFICIAL"
     assert (frames[-1]["clock_s"], frames[-1]["left_s"]) == (6.0, 0.0)
@@ -151,7 +152,7 @@ def test_bots_play_match_after_match(
     played = [frame for frame in frames if frame["phase"] == "PLAYING"]
     assert played[-1]["poses"]["left"]["x_m"] > played[0]["poses"]["left"]["x_m"] + 0.1
     shown, _ = text.communicate(timeout=30)
-    assert "Referee kim: the result is official" in shown.splitlines()[-2]
+    assert "Referee kim: the result is official" in shown.splitlines()[-3]
     assert "OFFICIAL" in shown.splitlines()[-1]
 
     referee.decide("next")

@@ -168,7 +168,7 @@ def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) ->
     court.start("bot", "straight", *court.where("right"), stdout=subprocess.DEVNULL)
     words = ("start", "--token", court.referee, "--wait", "30", *court.where())
     court.start("referee", *words, stdout=subprocess.DEVNULL)
-    script = "what is this\n1 3\n0.5 2"
+    script = "what is this\n1.0 3\n0.5 2"
     code, said = piped(tmp_path, script, "play", "--terminal", "--ready", *court.where("left"))
 
     assert code == 0
@@ -181,7 +181,7 @@ def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) ->
 def test_practice_walks_with_the_sample_keys(tmp_path: Path) -> None:
     """Workshop 4-4: 1, 2, 3, 4 again and again walks forward (level A), 2 alone at level B; z."""
     steps = "".join(f"0.5 {key}\n" for key in "12341234")
-    code, said = piped(tmp_path, f"0.2 0\n{steps}tab\n0.5 2\n2 z\n", "practice", "--name", "Me")
+    code, said = piped(tmp_path, f"0.2 0\n{steps}tab\n0.5 2\n2.0 z\n", "practice", "--name", "Me")
 
     assert code == 0, said
     assert "Pos-data.txt written" in said

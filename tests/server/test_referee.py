@@ -210,6 +210,8 @@ def test_ready_for_a_seat() -> None:
     assert stage.phase is P.READY
     empty = Stage()
     empty.beat()
+    assert refused(empty, d.Ready("left")) == "ready: nobody has joined."
+    empty.beat(join(RIGHT))
     assert refused(empty, d.Ready("left")) == "ready: nobody has joined left."
 
 
@@ -404,3 +406,10 @@ def test_ready_can_be_taken_back_after_the_referee_gave_it() -> None:
 def test_less_than_a_tick_is_no_decision(decision: d.Decision) -> None:
     """Rules 4: what would change nothing is refused, not answered as if it were done."""
     assert "less than a tick" in refused(stage_in(P.HALTED), decision)
+
+
+def test_a_decision_stands_in_the_log_before_what_follows() -> None:
+    """Rules 4: who decided comes first, then the phase and the result it led to."""
+    stage = stage_in(P.HALTED)
+    stage.decide(d.Declare("left"))
+    assert [event.kind for event in stage.beats[-1].events] == ["decision", "phase", "result"]

@@ -72,10 +72,10 @@ def play_command(
     0-9 move it, the arrows are 2 1 3 0 of level B, Tab changes the level, x restarts, r says
     ready, z leaves and writes Pos-data.txt, q leaves.
 
-    Keys can come from a pipe, too. A line holds keys: '2', 'tab 1', or '1234' for four keys one
-    after another. With a time in front, as in '1.5 3', they come so many seconds of play after the
-    keys before. Keys that move the robot wait until the match is played. After the last one its
-    key stands until the match is over.
+    Keys can come from a pipe, too. A line holds keys: '2', 'tab 1', or '1 2 3 4', one after
+    another. With a time in front, a number with a point as in '1.5 3', they come so many seconds of
+    play after the keys before. Keys that move the robot wait until the match is played. After the
+    last one its key stands until the match is over.
     """
     access = entrance.seat(contest, court, connect, seat, token)
     play(access, name or f"Team {access.seat}", choose_files(robot, gait or []), ready=ready)
