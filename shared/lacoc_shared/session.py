@@ -222,10 +222,7 @@ class Session:
 
     def announce(self, key: str) -> None:
         """Let others see that this session is alive, until it closes."""
-        self._tokens = (
-            *getattr(self, "_tokens", ()),
-            self._session.liveliness().declare_token(key),
-        )
+        self._announcements.append(self._session.liveliness().declare_token(key))
 
     def present(self, key: str, timeout_s: float = 1.0) -> tuple[str, ...]:
         """Key expressions of all live announcements under a key expression, sorted."""
