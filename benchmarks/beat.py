@@ -11,8 +11,10 @@ import numpy.typing as npt
 
 from benchmarks.paths import BarePath, keys_at, setup_of, started
 from lacoc_arenas import arena as arenas
+from lacoc_server.match import Match
 from lacoc_server.simulate import player, simulate
 from lacoc_server.world import World
+from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEAT_S
 
 ROUND_TICKS = 250
@@ -64,21 +66,15 @@ def whole_match(arena: str, rounds: int) -> dict[str, Any]:
     match_s, bare_s, shares, sizes = [], [], [], []
     loaded = arenas.load(arena)
     for number in range(rounds):
-        controls: list[npt.NDArray[np.float64]] = []
-        journal = started(arena, None)
-        world = journal.match.physics
-        assert isinstance(world, World)
-        bare = BarePath(world)
-        while journal.match.ticks < journal.match.duration_ticks - 1:
-            journal.beat(keys_at(journal.match.ticks))
-            controls.append(world.data.ctrl.copy())
+        setup = setup_of(arena, f"benchmark-{number}")
+        players = [player(loaded, seat, "straight") for seat in (0, 1)]
         with tempfile.TemporaryDirectory() as folder:
-            players = [player(loaded, seat, "straight") for seat in (0, 1)]
             begin = time.perf_counter()
-            result = simulate(setup_of(arena, f"benchmark-{number}"), players, Path(folder))
+            result = simulate(setup, players, Path(folder))
             match_s.append(time.perf_counter() - begin)
-            sizes.append((Path(folder) / f"benchmark-{number}.mcap").stat().st_size)
-        bare_s.append(bare.run(controls))
+            path = Path(folder) / f"{setup.match_id}.mcap"
+            sizes.append(path.stat().st_size)
+            bare_s.append(_bare_path_s(Record.read(path)))
         shares.append(bare_s[-1] / match_s[-1])
     return {
         "match_s": statistics.median(match_s),
@@ -88,3 +84,24 @@ def whole_match(arena: str, rounds: int) -> dict[str, Any]:
         "record_bytes": int(statistics.median(sizes)),
         "bytes_per_s": statistics.median(sizes) / (result.beats * BEAT_S),
     }
+
+
+def _bare_path_s(record: Record) -> float:
+    """How long bare physics takes for the path of a record."""
+    match = Match(record.header.setup, World)
+    controls: list[npt.NDArray[np.float64]] = []
+    bare: BarePath | None = None
+    for number in range(record.last_beat + 1):
+        beat = match.beat(record.inputs.get(number, ()))
+        if not beat.ticked:
+            continue
+        assert isinstance(match.physics, World)
+        if bare is None:
+            bare = BarePath(match.physics)
+        else:
+            controls.append(match.physics.data.ctrl.copy())
+    assert bare is not None
+    assert isinstance(match.physics, World)
+    took_s = bare.run(controls)
+    assert bare.is_where(match.physics), "bare physics took another path"
+    return took_s
