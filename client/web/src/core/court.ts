@@ -1,0 +1,186 @@
+/** What a page knows of a court: signals that its parts draw from. */
+
+import { computed, type ReadonlySignal, type Signal, signal } from "@preact/signals";
+import { runKey, setting, socketUrl } from "./address";
+import { Connection } from "./connection";
+import { Timeline } from "./timeline";
+import {
+  type Event,
+  type Frame,
+  type Health,
+  type HeldSeat,
+  type Link,
+  type Message,
+  Phase,
+  PROTOCOL,
+  type RefereeState,
+  type Request,
+  type Scene,
+  type Sheet,
+  sameBytes,
+  unpackStates,
+  type Welcome,
+} from "./wire";
+
+/** What every view of a match needs, live or from a recording. */
+export interface Match {
+  readonly sheet: ReadonlySignal<Sheet | null>;
+  /** The drawable model that belongs to the sheet; null until it is here. */
+  readonly scene: ReadonlySignal<Scene | null>;
+  readonly frame: ReadonlySignal<Frame | null>;
+  readonly events: ReadonlySignal<readonly Event[]>;
+  readonly timeline: Timeline;
+}
+
+/** A frame older than this is not shown as live. */
+const STALE_MS = 1000;
+const LOOK_MS = 200;
+
+/** A court, watched through a gateway. */
+export class Court implements Match {
+  readonly welcome = signal<Welcome | null>(null);
+  readonly sheet = signal<Sheet | null>(null);
+  readonly scene = signal<Scene | null>(null);
+  readonly frame = signal<Frame | null>(null);
+  readonly events = signal<readonly Event[]>([]);
+  readonly health = signal<Health | null>(null);
+  readonly link = signal<Link | null>(null);
+  readonly seat = signal<HeldSeat | null>(null);
+  readonly referee = signal<RefereeState | null>(null);
+  /** Frames that came in the last second. */
+  readonly framesHz = signal(0);
+  /** Whether what is shown is what is now. */
+  readonly live = signal(false);
+  /** The gateway speaks another version: only loading the page again helps. */
+  readonly outdated = signal(false);
+  readonly timeline: Timeline;
+  readonly connection: Connection;
+  private scenes: { hash: Uint8Array; scene: Scene }[] = [];
+  private arrivedMs = 0;
+  private arrivals: number[] = [];
+
+  /** @param hz Frames a second to ask for. */
+  constructor(private readonly hz: number) {
+    this.timeline = new Timeline();
+    this.connection = new Connection(
+      socketUrl(),
+      () => this.watch(),
+      (message, arrivedMs) => this.take(message, arrivedMs),
+    );
+    setInterval(() => this.look(), LOOK_MS);
+  }
+
+  /** Ask the gateway for something; rejects with `Refused`. */
+  ask<T = unknown>(what: Request, fields: object = {}): Promise<T> {
+    return this.connection.ask<T>(what, fields);
+  }
+
+  private watch(): void {
+    this.seat.value = null;
+    this.referee.value = null;
+    const fields = { court: setting("court") || null, hz: this.hz, key: runKey() };
+    // A refusal is in the link's text; a break is seen by the connection.
+    this.ask("watch", fields).catch(() => undefined);
+  }
+
+  private take(message: Message, arrivedMs: number): void {
+    switch (message.kind) {
+      case "frame":
+        this.takeFrame(message.body, arrivedMs);
+        break;
+      case "event":
+        this.takeEvent(message.body);
+        break;
+      case "sheet":
+        this.sheet.value = message.body;
+        this.chooseScene();
+        break;
+      case "scene":
+        this.scenes = [...this.scenes.slice(-2), { hash: message.hash, scene: message.body }];
+        this.chooseScene();
+        break;
+      case "welcome":
+        this.welcome.value = message.body;
+        this.outdated.value = message.body.protocol !== PROTOCOL;
+        break;
+      case "health":
+        this.health.value = message.body;
+        break;
+      case "link":
+        this.link.value = message.body;
+        break;
+      case "seat":
+        this.seat.value = message.body;
+        break;
+      case "referee":
+        this.referee.value = message.body;
+        break;
+    }
+  }
+
+  private takeFrame(frame: Frame, arrivedMs: number): void {
+    this.arrivedMs = arrivedMs;
+    this.arrivals.push(arrivedMs);
+    this.timeline.push(frame, arrivedMs);
+    this.frame.value = frame;
+    this.live.value = true;
+  }
+
+  /** Events of one match, in their order; those of another match begin a new log. */
+  private takeEvent(event: Event): void {
+    const known = this.events.value;
+    if (known[0] && known[0].match !== event.match) this.events.value = [event];
+    else if (!known.some((one) => one.number === event.number)) {
+      const later = known.findLastIndex((one) => one.number < event.number) + 1;
+      this.events.value = [...known.slice(0, later), event, ...known.slice(later)];
+    }
+  }
+
+  /** The scene that the sheet names, once both are here; never another one. */
+  private chooseScene(): void {
+    const wanted = this.sheet.value?.scene;
+    const found = wanted && this.scenes.find(({ hash }) => sameBytes(hash, wanted));
+    this.scene.value = found ? found.scene : null;
+  }
+
+  private look(): void {
+    const nowMs = performance.now();
+    this.arrivals = this.arrivals.filter((atMs) => nowMs - atMs < 1000);
+    this.framesHz.value = this.arrivals.length;
+    if (nowMs - this.arrivedMs > STALE_MS) this.live.value = false;
+  }
+}
+
+/** The states of the markers, as a signal that changes only when one of them does. */
+export function markerStates(match: Match): ReadonlySignal<readonly number[]> {
+  let last: readonly number[] = [];
+  return computed(() => {
+    const frame = match.frame.value;
+    const count = match.sheet.value?.markers.length ?? 0;
+    if (!frame || frame.markers.length * 4 < count) return last;
+    const states = unpackStates(frame.markers, count);
+    if (states.length !== last.length || states.some((state, index) => state !== last[index])) {
+      last = states;
+    }
+    return last;
+  });
+}
+
+/** A part of the newest frame, as a signal that changes only when the part does. */
+export function part<T extends string | number | boolean | null>(
+  match: Match,
+  of: (frame: Frame) => T,
+  otherwise: T,
+): ReadonlySignal<T> {
+  return computed(() => {
+    const frame = match.frame.value;
+    return frame ? of(frame) : otherwise;
+  });
+}
+
+/** The phase of a match; CREATED before its first frame. */
+export function phaseOf(match: Match): ReadonlySignal<number> {
+  return part(match, (frame) => frame.phase, Phase.CREATED);
+}
+
+export type { Signal };

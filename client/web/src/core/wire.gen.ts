@@ -1,0 +1,274 @@
+// Made by client/web/make_wire.py from the Python structs; not edited by hand.
+
+export const PROTOCOL = 1;
+
+export const Phase = {
+  CREATED: 0,
+  LOBBY: 1,
+  READY: 2,
+  COUNTDOWN: 3,
+  PLAYING: 4,
+  HALTED: 5,
+  FINISHED: 6,
+  OFFICIAL: 7,
+  VOID: 8,
+} as const;
+
+export const SeatFlag = {
+  JOINED: 1,
+  READY: 2,
+  SILENT: 4,
+  FROZEN: 8,
+} as const;
+
+export const No = {
+  NONE: 0,
+  NOT_PLAYING: 1,
+  LEVEL_CLOSED: 2,
+  NO_SUCH_KEY: 3,
+  RESTARTED: 4,
+  FROZEN: 5,
+} as const;
+
+export const Level = {
+  POSTURE: 0,
+  LOCOMOTION: 1,
+} as const;
+
+export const MARKER_STATES = ["neutral", "left", "right", "down"] as const;
+
+export interface SeatFrame {
+  flags: number;
+  score: number;
+  level: number;
+  key: number;
+  posture: number;
+  locked_ticks: number;
+  applied_seq: number;
+  applied_beat: number;
+  refused_seq: number;
+  refused_why: number;
+}
+
+export interface Frame {
+  match: number;
+  beat: number;
+  phase: number;
+  countdown_beats: number;
+  clock_ticks: number;
+  seats: SeatFrame[];
+  markers: Uint8Array;
+  poses: Uint8Array;
+  scene: Uint8Array;
+  digest: Uint8Array;
+}
+
+export interface Event {
+  number: number;
+  match: number;
+  beat: number;
+  clock_ticks: number;
+  kind: string;
+  text: string;
+  seat: number;
+  data: Record<string, unknown>;
+}
+
+export interface SheetSeat {
+  id: string;
+  team: string;
+  colour: string;
+  pattern: string;
+  robot: string;
+  legs: string[];
+  keys: [number[], number[]];
+  postures: number[];
+}
+
+export interface MarkerInfo {
+  name: string;
+  kind: string;
+  x_m: number;
+  y_m: number;
+  radius_m: number;
+  points: number;
+}
+
+export interface Sheet {
+  protocol: number;
+  version: string;
+  court: string;
+  match: number;
+  arena: string;
+  title: string;
+  duration_s: number;
+  levels: number[];
+  settings: Record<string, unknown>;
+  seats: SheetSeat[];
+  markers: MarkerInfo[];
+  scene: Uint8Array;
+}
+
+export interface SceneBody {
+  name: string;
+  parent: number;
+  pos: [number, number, number];
+  quat: [number, number, number, number];
+  seat: number;
+  joint: number;
+  axis: [number, number, number];
+}
+
+export interface SceneGeom {
+  body: number;
+  type: string;
+  size: [number, number, number];
+  pos: [number, number, number];
+  quat: [number, number, number, number];
+  rgba: [number, number, number, number];
+  marker: number;
+  state: number;
+  seat: number;
+}
+
+export interface Scene {
+  bodies: SceneBody[];
+  geoms: SceneGeom[];
+}
+
+export interface SeatHealth {
+  id: string;
+  joined: boolean;
+  session: number;
+  heard_ms: number | null;
+  commands_hz: number;
+  refused: Record<string, number>;
+}
+
+export interface Health {
+  match: number;
+  beat: number;
+  real_time_factor: number;
+  slow_beats: number;
+  worst_late_ms: number;
+  seats: SeatHealth[];
+  dropped: Record<string, number>;
+  decisions: Record<string, string>;
+}
+
+export interface DecisionReply {
+  beat: number;
+  event: number | null;
+  text: string;
+  scores: number[];
+  changes: string[];
+}
+
+export interface Mistake {
+  file: string;
+  found: string;
+  expected: string;
+  row?: number | null;
+  column?: number | null;
+  joint?: number | null;
+  leg?: string | null;
+  field?: string | null;
+}
+
+export interface Setup {
+  match_id: string;
+  court: string;
+  match: number;
+  arena: string;
+  settings: Record<string, unknown>;
+  limits: Record<string, number>;
+}
+
+export interface Header {
+  format: number;
+  match_id: string;
+  segment: number;
+  first_beat: number;
+  started: string;
+  versions: Record<string, string>;
+  setup: Setup;
+}
+
+export interface Result {
+  match_id: string;
+  court: string;
+  match: number;
+  arena: string;
+  teams: string[];
+  scores: number[];
+  computed: string;
+  official: string;
+  reason: string;
+  clock_s: number;
+  beats: number;
+  digest: string;
+  model: string;
+  health: Record<string, unknown>;
+}
+
+/** `SeatFrame` is an array on the wire: the names of its places. */
+export const SEATFRAME_FIELDS = [
+  "flags",
+  "score",
+  "level",
+  "key",
+  "posture",
+  "locked_ticks",
+  "applied_seq",
+  "applied_beat",
+  "refused_seq",
+  "refused_why",
+] as const;
+
+/** `Frame` is an array on the wire: the names of its places. */
+export const FRAME_FIELDS = [
+  "match",
+  "beat",
+  "phase",
+  "countdown_beats",
+  "clock_ticks",
+  "seats",
+  "markers",
+  "poses",
+  "scene",
+  "digest",
+] as const;
+
+export type DecisionName =
+  | "ready"
+  | "start"
+  | "halt"
+  | "resume"
+  | "restart"
+  | "freeze"
+  | "unfreeze"
+  | "adjust"
+  | "set"
+  | "take-back"
+  | "clock"
+  | "abort"
+  | "declare"
+  | "official"
+  | "next";
+
+export type Decision =
+  | { type: "ready"; seat: string }
+  | { type: "start" }
+  | { type: "halt" }
+  | { type: "resume" }
+  | { type: "restart"; seat: string }
+  | { type: "freeze"; seat: string; seconds: number }
+  | { type: "unfreeze"; seat: string }
+  | { type: "adjust"; seat: string; points: number }
+  | { type: "set"; marker: string; state: string }
+  | { type: "take-back"; event: number; dry_run?: boolean }
+  | { type: "clock"; seconds: number }
+  | { type: "abort" }
+  | { type: "declare"; winner: string }
+  | { type: "official" }
+  | { type: "next" };

@@ -1,0 +1,170 @@
+/** Messages between the gateway and a page: a kind byte, then msgpack (docs/gateway.md). */
+
+import { decode, encode } from "@msgpack/msgpack";
+import {
+  type DecisionName,
+  type Event,
+  FRAME_FIELDS,
+  type Frame,
+  type Health,
+  type Mistake,
+  type Scene,
+  SEATFRAME_FIELDS,
+  type SeatFrame,
+  type Sheet,
+} from "./wire.gen";
+
+export * from "./wire.gen";
+
+/** What the gateway says first. */
+export interface Welcome {
+  protocol: number;
+  version: string;
+  courts: string[];
+  court: string | null;
+  can_act: boolean;
+  home: "venue" | "player" | "practice";
+  prefill: Prefill | null;
+}
+
+/** What was named on the command line that started the gateway. */
+export interface Prefill {
+  seat: string;
+  name: string;
+  has_token: boolean;
+  files: string[];
+}
+
+/** The gateway's own link to the court. */
+export interface Link {
+  court: string;
+  connected: boolean;
+  silent_s: number;
+  text: string;
+}
+
+/** The seat that this page holds. */
+export interface HeldSeat {
+  seat: string;
+  index: number;
+  hold: string;
+  reason: string;
+  round_trip_ms: number | null;
+}
+
+/** Who acts as referee through this gateway. */
+export interface RefereeState {
+  acting: string | null;
+  mine: boolean;
+}
+
+interface GoodReply {
+  id: number;
+  ok: true;
+  value: unknown;
+}
+
+interface BadReply {
+  id: number;
+  ok: false;
+  error: string;
+  mistakes: Mistake[];
+}
+
+/** A message from the gateway. */
+export type Message =
+  | { kind: "welcome"; body: Welcome }
+  | { kind: "frame"; body: Frame }
+  | { kind: "event"; body: Event }
+  | { kind: "sheet"; body: Sheet }
+  | { kind: "scene"; body: Scene; hash: Uint8Array }
+  | { kind: "health"; body: Health }
+  | { kind: "link"; body: Link }
+  | { kind: "seat"; body: HeldSeat }
+  | { kind: "reply"; body: GoodReply | BadReply }
+  | { kind: "referee"; body: RefereeState };
+
+/** The kinds by their byte; 0 is none. */
+const KINDS = [
+  "",
+  "welcome",
+  "frame",
+  "event",
+  "sheet",
+  "scene",
+  "health",
+  "link",
+  "seat",
+  "reply",
+  "referee",
+] as const;
+
+const SCENE_HASH_BYTES = 8;
+
+/** What a page asks for; each request is answered by a reply with its id. */
+export type Request =
+  | "watch"
+  | "rate"
+  | "ping"
+  | "join"
+  | "ready"
+  | "leave"
+  | "key"
+  | "enter"
+  | "take_over"
+  | "decide";
+
+/** A file on its way to the court. */
+export interface SentFile {
+  name: string;
+  data: Uint8Array;
+}
+
+/** Why a decision is not legal now, by its name; "" if it is. */
+export type Legality = Partial<Record<DecisionName, string>>;
+
+/** Read a message; null for a kind of a newer gateway. */
+export function readMessage(bytes: Uint8Array): Message | null {
+  const kind = KINDS[bytes[0] ?? 0];
+  if (!kind) return null;
+  let rest = bytes.subarray(1);
+  if (kind === "scene") {
+    const hash = rest.slice(0, SCENE_HASH_BYTES);
+    rest = rest.subarray(SCENE_HASH_BYTES);
+    return { kind, hash, body: decode(rest) as Scene };
+  }
+  const body = kind === "frame" ? readFrame(rest) : decode(rest);
+  return { kind, body } as Message;
+}
+
+/** Read a frame: an array on the wire. */
+export function readFrame(bytes: Uint8Array): Frame {
+  const frame = named<Frame>(decode(bytes) as unknown[], FRAME_FIELDS);
+  frame.seats = (frame.seats as unknown as unknown[][]).map((seat) =>
+    named<SeatFrame>(seat, SEATFRAME_FIELDS),
+  );
+  return frame;
+}
+
+/** Write a request. */
+export function writeRequest(id: number, what: Request, fields: object): Uint8Array<ArrayBuffer> {
+  return encode({ id, do: what, ...fields });
+}
+
+/** The states of `count` markers, from two bits each. */
+export function unpackStates(packed: Uint8Array, count: number): number[] {
+  const states = new Array<number>(count);
+  for (let index = 0; index < count; index++) {
+    states[index] = ((packed[index >> 2] ?? 0) >> ((index & 3) * 2)) & 3;
+  }
+  return states;
+}
+
+/** Whether two runs of bytes are the same. */
+export function sameBytes(one: Uint8Array, other: Uint8Array): boolean {
+  return one.length === other.length && one.every((byte, index) => byte === other[index]);
+}
+
+function named<T>(values: unknown[], names: readonly string[]): T {
+  return Object.fromEntries(names.map((name, index) => [name, values[index]])) as T;
+}

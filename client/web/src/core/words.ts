@@ -1,0 +1,111 @@
+/** Clocks, scores and states in words, the same on every page. */
+
+import { t } from "../i18n";
+import type { Match } from "./court";
+import { type Frame, Phase, SeatFlag, type SeatFrame, type Sheet } from "./wire";
+
+export const BEATS_PER_S = 50;
+
+/** A time of the clock, "2:05": the second that has begun counts. */
+export function clock(ticks: number): string {
+  const seconds = Math.ceil(Math.max(0, ticks) / BEATS_PER_S);
+  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+}
+
+/** The time played, as logs have it: "2:04.6". */
+export function logClock(ticks: number): string {
+  const tenths = Math.floor((Math.max(0, ticks) * 10) / BEATS_PER_S);
+  const seconds = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");
+  return `${Math.floor(tenths / 600)}:${seconds}`;
+}
+
+/** Ticks that are left, or were played where a match has no end. */
+export function clockTicks(frame: Frame, sheet: Sheet): number {
+  const lasts = Math.round(sheet.duration_s * BEATS_PER_S);
+  return lasts ? lasts - frame.clock_ticks : frame.clock_ticks;
+}
+
+/** A team's name; its seat's where nobody has joined. */
+export function team(sheet: Sheet, index: number): string {
+  const seat = sheet.seats[index];
+  return seat ? seat.team || seatName(seat.id) : "";
+}
+
+/** A seat's name in the reader's language. */
+export function seatName(id: string): string {
+  return id === "left" || id === "right" || id === "solo" ? t(`seat.${id}`) : id;
+}
+
+/** Why a seat's keys do nothing now, or that it is not heard; "" if all is well. */
+export function seatState(seat: SeatFrame): string {
+  const seconds = Math.ceil(seat.locked_ticks / BEATS_PER_S);
+  if (seat.flags & SeatFlag.FROZEN) return t("seat.frozen", { seconds });
+  if (seat.locked_ticks) return t("seat.locked", { seconds });
+  return seat.flags & SeatFlag.SILENT ? t("seat.silent") : "";
+}
+
+/** The seat that is ahead, by points; null if level. */
+export function leader(frame: Frame): number | null {
+  const [left, right] = frame.seats.map((seat) => seat.score);
+  if (left === undefined || right === undefined || left === right) return null;
+  return left > right ? 0 : 1;
+}
+
+/** What the phase means for those who look on, and what comes next. */
+export function hint(match: Match): string {
+  const frame = match.frame.value;
+  const sheet = match.sheet.value;
+  if (!frame || !sheet) return "";
+  switch (frame.phase) {
+    case Phase.CREATED:
+      return t("hint.opens");
+    case Phase.LOBBY:
+      return missing(frame, sheet);
+    case Phase.READY:
+      return t("hint.start");
+    case Phase.COUNTDOWN:
+      return t("hint.countdown", { seconds: Math.ceil(frame.countdown_beats / BEATS_PER_S) });
+    case Phase.PLAYING: {
+      if (sheet.seats.length < 2) return "";
+      const ahead = leader(frame);
+      return ahead === null ? t("hint.level") : t("hint.leads", { team: team(sheet, ahead) });
+    }
+    case Phase.HALTED:
+      return t("hint.halted");
+    case Phase.FINISHED:
+      return t("hint.finished");
+    case Phase.OFFICIAL:
+      return outcome(match);
+    default:
+      return t("hint.void");
+  }
+}
+
+/** Who has won, by the newest word on it: the referee's, else the rules'; "" while open. */
+export function outcome(match: Match): string {
+  const sheet = match.sheet.value;
+  const winner = winnerOf(match);
+  if (!sheet || winner === null) return "";
+  if (winner === "draw") return t("hint.draw");
+  const index = sheet.seats.findIndex((seat) => seat.id === winner);
+  return t("hint.wins", { team: team(sheet, index) });
+}
+
+/** The winner's seat id or "draw"; null while nothing is decided. */
+export function winnerOf(match: Match): string | null {
+  for (const event of match.events.value.toReversed()) {
+    const given = event.data.arguments as { winner?: string } | undefined;
+    if (event.data.decision === "declare") return given?.winner ?? null;
+    if (event.kind === "result") return String(event.data.winner);
+  }
+  return null;
+}
+
+function missing(frame: Frame, sheet: Sheet): string {
+  for (const [index, seat] of frame.seats.entries()) {
+    const name = team(sheet, index);
+    if (!(seat.flags & SeatFlag.JOINED)) return t("hint.joining", { seat: name });
+    if (!(seat.flags & SeatFlag.READY)) return t("hint.notReady", { team: name });
+  }
+  return t("hint.opens");
+}

@@ -1,0 +1,25 @@
+/** The path says which page; each loads only what it needs. */
+
+import { effect } from "@preact/signals";
+import { type ComponentType, render } from "preact";
+import { language } from "./i18n";
+import "./style.css";
+
+const PAGES: Record<string, () => Promise<{ default: ComponentType }>> = {
+  "/": () => import("./pages/home"),
+  "/play": () => import("./pages/play"),
+  "/practice": () => import("./pages/practice"),
+  "/referee": () => import("./pages/referee"),
+  "/watch": () => import("./pages/watch"),
+  "/overlay": () => import("./pages/overlay"),
+  "/replay": () => import("./pages/replay"),
+};
+
+effect(() => {
+  document.documentElement.lang = language.value;
+});
+
+const path = location.pathname.replace(/\/+$/, "") || "/";
+const { default: Page } = await (PAGES[path] ?? PAGES["/"]!)();
+document.body.dataset.page = path.slice(1) || "home";
+render(<Page />, document.getElementById("page")!);

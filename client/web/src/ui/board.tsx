@@ -1,0 +1,179 @@
+/** The field from above as a drawing: crisp at any size, and a way to point at things. */
+
+import { useSignal } from "@preact/signals";
+import { useEffect, useMemo } from "preact/hooks";
+import { type Match, markerStates } from "../core/court";
+import { floorOf, type Place, places } from "../core/poses";
+import { MARKER_STATES, type MarkerInfo, type Sheet } from "../core/wire";
+import { seatName, team } from "../core/words";
+import { t } from "../i18n";
+
+interface Props {
+  match: Match;
+  /** Something was clicked: a marker's or a seat's index. */
+  onPick?: (what: { marker?: number; seat?: number }) => void;
+  /** Index of the marker or seat that is chosen. */
+  picked?: { marker?: number; seat?: number } | null;
+}
+
+const LOOK_MS = 80;
+const ROBOT_M = 0.1;
+const NEUTRAL = "#5d6674";
+const DOWN = "#3b424d";
+
+export function Board({ match, onPick, picked }: Props) {
+  const states = useMemo(() => markerStates(match), [match]).value;
+  const robots = useRobots(match);
+  const sheet = match.sheet.value;
+  if (!sheet) return null;
+  const floor = floorOf(match.scene.value, sheet);
+  const box = [
+    floor.xM - floor.halfXM,
+    -floor.yM - floor.halfYM,
+    2 * floor.halfXM,
+    2 * floor.halfYM,
+  ];
+  const pickable = onPick ? "button" : undefined;
+  return (
+    <div class="board">
+      <svg viewBox={box.join(" ")} role="group" aria-label={t("board.title")}>
+        <defs>
+          <pattern
+            id="stripes"
+            width="0.05"
+            height="0.05"
+            patternUnits="userSpaceOnUse"
+            patternTransform="rotate(45)"
+          >
+            <rect width="0.05" height="0.05" fill="var(--seat-1)" />
+            <rect width="0.02" height="0.05" fill="rgb(0 0 0 / 30%)" />
+          </pattern>
+        </defs>
+        <rect x={box[0]} y={box[1]} width={box[2]} height={box[3]} fill="#171e28" />
+        {sheet.markers.map((marker, index) => (
+          <g
+            key={marker.name}
+            transform={`translate(${marker.x_m} ${-marker.y_m})`}
+            {...(onPick && { role: pickable, tabIndex: 0 })}
+            aria-label={`${marker.name}: ${MARKER_STATES[states[index] ?? 0]}`}
+            onClick={() => onPick?.({ marker: index })}
+            onKeyDown={(event) => event.key === "Enter" && onPick?.({ marker: index })}
+            style={onPick ? "cursor: pointer" : ""}
+          >
+            <Marker
+              marker={marker}
+              state={states[index] ?? 0}
+              sheet={sheet}
+              picked={picked?.marker === index}
+            />
+          </g>
+        ))}
+        {robots.map((place, seat) => (
+          <Robot
+            key={seat}
+            place={place}
+            seat={seat}
+            sheet={sheet}
+            picked={picked?.seat === seat}
+            {...(onPick && { onPick: () => onPick({ seat }) })}
+          />
+        ))}
+      </svg>
+    </div>
+  );
+}
+
+interface MarkerProps {
+  marker: MarkerInfo;
+  state: number;
+  sheet: Sheet;
+  picked: boolean;
+}
+
+function Marker({ marker, state, sheet, picked }: MarkerProps) {
+  const radius = Math.max(0.035, marker.radius_m);
+  const seat = state > 0 && state <= sheet.seats.length ? state - 1 : null;
+  const fill =
+    seat === null
+      ? MARKER_STATES[state] === "down"
+        ? DOWN
+        : NEUTRAL
+      : seat === 1
+        ? "url(#stripes)"
+        : "var(--seat-0)";
+  const text =
+    seat !== null
+      ? sheet.seats[seat]!.id.slice(0, 1).toUpperCase()
+      : MARKER_STATES[state] === "down"
+        ? "×"
+        : marker.points > 1
+          ? String(marker.points)
+          : "";
+  return (
+    <>
+      <title>{`${marker.name}${marker.points > 1 ? `, ${marker.points}` : ""}`}</title>
+      <circle
+        r={radius}
+        fill={fill}
+        stroke={picked ? "#fff" : "rgb(255 255 255 / 25%)"}
+        stroke-width={picked ? 0.025 : 0.008}
+      />
+      <text
+        y={radius * 0.36}
+        text-anchor="middle"
+        font-size={radius}
+        font-weight="700"
+        fill={seat === 1 ? "var(--ink-1)" : "#fff"}
+      >
+        {text}
+      </text>
+    </>
+  );
+}
+
+interface RobotProps {
+  place: Place;
+  seat: number;
+  sheet: Sheet;
+  picked: boolean;
+  onPick?: () => void;
+}
+
+function Robot({ place, seat, sheet, picked, onPick }: RobotProps) {
+  const degrees = (-place.headingRad * 180) / Math.PI;
+  const name = `${team(sheet, seat)} (${seatName(sheet.seats[seat]?.id ?? "")})`;
+  return (
+    <g
+      transform={`translate(${place.xM} ${-place.yM}) rotate(${degrees})`}
+      {...(onPick && { role: "button", tabIndex: 0, onClick: onPick })}
+      aria-label={name}
+      onKeyDown={(event) => event.key === "Enter" && onPick?.()}
+      style={onPick ? "cursor: pointer" : ""}
+    >
+      <title>{name}</title>
+      <circle
+        r={ROBOT_M}
+        fill={`var(--seat-${seat})`}
+        stroke={picked ? "var(--warn)" : "#fff"}
+        stroke-width={0.02}
+      />
+      <path d="M 0.055 0 L -0.03 0.045 L -0.012 0 L -0.03 -0.045 Z" fill={`var(--ink-${seat})`} />
+    </g>
+  );
+}
+
+/** The robots' places, some times a second. */
+function useRobots(match: Match): Place[] {
+  const found = useSignal<Place[]>([]);
+  useEffect(() => {
+    const timer = setInterval(() => {
+      const frame = match.frame.peek();
+      const sheet = match.sheet.peek();
+      if (!frame || !sheet) return;
+      const now = places(frame, sheet);
+      if (JSON.stringify(now) !== JSON.stringify(found.peek())) found.value = now;
+    }, LOOK_MS);
+    return () => clearInterval(timer);
+  }, [match, found]);
+  return found.value;
+}

@@ -1,0 +1,35 @@
+/** The events of a match, the newest first. */
+
+import type { ComponentChildren } from "preact";
+import type { Match } from "../core/court";
+import type { Event } from "../core/wire";
+import { logClock } from "../core/words";
+import { said, t } from "../i18n";
+
+interface Props {
+  match: Match;
+  /** How many to show. */
+  most?: number;
+  /** Only these. */
+  only?: (event: Event) => boolean;
+  /** What stands behind an event, such as a button. */
+  extra?: (event: Event) => ComponentChildren;
+}
+
+export function EventLog({ match, most = 200, only, extra }: Props) {
+  const events = match.events.value.filter((event) => !only || only(event)).slice(-most);
+  if (!events.length) return <p class="muted">{t("log.empty")}</p>;
+  return (
+    <ol class="log" aria-live="polite">
+      {events.toReversed().map((event) => (
+        <li key={event.number} data-kind={event.kind}>
+          <time>{logClock(event.clock_ticks)}</time>
+          <span>
+            {said(event.text)}
+            {extra?.(event)}
+          </span>
+        </li>
+      ))}
+    </ol>
+  );
+}
