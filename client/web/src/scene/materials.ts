@@ -1,0 +1,109 @@
+/** Materials: team patterns, and a floor with fine lines. */
+
+import {
+  Color,
+  type Material,
+  MeshLambertMaterial,
+  MeshStandardMaterial,
+  type WebGLProgramParametersWithUniforms,
+} from "three";
+
+/** Of each instance: kind of pattern (palette.ts), and its period [m]. */
+const VERTEX_HEAD = `
+attribute vec2 pattern;
+attribute vec3 patternColour;
+varying vec3 vAt;
+varying vec3 vScale;
+varying vec2 vPattern;
+varying vec3 vPatternColour;
+`;
+
+// In metres of the shape itself, so that the pattern rides on it.
+const VERTEX_BODY = `
+vScale = vec3(length(instanceMatrix[0].xyz), length(instanceMatrix[1].xyz), length(instanceMatrix[2].xyz));
+vAt = position * vScale;
+vPattern = pattern;
+vPatternColour = patternColour;
+`;
+
+const FRAGMENT_HEAD = `
+varying vec3 vAt;
+varying vec3 vScale;
+varying vec2 vPattern;
+varying vec3 vPatternColour;
+float inside(float distance) { // smooth over one pixel
+  return clamp(0.5 - distance / max(fwidth(distance), 1e-6), 0.0, 1.0);
+}
+`;
+
+const FRAGMENT_BODY = `
+if (vPattern.x > 0.5) {
+  float part = 0.0;
+  if (vPattern.x < 1.5) {
+    part = inside(abs(fract((vAt.x + vAt.y + vAt.z) * 0.7071 / vPattern.y) - 0.5) * vPattern.y - 0.2 * vPattern.y);
+  } else if (vPattern.x < 2.5) {
+    vec3 cell = (fract(vAt / vPattern.y + 0.5) - 0.5) * vPattern.y;
+    part = inside(length(cell) - 0.3 * vPattern.y);
+  } else {
+    vec3 edge = vScale - abs(vAt);
+    part = inside(min(edge.x, edge.z) - vPattern.y);
+  }
+  diffuseColor.rgb = mix(diffuseColor.rgb, vPatternColour, part);
+}
+`;
+
+/** How a kind of thing shines. */
+export interface Finish {
+  roughness: number;
+  metalness: number;
+}
+
+/** A material for instances with patterns. */
+export function patterned(fine: boolean, finish: Finish): Material {
+  const material = fine ? new MeshStandardMaterial(finish) : new MeshLambertMaterial();
+  return patch(material, VERTEX_HEAD, VERTEX_BODY, FRAGMENT_HEAD, FRAGMENT_BODY, "pattern");
+}
+
+/** The floor: lines each 0.1 m, stronger each 0.5 m. */
+export function floor(fine: boolean, colour: Color): Material {
+  const material = fine
+    ? new MeshStandardMaterial({ color: colour, roughness: 0.82, metalness: 0.05 })
+    : new MeshLambertMaterial({ color: colour });
+  if (!fine) return material;
+  return patch(
+    material,
+    "varying vec2 vFloor;",
+    "vFloor = (modelMatrix * vec4(position, 1.0)).xy;",
+    `varying vec2 vFloor;
+float grid(float step) {
+  vec2 at = vFloor / step;
+  vec2 wide = max(fwidth(at), 1e-6);
+  vec2 near = abs(fract(at - 0.5) - 0.5) / wide;
+  return (1.0 - min(min(near.x, near.y), 1.0)) * clamp(0.35 / max(wide.x, wide.y) - 0.4, 0.0, 1.0);
+}`,
+    "diffuseColor.rgb *= 1.0 + 0.3 * grid(0.1) + 0.45 * grid(0.5);",
+    "floor",
+  );
+}
+
+function patch<M extends Material>(
+  material: M,
+  vertexHead: string,
+  vertexBody: string,
+  fragmentHead: string,
+  fragmentBody: string,
+  name: string,
+): M {
+  material.onBeforeCompile = (shader: WebGLProgramParametersWithUniforms) => {
+    shader.vertexShader = `${vertexHead}${shader.vertexShader.replace(
+      "#include <begin_vertex>",
+      `#include <begin_vertex>\n${vertexBody}`,
+    )}`;
+    shader.fragmentShader = `${fragmentHead}${shader.fragmentShader.replace(
+      "#include <color_fragment>",
+      `#include <color_fragment>\n${fragmentBody}`,
+    )}`;
+  };
+  material.customProgramCacheKey = () => name;
+  return material;
+}
