@@ -7,30 +7,41 @@ RUN := $(BIN)/python -m
 PIP := $(RUN) pip --disable-pip-version-check --quiet
 ARGS ?=
 
-.PHONY: help demo test format lint type walls check build bench wheel-smoke clean
+PAGES := client/lacoc_client/pages/index.html
+PAGES_FROM := $(shell find client/web/src client/web/public -type f) \
+	$(addprefix client/web/,index.html package-lock.json vite.config.ts)
+NPM := PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix client/web --loglevel=error
+
+.PHONY: help demo test format lint type walls check build bench wheel-smoke web clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list.
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/\1	\2/p' Makefile | expand -t 14
 
-demo: .venv/.server ## See a whole match: a court, two bots and a referee over the network.
+demo: .venv/.server $(PAGES) ## See a whole match: a court, two bots and a referee over the network.
 	$(BIN)/lacoc demo $(ARGS)
 
-test: .venv/.test ## Run the tests.
+test: .venv/.test $(PAGES) ## Run the tests.
 	$(RUN) pytest $(ARGS)
 
-format: .venv/.lint ## Format the code.
+web: .venv/.web ## Build the pages and build them again whenever they change.
+	$(NPM) run build -- --watch
+
+format: .venv/.lint .venv/.web ## Format the code.
 	$(RUN) ruff format
 	$(RUN) ruff check --fix
+	$(NPM) run format
 
-lint: .venv/.lint ## Check format and style.
+lint: .venv/.lint .venv/.web ## Check format and style.
 	$(RUN) ruff format --check
 	$(RUN) ruff check
 	$(RUN) codespell_lib
 	$(RUN) validate_pyproject pyproject.toml
+	$(NPM) run lint
 
-type: .venv/.lint ## Check types.
+type: .venv/.lint .venv/.web ## Check types.
 	$(RUN) mypy
+	$(NPM) run type
 
 walls: .venv/.lint ## Check who imports whom (docs/architecture.md).
 	$(BIN)/lint-imports
@@ -48,7 +59,7 @@ bench: .venv/.test ## Measure the court against bare physics and bare Zenoh.
 	$(BIN)/python -m benchmarks $(ARGS)
 
 clean: ## Remove everything that was made.
-	rm -rf .venv build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf .venv build dist client/web/node_modules client/lacoc_client/pages .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # One stamp for each set of packages, out of date when pyproject.toml is newer.
@@ -57,6 +68,16 @@ clean: ## Remove everything that was made.
 	$(PYTHON) -m venv .venv
 	$(PIP) install --upgrade "pip>=25.1"
 	$(PIP) install --editable ".[server]"
+	touch $@
+
+# Installing builds them; this is for those who change them.
+$(PAGES): $(PAGES_FROM) | .venv/.server
+	$(MAKE) .venv/.web
+	$(NPM) run build
+
+.venv/.web: client/web/package-lock.json | .venv/.server
+	$(PIP) install --group web
+	$(NPM) ci --no-audit --no-fund
 	touch $@
 
 .venv/.test .venv/.lint .venv/.build: .venv/.%: .venv/.server
