@@ -55,7 +55,7 @@ def fetch(
     try:
         return session.ask(key, payload, timeout_s)
     except NoReply:
-        raise NoCourt(_no_answer(session, keys.court)) from None
+        raise NoCourt(no_answer(session, keys.court)) from None
     except Refused as refused:
         refusal = understand(refused.payload, Refusal)
         if refusal.mistakes:
@@ -78,7 +78,8 @@ def understand(payload: bytes, kind: type[T]) -> T:
         ) from None
 
 
-def _no_answer(session: Session, court: str) -> str:
+def no_answer(session: Session, court: str) -> str:
+    """Say why a court does not answer, and which courts there are."""
     courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     address = ", ".join(session.endpoints)
     if court in courts:

@@ -1,6 +1,7 @@
 """Hold a seat: join, press keys, see what became of them, and come back after a break."""
 
 import time
+from collections.abc import Callable
 from enum import Enum
 from typing import NamedTuple
 
@@ -79,6 +80,7 @@ class Controller:
         robot: a robot file; None: the contest's robot.
         postures: a Loco-data file.
         locomotion: a LocoTra-data file; neither: the sample gait of the contest's robot.
+        notify: called on Zenoh's thread when a frame has come; it must return at once.
 
     Raises:
         UserError: if no such court answers, or it has no such seat.
@@ -95,8 +97,9 @@ class Controller:
         robot: SentFile | None = None,
         postures: SentFile | None = None,
         locomotion: SentFile | None = None,
+        notify: Callable[[], None] | None = None,
     ) -> None:
-        self.view = Spectator(session, court)
+        self.view = Spectator(session, court, notify)
         """All that anybody sees of the court: frames, events, sheet, health."""
         self.seat = seat
         self._session = session
@@ -117,6 +120,8 @@ class Controller:
         self._sent_s = 0.0
         self._pressed: dict[int, _Press] = {}
         self._refused: list[RefusedKey] = []
+        self.repeating = True
+        """Whether `poll` repeats the command; False where the one who steers has gone."""
         self.hold = Hold.NOT_JOINED
         self.reason = ""
         """Why the seat is not held, where there is more to say."""
@@ -227,7 +232,7 @@ class Controller:
             self._compare(frame.seats[self.index])
         if self.hold in (Hold.HELD, Hold.LOST):
             self._check_hold()
-        if self.hold is Hold.HELD and now_s - self._sent_s >= REPEAT_S:
+        if self.hold is Hold.HELD and self.repeating and now_s - self._sent_s >= REPEAT_S:
             self._commands.put(self._command)
             self._sent_s = now_s
         return frame

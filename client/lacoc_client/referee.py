@@ -3,7 +3,7 @@
 from lacoc_client.asking import ask
 from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import Keys
-from lacoc_shared.messages import DecisionReply, DecisionRequest
+from lacoc_shared.messages import DecisionReply, DecisionRequest, Done, Enter
 from lacoc_shared.session import Session
 
 
@@ -20,6 +20,14 @@ class RefereeClient:
         self._session = session
         self._keys = Keys(court)
         self._token = token
+
+    def enter(self) -> None:
+        """Show the token; nothing is decided.
+
+        Raises:
+            UserError: if it is not a referee's token of the court, or no court answers.
+        """
+        ask(self._session, self._keys, self._keys.enter, Enter(token=self._token), Done)
 
     def decide(self, decision: Decision, reason: str, by: str) -> DecisionReply:
         """Decide; the reply comes when the decision is on disk.

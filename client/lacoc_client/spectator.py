@@ -1,6 +1,7 @@
 """Watch a court: frames, events from the first on, the sheet and the scene."""
 
 import time
+from collections.abc import Callable
 
 import msgspec
 
@@ -28,15 +29,18 @@ class Spectator:
     Args:
         session: an open client session.
         court: the court's name.
+        notify: called on Zenoh's thread when a frame has come; it must return at once.
 
     Raises:
         UserError: if no such court answers, or it speaks another version of the protocol.
     """
 
-    def __init__(self, session: Session, court: str) -> None:
+    def __init__(
+        self, session: Session, court: str, notify: Callable[[], None] | None = None
+    ) -> None:
         self.keys = Keys(court)
         self._session = session
-        self._frames = session.mailbox(self.keys.frame, 1)
+        self._frames = session.mailbox(self.keys.frame, 1, notify)
         self._sheets = session.history_mailbox(self.keys.sheet, 1)
         self._healths = session.mailbox(self.keys.health, 1)
         self._events = session.history_mailbox(self.keys.event, _EVENTS_DEPTH)

@@ -14,7 +14,7 @@ from lacoc_shared import codec, seal
 from lacoc_shared.decisions import DECISIONS, Decision
 from lacoc_shared.inputs import Decide
 from lacoc_shared.keyspace import DECISION_MAX_BYTES
-from lacoc_shared.messages import DecisionRequest, Refusal
+from lacoc_shared.messages import DecisionRequest, Done, Enter, Refusal
 
 _NUMBER_MAX = 1e6  # seconds, points, an event's number
 
@@ -43,6 +43,14 @@ class DecisionDesk:
         self.refused: Counter[str] = Counter()
         """Refusals by reason."""
 
+    def enter(self, payload: bytes) -> Done | Refusal:
+        """Judge a token that is only shown.
+
+        Args:
+            payload: an `Enter`, perhaps.
+        """
+        return self._check_token(payload, Enter) or Done()
+
     def decision(self, name: str, payload: bytes) -> Decide | Refusal:
         """Judge a request.
 
@@ -50,12 +58,9 @@ class DecisionDesk:
             name: the decision's name in the key expression it came under.
             payload: a `DecisionRequest`, perhaps.
         """
-        try:
-            token = codec.decode(payload, _Token, DECISION_MAX_BYTES).token
-        except codec.BadMessage as error:
-            return self._refuse(Why.BAD_BYTES, f"The decision was not understood: {error}.")
-        if not any(seal.verify_token(token, known) for known in self._referee_hashes):
-            return self._refuse(Why.WRONG_TOKEN, "This is not a referee's token of this court.")
+        refusal = self._check_token(payload, _Token)
+        if refusal is not None:
+            return refusal
         try:
             found = codec.decode(payload, _DecisionName).decision.type
             if found not in DECISIONS or found != name:
@@ -73,6 +78,15 @@ class DecisionDesk:
                 Why.OUT_OF_RANGE, f"A number of the decision {name} is beyond all reason."
             )
         return Decide(request.by.strip(), request.reason, request.decision)
+
+    def _check_token(self, payload: bytes, kind: type[_Token] | type[Enter]) -> Refusal | None:
+        try:
+            token = codec.decode(payload, kind, DECISION_MAX_BYTES).token
+        except codec.BadMessage as error:
+            return self._refuse(Why.BAD_BYTES, f"The request was not understood: {error}.")
+        if not any(seal.verify_token(token, known) for known in self._referee_hashes):
+            return self._refuse(Why.WRONG_TOKEN, "This is not a referee's token of this court.")
+        return None
 
     def _refuse(self, why: Why, reason: str) -> Refusal:
         self.refused[why] += 1

@@ -13,7 +13,7 @@ from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.inbox import COMMANDS_PER_BEAT, Inbox
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
-from lacoc_shared.keyspace import Keys
+from lacoc_shared.keyspace import ENTER, Keys
 from lacoc_shared.messages import (
     DecisionReply,
     Done,
@@ -38,7 +38,7 @@ _FETCHES_PER_BEAT = 8
 _EVENTS_KEPT = 1024
 
 
-_Judge = Callable[[Request], Input | Refusal]
+_Judge = Callable[[Request], Input | Done | Refusal]
 
 
 class Arrival(NamedTuple):
@@ -150,6 +150,8 @@ class CourtNetwork:
             judged = judge(request)
             if isinstance(judged, Refusal):
                 request.refuse(encode(judged))
+            elif isinstance(judged, Done):  # nothing that concerns the match
+                request.reply(encode(judged))
             else:
                 yield Arrival(judged, partial(self._answer, request, judged))
                 return
@@ -166,8 +168,11 @@ class CourtNetwork:
             self._inbox.left(judged.seat)
         request.reply(encode(reply))
 
-    def _judge_decision(self, request: Request) -> Decide | Refusal:
-        return self._decision_desk.decision(request.key.rpartition("/")[2], request.payload)
+    def _judge_decision(self, request: Request) -> Decide | Done | Refusal:
+        name = request.key.rpartition("/")[2]
+        if name == ENTER:
+            return self._decision_desk.enter(request.payload)
+        return self._decision_desk.decision(name, request.payload)
 
 
 def _seat_judge(judge: Callable[[int, bytes], Input | Refusal], seat: int) -> _Judge:

@@ -9,6 +9,8 @@ EVERY_COURT = "lacoc/*/live/court"
 """Liveliness: the announcements of all courts that can be reached."""
 COMMAND_MAX_BYTES = 1024
 """A longer command, ready or leave is not read."""
+ENTER = "enter"
+"""In the place of a decision's name: the token is only shown."""
 DECISION_MAX_BYTES = 4096
 """A longer decision of a referee is not read."""
 JOIN_MAX_BYTES = 65_536
@@ -75,6 +77,11 @@ class Keys:
     def request(self, seat: str, what: str) -> str:
         """Controller to court, with a reply: `what` is join, ready or leave."""
         return f"{self.root}/seat/{seat}/{what}"
+
+    @property
+    def enter(self) -> str:
+        """Referee to court, with a reply: is this a referee's token?"""
+        return f"{self.root}/referee/{ENTER}"
 
     def decision(self, name: str) -> str:
         """Referee to court, with a reply; `*` for all decisions."""

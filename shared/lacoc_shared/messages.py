@@ -138,6 +138,12 @@ class Refusal(msgspec.Struct, frozen=True):
     mistakes: tuple[Mistake, ...] = ()
 
 
+class Enter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Show a referee's token; nothing is decided."""
+
+    token: str
+
+
 class DecisionRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A referee decides."""
 

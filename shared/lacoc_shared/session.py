@@ -12,7 +12,7 @@ import os
 import threading
 import time
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Self
 
 import zenoh
@@ -69,14 +69,17 @@ class Mail(NamedTuple):
 class Mailbox:
     """The newest messages of a subscription, filled while its one reader does other things."""
 
-    def __init__(self, depth: int) -> None:
+    def __init__(self, depth: int, notify: Callable[[], None] | None = None) -> None:
         self._mails: deque[Mail] = deque(maxlen=depth)
         self._arrived = threading.Event()
+        self._notify = notify
 
     def deliver(self, sample: zenoh.Sample) -> None:
         """Take a message in; runs on Zenoh's thread."""
         self._mails.append(Mail(sample.payload.to_bytes(), time.monotonic()))
         self._arrived.set()
+        if self._notify is not None:
+            self._notify()
 
     def take(self) -> Mail | None:
         """The oldest message that waits, or None."""
@@ -175,18 +178,27 @@ class Session:
         channel: RingChannel[zenoh.Sample] = RingChannel(depth)
         return Ring(self._session.declare_subscriber(key, channel))
 
-    def mailbox(self, key: str, depth: int) -> Mailbox:
-        """Subscribe; the owner may wait, and the newest `depth` messages wait for it."""
-        mailbox = Mailbox(depth)
+    def mailbox(self, key: str, depth: int, notify: Callable[[], None] | None = None) -> Mailbox:
+        """Subscribe; the owner may wait, and the newest `depth` messages wait for it.
+
+        Args:
+            key: key expression.
+            depth: how many messages wait.
+            notify: called on Zenoh's thread when a message has come; it must return at once.
+        """
+        mailbox = Mailbox(depth, notify)
         self._session.declare_subscriber(key, Callback(mailbox.deliver, indirect=False))
         return mailbox
 
-    def history_mailbox(self, key: str, depth: int) -> Mailbox:
+    def history_mailbox(
+        self, key: str, depth: int, notify: Callable[[], None] | None = None
+    ) -> Mailbox:
         """Subscribe to a `history_publisher`: what it sent before comes first, and nothing lacks.
 
         A publisher that comes back (a restarted court) is noticed, and its history comes too.
+        Arguments as for a mailbox.
         """
-        mailbox = Mailbox(depth)
+        mailbox = Mailbox(depth, notify)
         zenoh.ext.declare_advanced_subscriber(
             self._session,
             key,

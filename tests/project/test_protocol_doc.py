@@ -95,6 +95,7 @@ def test_every_key_expression() -> None:
         keys.health,
         keys.command("{seat}"),
         *(keys.request("{seat}", what) for what in ("join", "ready", "leave")),
+        keys.enter,
         keys.decision("{decision}"),
         keys.alive,
     }

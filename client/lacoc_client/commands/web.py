@@ -1,0 +1,117 @@
+"""`lacoc web`: the pages of a contest's courts, for everybody at the venue."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lacoc_client.gateway import server
+from lacoc_client.gateway.files import NOT_BUILT, PageFiles
+from lacoc_client.gateway.home import VIEWERS_MOST, Home, lasting_key, new_key
+from lacoc_shared import contest as contests
+from lacoc_shared import options, screen
+from lacoc_shared.contest import Contest
+from lacoc_shared.mistakes import UserError
+
+app = typer.Typer()
+
+_KEY_LEAST = 12
+
+
+@app.command(name="web")
+def web_command(
+    contest: options.ContestFile = None,
+    court: options.CourtName = None,
+    connect: options.Connect = None,
+    listen: Annotated[
+        str,
+        typer.Option(
+            envvar="LACOC_WEB_LISTEN",
+            metavar="HOST:PORT",
+            help="Where to serve the pages; 0.0.0.0:8080 lets everybody in the room see them.",
+        ),
+    ] = server.LOOPBACK,
+    host: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="A name by which browsers may call this machine, besides its own; may be given "
+            "again.",
+        ),
+    ] = None,
+    key: Annotated[
+        str | None,
+        typer.Option(
+            envvar="LACOC_WEB_KEY",
+            metavar="KEY",
+            help="What lets a page act; by default made from the contest file, or new each time.",
+        ),
+    ] = None,
+    recordings: Annotated[
+        Path | None,
+        typer.Option(
+            envvar="LACOC_RECORDINGS",
+            metavar="FOLDER",
+            help="Folder of the recordings for /replay; by default the contest's, or 'recordings'.",
+        ),
+    ] = None,
+    viewers: Annotated[
+        int, typer.Option(min=1, max=2000, help="More pages than this at once are sent away.")
+    ] = VIEWERS_MOST,
+    browser: Annotated[
+        bool, typer.Option("--open/--no-open", help="Open /watch in the browser.")
+    ] = False,
+    json: options.Json = False,
+) -> None:
+    """Serve the pages: spectators, broadcast, contestants, referee, replays.
+
+    Everybody who can reach it may watch. To play or to referee a page needs the address with the
+    key, and the seat's or the referee's token. It waits for a court that is not there yet.
+    """
+    plan = None if contest is None else contests.load(contest)
+    home = Home(
+        courts=_courts(plan, court, connect),
+        recordings=recordings or (plan.recordings if plan else Path("recordings")),
+        names=frozenset(host or ()),
+        viewers_most=viewers,
+        key=_key(plan, key),
+    )
+    opened = server.listen(listen)
+    address = server.url(opened)
+
+    def ready() -> None:
+        _tell(home, address, json)
+        if browser:
+            server.open_browser(f"{address}/watch")
+
+    server.run(home, opened, ready)
+
+
+def _courts(plan: Contest | None, court: str | None, connect: str | None) -> dict[str, str]:
+    """The address of each court: one that was named, or all of the contest."""
+    if plan is None or court is not None or connect is not None or len(plan.courts) == 1:
+        access = contests.spectator_access(plan, court, connect)
+        return {access.court: access.connect}
+    return {name: contests.spectator_access(plan, name, None).connect for name in plan.courts}
+
+
+def _key(plan: Contest | None, key: str | None) -> str:
+    if key is not None:
+        if len(key) < _KEY_LEAST:
+            raise UserError(f"A key has at least {_KEY_LEAST} characters.")
+        return key
+    return new_key() if plan is None else lasting_key(plan)
+
+
+def _tell(home: Home, address: str, json: bool) -> None:
+    if json:
+        screen.print_json({"kind": "open", "url": address, "key": home.key})
+    else:
+        screen.show(f"Pages of {', '.join(home.courts)}:")
+        screen.show(f"  spectators: {address}/watch")
+        screen.show(f"  broadcast: {address}/overlay")
+        screen.show(f"  recordings: {address}/replay")
+        screen.show(f"  contestants: {address}/play#key={home.key}")
+        screen.show(f"  referee: {address}/referee#key={home.key}")
+    if not PageFiles().built:
+        screen.warn(NOT_BUILT)

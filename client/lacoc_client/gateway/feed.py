@@ -1,0 +1,300 @@
+"""What a court says, taken once and given to all pages that watch it."""
+
+import asyncio
+import contextlib
+import time
+from collections.abc import Callable
+
+import msgspec
+
+from lacoc_client.asking import fetch, no_answer
+from lacoc_client.event_log import EventLog
+from lacoc_client.gateway import wire
+from lacoc_client.gateway.threads import Threads
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.gateway.wire import Kind
+from lacoc_shared.codec import BadMessage, decode, scene_hash
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import PROTOCOL, Event
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.session import Mailbox, Session, open_client
+
+SILENT_AFTER_S = 1.0
+"""A court that sends no frame for so long is not connected: it sends one every 20 ms."""
+
+_EVENTS_DEPTH = 4096
+_LOOK_S = 0.25
+_SAY_S = 1.0
+_RETRY_S = 1.0
+_WHY_S = 3.0
+_FETCH_AGAIN_S = 0.3
+_MAX_BYTES = 1 << 20
+
+
+class _Frame(msgspec.Struct, array_like=True):
+    """What the gateway needs to know of a frame; the rest goes on unread."""
+
+    match: int
+    beat: int
+    phase: int
+    countdown_beats: int
+    clock_ticks: int
+    seats: msgspec.Raw
+    markers: msgspec.Raw
+    poses: msgspec.Raw
+    scene: bytes
+
+
+class _Sheet(msgspec.Struct):
+    protocol: int
+    scene: bytes
+
+
+class CourtFeed:
+    """A court as its pages see it; used from the event loop only.
+
+    It may be made before there is a court, and outlives any number of its restarts.
+
+    Args:
+        court: the court's name.
+        connect: its address.
+        threads: where it asks the court.
+    """
+
+    def __init__(self, court: str, connect: str, threads: Threads) -> None:
+        self.court = court
+        self.connect = connect
+        self.session: Session | None = None
+        """The connection; None until there was one."""
+        self._keys = Keys(court)
+        self._threads = threads
+        self._viewers: dict[Viewer, None] = {}
+        self._log: EventLog[bytes] = EventLog()
+        self._frame: bytes | None = None
+        self._sheet: bytes | None = None
+        self._scene: bytes | None = None
+        self._health: bytes | None = None
+        self._frame_scene = self._sheet_scene = self._scene_hash = b""
+        self._frame_s = time.monotonic()
+        self._connected = False
+        self._why = ""
+        self._wrong_version = ""
+        self._fetching: asyncio.Task[None] | None = None
+        self._explaining: asyncio.Task[None] | None = None
+        self._explained_s = 0.0
+        self._task: asyncio.Task[None] | None = None
+
+    def start(self) -> None:
+        """Begin to listen to the court, once."""
+        if self._task is None:
+            self._task = asyncio.get_running_loop().create_task(self._run())
+
+    async def stop(self) -> None:
+        """Close the connection."""
+        tasks = [task for task in (self._task, self._fetching, self._explaining) if task]
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        if self.session is not None:
+            self.session.close()
+
+    @property
+    def viewers(self) -> int:
+        """How many pages watch."""
+        return len(self._viewers)
+
+    def add(self, viewer: Viewer) -> None:
+        """Let a page watch; it gets all there is at once."""
+        viewer.send(self._link())
+        self._send_all(viewer)
+        self._viewers[viewer] = None
+
+    def remove(self, viewer: Viewer) -> None:
+        """Let a page go."""
+        self._viewers.pop(viewer, None)
+
+    def _send_all(self, viewer: Viewer) -> None:
+        for framed in (self._sheet, self._scene, *self._log, self._health):
+            if framed is not None:
+                viewer.send(framed)
+        if self._frame is not None and self._connected:  # never an old picture as a new one
+            viewer.send(self._frame)
+
+    def _send(self, framed: bytes) -> None:
+        for viewer in self._viewers:
+            viewer.send(framed)
+
+    async def _run(self) -> None:
+        while self.session is None:
+            try:
+                self.session = await self._threads.run(lambda: open_client([self.connect]))
+                self._subscribe(self.session)
+            except UserError as error:
+                self._why = str(error)
+                self._send(self._link())
+                await asyncio.sleep(_RETRY_S)
+        self._why, self._frame_s = "", time.monotonic()
+        said_s = 0.0
+        while True:
+            now_s = time.monotonic()
+            silent = now_s - self._frame_s >= SILENT_AFTER_S
+            was, self._connected = self._connected, self._connected and not silent
+            if not self._connected and (was or now_s - said_s >= _SAY_S):
+                said_s = now_s
+                self._send(self._link())
+                if silent:
+                    self._explain(now_s)
+            await asyncio.sleep(_LOOK_S)
+
+    def _come_back(self) -> None:
+        """A frame after a silence: the court may be another one, so everything is sent again."""
+        if self._wrong_version:
+            return
+        self._connected, self._why = True, ""
+        self._send(self._link())
+        for viewer in self._viewers:
+            self._send_all(viewer)
+
+    def _link(self) -> bytes:
+        silent_s = max(0.0, time.monotonic() - self._frame_s)
+        text = ""
+        if not self._connected:
+            text = self._wrong_version or self._why
+            text = text or f"Waiting for court {self.court!r} at {self.connect}."
+        return wire.map_message(
+            Kind.LINK,
+            {
+                "court": self.court,
+                "connected": self._connected,
+                "silent_s": round(silent_s, 1),
+                "text": text,
+                "log": self._log.number,
+            },
+        )
+
+    def _explain(self, now_s: float) -> None:
+        """Find words for the silence; asking for them takes a while."""
+        idle = self._explaining is None or self._explaining.done()
+        if self._wrong_version or not idle or now_s - self._explained_s < _WHY_S:
+            return
+        self._explained_s = now_s
+
+        assert self.session is not None
+        self._explaining = asyncio.get_running_loop().create_task(self._find_words(self.session))
+
+    async def _find_words(self, session: Session) -> None:
+        text = await self._threads.run(lambda: no_answer(session, self.court))
+        self._why = "" if self._connected else text
+
+    def _subscribe(self, session: Session) -> None:
+        loop = asyncio.get_running_loop()
+
+        def hear(
+            subscribe: Callable[..., Mailbox], key: str, depth: int, take: Callable[[bytes], None]
+        ) -> None:
+            boxes: list[Mailbox] = []
+
+            def empty() -> None:
+                while boxes and (mail := boxes[0].take()) is not None:
+                    take(mail.payload)
+
+            def notify() -> None:  # on Zenoh's thread
+                with contextlib.suppress(RuntimeError):  # the loop has ended
+                    loop.call_soon_threadsafe(empty)
+
+            boxes.append(subscribe(key, depth, notify))
+            empty()  # what came before there was a box to look into
+
+        hear(session.history_mailbox, self._keys.sheet, 1, self._take_sheet)
+        hear(session.history_mailbox, self._keys.event, _EVENTS_DEPTH, self._take_event)
+        hear(session.mailbox, self._keys.health, 1, self._take_health)
+        hear(session.mailbox, self._keys.frame, 1, self._take_frame)
+
+    def _take_frame(self, payload: bytes) -> None:
+        try:
+            scene = decode(payload, _Frame, _MAX_BYTES).scene
+        except BadMessage:
+            self._other_version()
+            return
+        now_s = self._frame_s = time.monotonic()
+        framed = self._frame = wire.message(Kind.FRAME, payload)
+        if not self._connected:
+            self._come_back()
+        for viewer in self._viewers:
+            viewer.offer(framed, now_s)
+        if scene != self._frame_scene:
+            self._frame_scene = scene
+        if self._frame_scene != self._scene_hash or self._frame_scene != self._sheet_scene:
+            self._catch_up()
+
+    def _take_event(self, payload: bytes) -> None:
+        try:
+            event = decode(payload, Event, _MAX_BYTES)
+        except BadMessage:
+            self._other_version()
+            return
+        log = self._log.number
+        framed = wire.message(Kind.EVENT, payload)
+        if not self._log.add(event, framed):
+            return
+        if self._log.number == log:
+            self._send(framed)
+            return
+        self._send(self._link())  # its new number says that what was before is no more
+        for kept in self._log:
+            self._send(kept)
+
+    def _take_sheet(self, payload: bytes) -> None:
+        try:
+            sheet = decode(payload, _Sheet, _MAX_BYTES)
+        except BadMessage:
+            self._other_version()
+            return
+        self._wrong_version = ""
+        if sheet.protocol != PROTOCOL:
+            self._other_version(sheet.protocol)
+        self._sheet_scene = sheet.scene
+        framed = wire.message(Kind.SHEET, payload)
+        if framed != self._sheet:
+            self._sheet = framed
+            self._send(framed)
+
+    def _take_health(self, payload: bytes) -> None:
+        self._health = framed = wire.message(Kind.HEALTH, payload)
+        for viewer in self._viewers:
+            viewer.send_if_fast(framed)
+
+    def _other_version(self, protocol: int | None = None) -> None:
+        speaks = "another version" if protocol is None else f"version {protocol}"
+        self._connected = False
+        self._wrong_version = (
+            f"Court {self.court!r} speaks {speaks} of the protocol, this gateway version "
+            f"{PROTOCOL}: install the version of lacoc that the court has."
+        )
+
+    def _catch_up(self) -> None:
+        """The frames show another scene than the pages have: get it, and the sheet if it lacks."""
+        if self._fetching is None or self._fetching.done():
+            self._fetching = asyncio.get_running_loop().create_task(self._fetch())
+
+    async def _fetch(self) -> None:
+        while not self._frame_scene == self._scene_hash == self._sheet_scene:
+            try:
+                scene = await self._ask(self._keys.scene)
+                found = scene_hash(scene)
+                if found == self._frame_scene and found != self._scene_hash:
+                    self._scene_hash = found
+                    self._scene = wire.message(Kind.SCENE, found + scene)
+                    self._send(self._scene)
+                if self._sheet_scene != self._frame_scene:
+                    self._take_sheet(await self._ask(self._keys.sheet))
+            except UserError:  # it went away just now
+                pass
+            await asyncio.sleep(_FETCH_AGAIN_S)
+            if not self._connected:
+                return  # the next frame asks again
+
+    async def _ask(self, key: str) -> bytes:
+        session = self.session
+        assert session is not None
+        return await self._threads.run(lambda: fetch(session, self._keys, key))

@@ -1,0 +1,106 @@
+"""Who may talk to a gateway: the browser of a person who opened its page, and nobody's else.
+
+Any web site can send a browser to 127.0.0.1. So the Host must be a name of this machine
+(or a number: a site's own name could be made to point here, a number can't), and a page
+of another origin gets no WebSocket.
+"""
+
+import ipaddress
+import socket
+from collections.abc import Iterable
+from urllib.parse import urlsplit
+
+from starlette.datastructures import MutableHeaders
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+_POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+    "worker-src 'self' blob:; object-src 'none'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors {ancestors}"
+)
+_EMBEDDABLE = ("/overlay",)
+"""Pages that show in somebody else's: they take no input."""
+
+
+def machine_names() -> frozenset[str]:
+    """The names by which others know this machine."""
+    name = socket.gethostname().lower()
+    first = name.partition(".")[0]
+    return frozenset({"localhost", name, first, f"{first}.local"}) - {""}
+
+
+class Guard:
+    """Stands before the application.
+
+    Args:
+        app: the application.
+        names: further names of this machine.
+    """
+
+    def __init__(self, app: ASGIApp, names: Iterable[str] = ()) -> None:
+        self._app = app
+        self._names = machine_names() | {name.lower() for name in names}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let a connection in, or refuse it."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        refusal = self._why_not(scope)
+
+        async def send_safely(message: Message) -> None:
+            if message["type"] in ("http.response.start", "websocket.http.response.start"):
+                _add_headers(MutableHeaders(scope=message), scope["path"])
+            await send(message)
+
+        if refusal:
+            await PlainTextResponse(refusal, status_code=403)(scope, receive, send_safely)
+        else:
+            await self._app(scope, receive, send_safely)
+
+    def _why_not(self, scope: Scope) -> str:
+        hosts = _all(scope, b"host")
+        name = _name_of(hosts[0]) if len(hosts) == 1 else ""
+        if not (_is_number(name) or name in self._names):
+            return (
+                f"This machine is not known as {name!r:.80}. Open its page by its number or its "
+                f"own name, or start the gateway with --host {name or 'NAME':.80}.\n"
+            )
+        origins = _all(scope, b"origin")
+        if scope["type"] == "websocket" and origins:
+            origin = urlsplit(origins[0])
+            same = origin.scheme in ("http", "https") and origin.netloc.lower() == hosts[0].lower()
+            if len(origins) > 1 or not same:
+                return "A page of another site may not connect here.\n"
+        return ""
+
+
+def _add_headers(headers: MutableHeaders, path: str) -> None:
+    embeddable = path in _EMBEDDABLE
+    headers["Content-Security-Policy"] = _POLICY.format(ancestors="*" if embeddable else "'none'")
+    headers["X-Content-Type-Options"] = "nosniff"
+    headers["Referrer-Policy"] = "no-referrer"
+    headers["Cross-Origin-Resource-Policy"] = "same-origin"
+    if not embeddable:
+        headers["Cross-Origin-Opener-Policy"] = "same-origin"
+    headers.setdefault("Cache-Control", "no-store")
+
+
+def _all(scope: Scope, name: bytes) -> list[str]:
+    return [value.decode("latin-1") for key, value in scope["headers"] if key.lower() == name]
+
+
+def _name_of(host: str) -> str:
+    """The host without its port."""
+    if host.startswith("["):
+        return host[1:].partition("]")[0].lower()
+    return host.partition(":")[0].lower().rstrip(".")
+
+
+def _is_number(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,83 @@
+"""uvicorn's WebSocket, with what a fan-out to hundreds of pages needs besides.
+
+A message to a page is made once, as the bytes of its WebSocket frame, and written to
+all of them: through ASGI each of 300 pages would cost a task's turn 25 times a second.
+The socket knows whether a page keeps up, so that it is given no more than it takes.
+"""
+
+import socket
+from asyncio.transports import BaseTransport, Transport
+from collections.abc import Callable
+from typing import cast
+
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.http11 import Request
+
+KEPT_BYTES = 1 << 20
+"""A page for which more than this waits has gone, or is hopeless: it is cut off."""
+_UNSENT_BYTES = 4096
+"""What the system may hold back before a page counts as slow: a dozen frames."""
+_UNANSWERED_S = 1.0
+"""A page that has not answered a ping for so long gets no frames until it does: what lies in
+between, and whatever keeps it, never fills with old frames."""
+_WATCHED_PING_S = 0.3
+
+
+class PageSocket(WebSocketsSansIOProtocol):
+    """A WebSocket that takes finished frames; found as `websocket.state.socket`."""
+
+    heard_s = 0.0
+    """When anything came from the page, by the loop's clock."""
+    drained: Callable[[], None] | None = None
+    """Called when all that was written has gone out, after a time in which it had not."""
+
+    def connection_made(self, transport: BaseTransport) -> None:
+        """Take the connection over; see `asyncio.Protocol`."""
+        super().connection_made(transport)
+        self.heard_s = self.loop.time()
+        cast(Transport, transport).set_write_buffer_limits(high=0)
+        raw = transport.get_extra_info("socket")
+        if raw is not None and hasattr(socket, "TCP_NOTSENT_LOWAT"):
+            raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, _UNSENT_BYTES)
+
+    def handle_connect(self, event: Request) -> None:
+        """Begin the handshake."""
+        super().handle_connect(event)
+        if self.response.status_code == 101:
+            self.scope["state"]["socket"] = self
+
+    def data_received(self, data: bytes) -> None:
+        """Take bytes in; see `asyncio.Protocol`."""
+        self.heard_s = self.loop.time()
+        super().data_received(data)
+
+    def resume_writing(self) -> None:
+        """All is sent; see `asyncio.Protocol`."""
+        super().resume_writing()
+        if self.drained is not None:
+            self.drained()
+
+    @property
+    def keeps_up(self) -> bool:
+        """Whether all that was written has gone out, and the page shows that it takes it."""
+        if self.transport.get_write_buffer_size():
+            return False
+        if self.pending_ping_payload is None:
+            return True
+        return self.loop.time() - self.ping_sent_at < _UNANSWERED_S
+
+    def write(self, framed: bytes) -> None:
+        """Send a finished frame, whatever waits already."""
+        if self.close_sent or self.transport.is_closing():
+            return
+        if self.transport.get_write_buffer_size() > KEPT_BYTES:
+            self.transport.abort()
+            return
+        self.transport.write(framed)
+
+    def watch_closely(self) -> None:
+        """Ping the page several times a second: somebody steers a robot from it."""
+        if self.ping_interval != _WATCHED_PING_S:
+            self.ping_interval = _WATCHED_PING_S
+            self.stop_keepalive()
+            self.schedule_ping()

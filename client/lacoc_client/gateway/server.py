@@ -1,0 +1,153 @@
+"""Runs a gateway: opens its port, serves until it is asked to end, opens a browser."""
+
+import asyncio
+import contextlib
+import os
+import re
+import socket
+import sys
+import webbrowser
+from collections.abc import Callable, Iterator
+
+import uvicorn
+
+from lacoc_client.gateway.files import PageFiles
+from lacoc_client.gateway.home import Home
+from lacoc_client.gateway.page_socket import PageSocket
+from lacoc_client.gateway.site import site
+from lacoc_client.gateway.wire import JOIN_BYTES
+from lacoc_client.stopping import stop_signals
+from lacoc_shared.mistakes import UserError
+
+LOOPBACK = "127.0.0.1:0"
+"""Where a gateway listens if nobody says otherwise: for this machine only, on a free port."""
+
+_LISTEN = re.compile(r"(?P<host>\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9_.-]+):(?P<port>[0-9]{1,5})")
+_LOOK_S = 0.1
+_ANY = ("0.0.0.0", "::")
+_PING_S, _GONE_S = 3.0, 20.0
+_BACKLOG = 512  # a hall opens its pages at once
+
+
+def listen(where: str) -> socket.socket:
+    """Open the port of a gateway.
+
+    Args:
+        where: "HOST:PORT"; port 0 takes a free one.
+
+    Raises:
+        UserError: if it is no such address, or can't be listened on.
+    """
+    match = _LISTEN.fullmatch(where)
+    if match is None or int(match["port"]) > 65_535:
+        raise UserError(f"{where!r} is no place to listen at. It looks like 0.0.0.0:8080.")
+    host, port = match["host"].strip("[]"), int(match["port"])
+    try:
+        family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        opened = socket.socket(family, kind)
+    except OSError as error:
+        raise UserError(f"It is not possible to listen at {where}: {error.strerror}.") from None
+    try:
+        if os.name == "posix":  # elsewhere it would let two programs share a port
+            opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        opened.bind(address)
+        opened.listen(_BACKLOG)
+    except OSError as error:
+        opened.close()
+        raise UserError(
+            f"It is not possible to listen at {where}: {error.strerror or error}. "
+            "Is another gateway running? Choose another port; 0 takes a free one."
+        ) from None
+    return opened
+
+
+def url(opened: socket.socket) -> str:
+    """The address of a gateway's pages, as others can call it."""
+    host, port = opened.getsockname()[:2]
+    if host in _ANY:
+        host = own_address()
+    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
+
+
+def own_address() -> str:
+    """This machine's number in its network; 127.0.0.1 if it is in none."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))  # sends nothing: asks which way it would go
+        except OSError:
+            return "127.0.0.1"
+        return str(probe.getsockname()[0])
+
+
+def serve(home: Home, opened: socket.socket, stopping: Callable[[], bool]) -> None:
+    """Serve pages until `stopping` says so.
+
+    Args:
+        home: the gateway's settings.
+        opened: the port, see `listen`.
+        stopping: asked several times a second.
+    """
+    asyncio.run(_serve(home, opened, stopping))
+
+
+async def _serve(home: Home, opened: socket.socket, stopping: Callable[[], bool]) -> None:
+    config = uvicorn.Config(
+        site(home, PageFiles()),
+        http="h11",
+        ws=PageSocket,
+        ws_max_size=JOIN_BYTES,
+        ws_ping_interval=_PING_S,
+        ws_ping_timeout=_GONE_S,
+        ws_per_message_deflate=False,  # four times the work for a third of the bytes
+        lifespan="on",
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        date_header=False,
+        proxy_headers=False,
+        timeout_graceful_shutdown=2,
+    )
+    server = _Server(config)
+    asking = asyncio.get_running_loop().create_task(_await_end(server, stopping))
+    try:
+        await server.serve(sockets=[opened])
+    finally:
+        asking.cancel()
+
+
+async def _await_end(server: uvicorn.Server, stopping: Callable[[], bool]) -> None:
+    while not stopping():
+        await asyncio.sleep(_LOOK_S)
+    server.should_exit = True
+
+
+class _Server(uvicorn.Server):
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave signals to `stop_signals`: uvicorn would end the process by them."""
+        yield
+
+
+def run(home: Home, opened: socket.socket, ready: Callable[[], None]) -> None:
+    """Serve until Ctrl-C.
+
+    Args:
+        home: the gateway's settings.
+        opened: the port.
+        ready: called when signals are looked after; says where the pages are.
+    """
+    with opened, stop_signals() as stopping:
+        ready()
+        serve(home, opened, stopping)
+
+
+def open_browser(address: str) -> bool:
+    """Show a page in this person's browser; False if there is none to be opened."""
+    if sys.platform.startswith("linux") and not any(
+        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    ):
+        return False  # a browser for terminals would take the terminal away
+    try:
+        return webbrowser.open(address)
+    except (webbrowser.Error, OSError):
+        return False

@@ -1,0 +1,92 @@
+"""The gateway's paths: one page for all of them, its files, recordings, the WebSocket."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp
+from starlette.websockets import WebSocket
+
+from lacoc_client.gateway.files import NOT_BUILT, PageFile, PageFiles, recording, recordings_in
+from lacoc_client.gateway.guard import Guard
+from lacoc_client.gateway.home import Home
+from lacoc_client.gateway.page import Courts, Page
+from lacoc_client.gateway.threads import Threads
+
+PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay")
+"""Each is the same file, which looks at its own path."""
+
+_FOR_EVER = "public, max-age=31536000, immutable"  # the names of assets carry their hash
+_MCAP = "application/octet-stream"
+
+
+def site(home: Home, files: PageFiles) -> ASGIApp:
+    """Make the application of a gateway.
+
+    Args:
+        home: its settings.
+        files: the built pages.
+    """
+    threads = Threads()
+    courts = Courts(home, threads)
+
+    @asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncIterator[None]:
+        courts.find(None)
+        yield
+        await courts.close()
+        threads.close()
+
+    async def index(request: Request) -> Response:
+        file = await asyncio.to_thread(files.find, "index.html")
+        if file is None:
+            return PlainTextResponse(f"{NOT_BUILT}\n", status_code=503)
+        return _response(request, file, "no-store")
+
+    async def asset(request: Request) -> Response:
+        name = request.path_params["name"]
+        file = await asyncio.to_thread(files.find, f"assets/{name}")
+        return _not_found() if file is None else _response(request, file, _FOR_EVER)
+
+    async def top_file(request: Request) -> Response:
+        """What stands beside index.html: the icon."""
+        file = await asyncio.to_thread(files.find, request.path_params["name"])
+        return _not_found() if file is None else _response(request, file, "max-age=3600")
+
+    async def recordings(_: Request) -> Response:
+        return JSONResponse(await asyncio.to_thread(recordings_in, home.recordings))
+
+    async def one_recording(request: Request) -> Response:
+        name = request.path_params["name"]
+        path = await asyncio.to_thread(recording, home.recordings, name)
+        return _not_found() if path is None else FileResponse(path, media_type=_MCAP)
+
+    async def page(websocket: WebSocket) -> None:
+        await Page(websocket, courts).serve()
+
+    routes = [
+        *(Route(path, index) for path in PATHS),
+        Route("/assets/{name:path}", asset),
+        Route("/recordings", recordings),
+        Route("/recordings/{name}", one_recording),
+        Route("/{name}", top_file),
+        WebSocketRoute("/ws", page),
+    ]
+    return Guard(Starlette(routes=routes, lifespan=lifespan), home.names)
+
+
+def _response(request: Request, file: PageFile, cache: str) -> Response:
+    headers = {"Cache-Control": cache, "Vary": "Accept-Encoding"}
+    data = file.data
+    if file.packed is not None and "gzip" in request.headers.get("accept-encoding", ""):
+        data = file.packed
+        headers["Content-Encoding"] = "gzip"
+    return Response(data, headers=headers, media_type=file.media_type)
+
+
+def _not_found() -> Response:
+    return PlainTextResponse("There is no such page here.\n", status_code=404)

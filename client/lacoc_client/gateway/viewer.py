@@ -1,0 +1,76 @@
+"""One page: how often it gets a frame, and what may act through it."""
+
+import time
+
+from lacoc_client.gateway.page_socket import PageSocket
+
+LEAST_HZ, MOST_HZ = 1.0, 50.0
+USUAL_HZ = 25.0
+"""For who watches."""
+
+_EARLY_S = 0.01  # half a beat: frames come with some jitter
+
+
+class Viewer:
+    """A page's place in a feed.
+
+    Frames have one slot: while the page is too slow, the newest takes the place of the one before
+    it. Everything else is written at once, and a page that does not take it is cut off.
+
+    Args:
+        socket: the page's WebSocket.
+    """
+
+    def __init__(self, socket: PageSocket) -> None:
+        self._socket = socket
+        self._slot: bytes | None = None
+        self._interval_s = 1 / USUAL_HZ
+        self._next_s = 0.0
+        self.can_act = False
+        """Whether it showed the key of this run."""
+        socket.drained = self._send_slot
+
+    def rate(self, hz: float) -> None:
+        """Get so many frames a second, within bounds."""
+        # A NaN is not below anything: it ends as the most.
+        self._interval_s = 1 / (MOST_HZ if not hz < MOST_HZ else max(LEAST_HZ, hz))
+        self._next_s = 0.0
+
+    def at_least(self, hz: float) -> None:
+        """Get no fewer frames than this a second."""
+        self.rate(max(hz, 1 / self._interval_s))
+
+    def offer(self, framed: bytes, now_s: float) -> None:
+        """Take a frame, if it is time for one."""
+        next_s = self._next_s
+        if now_s < next_s - _EARLY_S:
+            return
+        following_s = next_s + self._interval_s
+        self._next_s = following_s if following_s > now_s else now_s + self._interval_s
+        if self._socket.keeps_up:
+            self._slot = None
+            self._socket.write(framed)
+        else:
+            self._slot = framed
+
+    def send(self, framed: bytes) -> None:
+        """Send what must arrive."""
+        self._socket.write(framed)
+
+    def send_if_fast(self, framed: bytes) -> None:
+        """Send what another message will soon replace."""
+        if self._socket.keeps_up:
+            self._socket.write(framed)
+
+    def watch_closely(self) -> None:
+        """Look several times a second whether the page is there."""
+        self._socket.watch_closely()
+
+    def unheard_s(self) -> float:
+        """How long nothing has come from the page; may be asked from any thread."""
+        return time.monotonic() - self._socket.heard_s
+
+    def _send_slot(self) -> None:
+        framed, self._slot = self._slot, None
+        if framed is not None:
+            self._socket.write(framed)

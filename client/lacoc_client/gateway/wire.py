@@ -1,0 +1,185 @@
+"""Messages between the gateway and a page (docs/gateway.md has them as tables).
+
+To a page: one byte of kind, then the payload; a court's messages go on as they came.
+From a page: a msgpack map with its `id` and what to `do`; each is answered by a reply.
+"""
+
+from enum import IntEnum
+from typing import Annotated, Any
+
+import msgspec
+
+from lacoc_shared.codec import BadMessage, encode
+from lacoc_shared.decisions import Decision
+from lacoc_shared.keyspace import JOIN_MAX_BYTES
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import FileRefused
+
+JOIN_BYTES = JOIN_MAX_BYTES
+"""A longer message of a page closes its connection."""
+REQUEST_BYTES = 4096
+"""A longer message that is no join is refused."""
+
+
+class Kind(IntEnum):
+    """What a message to a page is."""
+
+    WELCOME = 1
+    FRAME = 2
+    EVENT = 3
+    SHEET = 4
+    SCENE = 5
+    HEALTH = 6
+    LINK = 7
+    SEAT = 8
+    REPLY = 9
+    REFEREE = 10
+
+
+_Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
+_Short = Annotated[str, msgspec.Meta(max_length=200)]
+_Token = Annotated[str, msgspec.Meta(max_length=200)]
+
+
+class _Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
+    id: _Id
+
+
+class Watch(_Ask, frozen=True, kw_only=True, tag="watch"):
+    """The first message: which court, how often, and what lets the page act."""
+
+    court: _Short | None = None
+    hz: float | None = None
+    key: _Token | None = None
+
+
+class Rate(_Ask, frozen=True, kw_only=True, tag="rate"):
+    """Frames a second."""
+
+    hz: float
+
+
+class Ping(_Ask, frozen=True, kw_only=True, tag="ping"):
+    """Ask for a sign of life."""
+
+    t: float | int | str | None = None
+
+
+class JoinAsk(_Ask, frozen=True, kw_only=True, tag="join"):
+    """Take a seat."""
+
+    seat: _Short
+    token: _Token | None = None
+    name: _Short = ""
+    robot: SentFile | None = None
+    postures: SentFile | None = None
+    locomotion: SentFile | None = None
+
+
+class ReadyAsk(_Ask, frozen=True, kw_only=True, tag="ready"):
+    """Say ready, or take it back."""
+
+    ready: bool = True
+
+
+class LeaveAsk(_Ask, frozen=True, kw_only=True, tag="leave"):
+    """Give the seat up."""
+
+
+class KeyAsk(_Ask, frozen=True, kw_only=True, tag="key"):
+    """Press a key."""
+
+    level: Annotated[int, msgspec.Meta(ge=0, le=1)]
+    key: Annotated[int, msgspec.Meta(ge=0, le=10)]
+
+
+class EnterAsk(_Ask, frozen=True, kw_only=True, tag="enter"):
+    """Open the referee's desk."""
+
+    token: _Token
+    by: _Short
+
+
+class TakeOver(_Ask, frozen=True, kw_only=True, tag="take_over"):
+    """Act as referee from now on, in the place of another page."""
+
+
+class DecideAsk(_Ask, frozen=True, kw_only=True, tag="decide"):
+    """Decide as a referee."""
+
+    decision: Decision
+    reason: str = ""
+
+
+Asked = (
+    Watch | Rate | Ping | JoinAsk | ReadyAsk | LeaveAsk | KeyAsk | EnterAsk | TakeOver | DecideAsk
+)
+"""Whatever a page asks."""
+
+
+class _AnyId(msgspec.Struct):
+    id: _Id
+
+
+class _AnyDo(msgspec.Struct):
+    do: str
+
+
+_asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
+_any_id = msgspec.msgpack.Decoder(_AnyId)
+_any_do = msgspec.msgpack.Decoder(_AnyDo)
+
+
+def read(data: bytes) -> Asked:
+    """Read what a page asks.
+
+    Raises:
+        BadMessage: if it is nothing that can be asked, or too long for what it is.
+    """
+    try:
+        if len(data) > REQUEST_BYTES and _any_do.decode(data).do != "join":
+            raise BadMessage(f"{len(data)} bytes, at most {REQUEST_BYTES} are read")
+        return _asked.decode(data)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise BadMessage(str(error)) from None
+
+
+def read_id(data: bytes) -> int | None:
+    """The id of a message that can't be read otherwise; None: it has none."""
+    try:
+        return _any_id.decode(data).id
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        return None
+
+
+def message(kind: Kind, payload: bytes) -> bytes:
+    """A message to a page, as the WebSocket frame that carries it: made once for all pages."""
+    size = len(payload) + 1
+    if size < 126:
+        head = bytes((0x82, size, kind))
+    elif size < 65_536:
+        head = b"\x82\x7e" + size.to_bytes(2) + bytes((kind,))
+    else:
+        head = b"\x82\x7f" + size.to_bytes(8) + bytes((kind,))
+    return head + payload
+
+
+def map_message(kind: Kind, value: dict[str, Any]) -> bytes:
+    """A message of the gateway's own, as a WebSocket frame."""
+    return message(kind, encode(value))
+
+
+def reply(to: int, value: Any) -> bytes:
+    """The answer to what was asked."""
+    return map_message(Kind.REPLY, {"id": to, "ok": True, "value": value})
+
+
+def refusal(to: int, error: Exception | str) -> bytes:
+    """The answer to what was not done."""
+    mistakes = error.mistakes if isinstance(error, FileRefused) else []
+    text = str(error)
+    if mistakes:
+        text = "Your file has 1 mistake." if len(mistakes) == 1 else ""
+        text = text or f"Your files have {len(mistakes)} mistakes."
+    body = {"id": to, "ok": False, "error": text, "mistakes": mistakes}
+    return map_message(Kind.REPLY, body)
