@@ -6,6 +6,7 @@ from collections.abc import Callable
 import msgspec
 
 from lacoc_client.asking import ANSWER_S, NoCourt, fetch, understand
+from lacoc_client.event_log import EventLog
 from lacoc_shared.codec import scene_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
@@ -53,12 +54,12 @@ class Spectator:
         """When it arrived (before the first: since when it is waited for)."""
         self.health: Health | None = None
         """The newest health."""
-        self._log: dict[int, Event] = {}
+        self._log: EventLog[Event] = EventLog()
 
     @property
     def events(self) -> tuple[Event, ...]:
         """All events of the match so far."""
-        return tuple(self._log.values())
+        return tuple(self._log)
 
     def poll(self) -> Frame | None:
         """Take in what arrived.
@@ -146,14 +147,8 @@ class Spectator:
             raise UserError(_OTHER_SCENE)
 
     def _take_in(self, event: Event) -> None:
-        """Keep the log of one match: what a restarted court sends again is not new."""
-        if self._log.get(event.number) == event:
-            return
-        began_anew = event.number in self._log
-        if began_anew or any(known.match != event.match for known in self._log.values()):
-            self._log.clear()
-        self._log[event.number] = event
-        self._new_events.append(event)
+        if self._log.add(event, event):
+            self._new_events.append(event)
 
 
 _OTHER_SCENE = (

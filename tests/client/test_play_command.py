@@ -114,7 +114,7 @@ def test_the_terminal_is_as_before_however_one_leaves(
 ) -> None:
     """The keys echo again and the cursor is there: after q, Ctrl-C, a kill, a closed window."""
     court = open_court("--arena", "othello")
-    terminal = Terminal(tmp_path, "play", *court.where("left"))
+    terminal = Terminal(tmp_path, "play", "--terminal", *court.where("left"))
     terminal.sees("press r when you are ready")
     assert terminal.modes() != terminal.usual
     if isinstance(way, str):
@@ -181,7 +181,8 @@ def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) ->
 def test_practice_walks_with_the_sample_keys(tmp_path: Path) -> None:
     """Workshop 4-4: 1, 2, 3, 4 again and again walks forward (level A), 2 alone at level B; z."""
     steps = "".join(f"0.5 {key}\n" for key in "12341234")
-    code, said = piped(tmp_path, f"0.2 0\n{steps}tab\n0.5 2\n2.0 z\n", "practice", "--name", "Me")
+    script = f"0.2 0\n{steps}tab\n0.5 2\n2.0 z\n"
+    code, said = piped(tmp_path, script, "practice", "--terminal", "--name", "Me")
 
     assert code == 0, said
     assert "Pos-data.txt written" in said
@@ -200,7 +201,7 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
     sample = sample_gait_files("hexapod")
     assert sample.postures is not None
     (tmp_path / "Loco-data.txt").write_bytes(sample.postures.data)
-    words = ("practice", "--recordings", "kept")
+    words = ("practice", "--terminal", "--recordings", "kept")
     code, said = piped(tmp_path, "0.1 1\n0.3 tab 2\n0.1 q\n", *words)
 
     assert code == 0, said
@@ -212,7 +213,8 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
 def test_practice_without_mujoco_says_what_to_install(tmp_path: Path) -> None:
     """A contestant's machine has no MuJoCo: one line, exit code 2."""
     (tmp_path / "mujoco.py").write_text("raise ModuleNotFoundError('no mujoco', name='mujoco')")
-    code, said = piped(tmp_path, "", "practice", env=environment(PYTHONPATH=str(tmp_path)))
+    words = ("practice", "--terminal")
+    code, said = piped(tmp_path, "", *words, env=environment(PYTHONPATH=str(tmp_path)))
 
     assert code == 2
     assert said.count("\n") == 1
@@ -267,7 +269,7 @@ def test_wrong_files_are_a_table(quiet_court: CourtProcess, tmp_path: Path) -> N
     sample = sample_gait_files("quadruped")
     assert sample.postures is not None
     (tmp_path / "four.txt").write_bytes(sample.postures.data)
-    words = ("play", "--gait", "four.txt", *quiet_court.where("left"))
+    words = ("play", "--terminal", "--gait", "four.txt", *quiet_court.where("left"))
     code, said = piped(tmp_path, "", *words)
 
     assert code == 2

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import msgspec
+
 from lacoc_shared import contest as contests
 from lacoc_shared.contest import Access, Contest
 
@@ -19,6 +21,28 @@ def seat(
         UserError: if the contest file is wrong, or something is missing.
     """
     return contests.seat_access(_load(contest), court, connect, seat, token)
+
+
+def perhaps_seat(
+    contest: Path | None,
+    court: str | None,
+    connect: str | None,
+    seat: str | None,
+    token: str | None,
+) -> Access:
+    """Find the way to a court, and to a seat as far as it is known: a page asks for the rest.
+
+    Raises:
+        UserError: if the contest file is wrong.
+    """
+    plan = _load(contest)
+    access = contests.spectator_access(plan, court, connect)
+    seats = plan.court(court)[1].seat if plan else {}
+    if seat is None and len(seats) == 1:
+        seat = next(iter(seats))
+    if token is None and seat in seats:
+        token = seats[seat].token
+    return msgspec.structs.replace(access, seat=seat or "", token=token or "")
 
 
 def referee(

@@ -1,4 +1,4 @@
-"""`lacoc play`: a contestant at the terminal."""
+"""`lacoc play`: a contestant, at a page of their own or at the terminal."""
 
 import time
 from pathlib import Path
@@ -8,8 +8,9 @@ import typer
 from rich.console import Group
 from rich.text import Text
 
-from lacoc_client.commands import entrance
+from lacoc_client.commands import entrance, pages
 from lacoc_client.controller import Controller
+from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles, gaits_in, gather
 from lacoc_client.stopping import stop_signals
 from lacoc_client.terminal_keys import open_keys
@@ -55,30 +56,35 @@ def play_command(
     name: TeamName = "",
     robot: Robot = None,
     gait: Gaits = None,
+    terminal: pages.Terminal = False,
     ready: Annotated[
-        bool, typer.Option("--ready", help="Say ready at once, without the key r.")
-    ] = False,
-    terminal: Annotated[
         bool,
-        typer.Option(
-            "--terminal",
-            help="Play in this terminal: the only way for now, but say it in a script, because a "
-            "later version opens a page in the browser without it.",
-        ),
+        typer.Option("--ready", help="With --terminal: say ready at once, without the key r."),
     ] = False,
+    browser: pages.Browser = True,
 ) -> None:
     """Hold a seat and steer your robot with the keyboard.
 
-    0-9 move it, the arrows are 2 1 3 0 of level B, Tab changes the level, x restarts, r says
-    ready, z leaves and writes Pos-data.txt, q leaves.
+    A page opens in your browser; it is for this machine alone. What you say here is filled in
+    there already, and the rest can be said there.
 
-    Keys can come from a pipe, too. A line holds keys: '2', 'tab 1', or '1 2 3 4', one after
-    another. With a time in front, a number with a point as in '1.5 3', they come so many seconds of
-    play after the keys before. Keys that move the robot wait until the match is played. After the
-    last one its key stands until the match is over.
+    With --terminal 0-9 move the robot, the arrows are 2 1 3 0 of level B, Tab changes the level,
+    x restarts, r says ready, z leaves and writes Pos-data.txt, q leaves.
+
+    At a terminal keys can come from a pipe, too. A line holds keys: '2', 'tab 1', or '1 2 3 4',
+    one after another. With a time in front, a number with a point as in '1.5 3', they come so many
+    seconds of play after the keys before. Keys that move the robot wait until the match is played.
+    After the last one its key stands until the match is over.
     """
-    access = entrance.seat(contest, court, connect, seat, token)
-    play(access, name or f"Team {access.seat}", choose_files(robot, gait or []), ready=ready)
+    if terminal:
+        access = entrance.seat(contest, court, connect, seat, token)
+        files = choose_files(robot, gait or [])
+        play(access, name or f"Team {access.seat}", files, ready=ready)
+        return
+    access = entrance.perhaps_seat(contest, court, connect, seat, token)
+    prefill = Prefill(access.seat, access.token, name, choose_files(robot, gait or []))
+    home = player_home(access, prefill, "player", None)
+    pages.show_page(home, f"/play#key={home.key}", browser)
 
 
 def choose_files(robot: str | None, gaits: list[Path]) -> SeatFiles:

@@ -14,7 +14,9 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
+from lacoc_client.commands import pages
 from lacoc_client.commands.play import Gaits, Robot, TeamName, choose_files, play
+from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.contest import Access
 from lacoc_shared.mistakes import UserError
@@ -38,18 +40,29 @@ def practice_command(
             metavar="FOLDER", help="Keep the record of this practice there; by default it is not."
         ),
     ] = None,
+    terminal: pages.Terminal = False,
+    browser: pages.Browser = True,
 ) -> None:
     """Walk your robot on a field of its own, with all keys, as long as you like.
 
-    Both levels are open: postures (A) and locomotion (B); Tab changes. x puts the robot back to the
-    start, z leaves and writes Pos-data.txt, q leaves. Keys can come from a pipe as in 'lacoc play';
-    after the last one practice ends.
+    A page opens in your browser. Both levels are open: postures (A) and locomotion (B); Tab
+    changes. x puts the robot back to the start, z leaves with Pos-data.txt.
+
+    With --terminal q leaves, and keys can come from a pipe as in 'lacoc play'; after the last one
+    practice ends.
     """
     files = choose_files(robot, gait or [])
+    if not terminal:
+        pages.check_pages()
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="lacoc-practice-")))
         access = stack.enter_context(_court(folder, recordings or folder / "recordings"))
-        play(access, name or "Practice", files, ready=True, greeting=_greeting(files))
+        if terminal:
+            play(access, name or "Practice", files, ready=True, greeting=_greeting(files))
+            return
+        prefill = Prefill(access.seat, access.token, name or "Practice", files)
+        home = player_home(access, prefill, "practice", recordings)
+        pages.show_page(home, f"/practice#key={home.key}", browser)
 
 
 def _greeting(files: SeatFiles) -> Text:

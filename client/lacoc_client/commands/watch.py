@@ -1,4 +1,4 @@
-"""`lacoc watch`: see a match in the terminal, or read it as JSON."""
+"""`lacoc watch`: see a match at a page, in the terminal, or read it as JSON."""
 
 import time
 from collections.abc import Callable
@@ -10,7 +10,8 @@ from rich.live import Live
 from rich.text import Text
 
 from lacoc_client.board_view import BoardView
-from lacoc_client.commands import entrance
+from lacoc_client.commands import entrance, pages
+from lacoc_client.gateway.home import Home
 from lacoc_client.line_view import LineView, event_columns
 from lacoc_client.plain import event_dict, frame_dict
 from lacoc_client.spectator import Spectator
@@ -34,15 +35,10 @@ def watch_command(
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
-    terminal: Annotated[
-        bool,
-        typer.Option(
-            "--terminal",
-            help="Watch in this terminal: the only way for now, but say it in a script, because a "
-            "later version opens a page in the browser without it.",
-        ),
+    terminal: pages.Terminal = False,
+    board: Annotated[
+        bool, typer.Option("--board", help="In this terminal, with the field from above, too.")
     ] = False,
-    board: Annotated[bool, typer.Option("--board", help="Draw the field from above, too.")] = False,
     json: Annotated[
         bool,
         typer.Option(
@@ -54,14 +50,20 @@ def watch_command(
         typer.Option(min=0, max=50, help="With --json: so many frames a second; 0: none."),
     ] = 2.0,
     forever: Annotated[
-        bool, typer.Option("--forever", help="Go on with the next match, until Ctrl-C.")
+        bool,
+        typer.Option("--forever", help="Not at a page: go on with the next match, until Ctrl-C."),
     ] = False,
+    browser: pages.Browser = True,
 ) -> None:
     """Watch a match: clock, score and events as they come.
 
-    It ends when the result is official or the match is void. Anybody may watch; it needs no token.
+    A page opens in your browser. In the terminal and with --json it ends when the result is
+    official or the match is void. Anybody may watch; it needs no token.
     """
     access = entrance.spectator(contest, court, connect)
+    if not (terminal or board or json):
+        pages.show_page(Home({access.court: access.connect}, "player"), "/watch", browser)
+        return
     with open_client([access.connect]) as session, stop_signals() as stopping:
         view = Spectator(session, access.court)
         end = _End(view, forever, stopping)

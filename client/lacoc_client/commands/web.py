@@ -80,9 +80,8 @@ def web_command(
     address = server.url(opened)
 
     def ready() -> None:
-        _tell(home, address, json)
-        if browser:
-            server.open_browser(f"{address}/watch")
+        shown = browser and PageFiles().built and server.open_browser(f"{address}/watch")
+        _tell(home, address, shown, json)
 
     server.run(home, opened, ready)
 
@@ -103,9 +102,9 @@ def _key(plan: Contest | None, key: str | None) -> str:
     return new_key() if plan is None else lasting_key(plan)
 
 
-def _tell(home: Home, address: str, json: bool) -> None:
+def _tell(home: Home, address: str, shown: bool, json: bool) -> None:
     if json:
-        screen.print_json({"kind": "open", "url": address, "key": home.key})
+        screen.print_json({"kind": "open", "url": address, "key": home.key, "shown": shown})
     else:
         screen.show(f"Pages of {', '.join(home.courts)}:")
         screen.show(f"  spectators: {address}/watch")

@@ -6,8 +6,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lacoc_shared.mistakes import UserError
-
 PAGES = Path(__file__).parents[1] / "pages"
 NOT_BUILT = (
     "The pages are not built: run 'npm ci && npm run build' in client/web, "
@@ -90,13 +88,3 @@ def recording(folder: Path | None, name: str) -> Path | None:
     if name not in {entry["name"] for entry in recordings_in(folder)} or folder is None:
         return None
     return folder / name
-
-
-def check_built(files: PageFiles) -> None:
-    """See that there are pages to show.
-
-    Raises:
-        UserError: if they are not built.
-    """
-    if not files.built:
-        raise UserError(NOT_BUILT)

@@ -43,7 +43,7 @@ def demo_command(
         float, typer.Option(help="2 plays twice as fast as real time.", min=0.1, max=20)
     ] = 1.0,
     headless: Annotated[
-        bool, typer.Option("--headless", help="Show the events only, no live picture.")
+        bool, typer.Option("--headless", help="Show the events only: no page, no picture.")
     ] = False,
     recordings: Annotated[
         Path, typer.Option(metavar="FOLDER", help="Where the record goes.")
@@ -51,14 +51,16 @@ def demo_command(
 ) -> None:
     """Show a whole match: a court, two bots and a referee meet over the network.
 
-    Every part is a process of its own, as in a contest. At the end the record is simulated again
+    Every part is a process of its own, as in a contest. The match is shown at a page in your
+    browser; where there is none, in the terminal. At the end the record is simulated again
     and must give the same match, bit for bit.
     """
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that all that was started ends
     with ExitStack() as processes:
         court = processes.enter_context(_court(arena, seconds, speed, recordings))
         where = ("--court", court.name, "--connect", court.address)
-        show_live = not headless and sys.stdout.isatty()
+        in_browser = not headless and _open_page(processes, where, recordings)
+        show_live = not headless and not in_browser and sys.stdout.isatty()
         needed = []
         for seat, bot in (("left", left), ("right", right)):
             join = ("--arena", arena, "--seat", seat, *where)
@@ -75,6 +77,19 @@ def demo_command(
     screen.show(f"Record: {record}")
     if _lacoc("replay", "verify", str(record)).wait() != 0:
         raise UserError("The record does not give the same match again: please report this.")
+
+
+def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> bool:
+    """Start a gateway and open its page; False if there is no browser to open it in."""
+    words = ("web", "--json", "--recordings", str(recordings), "--open", *where)
+    gateway = processes.enter_context(_process(*words, output=subprocess.PIPE))
+    assert gateway.stdout is not None
+    line = gateway.stdout.readline()
+    if not line:
+        raise UserError("The pages did not open; what is wrong is said above.")
+    opened = json.loads(line)
+    screen.show(f"Watch at {opened['url']}/watch")
+    return bool(opened["shown"])
 
 
 class _Court:

@@ -1,0 +1,54 @@
+"""A page for one person: a gateway on this machine alone, and the browser."""
+
+from typing import Annotated
+
+import typer
+
+from lacoc_client.gateway import server
+from lacoc_client.gateway.files import NOT_BUILT, PageFiles
+from lacoc_client.gateway.home import Home
+from lacoc_shared import screen
+from lacoc_shared.mistakes import UserError
+
+Browser = Annotated[
+    bool,
+    typer.Option("--open/--no-open", help="Open the page in the browser, or only say where it is."),
+]
+Terminal = Annotated[
+    bool,
+    typer.Option("--terminal", help="Here in this terminal, instead of a page in the browser."),
+]
+
+
+def check_pages() -> None:
+    """See that there are pages to show.
+
+    Raises:
+        UserError: if they are not built.
+    """
+    if not PageFiles().built:
+        raise UserError(f"{NOT_BUILT} --terminal does without them.")
+
+
+def show_page(home: Home, path: str, browser: bool) -> None:
+    """Serve a page to this person's browser until Ctrl-C.
+
+    Args:
+        home: the gateway's settings.
+        path: of the page, with its fragment.
+        browser: open it.
+
+    Raises:
+        UserError: if the pages are not built.
+    """
+    check_pages()
+    opened = server.listen(server.LOOPBACK)
+    address = f"{server.url(opened)}{path}"
+
+    def ready() -> None:
+        shown = browser and server.open_browser(address)
+        # Said in any case: a browser may open in a place where nobody looks.
+        screen.show(f"{'Opened' if shown else 'Open'} {address}")
+        screen.note("Keep this running while you are there; Ctrl-C ends it.")
+
+    server.run(home, opened, ready)
