@@ -3,7 +3,7 @@
 import { computed, type ReadonlySignal, type Signal, signal } from "@preact/signals";
 import { runKey, setting, socketUrl } from "./address";
 import { Connection } from "./connection";
-import { Timeline } from "./timeline";
+import { type Moment, Timeline } from "./timeline";
 import {
   type Event,
   type Frame,
@@ -29,12 +29,16 @@ export interface Match {
   readonly scene: ReadonlySignal<Scene | null>;
   readonly frame: ReadonlySignal<Frame | null>;
   readonly events: ReadonlySignal<readonly Event[]>;
-  readonly timeline: Timeline;
+  /** What to draw at a time of `performance.now()`; null before the first frame. */
+  sample(nowMs: number): Moment | null;
 }
 
 /** A frame older than this is not shown as live. */
 const STALE_MS = 1000;
 const LOOK_MS = 200;
+const PLAYOUT_MS = 20;
+/** What a delay holds back: all that tells how the match stands. */
+const DELAYED: ReadonlySet<Message["kind"]> = new Set(["frame", "event", "sheet", "scene"]);
 
 /** A court, watched through a gateway. */
 export class Court implements Match {
@@ -56,18 +60,32 @@ export class Court implements Match {
   readonly timeline: Timeline;
   readonly connection: Connection;
   private scenes: { hash: Uint8Array; scene: Scene }[] = [];
+  private log: number | null = null;
   private arrivedMs = 0;
   private arrivals: number[] = [];
+  private held: { message: Message; dueMs: number }[] = [];
 
-  /** @param hz Frames a second to ask for. */
-  constructor(private readonly hz: number) {
+  /**
+   * @param hz Frames a second to ask for.
+   * @param delayMs Everything is shown so much later, scores and events too: for a stream that
+   *   must not help anyone.
+   */
+  constructor(
+    private readonly hz: number,
+    readonly delayMs = 0,
+  ) {
     this.timeline = new Timeline();
     this.connection = new Connection(
       socketUrl(),
       () => this.watch(),
-      (message, arrivedMs) => this.take(message, arrivedMs),
+      (message, arrivedMs) => this.hold(message, arrivedMs),
     );
     setInterval(() => this.look(), LOOK_MS);
+    if (delayMs) setInterval(() => this.playOut(), PLAYOUT_MS);
+  }
+
+  sample(nowMs: number): Moment | null {
+    return this.timeline.sample(nowMs);
   }
 
   /** Ask the gateway for something; rejects with `Refused`. */
@@ -76,11 +94,24 @@ export class Court implements Match {
   }
 
   private watch(): void {
+    this.log = null;
     this.seat.value = null;
     this.referee.value = null;
     const fields = { court: setting("court") || null, hz: this.hz, key: runKey() };
     // A refusal is in the link's text; a break is seen by the connection.
     this.ask("watch", fields).catch(() => undefined);
+  }
+
+  private hold(message: Message, arrivedMs: number): void {
+    if (!this.delayMs || !DELAYED.has(message.kind)) this.take(message, arrivedMs);
+    else this.held.push({ message, dueMs: arrivedMs + this.delayMs });
+  }
+
+  private playOut(): void {
+    const nowMs = performance.now();
+    let count = 0;
+    while (count < this.held.length && this.held[count]!.dueMs <= nowMs) count++;
+    for (const { message, dueMs } of this.held.splice(0, count)) this.take(message, dueMs);
   }
 
   private take(message: Message, arrivedMs: number): void {
@@ -107,7 +138,7 @@ export class Court implements Match {
         this.health.value = message.body;
         break;
       case "link":
-        this.link.value = message.body;
+        this.takeLink(message.body);
         break;
       case "seat":
         this.seat.value = message.body;
@@ -126,14 +157,17 @@ export class Court implements Match {
     this.live.value = true;
   }
 
-  /** Events of one match, in their order; those of another match begin a new log. */
+  private takeLink(link: Link): void {
+    this.link.value = link;
+    if (link.log !== this.log && this.events.value.length) this.events.value = [];
+    this.log = link.log;
+  }
+
+  /** Keep the events in their order: one that was lost on the way may come late. */
   private takeEvent(event: Event): void {
     const known = this.events.value;
-    if (known[0] && known[0].match !== event.match) this.events.value = [event];
-    else if (!known.some((one) => one.number === event.number)) {
-      const later = known.findLastIndex((one) => one.number < event.number) + 1;
-      this.events.value = [...known.slice(0, later), event, ...known.slice(later)];
-    }
+    const later = known.findLastIndex((one) => one.number < event.number) + 1;
+    this.events.value = [...known.slice(0, later), event, ...known.slice(later)];
   }
 
   /** The scene that the sheet names, once both are here; never another one. */

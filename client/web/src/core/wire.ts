@@ -41,6 +41,8 @@ export interface Link {
   connected: boolean;
   silent_s: number;
   text: string;
+  /** Another number: the log of events begins anew, and all of it follows. */
+  log: number;
 }
 
 /** The seat that this page holds. */
