@@ -1,7 +1,7 @@
 /** Materials: team patterns, and a floor with fine lines. */
 
 import {
-  Color,
+  type Color,
   type Material,
   MeshLambertMaterial,
   MeshStandardMaterial,

@@ -1,0 +1,82 @@
+/** How finely to draw: as finely as this machine can, at an even pace. */
+
+export type Fineness = "low" | "high";
+
+/** A page feels slow beyond this. */
+const SLOW_MS = 50;
+/** A verdict needs so many frames; the first ones are spent on compiling. */
+const WINDOW = 60;
+const WARM_UP = 20;
+const KEPT = "lacoc.fineness";
+
+/** Times between frames. */
+export class FrameTimes {
+  private readonly times = new Float64Array(WINDOW);
+  private count = 0;
+  private lastMs = Number.NaN;
+
+  /** Note a frame; a pause, as of a hidden tab, is no frame time. */
+  note(nowMs: number): void {
+    const sinceMs = nowMs - this.lastMs;
+    this.lastMs = nowMs;
+    if (sinceMs > 0 && sinceMs < 1000) this.times[this.count++ % WINDOW] = sinceMs;
+  }
+
+  get full(): boolean {
+    return this.count >= WINDOW + WARM_UP;
+  }
+
+  get p95Ms(): number {
+    const kept = this.sorted();
+    return kept[Math.floor(0.95 * (kept.length - 1))] ?? 0;
+  }
+
+  get hz(): number {
+    const kept = this.sorted();
+    const sum = kept.reduce((total, time) => total + time, 0);
+    return sum ? (1000 * kept.length) / sum : 0;
+  }
+
+  reset(): void {
+    this.count = 0;
+    this.lastMs = Number.NaN;
+  }
+
+  private sorted(): Float64Array {
+    return this.times.slice(0, Math.min(this.count, WINDOW)).sort();
+  }
+}
+
+/** Whether what draws is a processor, not a graphics card. */
+export function drawsInSoftware(gl: WebGL2RenderingContext): boolean {
+  return /swiftshader|llvmpipe|software|basic render/i.test(rendererName(gl));
+}
+
+export function rendererName(gl: WebGL2RenderingContext): string {
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  return String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+}
+
+/** What to begin with where nothing was chosen; a slow machine is remembered by its card. */
+export function firstFineness(gl: WebGL2RenderingContext): Fineness {
+  if (drawsInSoftware(gl)) return "low";
+  try {
+    return localStorage.getItem(KEPT) === rendererName(gl) ? "low" : "high";
+  } catch {
+    return "high";
+  }
+}
+
+/** Remember that this machine is slow. */
+export function rememberSlow(gl: WebGL2RenderingContext): void {
+  try {
+    localStorage.setItem(KEPT, rendererName(gl));
+  } catch {
+    // It is measured again next time.
+  }
+}
+
+/** Whether frames take too long for what is drawn. */
+export function tooSlow(times: FrameTimes): boolean {
+  return times.full && times.p95Ms > SLOW_MS;
+}

@@ -1,0 +1,504 @@
+/** The three-dimensional picture: builds a scene's shapes once, then only moves them. */
+
+import {
+  ACESFilmicToneMapping,
+  AdditiveBlending,
+  type BufferGeometry,
+  Color,
+  DirectionalLight,
+  Float32BufferAttribute,
+  HemisphereLight,
+  type Material,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  NoToneMapping,
+  PCFSoftShadowMap,
+  PerspectiveCamera,
+  PlaneGeometry,
+  Quaternion,
+  RingGeometry,
+  SRGBColorSpace,
+  Vector3,
+  WebGLRenderer,
+  Scene as World,
+} from "three";
+import type { SceneGeom } from "../core/wire";
+import { FOV_RAD, type ViewAxes } from "./cameras";
+import { MarkerMotion } from "./markers";
+import { floor, patterned } from "./materials";
+import type { Model } from "./model";
+import {
+  afflicted,
+  evening,
+  markerColour,
+  mix,
+  PATTERNS,
+  patternOf,
+  type Rgb,
+  rgb,
+  teamGeoms,
+} from "./palette";
+import type { Fineness } from "./quality";
+import { Layer, type Shape, shapeOf } from "./shapes";
+
+/** One shape of the scene. */
+interface Piece {
+  body: number;
+  shape: Shape;
+  /** In the body's frame, stretched. */
+  local: Matrix4;
+  colour: Rgb;
+  pattern: number;
+  period_m: number;
+  marker: number;
+  state: number;
+}
+
+/** What is pointed at: a ring is drawn round it. */
+export interface Ring {
+  x: number;
+  y: number;
+  radius: number;
+}
+
+const GROUND: Rgb = [0.055, 0.072, 0.1];
+const JOINT: Rgb = [0.13, 0.15, 0.18];
+const EYE: Rgb = [0.96, 0.98, 1];
+const PLATE_PART = 0.62;
+const ROBOT_PERIOD_M = 0.03;
+const DISC_PERIOD_M = 0.048;
+const CLOTH_PERIOD_M = 0.026;
+const CLOTH_EDGE_M = 0.005;
+const PULSE_MS = 900;
+const MOST_PULSES = 24;
+const SHADOW_MAP = 2048;
+
+export class Stage {
+  readonly renderer: WebGLRenderer;
+  private readonly world = new World();
+  private readonly camera = new PerspectiveCamera((FOV_RAD * 180) / Math.PI, 1, 0.05, 40);
+  private readonly fine: boolean;
+  private readonly extras: { geometry: BufferGeometry; material: Material }[] = [];
+  private model: Model | null = null;
+  private motion: MarkerMotion | null = null;
+  private layers: { still: Layer; markers: Layer; robots: Layer } | null = null;
+  private markerPieces: Piece[] = [];
+  private robotPieces: Piece[] = [];
+  private markersDrawn = false;
+  private readonly sun: DirectionalLight;
+  private readonly ring: Mesh;
+  private readonly pulses: { mesh: Mesh; sinceMs: number; radius: number }[] = [];
+  private readonly blobs: Mesh[] = [];
+  private readonly matrix = new Matrix4();
+  private readonly pose = new Matrix4();
+
+  /**
+   * @param canvas A new canvas.
+   * @param context Of that canvas.
+   * @param fineness What it is drawn with; another one needs another stage.
+   */
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    context: WebGL2RenderingContext,
+    readonly fineness: Fineness,
+    transparent: boolean,
+  ) {
+    this.fine = fineness === "high";
+    this.renderer = new WebGLRenderer({
+      canvas,
+      context,
+      alpha: true,
+      premultipliedAlpha: true,
+    });
+    this.renderer.outputColorSpace = SRGBColorSpace;
+    this.renderer.setClearColor(0x000000, 0);
+    this.renderer.toneMapping = this.fine ? ACESFilmicToneMapping : NoToneMapping;
+    this.renderer.toneMappingExposure = 1.12;
+    this.renderer.shadowMap.enabled = this.fine;
+    this.renderer.shadowMap.type = PCFSoftShadowMap;
+    this.sun = this.light();
+    this.ring = this.mark(new RingGeometry(0.92, 1, this.fine ? 64 : 32), [1, 1, 1], 0.9);
+    if (!transparent) this.ground();
+  }
+
+  private light(): DirectionalLight {
+    this.world.add(new HemisphereLight(0xdfe9ff, 0x2a2620, this.fine ? 1.25 : 1.5));
+    const sun = new DirectionalLight(0xfff3e0, this.fine ? 2.6 : 1.9);
+    sun.position.set(-1.4, -1.1, 3);
+    this.world.add(sun, sun.target);
+    if (!this.fine) return sun;
+    const back = new DirectionalLight(0x9cc2ff, 0.9);
+    back.position.set(1.6, 2.4, 1.2);
+    this.world.add(back);
+    sun.castShadow = true;
+    sun.shadow.mapSize.set(SHADOW_MAP, SHADOW_MAP);
+    sun.shadow.bias = -0.0004;
+    sun.shadow.normalBias = 0.004;
+    sun.shadow.radius = 3.5;
+    return sun;
+  }
+
+  /** The hall's ground round the arena: a pool of light that ends in the dark. */
+  private ground(): void {
+    const geometry = new RingGeometry(0.01, 6, 48, 12);
+    const at = geometry.getAttribute("position");
+    const colours: number[] = [];
+    for (let vertex = 0; vertex < at.count; vertex++) {
+      const far = Math.hypot(at.getX(vertex), at.getY(vertex)) / 6;
+      const glow = Math.max(0, 1 - far) ** 2;
+      colours.push(...GROUND.map((part) => part * 0.55 * (0.6 + glow)), glow);
+    }
+    geometry.setAttribute("color", new Float32BufferAttribute(colours, 4));
+    const material = new MeshBasicMaterial({ vertexColors: true, transparent: true });
+    const mesh = new Mesh(geometry, material);
+    mesh.position.z = -0.012;
+    this.world.add(mesh);
+    this.extras.push({ geometry, material });
+  }
+
+  /** A flat mark on the floor, hidden until it is used. */
+  private mark(geometry: BufferGeometry, colour: Rgb, opacity: number): Mesh {
+    const material = new MeshBasicMaterial({
+      color: new Color().setRGB(...(colour as [number, number, number]), SRGBColorSpace),
+      transparent: true,
+      opacity,
+      depthWrite: false,
+    });
+    const mesh = new Mesh(geometry, material);
+    mesh.visible = false;
+    this.world.add(mesh);
+    this.extras.push({ geometry, material });
+    return mesh;
+  }
+
+  /** Build a scene. */
+  setModel(model: Model): void {
+    this.clearModel();
+    this.model = model;
+    const { scene, sheet, fk } = model;
+    this.motion = new MarkerMotion(scene, sheet.markers);
+    const { fine } = this;
+    const field = patterned(fine, { roughness: 0.75, metalness: 0.05 });
+    const markers = patterned(fine, { roughness: 0.42, metalness: 0.08 });
+    const robots = patterned(fine, { roughness: 0.36, metalness: 0.18 });
+    this.layers = {
+      still: new Layer(this.world, field, fine, { cast: true, receive: true }),
+      markers: new Layer(this.world, markers, fine, { cast: true, receive: true }),
+      robots: new Layer(this.world, robots, fine, { cast: true, receive: true }),
+    };
+    const still: Piece[] = [];
+    const teams = teamGeoms(scene, sheet);
+    scene.geoms.forEach((geom, index) => {
+      if (geom.type === "plane") {
+        this.plane(geom);
+        return;
+      }
+      const robot = fk.seats[geom.body]! >= 0;
+      const shape = shapeOf(geom, robot);
+      if (!shape) return;
+      const piece = this.piece(geom, shape, teams[index]!);
+      if (geom.marker >= 0) this.markerPieces.push(piece);
+      else if (robot) this.robotPieces.push(piece);
+      else still.push(piece);
+    });
+    this.robotPieces.push(...this.details(model));
+    reserve(this.layers.still, still);
+    reserve(this.layers.markers, this.markerPieces);
+    reserve(this.layers.robots, this.robotPieces);
+    for (const piece of still) this.put(this.layers.still, piece, this.poseOf(piece.body));
+    this.layers.still.done();
+    for (const seat of sheet.seats.keys()) this.blob(seat);
+    this.aimSun(model);
+    this.markersDrawn = false;
+  }
+
+  private piece(geom: SceneGeom, shape: Shape, team: number): Piece {
+    const { sheet, fk } = this.model!;
+    const own = geom.rgba.slice(0, 3) as unknown as Rgb;
+    const seat = sheet.seats[team];
+    const tall = geom.marker >= 0 && this.motion!.isTall(geom.marker);
+    let colour = evening(own);
+    let pattern: number = PATTERNS.plain;
+    let period_m = DISC_PERIOD_M;
+    if (seat) {
+      colour = rgb(seat.colour);
+      pattern = patternOf(seat.pattern);
+      period_m = geom.marker < 0 ? ROBOT_PERIOD_M : tall ? CLOTH_PERIOD_M : DISC_PERIOD_M;
+      // Legs are too thin for a pattern: the body has it.
+      if (geom.marker < 0 && geom.type !== "box") pattern = PATTERNS.plain;
+    } else if (geom.marker >= 0) {
+      const pole = tall && geom.type !== "box";
+      colour = pole ? evening(own) : markerColour(geom.state, own, tall);
+      if (tall && geom.type === "box" && geom.state === 0) {
+        pattern = PATTERNS.edge;
+        period_m = CLOTH_EDGE_M;
+      }
+    } else if (fk.seats[geom.body]! >= 0) colour = own;
+    const local = new Matrix4().compose(
+      new Vector3(...geom.pos),
+      new Quaternion(geom.quat[1], geom.quat[2], geom.quat[3], geom.quat[0]),
+      new Vector3(...shape.scale),
+    );
+    return {
+      body: geom.body,
+      shape,
+      local,
+      colour,
+      pattern,
+      period_m,
+      marker: geom.marker,
+      state: geom.state,
+    };
+  }
+
+  /** What makes a robot of boxes and rods look like one: a lid, eyes in front, dark joints. */
+  private details({ scene }: Model): Piece[] {
+    const found: Piece[] = [];
+    const add = (body: number, type: string, size: Size, pos: Size, colour: Rgb) => {
+      const shape = shapeOf({ type, size }, true)!;
+      const local = new Matrix4().makeTranslation(...pos);
+      local.scale(new Vector3(...shape.scale));
+      const plain = { pattern: 0, period_m: 1, marker: -1, state: -1 };
+      found.push({ body, shape, local, colour, ...plain });
+    };
+    scene.bodies.forEach((body, index) => {
+      const mine = scene.geoms.filter((geom) => geom.body === index);
+      const box = mine.find((geom) => geom.type === "box");
+      if (body.seat >= 0 && box) {
+        const [x, y, z] = box.size;
+        const low = Math.min(x, y);
+        add(
+          index,
+          "box",
+          [PLATE_PART * x, PLATE_PART * y, 0.004],
+          [0, -0.06 * y, z + 0.001],
+          JOINT,
+        );
+        for (const side of [-1, 1]) {
+          add(index, "sphere", [0.2 * low, 0, 0], [side * 0.46 * x, y - 0.002, 0.3 * z], JOINT);
+          add(index, "sphere", [0.14 * low, 0, 0], [side * 0.46 * x, y + 0.004, 0.34 * z], EYE);
+        }
+      }
+      const rod = mine.find((geom) => geom.type === "capsule");
+      if (body.joint >= 0 && rod) {
+        add(index, "sphere", [1.14 * rod.size[0], 0, 0], [0, 0, 0], JOINT);
+      }
+    });
+    return found;
+  }
+
+  private plane(geom: SceneGeom): void {
+    const [x, y] = geom.size;
+    const geometry = new PlaneGeometry(2 * (x || 10), 2 * (y || 10));
+    const own = evening(geom.rgba.slice(0, 3) as unknown as Rgb);
+    const colour = new Color().setRGB(own[0], own[1], own[2], SRGBColorSpace);
+    const material = floor(this.fine, colour);
+    const mesh = new Mesh(geometry, material);
+    mesh.position.set(...geom.pos);
+    mesh.quaternion.set(geom.quat[1], geom.quat[2], geom.quat[3], geom.quat[0]);
+    mesh.receiveShadow = this.fine;
+    mesh.name = "floor";
+    this.world.add(mesh);
+  }
+
+  /** Where there are no real shadows: a soft dark spot, or robots would float. */
+  private blob(seat: number): void {
+    if (this.fine) return;
+    const geometry = new RingGeometry(0.001, 1, 24, 3);
+    const at = geometry.getAttribute("position");
+    const colours: number[] = [];
+    for (let vertex = 0; vertex < at.count; vertex++) {
+      const far = Math.hypot(at.getX(vertex), at.getY(vertex));
+      colours.push(0, 0, 0, 0.5 * Math.max(0, 1 - far) ** 0.8);
+    }
+    geometry.setAttribute("color", new Float32BufferAttribute(colours, 4));
+    const material = new MeshBasicMaterial({
+      vertexColors: true,
+      transparent: true,
+      depthWrite: false,
+    });
+    const mesh = new Mesh(geometry, material);
+    mesh.scale.setScalar(0.2);
+    mesh.visible = false;
+    mesh.renderOrder = 1;
+    this.blobs[seat] = mesh;
+    this.world.add(mesh);
+  }
+
+  private aimSun({ field }: Model): void {
+    const reach = Math.hypot(field.halfX, field.halfY) + 0.15;
+    const { camera } = this.sun.shadow;
+    Object.assign(camera, { left: -reach, right: reach, top: reach, bottom: -reach });
+    camera.near = 0.5;
+    camera.far = 7;
+    camera.updateProjectionMatrix();
+    this.sun.position.set(field.x - 1.4, field.y - 1.1, 3);
+    this.sun.target.position.set(field.x, field.y, 0);
+  }
+
+  /** Set the drawing size. */
+  resize(width: number, height: number, ratio: number): void {
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+  }
+
+  /**
+   * Draw the model as it is now.
+   *
+   * @param animate Whether changed markers move, or are there at once.
+   * @returns Markers that changed.
+   */
+  draw(view: ViewAxes, nowMs: number, animate: boolean, ring: Ring | null): number[] {
+    const { model, motion, layers } = this;
+    let changed: number[] = [];
+    if (model && motion && layers) {
+      changed = motion.follow(model.states, nowMs, animate);
+      if (motion.moving || !this.markersDrawn) this.drawMarkers(nowMs);
+      if (animate) for (const marker of changed) this.pulse(marker, nowMs);
+      this.drawRobots(layers.robots, model);
+    }
+    this.drawPulses(nowMs);
+    this.ring.visible = ring !== null;
+    if (ring) {
+      this.ring.position.set(ring.x, ring.y, 0.005);
+      this.ring.scale.setScalar(ring.radius);
+    }
+    const { right, up, forward } = view;
+    this.camera.position.set(...view.eye);
+    this.matrix.makeBasis(axisX.set(...right), axisY.set(...up), axisZ.set(...forward).negate());
+    this.camera.quaternion.setFromRotationMatrix(this.matrix);
+    this.renderer.render(this.world, this.camera);
+    return changed;
+  }
+
+  private drawMarkers(nowMs: number): void {
+    const { markers } = this.layers!;
+    const motion = this.motion!;
+    markers.clear();
+    for (const piece of this.markerPieces) {
+      const { state, matrix } = motion.posture(piece.marker, nowMs);
+      if (piece.state !== state && piece.state >= 0) continue;
+      this.put(markers, piece, matrix ?? identity);
+    }
+    markers.done();
+    this.markersDrawn = true;
+  }
+
+  private drawRobots(layer: Layer, model: Model): void {
+    layer.clear();
+    if (model.robots.length) {
+      for (const piece of this.robotPieces) {
+        const flags = model.robots[model.fk.seats[piece.body]!]?.flags ?? 0;
+        const colour = piece.colour === EYE ? EYE : afflicted(piece.colour, flags);
+        this.put(layer, piece, this.poseOf(piece.body), colour);
+      }
+    }
+    layer.done();
+    this.blobs.forEach((blob, seat) => {
+      const robot = model.robots[seat];
+      blob.visible = robot !== undefined;
+      if (robot) blob.position.set(robot.x, robot.y, 0.0042);
+    });
+  }
+
+  private put(layer: Layer, piece: Piece, pose: Matrix4, colour = piece.colour): void {
+    this.matrix.multiplyMatrices(pose, piece.local);
+    layer.of(piece.shape).add(this.matrix, colour, piece.pattern, piece.period_m);
+  }
+
+  private poseOf(body: number): Matrix4 {
+    const { pos, quat } = this.model!.fk;
+    const q = 4 * body;
+    turn.set(quat[q + 1]!, quat[q + 2]!, quat[q + 3]!, quat[q]!);
+    place.set(pos[3 * body]!, pos[3 * body + 1]!, pos[3 * body + 2]!);
+    return this.pose.compose(place, turn, ones);
+  }
+
+  /** A ring of light in the colour of who took a marker. */
+  private pulse(marker: number, nowMs: number): void {
+    const { sheet, states } = this.model!;
+    const info = sheet.markers[marker]!;
+    const seat = sheet.seats[(states[marker] ?? 0) - 1];
+    if (!seat) return;
+    let free = this.pulses.find(({ mesh }) => !mesh.visible);
+    if (!free) {
+      if (this.pulses.length >= MOST_PULSES) return;
+      free = {
+        mesh: this.mark(new RingGeometry(0.86, 1, 40), [1, 1, 1], 1),
+        sinceMs: 0,
+        radius: 0,
+      };
+      (free.mesh.material as MeshBasicMaterial).blending = AdditiveBlending;
+      this.pulses.push(free);
+    }
+    const tint = mix(rgb(seat.colour), [1, 1, 1], 0.35);
+    (free.mesh.material as MeshBasicMaterial).color.setRGB(
+      tint[0],
+      tint[1],
+      tint[2],
+      SRGBColorSpace,
+    );
+    free.mesh.position.set(info.x_m, info.y_m, 0.006);
+    free.mesh.visible = true;
+    free.sinceMs = nowMs;
+    free.radius = Math.max(0.06, info.radius_m);
+  }
+
+  private drawPulses(nowMs: number): void {
+    for (const { mesh, sinceMs, radius } of this.pulses) {
+      const part = (nowMs - sinceMs) / PULSE_MS;
+      mesh.visible = mesh.visible && part >= 0 && part < 1;
+      if (!mesh.visible) continue;
+      mesh.scale.setScalar(radius * (0.9 + 0.75 * (1 - (1 - part) ** 3)));
+      (mesh.material as MeshBasicMaterial).opacity = 0.75 * (1 - part) ** 1.5;
+    }
+  }
+
+  private clearModel(): void {
+    if (this.layers) for (const layer of Object.values(this.layers)) layer.dispose();
+    this.layers = null;
+    this.markerPieces = [];
+    this.robotPieces = [];
+    for (const mesh of [...this.world.children, ...this.blobs]) {
+      if (!(mesh instanceof Mesh) || (mesh.name !== "floor" && !this.blobs.includes(mesh)))
+        continue;
+      mesh.removeFromParent();
+      mesh.geometry.dispose();
+      (mesh.material as Material).dispose();
+    }
+    this.blobs.length = 0;
+    for (const { mesh } of this.pulses) mesh.visible = false;
+  }
+
+  dispose(): void {
+    this.clearModel();
+    for (const { geometry, material } of this.extras) {
+      geometry.dispose();
+      material.dispose();
+    }
+    this.renderer.dispose();
+  }
+}
+
+type Size = [number, number, number];
+
+const identity = new Matrix4();
+const ones = new Vector3(1, 1, 1);
+const place = new Vector3();
+const turn = new Quaternion();
+const axisX = new Vector3();
+const axisY = new Vector3();
+const axisZ = new Vector3();
+
+function reserve(layer: Layer, pieces: readonly Piece[]): void {
+  const counts = new Map<string, { shape: Shape; most: number }>();
+  for (const { shape } of pieces) {
+    const known = counts.get(shape.key);
+    if (known) known.most++;
+    else counts.set(shape.key, { shape, most: 1 });
+  }
+  for (const { shape, most } of counts.values()) layer.reserve(shape, most);
+}

@@ -1,0 +1,13 @@
+import { defineConfig } from "vite";
+
+// The scene on its own, for its tests and for work on it: no gateway, no court. Not part of what is
+// shipped. `npx vite src/scene/stand` serves it, `npx vite build src/scene/stand` builds it.
+export default defineConfig({
+  base: "./",
+  build: {
+    outDir: "../../../node_modules/.stand",
+    emptyOutDir: true,
+    target: "es2022",
+    chunkSizeWarningLimit: 800,
+  },
+});

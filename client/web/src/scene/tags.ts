@@ -1,0 +1,55 @@
+/** The teams' names above their robots, as text of the page: crisp at any size. */
+
+import type { Sheet } from "../core/wire";
+import type { Model } from "./model";
+import { luma, rgb } from "./palette";
+import { seatLetters } from "./topview";
+
+const ABOVE_M = 0.15;
+
+type Placing = (x: number, y: number, z: number) => { x: number; y: number; far: number } | null;
+
+export class Tags {
+  private readonly layer: HTMLElement;
+  private tags: HTMLElement[] = [];
+
+  constructor(host: HTMLElement) {
+    this.layer = document.createElement("div");
+    this.layer.className = "view-tags";
+    this.layer.setAttribute("aria-hidden", "true");
+    host.append(this.layer);
+  }
+
+  /** Take the teams' names. */
+  name(sheet: Sheet): void {
+    const letters = seatLetters(sheet);
+    this.tags = sheet.seats.map((seat, index) => {
+      const tag = document.createElement("div");
+      tag.className = "view-tag";
+      tag.hidden = true;
+      const mark = document.createElement("b");
+      mark.textContent = letters[index] ?? "";
+      mark.dataset.pattern = seat.pattern;
+      mark.style.backgroundColor = seat.colour;
+      mark.style.color = luma(rgb(seat.colour)) > 0.5 ? "#16100a" : "#fff";
+      tag.append(mark, seat.team || seat.id);
+      return tag;
+    });
+    this.layer.replaceChildren(...this.tags);
+  }
+
+  /** Put the names where the robots are; null hides them. */
+  draw(model: Model | null, place: Placing): void {
+    for (const [seat, tag] of this.tags.entries()) {
+      const robot = model?.robots[seat];
+      const at = robot ? place(robot.x, robot.y, robot.z + ABOVE_M) : null;
+      if (tag.hidden !== !at) tag.hidden = !at;
+      if (!at) continue;
+      tag.style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px) translate(-50%, -100%)`;
+    }
+  }
+
+  end(): void {
+    this.layer.remove();
+  }
+}

@@ -1,0 +1,460 @@
+/** Draws a match into an element, frame by frame: picture, cameras, names, pointing. */
+
+import type { ReadonlySignal } from "@preact/signals";
+import type { Quality } from "../core/settings";
+import type { Moment } from "../core/timeline";
+import type { Scene, Sheet } from "../core/wire";
+import { type Aim, type CameraName, type Frame2d, Rig, type ViewAxes, viewOf } from "./cameras";
+import { type Action, Director } from "./director";
+import { Model } from "./model";
+import { type Hit, pick, pickFlat, project } from "./picking";
+import { type Fineness, FrameTimes, firstFineness, rememberSlow, tooSlow } from "./quality";
+import type { Ring, Stage } from "./stage";
+import { Tags } from "./tags";
+import { type Plan, planOf, TopView } from "./topview";
+
+/** What is drawn. */
+export interface Source {
+  sheet: ReadonlySignal<Sheet | null>;
+  /** Belongs to the sheet, or is null. */
+  scene: ReadonlySignal<Scene | null>;
+  sample(nowMs: number): Moment | null;
+}
+
+/** Kept free of the field at the edges, for what lies over the picture [px]. */
+export interface Inset {
+  top?: number;
+  right?: number;
+  bottom?: number;
+  left?: number;
+}
+
+export interface Options {
+  source: Source;
+  camera: CameraName;
+  seat: number;
+  quality: Quality;
+  transparent: boolean;
+  orbit: boolean;
+  labels: boolean;
+  inset: Inset;
+  onPick: ((hit: Hit) => void) | null;
+}
+
+/** What tests look at: `window.__lacoc.view`. */
+export interface ViewHook {
+  readonly fps: number;
+  readonly frameMsP95: number;
+  readonly drawnBeat: number;
+  readonly drawnFrames: number;
+  readonly camera: string;
+  /** "low", "high", or "map" where nothing is drawn in three dimensions. */
+  readonly quality: string;
+  readonly eye: [number, number, number] | null;
+  bodyPos(name: string): [number, number, number] | null;
+  marker(index: number): number;
+  /** Where on the page a point of the world is [px]. */
+  screen(x: number, y: number, z: number): [number, number] | null;
+}
+
+const MOST_RATIO = 2;
+/** A leap in time of more beats shows no movements. */
+const LEAP_BEATS = 100;
+const RETRY_MS = 1000;
+const DRAG_PX = 5;
+const EDGE = 0.96;
+
+export class Viewer {
+  private options: Options;
+  private canvas: HTMLCanvasElement | null = null;
+  private stage: Stage | null = null;
+  private map: TopView | null = null;
+  private readonly rig = new Rig();
+  private readonly director = new Director(this.rig);
+  private readonly times = new FrameTimes();
+  private readonly tags: Tags;
+  private readonly observer: ResizeObserver;
+  private model: Model | null = null;
+  private axes: ViewAxes | null = null;
+  private plan: Plan | null = null;
+  private pointer: { x: number; y: number } | null = null;
+  private hovered: Hit | null = null;
+  private drawn = { beat: -1, match: -1, frames: 0 };
+  private actions: Action[] = [];
+  private handle = 0;
+  private building = false;
+  private ended = false;
+  private slow = false;
+  private noWebgl = false;
+  private thrift = 1;
+  private size = { width: 0, height: 0 };
+
+  /** @param host Is filled with the picture. */
+  constructor(
+    private readonly host: HTMLElement,
+    options: Options,
+  ) {
+    this.options = options;
+    this.tags = new Tags(host);
+    this.observer = new ResizeObserver(() => this.measure());
+    this.observer.observe(host);
+    this.listen();
+    this.measure();
+    this.handle = requestAnimationFrame(this.loop);
+  }
+
+  /** Go on with other options. */
+  update(options: Options): void {
+    const before = this.options;
+    this.options = options;
+    if (before.quality !== options.quality) this.slow = false;
+    if (before.quality !== options.quality || before.transparent !== options.transparent) {
+      this.drop();
+    }
+    if (before.source !== options.source) this.model = null;
+  }
+
+  /** Stop and take everything away. */
+  end(): void {
+    this.ended = true;
+    cancelAnimationFrame(this.handle);
+    this.observer.disconnect();
+    this.drop();
+    this.tags.end();
+  }
+
+  readonly hook: ViewHook = (() => {
+    const viewer = this;
+    return {
+      get fps() {
+        return viewer.times.hz;
+      },
+      get frameMsP95() {
+        return viewer.times.p95Ms;
+      },
+      get drawnBeat() {
+        return viewer.drawn.beat;
+      },
+      get drawnFrames() {
+        return viewer.drawn.frames;
+      },
+      get camera() {
+        return viewer.options.camera;
+      },
+      get quality() {
+        return viewer.map ? "map" : (viewer.stage?.fineness ?? "");
+      },
+      get eye() {
+        return viewer.axes?.eye ?? null;
+      },
+      bodyPos: (name) => viewer.model?.bodyPos(name) ?? null,
+      marker: (index) => viewer.model?.states[index] ?? -1,
+      screen: (x, y, z) => {
+        const box = viewer.host.getBoundingClientRect();
+        const at = viewer.place(x, y, z);
+        return at && [box.left + at.x, box.top + at.y];
+      },
+    };
+  })();
+
+  private get flat(): boolean {
+    return this.noWebgl || this.options.camera === "map";
+  }
+
+  // Building
+
+  private fineness(probe: WebGL2RenderingContext): Fineness {
+    const { quality } = this.options;
+    if (quality !== "auto") return quality;
+    return this.slow ? "low" : firstFineness(probe);
+  }
+
+  /** Make what draws; the three-dimensional part is loaded when it is needed. */
+  private async build(): Promise<void> {
+    this.building = true;
+    try {
+      if (this.flat) {
+        this.place2d();
+        return;
+      }
+      const canvas = this.newCanvas();
+      const probe = canvas.getContext("webgl2", {
+        alpha: true,
+        antialias: this.options.quality !== "low" && !this.slow,
+        powerPreference: "high-performance",
+        stencil: false,
+      });
+      if (!probe) {
+        this.noWebgl = true;
+        this.place2d();
+        return;
+      }
+      const { Stage } = await import("./stage");
+      if (this.ended || this.flat) return;
+      const fineness = this.fineness(probe);
+      this.stage = new Stage(canvas, probe, fineness, this.options.transparent);
+      if (this.model) this.stage.setModel(this.model);
+      canvas.addEventListener("webglcontextlost", (event) => {
+        event.preventDefault();
+        // A new canvas is a new context; the old one may never come back.
+        if (canvas === this.canvas)
+          setTimeout(() => canvas === this.canvas && this.drop(), RETRY_MS);
+      });
+      this.show(canvas);
+    } finally {
+      this.building = false;
+    }
+  }
+
+  private place2d(): void {
+    const canvas = this.newCanvas();
+    this.map = new TopView(canvas);
+    this.show(canvas);
+  }
+
+  private newCanvas(): HTMLCanvasElement {
+    const canvas = document.createElement("canvas");
+    canvas.className = "view-canvas";
+    return canvas;
+  }
+
+  private show(canvas: HTMLCanvasElement): void {
+    this.canvas?.remove();
+    this.canvas = canvas;
+    this.host.prepend(canvas);
+    this.host.dataset.fineness = this.hook.quality;
+    this.times.reset();
+    this.resize();
+  }
+
+  private drop(): void {
+    this.stage?.dispose();
+    this.stage = null;
+    this.map = null;
+    this.canvas?.remove();
+    this.canvas = null;
+  }
+
+  private measure(): void {
+    this.size = { width: this.host.clientWidth, height: this.host.clientHeight };
+    this.resize();
+  }
+
+  private resize(): void {
+    const { width, height } = this.size;
+    if (!width || !height) return;
+    const ratio = Math.min(MOST_RATIO, window.devicePixelRatio || 1);
+    const coarse = Math.min(1, ratio) * this.thrift;
+    this.stage?.resize(width, height, this.stage.fineness === "low" ? coarse : ratio);
+    this.map?.resize(width, height, Math.max(1, window.devicePixelRatio || 1));
+  }
+
+  // Drawing
+
+  private readonly loop = (nowMs: number): void => {
+    if (this.ended) return;
+    this.handle = requestAnimationFrame(this.loop);
+    const { width, height } = this.size;
+    if (!width || !height) {
+      this.times.reset();
+      return;
+    }
+    if (this.flat ? this.stage : this.map) this.drop();
+    if (!this.stage && !this.map) {
+      if (!this.building) void this.build();
+      return;
+    }
+    this.times.note(nowMs);
+    this.judge();
+    const animate = this.follow(nowMs);
+    if (this.model) this.draw(this.model, nowMs, animate);
+  };
+
+  /** Bring the model to what is to be shown; whether time went on evenly since the last picture. */
+  private follow(nowMs: number): boolean {
+    const { source } = this.options;
+    const [sheet, scene] = [source.sheet.peek(), source.scene.peek()];
+    if (sheet && scene && (this.model?.sheet !== sheet || this.model.scene !== scene)) {
+      this.model = new Model(scene, sheet);
+      this.stage?.setModel(this.model);
+      this.tags.name(sheet);
+    }
+    const moment = source.sample(nowMs);
+    if (!moment || !this.model?.apply(moment)) return false;
+    const { beat, match } = this.drawn;
+    const passed = moment.beat - beat;
+    this.drawn.beat = moment.beat;
+    this.drawn.match = moment.before.match;
+    return match === moment.before.match && Math.abs(passed) < LEAP_BEATS;
+  }
+
+  private draw(model: Model, nowMs: number, animate: boolean): void {
+    this.drawn.frames++;
+    const ring = this.point(model);
+    if (this.map) {
+      this.plan = planOf(model.field, this.free());
+      this.map.draw(model, this.plan, ring);
+    } else if (this.stage) {
+      this.axes = viewOf(this.shot(model, nowMs));
+      const changed = this.stage.draw(this.axes, nowMs, animate, ring);
+      this.actions = animate
+        ? changed.flatMap((marker) => {
+            const seat = (model.states[marker] ?? 0) - 1;
+            return model.sheet.seats[seat] ? [{ seat }] : [];
+          })
+        : [];
+    }
+    this.tags.draw(this.options.labels ? model : null, (x, y, z) => this.place(x, y, z));
+  }
+
+  private shot(model: Model, nowMs: number) {
+    const { camera, seat } = this.options;
+    const aspect = this.size.width / this.size.height;
+    const aim: Aim = { model, aspect, frame: this.frame(), seat };
+    if (camera === "auto") {
+      const { key, shot } = this.director.shoot(aim, this.actions, nowMs);
+      return this.rig.move(key, shot, nowMs, 1300);
+    }
+    return this.rig.move(`${camera} ${seat}`, this.rig.aim(camera, aim, nowMs), nowMs);
+  }
+
+  /** Draw less finely if this machine cannot keep up. */
+  private judge(): void {
+    if (!this.stage || !tooSlow(this.times)) return;
+    if (this.stage.fineness === "high") {
+      if (this.options.quality !== "auto") return;
+      this.slow = true;
+      rememberSlow(this.stage.renderer.getContext() as WebGL2RenderingContext);
+      this.drop();
+    } else if (this.thrift > 0.5 && this.options.quality === "auto") {
+      this.thrift *= 0.75;
+      this.times.reset();
+      this.resize();
+    }
+  }
+
+  private free(): { left: number; top: number; width: number; height: number } {
+    const { top = 0, right = 0, bottom = 0, left = 0 } = this.options.inset;
+    const margin = 8;
+    return {
+      left: left + margin,
+      top: top + margin,
+      width: Math.max(40, this.size.width - left - right - 2 * margin),
+      height: Math.max(40, this.size.height - top - bottom - 2 * margin),
+    };
+  }
+
+  /** The free part of the picture, in -1 to 1. */
+  private frame(): Frame2d {
+    const { top = 0, right = 0, bottom = 0, left = 0 } = this.options.inset;
+    const { width, height } = this.size;
+    return {
+      left: EDGE * (-1 + (2 * left) / width),
+      right: EDGE * (1 - (2 * right) / width),
+      top: EDGE * (1 - (2 * top) / height),
+      bottom: EDGE * (-1 + (2 * bottom) / height),
+    };
+  }
+
+  /** Where in the element a point of the world is [px]; null if it is behind the camera. */
+  private place(x: number, y: number, z: number): { x: number; y: number; far: number } | null {
+    if (this.map) {
+      if (!this.plan) return null;
+      const { scale } = this.plan;
+      return { x: this.plan.x + x * scale, y: this.plan.y - y * scale - z * scale, far: 3 };
+    }
+    const { width, height } = this.size;
+    if (!this.axes || !width) return null;
+    const at = project(this.axes, width / height, x, y, z);
+    if (at.depth < 0.1) return null;
+    return { x: ((at.u + 1) / 2) * width, y: ((1 - at.v) / 2) * height, far: at.depth };
+  }
+
+  // Pointing
+
+  private hitAt(x: number, y: number): Hit | null {
+    const { model, size } = this;
+    if (!model) return null;
+    if (this.map) {
+      if (!this.plan) return null;
+      const { scale } = this.plan;
+      return pickFlat(model, (x - this.plan.x) / scale, (this.plan.y - y) / scale);
+    }
+    if (!this.axes) return null;
+    const [u, v] = [(2 * x) / size.width - 1, 1 - (2 * y) / size.height];
+    return pick(model, this.axes, size.width / size.height, u, v);
+  }
+
+  /** The ring round what the pointer is on. */
+  private point(model: Model): Ring | null {
+    const pickable = this.options.onPick !== null && this.pointer !== null;
+    this.hovered = pickable ? this.hitAt(this.pointer!.x, this.pointer!.y) : null;
+    const { marker, seat } = this.hovered ?? {};
+    const on = marker !== undefined || seat !== undefined;
+    this.host.style.cursor = on ? "pointer" : "";
+    if (seat !== undefined) {
+      const robot = model.robots[seat]!;
+      return { x: robot.x, y: robot.y, radius: 0.17 };
+    }
+    const info = marker === undefined ? null : model.sheet.markers[marker];
+    return info ? { x: info.x_m, y: info.y_m, radius: Math.max(0.05, 1.06 * info.radius_m) } : null;
+  }
+
+  private listen(): void {
+    const { host } = this;
+    const held = new Map<number, { x: number; y: number }>();
+    let moved = 0;
+    let spread = 0;
+    const at = (event: PointerEvent | MouseEvent) => {
+      const box = host.getBoundingClientRect();
+      return { x: event.clientX - box.left, y: event.clientY - box.top };
+    };
+    host.addEventListener("pointerdown", (event) => {
+      held.set(event.pointerId, at(event));
+      if (held.size === 1) moved = 0;
+      spread = 0;
+    });
+    host.addEventListener("pointermove", (event) => {
+      const now = at(event);
+      if (event.pointerType !== "touch") this.pointer = now;
+      const was = held.get(event.pointerId);
+      if (!was) return;
+      held.set(event.pointerId, now);
+      moved += Math.hypot(now.x - was.x, now.y - was.y);
+      if (!this.options.orbit || moved < DRAG_PX) return;
+      if (!host.hasPointerCapture(event.pointerId)) host.setPointerCapture(event.pointerId);
+      const [one, other] = [...held.values()];
+      if (one && other) {
+        const apart = Math.hypot(one.x - other.x, one.y - other.y);
+        if (spread) this.rig.zoom(spread / Math.max(1, apart));
+        spread = apart;
+      } else this.rig.orbit((was.x - now.x) * 0.006, (now.y - was.y) * 0.005);
+    });
+    const release = (event: PointerEvent) => {
+      held.delete(event.pointerId);
+      spread = 0;
+    };
+    host.addEventListener("pointerup", release);
+    host.addEventListener("pointercancel", release);
+    host.addEventListener("pointerleave", () => {
+      this.pointer = null;
+    });
+    host.addEventListener("click", (event) => {
+      const { onPick } = this.options;
+      if (!onPick || moved >= DRAG_PX) return;
+      const { x, y } = at(event);
+      const hit = this.hitAt(x, y);
+      if (hit) onPick(hit);
+    });
+    host.addEventListener("dblclick", () => this.options.orbit && this.rig.release());
+    host.addEventListener(
+      "wheel",
+      (event) => {
+        if (!this.options.orbit || this.map) return;
+        event.preventDefault();
+        this.rig.zoom(Math.exp(event.deltaY * 0.001));
+      },
+      { passive: false },
+    );
+  }
+}
