@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 import tomllib
+import urllib.request
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -22,7 +23,7 @@ ROOT = Path(__file__).parents[2]
 COMPOSE = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text(encoding="utf-8"))
 SERVICES: dict[str, dict[str, Any]] = COMPOSE["services"]
 DOCKERFILE = (ROOT / "docker" / "Dockerfile").read_text(encoding="utf-8")
-PORT = "7447"
+PORT, WEB_PORT = "7447", "8080"
 
 
 def free_port() -> str:
@@ -59,6 +60,8 @@ def test_the_services_hang_together() -> None:
     """Every service runs the image; the port that is opened is the one that is connected to."""
     assert {service["image"] for service in SERVICES.values()} == {"lacoc"}
     assert SERVICES["court"]["ports"] == [f"{PORT}:{PORT}"]
+    assert SERVICES["web"]["ports"] == [f"{WEB_PORT}:{WEB_PORT}"]
+    assert SERVICES["web"]["command"][-1].endswith(f":{WEB_PORT}")
     connects = {service["environment"].get("LACOC_CONNECT") for service in SERVICES.values()}
     assert connects == {None, f"tcp/court:{PORT}"}
     assert (ROOT / "docker" / SERVICES["court"]["build"]["context"]).resolve() == ROOT
@@ -68,12 +71,12 @@ def test_the_services_hang_together() -> None:
 @pytest.mark.slow
 def test_the_composition_plays(tmp_path: Path) -> None:
     """Started in their order, the services come to a match that is being played."""
-    port = free_port()
+    port, web_port = free_port(), free_port()
 
     def here(text: str) -> str:
         """What a container sees, as this machine has it."""
         text = text.replace("/contest/", f"{tmp_path}/").replace("tcp/court:", "tcp/127.0.0.1:")
-        return text.replace(PORT, port)
+        return text.replace(PORT, port).replace(WEB_PORT, web_port)
 
     with ExitStack() as running:
         lines: queue.Queue[str] = queue.Queue()
@@ -94,6 +97,8 @@ def test_the_composition_plays(tmp_path: Path) -> None:
             if "service_healthy" in conditions:
                 wait_until_healthy([here(word) for word in service["healthcheck"]["test"]])
         heard = wait_for(lines, "PLAYING.", timeout_s=60)
+        with urllib.request.urlopen(f"http://127.0.0.1:{web_port}/watch", timeout=20) as page:
+            assert b"LACOC" in page.read()
 
     assert any("takes the left seat" in line for line in heard)
     assert any("takes the right seat" in line for line in heard)
