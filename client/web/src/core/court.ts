@@ -37,8 +37,8 @@ export interface Match {
 const STALE_MS = 1000;
 const LOOK_MS = 200;
 const PLAYOUT_MS = 20;
-/** What a delay holds back: all that tells how the match stands. */
-const DELAYED: ReadonlySet<Message["kind"]> = new Set(["frame", "event", "sheet", "scene"]);
+/** All that tells how the match stands is shown with the delay, and in its order. */
+const DELAYED: ReadonlySet<Message["kind"]> = new Set(["frame", "event", "sheet", "scene", "link"]);
 
 /** A court, watched through a gateway. */
 export class Court implements Match {
@@ -63,7 +63,7 @@ export class Court implements Match {
   private log: number | null = null;
   private arrivedMs = 0;
   private arrivals: number[] = [];
-  private held: { message: Message; dueMs: number }[] = [];
+  private held: { dueMs: number; take: () => void }[] = [];
 
   /**
    * @param hz Frames a second to ask for.
@@ -78,7 +78,7 @@ export class Court implements Match {
     this.connection = new Connection(
       socketUrl(),
       () => this.watch(),
-      (message, arrivedMs) => this.hold(message, arrivedMs),
+      (message, arrivedMs) => this.receive(message, arrivedMs),
     );
     setInterval(() => this.look(), LOOK_MS);
     if (delayMs) setInterval(() => this.playOut(), PLAYOUT_MS);
@@ -94,7 +94,9 @@ export class Court implements Match {
   }
 
   private watch(): void {
-    this.log = null;
+    this.later(performance.now(), () => {
+      this.log = null;
+    });
     this.seat.value = null;
     this.referee.value = null;
     const fields = { court: setting("court") || null, hz: this.hz, key: runKey() };
@@ -102,16 +104,23 @@ export class Court implements Match {
     this.ask("watch", fields).catch(() => undefined);
   }
 
-  private hold(message: Message, arrivedMs: number): void {
-    if (!this.delayMs || !DELAYED.has(message.kind)) this.take(message, arrivedMs);
-    else this.held.push({ message, dueMs: arrivedMs + this.delayMs });
+  private receive(message: Message, arrivedMs: number): void {
+    if (!DELAYED.has(message.kind)) this.take(message, arrivedMs);
+    else this.later(arrivedMs, (shownMs) => this.take(message, shownMs));
+  }
+
+  /** Do something when the delay has passed; at once where there is none. */
+  private later(arrivedMs: number, take: (shownMs: number) => void): void {
+    const dueMs = arrivedMs + this.delayMs;
+    if (this.delayMs) this.held.push({ dueMs, take: () => take(dueMs) });
+    else take(arrivedMs);
   }
 
   private playOut(): void {
     const nowMs = performance.now();
     let count = 0;
     while (count < this.held.length && this.held[count]!.dueMs <= nowMs) count++;
-    for (const { message, dueMs } of this.held.splice(0, count)) this.take(message, dueMs);
+    for (const { take } of this.held.splice(0, count)) take();
   }
 
   private take(message: Message, arrivedMs: number): void {
