@@ -1,3 +1,177 @@
+/** The referee's page: the state of the match from afar, and every decision a click or two away. */
+
+import { useSignal, useSignalEffect } from "@preact/signals";
+import { useEffect, useMemo } from "preact/hooks";
+import { followColours } from "../core/colours";
+import { Court, part } from "../core/court";
+import { t } from "../i18n";
+import { LinkBanner } from "../ui/banner";
+import { Dialog } from "../ui/dialog";
+import { ScoreBug } from "../ui/score";
+import { Settings } from "../ui/settings";
+import { Toasts } from "../ui/toasts";
+import "./referee.css";
+import { Reasons } from "./referee/act";
+import { AskDialog } from "./referee/ask";
+import { Desk, nextStep } from "./referee/desk";
+import * as drafts from "./referee/drafts";
+import { ActingBar, EnterCard } from "./referee/enter";
+import { FieldCard } from "./referee/field";
+import { HealthCard } from "./referee/health";
+import { LogCard, newestToTakeBack } from "./referee/logcard";
+import { MatchCard, takeStep } from "./referee/matchcard";
+import type { Picked } from "./referee/pick";
+import { Seats } from "./referee/seats";
+
+const HZ = 25;
+
+const court = new Court(HZ);
+const desk = new Desk(court);
+followColours(court);
+
 export default function Referee() {
-  return <main />;
+  const settings = useSignal(false);
+  const help = useSignal(false);
+  const picked = useSignal<Picked | null>(null);
+  useTitle();
+  useShortcuts(
+    (seat) => {
+      const card = document.querySelector(`.seat[data-seat="${seat}"]`)?.getBoundingClientRect();
+      if (card) picked.value = { seat, leftPx: card.left, topPx: card.top - 60 };
+    },
+    () => {
+      help.value = !help.value;
+    },
+  );
+  return (
+    <main class="referee" data-phase={desk.phase.value} data-live={court.live.value}>
+      <LinkBanner court={court} />
+      <TopBar
+        onHelp={() => {
+          help.value = true;
+        }}
+        onSettings={() => {
+          settings.value = true;
+        }}
+      />
+      <div class="columns">
+        <div class="column first">
+          <EnterCard desk={desk} />
+          <ActingBar desk={desk} />
+          <MatchCard desk={desk} />
+        </div>
+        <div class="column middle">
+          <FieldCard desk={desk} picked={picked} />
+          <Seats desk={desk} />
+        </div>
+        <div class="column last">
+          <HealthCard desk={desk} />
+          <LogCard desk={desk} />
+        </div>
+      </div>
+      <AskDialog desk={desk} />
+      {help.value && (
+        <Shortcuts
+          onClose={() => {
+            help.value = false;
+          }}
+        />
+      )}
+      {settings.value && (
+        <Settings
+          onClose={() => {
+            settings.value = false;
+          }}
+        />
+      )}
+      <Reasons />
+      <Toasts />
+    </main>
+  );
+}
+
+function TopBar({ onHelp, onSettings }: { onHelp: () => void; onSettings: () => void }) {
+  const match = useMemo(() => part(court, (frame) => frame.match, 0), []).value;
+  const sheet = court.sheet.value;
+  return (
+    <header class="top">
+      <h1>
+        {t("referee.title")}
+        <span class="muted">
+          {sheet && `${t("referee.court", { court: sheet.court })} · `}
+          {match > 0 && t("referee.match", { match })}
+          {sheet && ` · ${sheet.title}`}
+        </span>
+      </h1>
+      <ScoreBug match={court} />
+      <nav>
+        <button class="button quiet" type="button" onClick={onHelp}>
+          {t("referee.shortcuts")}
+        </button>
+        <button class="button quiet" type="button" onClick={onSettings}>
+          {t("settings.title")}
+        </button>
+      </nav>
+    </header>
+  );
+}
+
+function Shortcuts({ onClose }: { onClose: () => void }) {
+  return (
+    <Dialog title={t("referee.shortcutsTitle")} onClose={onClose}>
+      <p class="muted">{t("referee.shortcutsText")}</p>
+      <dl class="shortcuts">
+        <dt>
+          <kbd>Ctrl+Enter</kbd>
+        </dt>
+        <dd>{t("referee.keyNext")}</dd>
+        <dt>
+          <kbd>Ctrl+←</kbd> <kbd>Ctrl+→</kbd>
+        </dt>
+        <dd>{t("referee.keyRobot")}</dd>
+        <dt>
+          <kbd>Ctrl+Z</kbd>
+        </dt>
+        <dd>{t("referee.keyTakeBack")}</dd>
+        <dt>
+          <kbd>Ctrl+/</kbd>
+        </dt>
+        <dd>{t("referee.keyHelp")}</dd>
+      </dl>
+    </Dialog>
+  );
+}
+
+/** The state stands in the tab's title too. */
+function useTitle(): void {
+  useSignalEffect(() => {
+    const phase = t(`phase.${desk.phase.value}` as "phase.0");
+    document.title = `${phase} · ${t("referee.title")} · LACOC`;
+  });
+}
+
+function useShortcuts(pickRobot: (seat: number) => void, help: () => void): void {
+  useEffect(() => {
+    const press = (event: KeyboardEvent) => {
+      if (!(event.ctrlKey || event.metaKey) || event.altKey || event.repeat) return;
+      // A dialog has its own keys, and a field its own undo.
+      if (document.querySelector("dialog[open]")) return;
+      const writing = (event.target as Element).matches?.("input:not([type=radio]), textarea");
+      if (event.key === "Enter") takeStep(desk, nextStep(desk.phase.value));
+      else if (event.key === "/") help();
+      else if (writing) return;
+      else if (event.key === "ArrowLeft") pickRobot(0);
+      else if (event.key === "ArrowRight") pickRobot(1);
+      else if (event.key.toLowerCase() === "z" && !event.shiftKey) takeNewestBack();
+      else return;
+      event.preventDefault();
+    };
+    addEventListener("keydown", press);
+    return () => removeEventListener("keydown", press);
+  });
+}
+
+function takeNewestBack(): void {
+  const event = newestToTakeBack(court.events.value);
+  if (event !== null && !desk.whyNot("take-back")) desk.draft.value = drafts.takeBack(event);
 }

@@ -1,0 +1,211 @@
+/** The dialog before a decision: what it does, its number, its reason, and the confirmation. */
+
+import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import type { DecisionReply } from "../../core/wire";
+import { said, t } from "../../i18n";
+import { Dialog } from "../../ui/dialog";
+import { type Desk, NEED_A_REASON, reasonOf } from "./desk";
+import type { Draft } from "./drafts";
+
+/** What the record says: English, as all that the court writes; pages translate it. */
+const REASONS = ["fell over", "stuck", "network", "rule", "other"] as const;
+type Reason = (typeof REASONS)[number];
+
+const WORDS_MOST = 200;
+
+export function AskDialog({ desk }: { desk: Desk }) {
+  const draft = desk.draft.value;
+  return draft ? <Ask key={draft.title} desk={desk} draft={draft} /> : null;
+}
+
+function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
+  const amount = useSignal(draft.amount?.value ?? 0);
+  const chip = useSignal<Reason | null>(null);
+  const words = useSignal("");
+  const busy = useSignal(false);
+  const refused = useSignal("");
+  const close = () => {
+    desk.draft.value = null;
+  };
+  const needsReason = NEED_A_REASON.has(draft.name);
+  const reason = needsReason ? reasonText(chip.value, words.value) : "";
+  const why =
+    desk.whyNot(draft.name) ||
+    (draft.amount && wrongAmount(draft.amount, amount.value)) ||
+    (needsReason && !reason ? t(chip.value ? "ask.needWords" : "ask.needReason") : "");
+  const confirm = async () => {
+    if (why || busy.value) return;
+    busy.value = true;
+    refused.value = await desk.decide(draft.build(amount.value), reason);
+    busy.value = false;
+    if (!refused.value) close();
+  };
+  return (
+    <Dialog title={draft.title} onClose={close}>
+      <form
+        class="ask"
+        onSubmit={(event) => {
+          event.preventDefault();
+          confirm();
+        }}
+      >
+        <p>{draft.text}</p>
+        {draft.event !== undefined && <Preview desk={desk} event={draft.event} />}
+        {draft.amount && <AmountField amount={draft.amount} value={amount} />}
+        {needsReason && (
+          <fieldset class="reasons">
+            <legend>{t("ask.reason")}</legend>
+            <div class="chips">
+              {REASONS.map((one) => (
+                <label key={one} class="chip">
+                  <input
+                    type="radio"
+                    name="reason"
+                    checked={chip.value === one}
+                    onChange={() => {
+                      chip.value = one;
+                    }}
+                  />
+                  {t(`reason.${one}`)}
+                </label>
+              ))}
+            </div>
+            <label class="field">
+              <span>{t("ask.words")}</span>
+              <input
+                name="words"
+                maxLength={WORDS_MOST}
+                value={words.value}
+                onInput={(event) => {
+                  words.value = event.currentTarget.value;
+                }}
+              />
+            </label>
+          </fieldset>
+        )}
+        {refused.value && (
+          <p class="refused" role="alert">
+            {refused.value}
+          </p>
+        )}
+        <div class="dialog-end">
+          <span id="why-not-confirm" class="why">
+            {why}
+          </span>
+          <button class="button" type="button" onClick={close}>
+            {t("common.cancel")}
+          </button>
+          <button
+            class={`button ${draft.final ? "danger solid" : "strong"}`}
+            type="submit"
+            disabled={Boolean(why) || busy.value}
+            aria-describedby="why-not-confirm"
+          >
+            {draft.confirm}
+          </button>
+        </div>
+      </form>
+    </Dialog>
+  );
+}
+
+interface AmountProps {
+  amount: NonNullable<Draft["amount"]>;
+  value: { value: number };
+}
+
+function AmountField({ amount, value }: AmountProps) {
+  return (
+    <div class="amount">
+      <label class="field">
+        <span>{amount.label}</span>
+        <input
+          name="amount"
+          type="number"
+          step={amount.whole ? 1 : "any"}
+          min={amount.least}
+          max={amount.most}
+          value={Number.isNaN(value.value) ? "" : value.value}
+          onInput={(event) => {
+            value.value = event.currentTarget.valueAsNumber;
+          }}
+        />
+      </label>
+      <div class="chips">
+        {amount.usual.map((usual) => (
+          <button
+            key={usual}
+            class="button small"
+            type="button"
+            onClick={() => {
+              value.value = usual;
+            }}
+          >
+            {amount.least < 0 && usual > 0 ? `+${usual}` : String(usual).replace("-", "−")}
+          </button>
+        ))}
+      </div>
+      {!wrongAmount(amount, value.value) && amount.shows(value.value) && (
+        <output class="shows">{amount.shows(value.value)}</output>
+      )}
+    </div>
+  );
+}
+
+/** What a take-back would do, from the court itself. */
+function Preview({ desk, event }: { desk: Desk; event: number }) {
+  const reply = useSignal<DecisionReply | null>(null);
+  const refused = useSignal("");
+  useEffect(() => {
+    desk.tryTakeBack(event).then(
+      (found) => {
+        reply.value = found;
+      },
+      (error) => {
+        refused.value = said(reasonOf(error));
+      },
+    );
+  }, [desk, event, reply, refused]);
+  const entry = desk.court.events.value.find(({ number }) => number === event);
+  const now = desk.court.frame.peek()?.seats.map((seat) => seat.score) ?? [];
+  return (
+    <div class="preview" aria-live="polite">
+      {entry && <blockquote>{said(entry.text)}</blockquote>}
+      {refused.value && <p class="refused">{refused.value}</p>}
+      {!reply.value && !refused.value && <p class="muted">{t("ask.trying")}</p>}
+      {reply.value && (
+        <>
+          <dl class="scores">
+            <dt>{t("ask.scoreNow")}</dt>
+            <dd>{now.join(" : ")}</dd>
+            <dt>{t("ask.scoreThen")}</dt>
+            <dd class="then">{reply.value.scores.join(" : ")}</dd>
+          </dl>
+          {reply.value.changes.length ? (
+            <ul>
+              {reply.value.changes.map((change) => (
+                <li key={change}>{said(change)}</li>
+              ))}
+            </ul>
+          ) : (
+            <p class="muted">{t("ask.noChanges")}</p>
+          )}
+        </>
+      )}
+    </div>
+  );
+}
+
+function reasonText(chip: Reason | null, words: string): string {
+  const more = words.trim();
+  if (chip === null) return more;
+  if (chip === "other") return more;
+  return more ? `${chip}: ${more}` : chip;
+}
+
+function wrongAmount(amount: NonNullable<Draft["amount"]>, value: number): string {
+  const fits = value >= amount.least && value <= amount.most && value !== 0;
+  if (fits && (!amount.whole || Number.isInteger(value))) return "";
+  return t("ask.between", { least: amount.least, most: amount.most });
+}

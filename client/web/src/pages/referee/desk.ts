@@ -1,0 +1,212 @@
+/** The referee's desk: who sits at it, which decisions are open, and what became of each. */
+
+import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
+import { Refused } from "../../core/connection";
+import { type Court, part, phaseOf } from "../../core/court";
+import { remembered } from "../../core/settings";
+import {
+  type Decision,
+  type DecisionName,
+  type DecisionReply,
+  Phase,
+  SeatFlag,
+} from "../../core/wire";
+import { said, t } from "../../i18n";
+import { toast } from "../../ui/toasts";
+import type { Draft } from "./drafts";
+
+const TOKEN = "lacoc-referee";
+const RETRY_MS = 1500;
+/** What the court says to a wrong token: then asking again is of no use. */
+const WRONG_TOKEN = "This is not a referee's token of this court.";
+
+/** Decisions that the court takes only with a reason (lacoc_server/referee.py). */
+export const NEED_A_REASON: ReadonlySet<DecisionName> = new Set<DecisionName>([
+  "restart",
+  "freeze",
+  "adjust",
+  "set",
+  "take-back",
+  "clock",
+  "abort",
+  "declare",
+]);
+
+/** The newest word of the court on a decision. */
+export interface Answer {
+  good: boolean;
+  text: string;
+  atMs: number;
+}
+
+export class Desk {
+  /** Whether the court has taken this page's token. */
+  readonly entered = signal(false);
+  readonly busy = signal(false);
+  /** Why entering failed; "" if it did not. */
+  readonly refused = signal("");
+  readonly by = remembered("referee.name", "");
+  readonly answer = signal<Answer | null>(null);
+  /** Whether this page may decide now. */
+  readonly mine: ReadonlySignal<boolean>;
+  readonly phase: ReadonlySignal<number>;
+  /** What the open dialog asks for. */
+  readonly draft = signal<Draft | null>(null);
+  /** Match and beat in which the phase began. */
+  private readonly since: ReadonlySignal<readonly [match: number, beat: number]>;
+  private readonly flagsOf: ReadonlySignal<number>[] = [];
+
+  constructor(readonly court: Court) {
+    this.mine = computed(() => this.entered.value && court.referee.value?.mine === true);
+    this.phase = phaseOf(court);
+    const match = part(court, (frame) => frame.match, 0);
+    this.since = computed(() => {
+      this.phase.value; // counts from the frame that brings another phase
+      return [match.value, court.frame.peek()?.beat ?? 0];
+    });
+    effect(() => {
+      if (!court.connection.state.value.open) this.entered.value = false;
+    });
+    // A new connection, also after a reload, sits down again with the tab's token.
+    effect(() => {
+      const token = sessionStorage.getItem(TOKEN);
+      const known = court.welcome.value?.can_act && court.referee.value;
+      const away = !this.entered.peek() && !this.busy.peek();
+      if (known && token && this.by.peek() && away) this.again(token);
+    });
+  }
+
+  /** Show a token; kept for this tab if the court takes it. */
+  async enter(token: string, by: string): Promise<void> {
+    this.busy.value = true;
+    this.refused.value = "";
+    this.by.value = by;
+    try {
+      await this.court.ask("enter", { token, by });
+      sessionStorage.setItem(TOKEN, token);
+      this.entered.value = true;
+    } catch (error) {
+      this.refused.value = reasonOf(error);
+      if (this.refused.value === WRONG_TOKEN) sessionStorage.removeItem(TOKEN);
+    } finally {
+      this.busy.value = false;
+    }
+  }
+
+  /** Leave the desk: the token is forgotten. */
+  leave(): void {
+    sessionStorage.removeItem(TOKEN);
+    location.reload();
+  }
+
+  async takeOver(): Promise<void> {
+    try {
+      await this.court.ask("take_over");
+      this.say(true, t("referee.youAct"));
+    } catch (error) {
+      this.say(false, said(reasonOf(error)));
+    }
+  }
+
+  /**
+   * Decide.
+   *
+   * @returns "" once it is done, else the court's reason in the reader's language.
+   */
+  async decide(decision: Decision, reason: string): Promise<string> {
+    try {
+      const reply = await this.court.ask<DecisionReply>("decide", { decision, reason });
+      this.say(true, said(reply.text));
+      return "";
+    } catch (error) {
+      const why = said(reasonOf(error));
+      this.say(false, why);
+      return why;
+    }
+  }
+
+  /** What a take-back would do; nothing is changed. Rejects with `Refused`. */
+  tryTakeBack(event: number): Promise<DecisionReply> {
+    const decision: Decision = { type: "take-back", event, dry_run: true };
+    return this.court.ask<DecisionReply>("decide", { decision, reason: "" });
+  }
+
+  /** Why this page can't decide anything now; "" if it can. */
+  closed(): string {
+    if (!this.court.connection.state.value.open || !this.court.live.value) return t("referee.lost");
+    if (!this.entered.value) return t("referee.notEntered");
+    if (this.mine.value) return "";
+    const acting = this.court.referee.value?.acting;
+    return acting ? t("referee.otherActs", { name: acting }) : t("referee.nobodyActs");
+  }
+
+  /** Why a decision is not open now, in the reader's language; "" if it is. */
+  whyNot(name: DecisionName): string {
+    return this.closed() || said(this.illegal(name));
+  }
+
+  /** Why a decision about one seat is not open now. */
+  whyNotFor(name: DecisionName, seat: number): string {
+    const why = this.whyNot(name);
+    if (why) return why;
+    const flags = this.flags(seat).value;
+    if (name === "unfreeze" && !(flags & SeatFlag.FROZEN)) return t("referee.notFrozen");
+    if (name !== "ready") return "";
+    if (!(flags & SeatFlag.JOINED)) return t("referee.notJoined");
+    return flags & SeatFlag.READY ? t("referee.isReady") : "";
+  }
+
+  /** The flags of a seat. */
+  flags(seat: number): ReadonlySignal<number> {
+    this.flagsOf[seat] ??= part(this.court, (frame) => frame.seats[seat]?.flags ?? 0, 0);
+    return this.flagsOf[seat];
+  }
+
+  private illegal(name: DecisionName): string {
+    const health = this.court.health.value;
+    if (!health) return "the court does not answer";
+    const why = health.decisions[name] ?? "";
+    // Legality comes twice a second; where the phase is newer, the one next step is open already.
+    const [match, beat] = this.since.value;
+    const outdated = health.match !== match || health.beat < beat;
+    return outdated && nextStep(this.phase.value) === name ? "" : why;
+  }
+
+  private async again(token: string): Promise<void> {
+    await this.enter(token, this.by.peek());
+    const waiting = this.refused.peek();
+    if (this.entered.peek() || waiting === WRONG_TOKEN) return;
+    setTimeout(() => {
+      const open = this.court.connection.state.peek().open;
+      if (open && !this.entered.peek() && !this.busy.peek()) this.again(token);
+    }, RETRY_MS);
+  }
+
+  private say(good: boolean, text: string): void {
+    this.answer.value = { good, text, atMs: performance.now() };
+    toast(text, good ? "yes" : "no");
+  }
+}
+
+/** The sensible next decision of a phase. */
+export function nextStep(phase: number): DecisionName {
+  switch (phase) {
+    case Phase.COUNTDOWN:
+    case Phase.PLAYING:
+      return "halt";
+    case Phase.HALTED:
+      return "resume";
+    case Phase.FINISHED:
+      return "official";
+    case Phase.OFFICIAL:
+    case Phase.VOID:
+      return "next";
+    default:
+      return "start";
+  }
+}
+
+/** What went wrong, as the court or the gateway said it. */
+export function reasonOf(error: unknown): string {
+  return error instanceof Refused ? error.message : String(error);
+}

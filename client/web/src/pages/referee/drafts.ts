@@ -1,0 +1,197 @@
+/** Decisions that are asked about before they are taken: what the dialog says and collects. */
+
+import type { Court } from "../../core/court";
+import type { Decision, DecisionName } from "../../core/wire";
+import { BEATS_PER_S, clock, clockTicks, seatName, team } from "../../core/words";
+import { t } from "../../i18n";
+
+/** A number that a decision needs. */
+interface Amount {
+  label: string;
+  value: number;
+  least: number;
+  most: number;
+  whole: boolean;
+  /** Often taken ones, a click each. */
+  usual: readonly number[];
+  /** What the number would make. */
+  shows: (value: number) => string;
+}
+
+/** A decision to be confirmed, perhaps with a number. */
+export interface Draft {
+  name: DecisionName;
+  title: string;
+  text: string;
+  confirm: string;
+  /** It can't be undone. */
+  final?: boolean;
+  amount?: Amount;
+  /** Of a take-back: the event. */
+  event?: number;
+  build: (amount: number) => Decision;
+}
+
+function names(court: Court, seat: number): { id: string; team: string } {
+  const sheet = court.sheet.value;
+  return { id: sheet?.seats[seat]?.id ?? "", team: sheet ? team(sheet, seat) : "" };
+}
+
+export function official(court: Court): Draft {
+  const scores = court.frame.value?.seats.map((seat) => seat.score).join(" : ") ?? "";
+  return {
+    name: "official",
+    title: t("decide.official"),
+    text: t("ask.official", { scores }),
+    confirm: t("decide.official"),
+    final: true,
+    build: () => ({ type: "official" }),
+  };
+}
+
+export function next(): Draft {
+  return {
+    name: "next",
+    title: t("decide.next"),
+    text: t("ask.next"),
+    confirm: t("decide.next"),
+    final: true,
+    build: () => ({ type: "next" }),
+  };
+}
+
+export function abort(): Draft {
+  return {
+    name: "abort",
+    title: t("decide.abort"),
+    text: t("ask.abort"),
+    confirm: t("decide.abort"),
+    final: true,
+    build: () => ({ type: "abort" }),
+  };
+}
+
+/** @param seat The winner's; null for a draw. */
+export function declare(court: Court, seat: number | null): Draft {
+  const winner = seat === null ? null : names(court, seat);
+  return {
+    name: "declare",
+    title: winner ? t("decide.declareTeam", { team: winner.team }) : t("decide.declareDraw"),
+    text: t("ask.declare"),
+    confirm: t("ask.confirm"),
+    final: true,
+    build: () => ({ type: "declare", winner: winner?.id ?? "draw" }),
+  };
+}
+
+export function restart(court: Court, seat: number): Draft {
+  const { id, team } = names(court, seat);
+  return {
+    name: "restart",
+    title: t("ask.restartTitle", { team }),
+    text: t("ask.restart"),
+    confirm: t("decide.restart"),
+    build: () => ({ type: "restart", seat: id }),
+  };
+}
+
+export function freeze(court: Court, seat: number): Draft {
+  const { id, team } = names(court, seat);
+  return {
+    name: "freeze",
+    title: t("ask.freezeTitle", { team }),
+    text: t("ask.freeze"),
+    confirm: t("decide.freeze"),
+    amount: {
+      label: t("ask.seconds"),
+      value: 10,
+      least: 0.1,
+      most: 600,
+      whole: false,
+      usual: [5, 10, 30],
+      shows: () => "",
+    },
+    build: (seconds) => ({ type: "freeze", seat: id, seconds }),
+  };
+}
+
+export function adjust(court: Court, seat: number, points: number): Draft {
+  const { id, team } = names(court, seat);
+  return {
+    name: "adjust",
+    title: t("ask.adjustTitle", { team }),
+    text: t("ask.adjust"),
+    confirm: t("ask.confirm"),
+    amount: {
+      label: t("ask.points"),
+      value: points,
+      least: -1000,
+      most: 1000,
+      whole: true,
+      usual: [-5, -1, 1, 5],
+      shows: (value) => {
+        const score = court.frame.value?.seats[seat]?.score ?? 0;
+        return `${score} → ${score + value}`;
+      },
+    },
+    build: (value) => ({ type: "adjust", seat: id, points: value }),
+  };
+}
+
+/** @param given Seconds to give; less than 0 takes them. */
+export function moveClock(court: Court, given: number): Draft {
+  return {
+    name: "clock",
+    title: t("ask.clockTitle"),
+    text: t("ask.clock"),
+    confirm: t("ask.confirm"),
+    amount: {
+      label: t("ask.seconds"),
+      value: given,
+      least: -3600,
+      most: 3600,
+      whole: false,
+      usual: [-30, -10, 10, 30],
+      shows: (value) => {
+        const { frame, sheet } = { frame: court.frame.value, sheet: court.sheet.value };
+        if (!frame || !sheet) return "";
+        const left = clockTicks(frame, sheet);
+        return `${clock(left)} → ${clock(left + value * BEATS_PER_S)}`;
+      },
+    },
+    // The court counts the time that was used: what is given is taken from it.
+    build: (value) => ({ type: "clock", seconds: -value }),
+  };
+}
+
+export function setMarker(court: Court, marker: number, state: string): Draft {
+  const name = court.sheet.value?.markers[marker]?.name ?? "";
+  return {
+    name: "set",
+    title: t("ask.setTitle", { marker: name, state: stateName(court, state) }),
+    text: t("ask.set"),
+    confirm: t("ask.confirm"),
+    build: () => ({ type: "set", marker: name, state }),
+  };
+}
+
+export function takeBack(event: number): Draft {
+  return {
+    name: "take-back",
+    title: t("ask.takeBackTitle", { event }),
+    text: t("ask.takeBack"),
+    confirm: t("decide.takeBack"),
+    event,
+    build: () => ({ type: "take-back", event }),
+  };
+}
+
+/** A marker's state in words: a seat's is named with its team. */
+export function stateName(court: Court, state: string): string {
+  const sheet = court.sheet.value;
+  const seat = sheet?.seats.findIndex((one) => one.id === state) ?? -1;
+  if (!sheet || seat < 0) return state === "down" ? t("pick.state.down") : t("pick.state.neutral");
+  const side = seatName(state);
+  const name = team(sheet, seat);
+  return name === side ? side : `${name} (${side})`;
+}

@@ -1,0 +1,140 @@
+/** Sitting down at the desk, and who sits there. */
+
+import { useSignal } from "@preact/signals";
+import { said, t } from "../../i18n";
+import { Dialog } from "../../ui/dialog";
+import type { Desk } from "./desk";
+
+/** Asks for name and token; nothing once the court has taken them. */
+export function EnterCard({ desk }: { desk: Desk }) {
+  const token = useSignal("");
+  const name = useSignal(desk.by.value);
+  const welcome = desk.court.welcome.value;
+  if (!welcome || desk.entered.value) return null;
+  if (!welcome.can_act) {
+    return (
+      <section class="card enter" aria-labelledby="read-only">
+        <h2 id="read-only">{t("referee.readOnlyTitle")}</h2>
+        <p>{t("referee.readOnly")}</p>
+      </section>
+    );
+  }
+  const refused = desk.refused.value;
+  return (
+    <section class="card enter" aria-labelledby="enter-title">
+      <h2 id="enter-title">{t("referee.enterTitle")}</h2>
+      <p class="muted">{t("referee.enterText")}</p>
+      <form
+        onSubmit={(event) => {
+          event.preventDefault();
+          desk.enter(token.value.trim(), name.value.trim());
+        }}
+      >
+        <label class="field">
+          <span>{t("referee.name")}</span>
+          <input
+            name="by"
+            required
+            maxLength={40}
+            autocomplete="name"
+            value={name.value}
+            onInput={(event) => {
+              name.value = event.currentTarget.value;
+            }}
+          />
+        </label>
+        <label class="field">
+          <span>{t("referee.token")}</span>
+          <input
+            name="token"
+            type="password"
+            required
+            maxLength={200}
+            autocomplete="off"
+            spellcheck={false}
+            value={token.value}
+            aria-invalid={refused ? "true" : undefined}
+            aria-describedby={refused ? "token-refused" : undefined}
+            onInput={(event) => {
+              token.value = event.currentTarget.value;
+            }}
+          />
+          {refused && (
+            <span id="token-refused" class="refused" role="alert">
+              {said(refused)}
+            </span>
+          )}
+        </label>
+        <button class="button strong" type="submit" disabled={desk.busy.value}>
+          {desk.busy.value ? t("referee.entering") : t("referee.enter")}
+        </button>
+      </form>
+    </section>
+  );
+}
+
+/** Who acts, and the way to act oneself; nothing before one has entered. */
+export function ActingBar({ desk }: { desk: Desk }) {
+  const asking = useSignal(false);
+  const state = desk.court.referee.value;
+  if (!desk.entered.value || !state) return null;
+  const { acting } = state;
+  if (desk.mine.value) {
+    return (
+      <div class="acting mine">
+        <span>
+          {t("referee.youAct")} · {desk.by.value}
+        </span>
+        <button
+          class="button quiet"
+          type="button"
+          title={t("referee.leaveText")}
+          onClick={() => desk.leave()}
+        >
+          {t("referee.leave")}
+        </button>
+      </div>
+    );
+  }
+  return (
+    <div class="acting other" role="status">
+      <span>
+        <strong>{acting ? t("referee.acts", { name: acting }) : t("referee.nobody")}</strong>
+        <br />
+        {t("referee.watching")}
+      </span>
+      <button
+        class="button strong"
+        type="button"
+        onClick={() => {
+          if (acting) asking.value = true;
+          else desk.takeOver();
+        }}
+      >
+        {t("referee.takeOver")}
+      </button>
+      {asking.value && acting && (
+        <Dialog
+          title={t("referee.takeOverTitle", { name: acting })}
+          onClose={() => {
+            asking.value = false;
+          }}
+        >
+          <p>{t("referee.takeOverText", { name: acting })}</p>
+          <div class="dialog-end">
+            <button
+              class="button strong"
+              type="button"
+              onClick={() => {
+                asking.value = false;
+                desk.takeOver();
+              }}
+            >
+              {t("referee.takeOver")}
+            </button>
+          </div>
+        </Dialog>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,156 @@
+/** The state of the match, the next sensible step as one big button, and all other decisions. */
+
+import { useMemo } from "preact/hooks";
+import { part } from "../../core/court";
+import { type DecisionName, Phase, SeatFlag } from "../../core/wire";
+import { seatName, team } from "../../core/words";
+import { type MessageName, t } from "../../i18n";
+import { Hint, PhaseWord } from "../../ui/score";
+import { Act } from "./act";
+import { type Desk, nextStep } from "./desk";
+import * as drafts from "./drafts";
+
+const CLOCK_S = 10;
+
+/** Take the next step of a phase: at once, or asked about where it is final. */
+export function takeStep(desk: Desk, name: DecisionName): void {
+  if (desk.whyNot(name) || desk.draft.value) return;
+  if (name === "official") desk.draft.value = drafts.official(desk.court);
+  else if (name === "next") desk.draft.value = drafts.next();
+  else desk.decide({ type: name } as { type: "start" }, "");
+}
+
+export function MatchCard({ desk }: { desk: Desk }) {
+  return (
+    <section class="card match" aria-labelledby="match-title">
+      <h2 id="match-title" class="hidden-text">
+        {t("referee.flow")}
+      </h2>
+      <div class="state" role="status">
+        <PhaseWord match={desk.court} />
+        <Hint match={desk.court} />
+      </div>
+      <BigButton desk={desk} />
+      <Missing desk={desk} />
+      <LastAnswer desk={desk} />
+      <Groups desk={desk} />
+    </section>
+  );
+}
+
+function BigButton({ desk }: { desk: Desk }) {
+  const name = nextStep(desk.phase.value);
+  return (
+    <div class="big">
+      <Act
+        why={desk.whyNot(name)}
+        tone={`strong ${name}`}
+        label={t(`decide.${name}` as MessageName)}
+        onAct={() => takeStep(desk, name)}
+      >
+        <span>{t(`decide.${name}` as MessageName)}</span>
+        <kbd>Ctrl+Enter</kbd>
+      </Act>
+    </div>
+  );
+}
+
+/** All that is missing for the start, at once. */
+function Missing({ desk }: { desk: Desk }) {
+  const { court } = desk;
+  const flags = useMemo(
+    () => part(court, ({ seats }) => seats.map((seat) => seat.flags & 3).join(), ""),
+    [court],
+  ).value;
+  const sheet = court.sheet.value;
+  if (desk.phase.value !== Phase.LOBBY || !sheet || !flags) return null;
+  const missing = flags.split(",").flatMap((text, index) => {
+    const seat = seatName(sheet.seats[index]?.id ?? "");
+    if (!(Number(text) & SeatFlag.JOINED)) return [t("referee.missingJoin", { seat })];
+    if (Number(text) & SeatFlag.READY) return [];
+    return [t("referee.missingReady", { team: team(sheet, index) })];
+  });
+  if (!missing.length) return null;
+  return (
+    <div class="missing">
+      <h3>{t("referee.missing")}</h3>
+      <ul>
+        {missing.map((text) => (
+          <li key={text}>{text}</li>
+        ))}
+      </ul>
+    </div>
+  );
+}
+
+function LastAnswer({ desk }: { desk: Desk }) {
+  const answer = desk.answer.value;
+  if (!answer) return null;
+  return (
+    <p class={`answer ${answer.good ? "yes" : "no"}`} title={t("referee.lastAnswer")}>
+      <strong>{answer.good ? `✓ ${t("referee.done")}` : `✕ ${t("referee.no")}`}</strong>{" "}
+      {answer.text}
+    </p>
+  );
+}
+
+function Groups({ desk }: { desk: Desk }) {
+  const { court } = desk;
+  const sheet = court.sheet.value;
+  const ask = (draft: drafts.Draft) => {
+    desk.draft.value = draft;
+  };
+  const step = (name: DecisionName) => (
+    <Act why={desk.whyNot(name)} onAct={() => takeStep(desk, name)}>
+      {t(`decide.${name}` as MessageName)}
+    </Act>
+  );
+  return (
+    <div class="groups">
+      <Group title={t("referee.flow")}>
+        {step("start")}
+        {step("halt")}
+        {step("resume")}
+        <Act why={desk.whyNot("abort")} tone="danger" onAct={() => ask(drafts.abort())}>
+          {t("decide.abort")}
+        </Act>
+      </Group>
+      <Group title={t("referee.time")}>
+        <Act why={desk.whyNot("clock")} onAct={() => ask(drafts.moveClock(court, -CLOCK_S))}>
+          {t("decide.clockTake", { seconds: CLOCK_S })}
+        </Act>
+        <Act why={desk.whyNot("clock")} onAct={() => ask(drafts.moveClock(court, CLOCK_S))}>
+          {t("decide.clockGive", { seconds: CLOCK_S })}
+        </Act>
+        <Act why={desk.whyNot("clock")} onAct={() => ask(drafts.moveClock(court, 1))}>
+          {t("decide.clockOther")}
+        </Act>
+      </Group>
+      <Group title={t("referee.result")}>
+        {sheet?.seats.map((seat, index) => (
+          <Act
+            key={seat.id}
+            why={desk.whyNot("declare")}
+            onAct={() => ask(drafts.declare(court, index))}
+          >
+            <span class="cut">{t("decide.declareTeam", { team: team(sheet, index) })}</span>
+          </Act>
+        ))}
+        <Act why={desk.whyNot("declare")} onAct={() => ask(drafts.declare(court, null))}>
+          {t("decide.declareDraw")}
+        </Act>
+        {step("official")}
+        {step("next")}
+      </Group>
+    </div>
+  );
+}
+
+function Group({ title, children }: { title: string; children: preact.ComponentChildren }) {
+  return (
+    <fieldset class="group">
+      <legend>{title}</legend>
+      {children}
+    </fieldset>
+  );
+}
