@@ -1,0 +1,294 @@
+"""`python -m benchmarks.kills`: a court is killed at random moments of all phases, and goes on.
+
+Each match of a real court with two controllers and a referee is killed (SIGKILL) once in every
+phase or oftener, at a random moment, and started again on the same records. Counted: in which
+phase it came back, the time until its first frame, frames seen whose state hash the record does
+not have, commands that had been shown as applied and answered decisions that were lost, and
+whether the whole record verifies.
+"""
+
+import argparse
+import json
+import os
+import random
+import signal
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from lacoc_client.controller import Controller
+from lacoc_client.referee import RefereeClient
+from lacoc_server.replay import Verdict, verify
+from lacoc_shared.codec import decode
+from lacoc_shared.contest import Court, load
+from lacoc_shared.decisions import Adjust, Decision, Declare, Halt, Official, Resume, Start
+from lacoc_shared.messages import DecisionReply, Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.files import record_paths
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import Session, open_client
+
+P = Phase
+BACK_IN = {P.PLAYING: P.HALTED, P.COUNTDOWN: P.HALTED}
+"""Design, "Record": where a phase comes back; the others as they were."""
+PLAN = (P.LOBBY, P.READY, P.COUNTDOWN, P.PLAYING, P.HALTED, P.PLAYING, P.PLAYING, P.FINISHED)
+"""In which phases a match is killed, one after another."""
+MOST_DELAY_S = 0.6
+WAIT_S = 30.0
+
+
+@dataclass
+class Figures:
+    """What is counted over all kills."""
+
+    kills: int = 0
+    back: Counter[str] = field(default_factory=Counter)
+    wrong_phase: int = 0
+    ready_s: list[float] = field(default_factory=list)
+    frames: int = 0
+    differing_hashes: int = 0
+    commands: int = 0
+    lost_commands: int = 0
+    decisions: int = 0
+    lost_decisions: int = 0
+    verified: int = 0
+    not_same: list[str] = field(default_factory=list)
+
+
+def main() -> None:
+    """Kill and count."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.kills", description=__doc__)
+    parser.add_argument("--kills", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    chance = random.Random(options.seed)
+    figures = Figures()
+    while figures.kills < options.kills:
+        with tempfile.TemporaryDirectory() as folder:
+            _Trial(Path(folder), chance, figures).run()
+        print(
+            f"{figures.kills} kills: {figures.wrong_phase} in a wrong phase, "
+            f"{figures.differing_hashes} hashes of {figures.frames} differ, lost "
+            f"{figures.lost_commands} of {figures.commands} commands and "
+            f"{figures.lost_decisions} of {figures.decisions} decisions; "
+            f"{figures.verified} records same, not same: {figures.not_same}",
+            flush=True,
+        )
+    print(json.dumps({**figures.__dict__, "ready_s": _spread(figures.ready_s)}))
+    bad = figures.wrong_phase + figures.differing_hashes + figures.lost_commands
+    sys.exit(bool(bad + figures.lost_decisions + len(figures.not_same)))
+
+
+def _spread(times_s: list[float]) -> str:
+    return f"median {statistics.median(times_s):.2f} s, worst {max(times_s):.2f} s"
+
+
+class _Trial:
+    """One match, killed as planned."""
+
+    def __init__(self, folder: Path, chance: random.Random, figures: Figures) -> None:
+        self._folder = folder / "recordings"
+        self._contest = folder / "contest.toml"
+        self._contest.write_text(_contest())
+        self._chance = chance
+        self._figures = figures
+        self._process: subprocess.Popen[str] | None = None
+        self._answered: list[DecisionReply] = []
+        self._seen: dict[int, Frame] = {}
+
+    def run(self) -> None:
+        name, court = load(self._contest).court()
+        with ExitStack() as stack:
+            stack.callback(self._stop)
+            self._serve()
+            session = stack.enter_context(open_client([court.address()], timeout_s=WAIT_S))
+            self._controllers = _controllers(session, name, court)
+            self._referee = RefereeClient(session, name, court.referee.token)
+            for phase in PLAN:
+                self._reach(phase)
+                self._wait(self._chance.uniform(0, MOST_DELAY_S))
+                self._kill_and_compare()
+            self._decide(Official())
+        self._check_record()
+
+    def _serve(self) -> None:
+        words = ["serve", "--json", "--contest", str(self._contest)]
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "lacoc_shared", *words, "--recordings", str(self._folder)],
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    def _stop(self) -> None:
+        assert self._process is not None
+        self._process.terminate()
+        self._process.communicate(timeout=WAIT_S)
+
+    # Living with the court
+
+    @property
+    def _frame(self) -> Frame:
+        frame = self._controllers[0].view.frame
+        assert frame is not None
+        return frame
+
+    def _poll(self, timeout_s: float = 0.01) -> None:
+        for controller in self._controllers:
+            if controller.wait_frame(timeout_s) is not None and controller.view.frame:
+                self._seen[controller.view.frame.beat] = controller.view.frame
+        if self._seen and self._frame.phase == P.PLAYING and self._chance.random() < 0.1:
+            controller = self._chance.choice(self._controllers)
+            controller.press(1, self._chance.choice((0, 1, 2, 3)))
+
+    def _wait(self, seconds: float) -> None:
+        end_s = time.monotonic() + seconds
+        while time.monotonic() < end_s:
+            self._poll()
+
+    def _until(self, true: Callable[[], bool]) -> None:
+        end_s = time.monotonic() + WAIT_S
+        while not true():
+            if time.monotonic() > end_s:
+                raise TimeoutError(f"still {Phase(self._frame.phase).name}")
+            self._poll()
+
+    def _decide(self, decision: Decision) -> None:
+        self._answered.append(self._referee.decide(decision, "a trial", "trial"))
+
+    def _reach(self, phase: Phase) -> None:
+        """Bring the match into a phase, from any that comes before it."""
+        self._until(lambda: bool(self._seen))
+        while (now := Phase(self._frame.phase)) is not phase:
+            if now is P.LOBBY and phase > P.LOBBY:
+                for controller in self._controllers:
+                    controller.ready()
+                self._until(lambda: self._frame.phase != P.LOBBY)
+            elif now is P.READY:
+                self._decide(Start())
+                self._until(lambda: self._frame.phase != P.READY)
+            elif now is P.PLAYING and phase in (P.HALTED, P.FINISHED):
+                self._wait(0.3)
+                self._decide(Halt())
+                self._until(lambda: self._frame.phase != P.PLAYING)
+            elif now is P.HALTED and phase is P.FINISHED:
+                self._decide(Declare("draw"))
+                self._until(lambda: self._frame.phase == P.FINISHED)
+            elif now is P.HALTED:
+                self._decide(Adjust("left", self._chance.randint(1, 9)))
+                self._decide(Resume())
+                self._until(lambda: self._frame.phase != P.HALTED)
+            else:
+                self._until(lambda now=now: self._frame.phase != now)  # type: ignore[misc]
+
+    # The kill
+
+    def _kill_and_compare(self) -> None:
+        assert self._process is not None
+        figures = self._figures
+        os.kill(self._process.pid, signal.SIGKILL)
+        self._process.communicate()
+        for controller in self._controllers:
+            controller.poll(time.monotonic())
+        before = self._frame
+        begin_s = time.monotonic()
+        self._serve()
+        # The frames of the court that came back are those that arrive from now on.
+        self._until(lambda: self._controllers[0].view.frame_s > begin_s)
+        figures.ready_s.append(time.monotonic() - begin_s)
+        # The first beat may still be that of the kill: the halt is an input of the next.
+        wanted = BACK_IN.get(Phase(before.phase), Phase(before.phase))
+        after = self._settled(wanted)
+        figures.kills += 1
+        figures.back[f"{Phase(before.phase).name} -> {Phase(after.phase).name}"] += 1
+        figures.wrong_phase += after.phase != wanted
+        for old, new in zip(before.seats, after.seats, strict=True):
+            figures.commands += old.applied_seq
+            figures.lost_commands += max(0, old.applied_seq - new.applied_seq)
+        self._until(lambda: all(self._is_held(c) for c in self._controllers))
+
+    def _settled(self, wanted: Phase) -> Frame:
+        end_s = time.monotonic() + 2.0
+        while self._frame.phase != wanted and time.monotonic() < end_s:
+            self._poll()
+        return self._frame
+
+    def _is_held(self, controller: Controller) -> bool:
+        """Whether the seat was given back to its controller by the court that came back."""
+        health = controller.view.health
+        return (
+            controller.hold.value == "held"
+            and health is not None
+            and all(seat.session for seat in health.seats if seat.id == controller.seat)
+        )
+
+    def _check_record(self) -> None:
+        """Everything that was seen and answered stands in the record, and it verifies."""
+        figures = self._figures
+        end_s = time.monotonic() + WAIT_S
+        while not (packed := [p for p in self._folder.glob("*.mcap") if ".live" not in p.name]):
+            if time.monotonic() > end_s:
+                break
+            time.sleep(0.1)
+        segments = sorted(self._folder.glob("*.live.mcap"))
+        record = Record.read(packed[0] if packed else record_paths(segments[-1]))
+        recorded = {beat: decode(frame, Frame) for beat, frame in record.frames}
+        for beat, frame in self._seen.items():
+            if beat in recorded:  # beats in which nothing happened have no frame
+                figures.frames += 1
+                figures.differing_hashes += recorded[beat].digest != frame.digest
+        numbers = {event.number: event for event in record.events}
+        for reply in self._answered:
+            figures.decisions += 1
+            found = numbers.get(reply.event or 0)
+            figures.lost_decisions += found is None or found.beat != reply.beat
+        *_, verdict = verify(record)
+        assert isinstance(verdict, Verdict)
+        if verdict.text == "same":
+            figures.verified += 1
+        else:
+            figures.not_same.append(verdict.text)
+
+
+def _controllers(session: Session, name: str, court: Court) -> list[Controller]:
+    end_s = time.monotonic() + WAIT_S
+    while True:
+        try:
+            controllers = [
+                Controller(session, name, seat, holder.token, f"Team {seat}")
+                for seat, holder in court.seat.items()
+            ]
+            break
+        except UserError:
+            if time.monotonic() > end_s:
+                raise
+    for controller in controllers:
+        controller.join()
+    return controllers
+
+
+def _contest() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    return f"""
+[court.main]
+arena = "othello"
+listen = ["tcp/127.0.0.1:{port}"]
+settings.match.countdown_s = 0.7
+seat.left.token = "the token of left"
+seat.right.token = "the token of right"
+referee.token = "the token of the referee"
+"""
+
+
+if __name__ == "__main__":
+    main()
