@@ -1,4 +1,287 @@
-/** Messages of this part: English, Japanese. */
+/** Messages of /play and /practice: English, Japanese. */
 export const play = {
-  "play.title": ["play", "play"],
+  // The card
+  "join.title": ["Join a match", "試合に参加"],
+  "join.practice": ["Practice", "練習"],
+  "join.court": ["Court", "コート"],
+  "join.seat": ["Seat", "席"],
+  "join.free": ["free", "空き"],
+  "join.takenBy": ["{team} sits here", "{team} が参加中"],
+  "join.name": ["Team name", "チーム名"],
+  "join.nameHint": ["1 to 24 characters", "1～24 文字"],
+  "join.nameMissing": [
+    "Give your team a name of 1 to 24 characters.",
+    "チーム名を 1～24 文字で入力してください。",
+  ],
+  "join.token": ["Token of the seat", "席のトークン"],
+  "join.tokenHint": ["from the organiser", "主催者から受け取ったもの"],
+  "join.tokenGiven": [
+    "given on the command line: leave this empty",
+    "起動時に指定済み（空欄のままで可）",
+  ],
+  "join.tokenMissing": [
+    "Type the token that the organiser gave you.",
+    "主催者から受け取ったトークンを入力してください。",
+  ],
+  "join.show": ["Show", "表示"],
+  "join.hide": ["Hide", "隠す"],
+  "join.go": ["Join", "参加する"],
+  "join.going": ["Joining …", "参加しています…"],
+  "join.again": ["Join again", "もう一度参加する"],
+  "join.safety": [
+    "At the venue's pages a seat is protected by its token alone. On your own computer 'lacoc play' is safer.",
+    "会場のページでは、席を守るのはトークンだけです。自分のパソコンの「lacoc play」の方が安全です。",
+  ],
+  "join.waits": [
+    "You sit down as soon as the court answers.",
+    "コートが応答しだい、席に着きます。",
+  ],
+  "join.refused": ["You could not join", "参加できませんでした"],
+  "watching.title": ["This link may only watch", "このリンクでは観戦だけできます"],
+  "watching.text": [
+    "To play, open the address with its key: it ends with #key=… and stands where 'lacoc play' or 'lacoc web' was started. At the venue the organiser has it.",
+    "参加するには、末尾に #key=… が付いたアドレスを開いてください。「lacoc play」または「lacoc web」を起動した画面に表示されています。会場では主催者に尋ねてください。",
+  ],
+  "watching.practice": [
+    "To practise, start 'lacoc practice': it opens this page with its key.",
+    "練習するには「lacoc practice」を起動してください。鍵の付いたこのページが開きます。",
+  ],
+  "watching.watch": ["Watch the match", "試合を観戦する"],
+  "lost.title": ["Your seat is lost", "席を失いました"],
+  "left.title": ["You have left", "退出しました"],
+  "left.text": [
+    "Your robot stands. You can come back with the same token.",
+    "ロボットは停止しています。同じトークンで戻れます。",
+  ],
+  "left.practice": ["That was your practice.", "練習を終了しました。"],
+  "left.practiceAgain": ["Practise again", "もう一度練習する"],
+
+  // Files
+  "files.title": ["Your files", "ファイル"],
+  "files.drop": [
+    "Drop your robot and gait files here, or",
+    "ロボットファイルと歩容ファイルをここにドロップ、または",
+  ],
+  "files.pick": ["choose files", "ファイルを選ぶ"],
+  "files.robot": ["Robot", "ロボット"],
+  "files.postures": ["Level A: postures", "レベル A：姿勢"],
+  "files.locomotion": ["Level B: locomotion", "レベル B：移動動作"],
+  "files.contests": ["the contest's", "大会標準"],
+  "files.sample": ["the sample", "サンプル"],
+  "files.none": ["none", "なし"],
+  "files.given": ["from the command line: {names}", "起動時に指定：{names}"],
+  "files.remove": ["Take {name} away", "{name} を外す"],
+  "files.tooLarge": ["{name} is too large for a gait or a robot.", "{name} は大きすぎます。"],
+  "files.change": ["Change files", "ファイルを変更"],
+  "files.use": ["Use these files", "このファイルを使う"],
+  "files.changeText": [
+    "With other files you are asked again whether you are ready. A match that is on keeps the files that it began with.",
+    "ファイルを変えると、準備完了をもう一度押す必要があります。進行中の試合は、開始時のファイルのまま続きます。",
+  ],
+  "files.noKey": [
+    "No key will move your robot: bring a {file} file.",
+    "どのキーでもロボットは動きません。{file} ファイルを用意してください。",
+  ],
+
+  // What to do next
+  "next.wait": ["The court opens …", "コートを準備しています…"],
+  "next.ready": ["Press Ready when you are", "準備ができたら「準備完了」を押してください"],
+  "next.joining": [
+    "You are ready. Waiting for the {seat} seat",
+    "準備完了です。{seat}の席の参加を待っています",
+  ],
+  "next.notReady": [
+    "You are ready. Waiting for {team}",
+    "準備完了です。{team} の準備を待っています",
+  ],
+  "next.start": [
+    "Both are ready. The referee starts the match",
+    "両チームの準備が完了しました。審判の開始を待っています",
+  ],
+  "next.countdown": ["Fingers on the keys!", "キーに指を置いてください！"],
+  "next.othello": ["Walk over discs to turn them", "ディスクを踏んで自分の色に変えよう"],
+  "next.flag-strike": ["Take corners, knock flags down", "コーナーを獲得し、フラッグを倒そう"],
+  "next.steer": ["Steer with the keys", "キーでロボットを動かそう"],
+  "next.ahead": ["You lead by {points}. {goal}", "{points} 点リード。{goal}"],
+  "next.behind": ["{points} behind. {goal}", "{points} 点ビハインド。{goal}"],
+  "next.locked": [
+    "Restarted: keys again in {seconds} s",
+    "再スタート：あと {seconds} 秒でキーが使えます",
+  ],
+  "next.frozen": ["Frozen by the referee for {seconds} s", "審判により停止中：あと {seconds} 秒"],
+  "next.silent": [
+    "You were not heard: your robot stands until your next key",
+    "通信が途切れたため停止中。キーを押すと動きます",
+  ],
+  "next.halted": [
+    "Halted by the referee. Keep your seat",
+    "審判により中断中。そのままお待ちください",
+  ],
+  "next.finished": ["Over. The referee confirms the result", "終了。審判が結果を確認しています"],
+  "next.official": [
+    "Wait here: you play in the next match too",
+    "このままお待ちください。次の試合にも参加します",
+  ],
+  "next.practice": ["Practice begins …", "練習を始めます…"],
+  "next.rejoin": ["Taking your seat again …", "席に戻っています…"],
+
+  // Ready
+  "ready.say": ["Ready", "準備完了"],
+  "ready.said": ["You are ready", "準備完了です"],
+  "ready.takeBack": ["Take back", "取り消す"],
+
+  // The pad
+  "pad.title": ["Keys", "キー"],
+  "pad.level": ["Level of control", "操作レベル"],
+  "pad.levelA": ["A posture", "A 姿勢"],
+  "pad.levelB": ["B locomotion", "B 移動動作"],
+  "pad.tab": [
+    "Tab changes the level; that alone moves nothing",
+    "Tab でレベルを切り替え（それだけでは動きません）",
+  ],
+  "pad.posture": ["posture", "姿勢"],
+  "pad.one": ["1 posture", "1 姿勢"],
+  "pad.many": ["{count} postures", "{count} 姿勢"],
+  "pad.nothing": ["nothing", "なし"],
+  "pad.key": ["Key {digit}: {what}", "キー {digit}：{what}"],
+  "pad.stands": [
+    "{level} {key}: posture {posture} of {count}",
+    "{level} {key}：姿勢 {posture}／{count}",
+  ],
+  "pad.standsOne": ["{level} {key} stands", "{level} {key} を保持"],
+  "pad.none": ["No key yet", "まだキーは押されていません"],
+  "pad.restart": ["Restart", "再スタート"],
+  "pad.restartIn": ["in {seconds} s", "あと {seconds} 秒"],
+  "pad.view": ["View", "視点"],
+  "pad.leave": ["Leave", "退出"],
+
+  // Views
+  "views.badge": ["View {number}/3", "視点 {number}/3"],
+  "views.arena": ["arena", "全体"],
+  "views.top": ["from above", "真上"],
+  "views.chase": ["behind the robot", "ロボットの後ろ"],
+  "views.label": ["The field in 3D", "フィールドの 3D 表示"],
+  "field.label": [
+    "Field. Digits steer, Tab changes the level, Space the view, x restarts, z leaves. Escape goes on to the buttons.",
+    "フィールド。数字で操作、Tab でレベル、スペースで視点、x で再スタート、z で退出。Esc でボタンへ移動。",
+  ],
+
+  // Leave
+  "leave.title": ["Leave?", "退出しますか"],
+  "leave.match": [
+    "Your robot will stand. The seat stays yours, and you can come back.",
+    "ロボットは停止します。席はそのまま残り、戻ることができます。",
+  ],
+  "leave.lobby": ["Your seat becomes free.", "席が空きます。"],
+  "leave.practice": ["Your practice ends.", "練習を終了します。"],
+  "leave.data": [
+    "Pos-data.txt, the way of your robot, is saved.",
+    "ロボットの軌跡 Pos-data.txt を保存します。",
+  ],
+  "leave.noData": [
+    "There is no Pos-data.txt yet: your robot has not stood on the field.",
+    "Pos-data.txt はまだありません（ロボットがフィールドに立っていません）。",
+  ],
+  "leave.go": ["Save and leave", "保存して退出"],
+  "leave.goNoData": ["Leave", "退出"],
+  "leave.save": ["Only save", "保存のみ"],
+  "leave.saved": [
+    "Pos-data.txt saved: the way of your robot",
+    "Pos-data.txt を保存しました（ロボットの軌跡）",
+  ],
+
+  // Toasts
+  "toast.refused": ["[{key}] {why}", "[{key}] {why}"],
+  "no.1": ["Keys work only while the match is being played", "キーは試合中だけ使えます"],
+  "no.2": [
+    "This arena does not open that level of control",
+    "この競技ではその操作レベルは使えません",
+  ],
+  "no.3": ["Your gait file has no such key", "歩容ファイルにそのキーはありません"],
+  "no.4": [
+    "Restarted a moment ago: wait until the pause is over",
+    "再スタート直後です。待ち時間が終わるまでお待ちください",
+  ],
+  "no.5": ["The referee has frozen your robot", "審判がロボットを停止させています"],
+  "no.other": ["The court refused it", "コートに拒否されました"],
+  "toast.arrows": [
+    "Arrows are for level B; Tab changes the level",
+    "矢印キーはレベル B 用です。Tab で切り替えます",
+  ],
+  "toast.oneLevel": [
+    "This arena opens level {level} only",
+    "この競技ではレベル {level} だけが使えます",
+  ],
+  "toast.level": ["Level {level}: press a digit", "レベル {level}：数字を押してください"],
+
+  // Over the field
+  "focus.steer": ["Click here to steer", "クリックして操作を続ける"],
+  "focus.why": [
+    "The keyboard is with another window",
+    "キーボード入力が別のウィンドウに向いています",
+  ],
+  "ime.on": [
+    "A Japanese input method is on. Keys still steer; if one does not, turn it off (半角/全角).",
+    "日本語入力がオンです。キー操作はできますが、効かないときは「半角/全角」でオフにしてください。",
+  ],
+  "count.go": ["Go!", "スタート！"],
+  "end.win": ["You win", "あなたの勝ち"],
+  "end.lose": ["{team} wins", "{team} の勝ち"],
+  "end.draw": ["A draw", "引き分け"],
+  "end.void": ["The match is void", "無効試合"],
+  "end.by": ["by {points}", "{points} 点差"],
+  "end.save": ["Save Pos-data.txt", "Pos-data.txt を保存"],
+
+  // Footer
+  "foot.trip": ["Round trip", "往復時間"],
+  "foot.tripHint": [
+    "From your newest key to the picture that shows it",
+    "キーを押してから画面に反映されるまで",
+  ],
+  "foot.frames": ["Frames", "フレーム"],
+  "foot.perSecond": ["{count}/s", "{count}/秒"],
+  "foot.ms": ["{count} ms", "{count} ms"],
+  "foot.linked": ["connected", "接続中"],
+  "foot.broken": ["no link", "切断"],
+  "foot.settings": ["Settings", "設定"],
+  "keytest.title": ["Key test", "キーのテスト"],
+  "keytest.hint": [
+    "Click here and press keys: nothing is sent.",
+    "ここをクリックしてキーを押してください（送信されません）。",
+  ],
+  "keytest.digit": ["digit {digit}", "数字 {digit}"],
+  "keytest.arrow": ["{digit} of level B", "レベル B の {digit}"],
+  "keytest.restart": ["restart", "再スタート"],
+  "keytest.leave": ["leave", "退出"],
+  "keytest.level": ["level", "レベル切替"],
+  "keytest.view": ["view", "視点切替"],
+  "keytest.none": ["does nothing", "割り当てなし"],
+  "keytest.ime": ["through an input method", "日本語入力を経由"],
+
+  // Practice
+  "coach.title": ["First steps", "はじめの一歩"],
+  "coach.forward": [
+    "Slowly press 1, 2, 3, 4, one after another. It walks.",
+    "1、2、3、4 をゆっくり順番に押してみよう。ロボットが歩きます。",
+  ],
+  "coach.again": ["Well done. Go on: 1, 2, 3, 4 …", "いいね。続けて 1、2、3、4…"],
+  "coach.back": ["4, 3, 2, 1 walks back.", "4、3、2、1 で後ろへ歩きます。"],
+  "coach.turn": ["5, 6, 7, 8 turns right.", "5、6、7、8 で右へ回ります。"],
+  "coach.level": [
+    "Now press Tab for level B, then 2: one key walks by itself.",
+    "次は Tab でレベル B に切り替えて 2。キー 1 つで歩き続けます。",
+  ],
+  "coach.free": [
+    "That is all. Walk where you like; x puts it back, z saves its way.",
+    "これで全部です。自由に歩かせよう。x でスタート位置へ、z で軌跡を保存。",
+  ],
+  "coach.own": [
+    "Your own gait is loaded: press its keys and see where it goes.",
+    "自分の歩容が読み込まれています。キーを押して動きを確かめよう。",
+  ],
+  "coach.pressed": ["Pressed", "押したキー"],
+  "coach.skip": ["Skip", "とばす"],
+  "walk.heading": ["Heading", "向き"],
+  "walk.walked": ["Walked", "歩行距離"],
+  "walk.speed": ["Speed", "速さ"],
 } as const satisfies Record<string, readonly [string, string]>;

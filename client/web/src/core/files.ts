@@ -1,0 +1,95 @@
+/** A contestant's files: told apart by what is in them, and kept in this browser. */
+
+import { computed } from "@preact/signals";
+import { remembered } from "./settings";
+import type { SentFile } from "./wire";
+
+/** What a file is for; the names of the join's fields. */
+export const SLOTS = ["robot", "postures", "locomotion"] as const;
+export type Slot = (typeof SLOTS)[number];
+
+/** Larger ones are no gait and no robot: the court takes 32 KiB of text, 1 MiB of workbook. */
+export const MOST_BYTES = 1 << 20;
+
+interface Kept {
+  name: string;
+  base64: string;
+}
+
+/** Kept as text: a reload must join with the very same bytes, or the seat is not ready any more. */
+const kept = remembered<Partial<Record<Slot, Kept>>>("files", {});
+
+/** The names of the chosen files. */
+export const chosenNames = computed<Record<Slot, string>>(() => ({
+  robot: kept.value.robot?.name ?? "",
+  postures: kept.value.postures?.name ?? "",
+  locomotion: kept.value.locomotion?.name ?? "",
+}));
+
+/** The chosen files, as a join sends them. */
+export function chosenFiles(): Record<Slot, SentFile | null> {
+  const sent = (slot: Slot) => {
+    const file = kept.peek()[slot];
+    return file ? { name: file.name, data: fromBase64(file.base64) } : null;
+  };
+  return { robot: sent("robot"), postures: sent("postures"), locomotion: sent("locomotion") };
+}
+
+/** Keep a file in the slot that its content asks for; returns the slot. */
+export async function choose(file: File): Promise<Slot> {
+  const data = new Uint8Array(await file.arrayBuffer());
+  const slot = slotOf(file.name, data);
+  kept.value = { ...kept.value, [slot]: { name: file.name, base64: toBase64(data) } };
+  return slot;
+}
+
+/** Forget a file. */
+export function forget(slot: Slot): void {
+  const { [slot]: _, ...others } = kept.value;
+  kept.value = others;
+}
+
+/** What a file is for. A wrong guess does no harm: the court says what it expected. */
+export function slotOf(name: string, data: Uint8Array): Slot {
+  if (name.toLowerCase().endsWith(".toml")) return "robot";
+  if (isWorkbook(data)) return "postures";
+  const first = textOf(data)
+    .split(/\r?\n/)
+    .map((line) => line.trim().replaceAll('"', ""))
+    .find((line) => line);
+  // LocoTra-data begins with the number of its keys alone (rules 2), in any digits.
+  if (first !== undefined) return /^\p{Nd}+$/u.test(first) ? "locomotion" : "postures";
+  return /tra/i.test(name) ? "locomotion" : "postures";
+}
+
+function isWorkbook(data: Uint8Array): boolean {
+  return data[0] === 0x50 && data[1] === 0x4b && data[2] === 3 && data[3] === 4;
+}
+
+/** Good enough to see the first line; reading in earnest is the court's. */
+function textOf(data: Uint8Array): string {
+  const head = data.subarray(0, 256);
+  const little = (head[0] === 0xff && head[1] === 0xfe) || (head[0] !== 0 && head[1] === 0);
+  const big = (head[0] === 0xfe && head[1] === 0xff) || (head[0] === 0 && head[1] !== 0);
+  const encoding = little ? "utf-16le" : big ? "utf-16be" : "utf-8";
+  return new TextDecoder(encoding).decode(head).replace("\uFEFF", "");
+}
+
+function toBase64(data: Uint8Array): string {
+  let text = "";
+  for (const byte of data) text += String.fromCharCode(byte);
+  return btoa(text);
+}
+
+function fromBase64(text: string): Uint8Array {
+  return Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+}
+
+/** Hand a file to the person. */
+export function download(name: string, text: string): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

@@ -1,0 +1,237 @@
+/** The card before a seat is held: who, where, with what. */
+
+import { useSignal } from "@preact/signals";
+import type { Court } from "../../core/court";
+import { isAboutToken, type Player } from "../../core/player";
+import { remembered } from "../../core/settings";
+import { SeatFlag, type Sheet } from "../../core/wire";
+import { seatName, team } from "../../core/words";
+import { said, t } from "../../i18n";
+import { Mistakes } from "../../ui/mistakes";
+import { FilePicker } from "./files";
+
+const NAME_MOST = 24;
+
+const nameKept = remembered("team", "");
+const seatKept = remembered("seat", "");
+
+interface Props {
+  court: Court;
+  player: Player;
+  alone: boolean;
+}
+
+/** What stands in the place of the field's controls while no seat is held. */
+export function Entrance({ court, player, alone }: Props) {
+  switch (player.standing.value) {
+    case "watching":
+      return <WatchOnly alone={alone} />;
+    case "lost":
+      return <Gone court={court} player={player} alone={alone} isLost />;
+    case "left":
+      return <Gone court={court} player={player} alone={alone} />;
+    case "outside":
+      return court.welcome.value ? <JoinCard court={court} player={player} alone={alone} /> : null;
+    default:
+      return null;
+  }
+}
+
+function WatchOnly({ alone }: { alone: boolean }) {
+  return (
+    <section class="card entrance" aria-labelledby="entrance-title">
+      <h1 id="entrance-title">{t("watching.title")}</h1>
+      <p>{t(alone ? "watching.practice" : "watching.text")}</p>
+      <a class="button strong" href={`/watch${location.search}`}>
+        {t("watching.watch")}
+      </a>
+    </section>
+  );
+}
+
+/** The seat was lost or given up: one button brings it back. */
+function Gone({ player, alone, isLost }: Props & { isLost?: boolean }) {
+  const wish = player.lastWish;
+  const text = alone ? t("left.practice") : t("left.text");
+  return (
+    <section class="card entrance" aria-labelledby="entrance-title">
+      <h1 id="entrance-title">{t(isLost ? "lost.title" : "left.title")}</h1>
+      <p role={isLost ? "alert" : undefined}>{isLost ? sentence(player.lostWhy.value) : text}</p>
+      <div class="row">
+        {wish && (
+          <button class="button strong large" type="button" onClick={() => player.join(wish)}>
+            {t(alone ? "left.practiceAgain" : "join.again")}
+          </button>
+        )}
+        {!alone && (
+          <button class="button" type="button" onClick={() => player.forget()}>
+            {t("join.title")}
+          </button>
+        )}
+      </div>
+    </section>
+  );
+}
+
+function JoinCard({ court, player, alone }: Props) {
+  const welcome = court.welcome.value!;
+  const { prefill, courts } = welcome;
+  const sheet = court.sheet.value;
+  const seats = sheet?.seats.map((seat) => seat.id) ?? [];
+  const name = useSignal(prefill?.name || player.lastWish?.name || nameKept.peek());
+  const token = useSignal(player.lastWish?.token ?? "");
+  const isShown = useSignal(false);
+  const complaint = useSignal<"" | "name" | "token">("");
+  const chosen = useSignal(prefill?.seat || seatKept.peek());
+  const seat = seats.includes(chosen.value) ? chosen.value : (seats[0] ?? "");
+  const hasToken = Boolean(prefill?.has_token);
+  const refusal = player.refusal.value;
+  const aboutToken = refusal !== null && isAboutToken(refusal);
+  const isBusy = player.asking.value || player.isWaiting.value;
+
+  const submit = (event: Event) => {
+    event.preventDefault();
+    const clean = name.value.trim();
+    const length = [...clean].length;
+    const missing = !token.value.trim() && !hasToken;
+    complaint.value = !length || length > NAME_MOST ? "name" : missing ? "token" : "";
+    if (complaint.value) {
+      document.getElementById(`join-${complaint.value}`)?.focus();
+      return;
+    }
+    nameKept.value = clean;
+    seatKept.value = seat;
+    player.join({
+      court: welcome.court ?? "",
+      seat,
+      token: token.value.trim() || null,
+      name: clean,
+    });
+  };
+
+  return (
+    <form class="card entrance join" aria-labelledby="entrance-title" onSubmit={submit}>
+      <h1 id="entrance-title">{t(alone ? "join.practice" : "join.title")}</h1>
+      {courts.length > 1 && (
+        <label class="field">
+          <span>{t("join.court")}</span>
+          <select value={welcome.court ?? ""} onChange={(event) => go(event.currentTarget.value)}>
+            {courts.map((one) => (
+              <option key={one}>{one}</option>
+            ))}
+          </select>
+        </label>
+      )}
+      {sheet && (
+        <fieldset class="seats">
+          <legend>
+            {t("join.seat")} <span class="muted">{sheet.title}</span>
+          </legend>
+          {sheet.seats.map((one, index) => (
+            <label key={one.id} class={`seat${one.id === seat ? " on" : ""}`} data-seat={index}>
+              <input
+                type="radio"
+                name="seat"
+                value={one.id}
+                checked={one.id === seat}
+                onChange={() => {
+                  chosen.value = one.id;
+                }}
+              />
+              <span class="seat-mark" data-pattern={one.pattern} aria-hidden="true">
+                {one.id.slice(0, 1).toUpperCase()}
+              </span>
+              <span>
+                {seatName(one.id)}
+                <small>{seatedThere(court, sheet, index)}</small>
+              </span>
+            </label>
+          ))}
+        </fieldset>
+      )}
+      <div class="pair">
+        <label class="field">
+          <span>{t("join.name")}</span>
+          <input
+            id="join-name"
+            value={name.value}
+            placeholder={t("join.nameHint")}
+            autocomplete="organization"
+            aria-invalid={complaint.value === "name"}
+            aria-describedby="join-name-error"
+            onInput={(event) => {
+              name.value = event.currentTarget.value;
+            }}
+          />
+          <p class="error" id="join-name-error" role="alert">
+            {complaint.value === "name" && t("join.nameMissing")}
+          </p>
+        </label>
+        <div class="field">
+          <label for="join-token">{t("join.token")}</label>
+          <div class="with-button">
+            <input
+              id="join-token"
+              type={(isShown.value ? "text" : "password") as "password"}
+              value={token.value}
+              placeholder={t(hasToken ? "join.tokenGiven" : "join.tokenHint")}
+              autocomplete="off"
+              spellcheck={false}
+              aria-invalid={aboutToken || complaint.value === "token"}
+              aria-describedby="join-token-error"
+              onInput={(event) => {
+                token.value = event.currentTarget.value;
+              }}
+            />
+            <button
+              class="button quiet"
+              type="button"
+              onClick={() => {
+                isShown.value = !isShown.value;
+              }}
+            >
+              {t(isShown.value ? "join.hide" : "join.show")}
+            </button>
+          </div>
+          <p class="error" id="join-token-error" role="alert">
+            {complaint.value === "token" && t("join.tokenMissing")}
+            {!complaint.value && aboutToken && said(refusal.message)}
+          </p>
+        </div>
+      </div>
+      <FilePicker court={court} alone={alone} />
+      {refusal && !aboutToken && (
+        <div class="refusal" role="alert">
+          <strong>{t("join.refused")}</strong>
+          <p>{said(refusal.message)}</p>
+          {refusal.mistakes.length > 0 && <Mistakes mistakes={refusal.mistakes} />}
+        </div>
+      )}
+      <button class="button strong large" type="submit" disabled={isBusy}>
+        {isBusy && <span class="spinner" aria-hidden="true" />}
+        {t(isBusy ? "join.going" : "join.go")}
+      </button>
+      {isBusy && !court.link.value?.connected && <p class="muted">{t("join.waits")}</p>}
+      {welcome.home === "venue" && <p class="muted safety">{t("join.safety")}</p>}
+    </form>
+  );
+}
+
+function seatedThere(court: Court, sheet: Sheet, index: number): string {
+  const flags = court.frame.peek()?.seats[index]?.flags ?? 0;
+  return flags & SeatFlag.JOINED ? t("join.takenBy", { team: team(sheet, index) }) : t("join.free");
+}
+
+/** Another court is another address: a reload then comes back to it. */
+function go(court: string): void {
+  const query = new URLSearchParams(location.search);
+  query.set("court", court);
+  location.search = query.toString();
+}
+
+/** A reason of the controller's, which begins small and has no full stop, as a sentence. */
+function sentence(why: string): string {
+  const text = said(why);
+  const begun = text.slice(0, 1).toUpperCase() + text.slice(1);
+  return /[.。!?]$/.test(begun) ? begun : `${begun}${/[^ -~]$/.test(begun) ? "。" : "."}`;
+}

@@ -1,0 +1,291 @@
+/** The contestant's page; practice is the same page with a court of one's own. */
+
+import { useSignal, useSignalEffect } from "@preact/signals";
+import { useEffect, useMemo, useRef } from "preact/hooks";
+import { followColours } from "../../core/colours";
+import { Court } from "../../core/court";
+import { download } from "../../core/files";
+import { type Pressed, RESTART_KEY } from "../../core/keys";
+import { Player, type Word } from "../../core/player";
+import { PosData } from "../../core/posdata";
+import { Level, Phase, readFrame } from "../../core/wire";
+import { type MessageName, said, t } from "../../i18n";
+import { LinkBanner } from "../../ui/banner";
+import { Dialog } from "../../ui/dialog";
+import { Settings } from "../../ui/settings";
+import { Toasts, toast } from "../../ui/toasts";
+import { Entrance } from "./card";
+import { Field, VIEWS, type ViewName } from "./field";
+import { FilePicker } from "./files";
+import { Footer } from "./footer";
+import { useKeyboard, useWindowFocus } from "./keyboard";
+import { KeyTest } from "./keytest";
+import { LEVEL_LETTERS } from "./pad";
+import { Rail } from "./rail";
+import "./player.css";
+
+const FRAMES_HZ = 50;
+const POS_DATA = "Pos-data.txt";
+
+type Open = "" | "leave" | "files" | "settings";
+
+export function Cockpit({ alone }: { alone: boolean }) {
+  const { court, player } = useMemo(() => begin(alone), [alone]);
+  const view = useSignal<ViewName>("arena");
+  const open = useSignal<Open>("");
+  const hasFocus = useSignal(true);
+  const hasInputMethod = useSignal(false);
+  const field = useRef<HTMLDivElement>(null);
+
+  const close = () => {
+    open.value = "";
+    field.current?.focus({ preventScroll: true });
+  };
+  const nextView = () => {
+    view.value = VIEWS[(VIEWS.indexOf(view.peek()) + 1) % VIEWS.length]!;
+  };
+  const press = (key: number, atMs: number) => void player.press(key, atMs);
+  const changeLevel = (to?: number) => {
+    const levels = court.sheet.peek()?.levels ?? [];
+    if (levels.length < 2) {
+      toast(t("toast.oneLevel", { level: LEVEL_LETTERS[player.level.peek()] ?? "" }), "no");
+      return;
+    }
+    player.changeLevel(to);
+    toast(t("toast.level", { level: LEVEL_LETTERS[player.level.peek()] ?? "" }));
+  };
+  const act = (pressed: Pressed, atMs: number) => {
+    switch (pressed.does) {
+      case "digit":
+        return press(pressed.digit, atMs);
+      case "arrow":
+        if (player.level.peek() === Level.LOCOMOTION) return press(pressed.digit, atMs);
+        return toast(t("toast.arrows"), "no");
+      case "restart":
+        return press(RESTART_KEY, atMs);
+      case "level":
+        return changeLevel();
+      case "view":
+        return nextView();
+      default:
+        open.value = "leave";
+    }
+  };
+  useWindowFocus(hasFocus);
+  useKeyboard(
+    field,
+    {
+      isOn: () => player.standing.peek() === "seated",
+      act,
+      leaveField: () =>
+        document.querySelector<HTMLElement>(".rail button:not(:disabled), .foot button")?.focus(),
+    },
+    hasInputMethod,
+  );
+  useAutoJoin(court, player, alone);
+  useFieldFocus(court, player, field);
+
+  const standing = player.standing.value;
+  const isIn = standing === "seated" || standing === "joining";
+  const controls = {
+    onKey: press,
+    onLevel: (level: number) => level !== player.level.peek() && changeLevel(level),
+    onView: nextView,
+    onLeave: () => {
+      open.value = "leave";
+    },
+  };
+  return (
+    <main class={`player${isIn ? "" : " outside"}`} data-standing={standing}>
+      <LinkBanner court={court} />
+      <Field
+        {...{ court, player, alone, view, hasFocus, hasInputMethod, field }}
+        onView={nextView}
+        onSave={() => saveData(player)}
+      />
+      {isIn ? (
+        <>
+          <Rail {...{ court, player, alone }} {...controls} />
+          <Footer
+            court={court}
+            player={player}
+            onFiles={() => {
+              open.value = "files";
+            }}
+            onSettings={() => {
+              open.value = "settings";
+            }}
+          />
+        </>
+      ) : (
+        <div class="entrance-place">
+          <Entrance court={court} player={player} alone={alone} />
+          <button
+            class="button quiet small corner"
+            type="button"
+            onClick={() => {
+              open.value = "settings";
+            }}
+          >
+            {t("foot.settings")}
+          </button>
+        </div>
+      )}
+      {open.value === "leave" && <Leave {...{ court, player, alone }} onClose={close} />}
+      {open.value === "files" && <Files {...{ court, player, alone }} onClose={close} />}
+      {open.value === "settings" && (
+        <Settings onClose={close}>
+          <KeyTest />
+        </Settings>
+      )}
+      <Toasts />
+    </main>
+  );
+}
+
+function begin(alone: boolean): { court: Court; player: Player } {
+  const court = new Court(FRAMES_HZ);
+  followColours(court);
+  const player = new Player(court, speak, alone);
+  window.__lacoc = Object.assign(window.__lacoc ?? {}, { posData });
+  return { court, player };
+}
+
+/** For tests: Pos-data.txt of any frames. */
+function posData(seat: number, joints: number[], frames: Uint8Array[]): string {
+  const data = new PosData(seat, joints);
+  for (const frame of frames) data.add(readFrame(frame));
+  return data.text();
+}
+
+function speak(word: Word): void {
+  if ("text" in word) {
+    if (word.text) toast(said(word.text), word.tone);
+    return;
+  }
+  const name = `no.${word.refused}`;
+  const why = t(
+    ["no.1", "no.2", "no.3", "no.4", "no.5"].includes(name) ? (name as MessageName) : "no.other",
+  );
+  const key = word.key === RESTART_KEY ? "x" : String(word.key);
+  toast(t("toast.refused", { key, why }), "no");
+}
+
+/** True if there was something to save. */
+function saveData(player: Player): boolean {
+  const { data } = player;
+  if (!data?.length) return false;
+  download(POS_DATA, data.text());
+  toast(t("leave.saved"), "yes");
+  return true;
+}
+
+/** `lacoc practice` has said everything already: the first thing to see is the robot. */
+function useAutoJoin(court: Court, player: Player, alone: boolean): void {
+  const tried = useRef(false);
+  useSignalEffect(() => {
+    const welcome = court.welcome.value;
+    const prefill = welcome?.prefill;
+    if (!alone || tried.current || !welcome?.court || !prefill?.has_token) return;
+    if (player.standing.value !== "outside" || player.isWaiting.value) return;
+    tried.current = true;
+    const { seat, name } = prefill;
+    player.join({ court: welcome.court, seat, token: null, name: name || t("join.practice") });
+  });
+}
+
+/** The field takes the focus when a seat is taken and when play begins, unless somebody types. */
+function useFieldFocus(
+  court: Court,
+  player: Player,
+  field: { current: HTMLDivElement | null },
+): void {
+  const moment = useSignal("");
+  useSignalEffect(() => {
+    const phase = court.frame.value?.phase ?? 0;
+    const isOn = phase >= Phase.COUNTDOWN && phase <= Phase.PLAYING;
+    moment.value = `${player.standing.value} ${isOn}`;
+  });
+  useEffect(
+    () =>
+      moment.subscribe(() => {
+        requestAnimationFrame(() => {
+          const isBusy = document.querySelector("dialog[open]");
+          if (player.standing.peek() === "seated" && !isBusy) {
+            field.current?.focus({ preventScroll: true });
+          }
+        });
+      }),
+    [moment, player, field],
+  );
+}
+
+interface DialogProps {
+  court: Court;
+  player: Player;
+  alone: boolean;
+  onClose: () => void;
+}
+
+function Leave({ court, player, alone, onClose }: DialogProps) {
+  const phase = court.frame.peek()?.phase ?? Phase.LOBBY;
+  const hasData = Boolean(player.data?.length);
+  const inMatch = phase > Phase.READY && phase < Phase.OFFICIAL;
+  const leave = async () => {
+    saveData(player);
+    onClose();
+    await player.leave();
+  };
+  return (
+    <Dialog title={t("leave.title")} onClose={onClose}>
+      <p>{t(alone ? "leave.practice" : inMatch ? "leave.match" : "leave.lobby")}</p>
+      <p class="muted">{t(hasData ? "leave.data" : "leave.noData")}</p>
+      <div class="row end">
+        <button class="button" type="button" onClick={onClose}>
+          {t("common.cancel")}
+        </button>
+        {hasData && (
+          <button
+            class="button"
+            type="button"
+            onClick={() => {
+              saveData(player);
+              onClose();
+            }}
+          >
+            {t("leave.save")}
+          </button>
+        )}
+        <button class="button strong" type="button" autofocus onClick={() => void leave()}>
+          {t(hasData ? "leave.go" : "leave.goNoData")}
+        </button>
+      </div>
+    </Dialog>
+  );
+}
+
+function Files({ court, player, alone, onClose }: DialogProps) {
+  return (
+    <Dialog title={t("files.title")} onClose={onClose}>
+      <div class="files-dialog">
+        {!alone && <p class="muted">{t("files.changeText")}</p>}
+        <FilePicker court={court} alone={alone} />
+        <div class="row end">
+          <button class="button" type="button" onClick={onClose}>
+            {t("common.cancel")}
+          </button>
+          <button
+            class="button strong"
+            type="button"
+            onClick={() => {
+              onClose();
+              void player.rejoin();
+            }}
+          >
+            {t("files.use")}
+          </button>
+        </div>
+      </div>
+    </Dialog>
+  );
+}

@@ -1,0 +1,195 @@
+/** The field and what lies over it. */
+
+import { type Signal, useComputed, useSignal, useSignalEffect } from "@preact/signals";
+import type { Ref } from "preact";
+import { useMemo } from "preact/hooks";
+import { type Court, phaseOf } from "../../core/court";
+import type { Player } from "../../core/player";
+import { quality } from "../../core/settings";
+import { Phase } from "../../core/wire";
+import { BEATS_PER_S, team, winnerOf } from "../../core/words";
+import { t } from "../../i18n";
+import { View } from "../../scene/View";
+import { ScoreBug } from "../../ui/score";
+import { nextStep } from "./steps";
+
+export const VIEWS = ["arena", "top", "chase"] as const;
+export type ViewName = (typeof VIEWS)[number];
+
+const GO_MS = 900;
+/** The arena is fitted between the score bug above and the badge below. */
+const INSET = { top: 118, bottom: 40 };
+const INSET_OUTSIDE = {};
+
+interface Props {
+  court: Court;
+  player: Player;
+  alone: boolean;
+  view: Signal<ViewName>;
+  hasFocus: Signal<boolean>;
+  hasInputMethod: Signal<boolean>;
+  field: Ref<HTMLDivElement>;
+  onView: () => void;
+  onSave: () => void;
+}
+
+export function Field(props: Props) {
+  const { court, player, alone, view, field, onView } = props;
+  const source = useMemo(
+    () => ({
+      sheet: court.sheet,
+      scene: court.scene,
+      sample: (nowMs: number) => court.timeline.sample(nowMs),
+    }),
+    [court],
+  );
+  const standing = player.standing.value;
+  const isIn = standing === "seated" || standing === "joining";
+  return (
+    <div class="stage">
+      {/* biome-ignore-start lint/a11y/noNoninteractiveTabindex: the field takes the game's keys */}
+      <div
+        ref={field}
+        class="field3d"
+        tabIndex={isIn ? 0 : -1}
+        role="application"
+        aria-label={t("field.label")}
+      >
+        <View
+          source={source}
+          camera={isIn ? view : "arena"}
+          seat={Math.max(0, player.index.value)}
+          quality={quality}
+          labels={!alone}
+          inset={isIn ? INSET : INSET_OUTSIDE}
+          label={t("views.label")}
+        />
+      </div>
+      {/* biome-ignore-end lint/a11y/noNoninteractiveTabindex: see above */}
+      {isIn && (
+        <>
+          <div class="over-top">
+            <ScoreBug match={court} />
+            <NextStep {...props} />
+          </div>
+          <button class="badge" type="button" onClick={onView}>
+            {t("views.badge", { number: VIEWS.indexOf(view.value) + 1 })}
+            <span>{t(`views.${view.value}`)}</span>
+          </button>
+          {!alone && <Countdown court={court} />}
+          {!alone && <ResultCard {...props} />}
+          <InputMethodHint {...props} />
+          <Curtain {...props} />
+        </>
+      )}
+    </div>
+  );
+}
+
+function NextStep({ court, player, alone }: Props) {
+  const text = useComputed(() => {
+    const step = nextStep(court, player, alone);
+    return `${step.tone}|${step.text}`;
+  }).value;
+  const [tone, ...words] = text.split("|");
+  return (
+    <p class={`next ${tone}`} role="status">
+      {words.join("|")}
+    </p>
+  );
+}
+
+/** 3, 2, 1 over the picture, and a word when play begins. */
+function Countdown({ court }: { court: Court }) {
+  const seconds = useComputed(() => {
+    const frame = court.frame.value;
+    return frame?.phase === Phase.COUNTDOWN ? Math.ceil(frame.countdown_beats / BEATS_PER_S) : 0;
+  });
+  const isGo = useSignal(false);
+  const wasCounting = useSignal(false);
+  useSignalEffect(() => {
+    const counting = seconds.value > 0;
+    const phase = court.frame.peek()?.phase;
+    if (wasCounting.peek() && !counting && phase === Phase.PLAYING) {
+      isGo.value = true;
+      setTimeout(() => {
+        isGo.value = false;
+      }, GO_MS);
+    }
+    wasCounting.value = counting;
+  });
+  if (!seconds.value && !isGo.value) return null;
+  return (
+    <div class="countdown" role="timer" aria-live="assertive">
+      <span key={seconds.value}>{seconds.value || t("count.go")}</span>
+    </div>
+  );
+}
+
+function ResultCard({ court, player, onSave }: Props) {
+  const phase = useMemo(() => phaseOf(court), [court]).value;
+  if (phase < Phase.FINISHED) return null;
+  const index = player.index.value;
+  const sheet = court.sheet.value;
+  const frame = court.frame.peek();
+  const winner = winnerOf(court);
+  if (!sheet || !frame || index < 0) return null;
+  const scores = frame.seats.map((seat) => seat.score);
+  const winnerIndex = sheet.seats.findIndex((seat) => seat.id === winner);
+  const isMine = winnerIndex === index;
+  const title =
+    phase === Phase.VOID
+      ? t("end.void")
+      : winner === "draw"
+        ? t("end.draw")
+        : winnerIndex < 0
+          ? t("phase.6")
+          : isMine
+            ? t("end.win")
+            : t("end.lose", { team: team(sheet, winnerIndex) });
+  const points = Math.abs((scores[0] ?? 0) - (scores[1] ?? 0));
+  const decided = phase !== Phase.VOID && winnerIndex >= 0 && points > 0;
+  return (
+    <section
+      class={`result${isMine && phase !== Phase.VOID ? " won" : ""}`}
+      data-seat={phase === Phase.VOID ? -1 : winnerIndex}
+      aria-live="polite"
+    >
+      <h1>{title}</h1>
+      {decided && <p class="by">{t("end.by", { points })}</p>}
+      <p class="final">
+        <span data-seat="0">{team(sheet, 0)}</span>
+        <b>{scores.join(" : ")}</b>
+        <span data-seat="1">{team(sheet, 1)}</span>
+      </p>
+      <p class="muted">{t(phase === Phase.FINISHED ? "next.finished" : "next.official")}</p>
+      {player.data && player.data.length > 0 && (
+        <button class="button" type="button" onClick={onSave}>
+          {t("end.save")}
+        </button>
+      )}
+    </section>
+  );
+}
+
+function InputMethodHint({ hasInputMethod }: Props) {
+  if (!hasInputMethod.value) return null;
+  return (
+    <p class="ime" role="status">
+      {t("ime.on")}
+    </p>
+  );
+}
+
+/** Keys go elsewhere while another window has the keyboard: say so where the eyes are. */
+function Curtain({ court, hasFocus }: Props) {
+  const phase = useMemo(() => phaseOf(court), [court]).value;
+  const matters = phase >= Phase.READY && phase <= Phase.HALTED;
+  if (hasFocus.value || !matters) return null;
+  return (
+    <button class="curtain" type="button" onClick={() => window.focus()}>
+      <b>{t("focus.steer")}</b>
+      <span>{t("focus.why")}</span>
+    </button>
+  );
+}

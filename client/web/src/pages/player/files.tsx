@@ -1,0 +1,102 @@
+/** The robot and gait files: dropped or picked, sorted by what is in them. */
+
+import { useSignal } from "@preact/signals";
+import { useId } from "preact/hooks";
+import type { Court } from "../../core/court";
+import { choose, chosenNames, forget, MOST_BYTES, SLOTS, type Slot } from "../../core/files";
+import { t } from "../../i18n";
+import { toast } from "../../ui/toasts";
+
+export function FilePicker({ court, alone }: { court: Court; alone: boolean }) {
+  const isOver = useSignal(false);
+  const input = useId();
+  const levels = court.sheet.value?.levels ?? [0, 1];
+  const given = court.welcome.value?.prefill?.files ?? [];
+  const hasOwnGait = Boolean(chosenNames.value.postures || chosenNames.value.locomotion);
+  const slots = SLOTS.filter(
+    (slot) =>
+      alone ||
+      slot === "robot" ||
+      chosenNames.value[slot] ||
+      levels.includes(slot === "postures" ? 0 : 1),
+  );
+  const take = async (files: Iterable<File>) => {
+    for (const file of files) {
+      if (file.size > MOST_BYTES) toast(t("files.tooLarge", { name: file.name }), "no");
+      else await choose(file);
+    }
+  };
+  return (
+    // biome-ignore lint/a11y/noStaticElementInteractions: dropping is the mouse's way; the button is everybody's
+    <div
+      class={`files${isOver.value ? " over" : ""}`}
+      onDragOver={(event) => {
+        event.preventDefault();
+        isOver.value = true;
+      }}
+      onDragLeave={() => {
+        isOver.value = false;
+      }}
+      onDrop={(event) => {
+        event.preventDefault();
+        isOver.value = false;
+        void take(event.dataTransfer?.files ?? []);
+      }}
+    >
+      <p class="drop">
+        {t("files.drop")}{" "}
+        <label class="link" for={input}>
+          {t("files.pick")}
+        </label>
+        <input
+          id={input}
+          class="hidden-text"
+          type="file"
+          multiple
+          accept=".txt,.xlsx,.toml,.tsv,.csv"
+          onChange={(event) => {
+            const picked = event.currentTarget;
+            void take([...(picked.files ?? [])]).then(() => {
+              picked.value = ""; // the same file again, after it was mended
+            });
+          }}
+        />
+      </p>
+      <ul>
+        {slots.map((slot) => (
+          <SlotRow key={slot} slot={slot} otherwise={otherwise(slot, hasOwnGait)} />
+        ))}
+      </ul>
+      {given.length > 0 && !hasOwnGait && (
+        <p class="muted">{t("files.given", { names: given.join(", ") })}</p>
+      )}
+    </div>
+  );
+}
+
+/** What is used where no file is chosen: without any gait file the robot's sample gait is. */
+function otherwise(slot: Slot, hasOwnGait: boolean): string {
+  if (slot === "robot") return t("files.contests");
+  return t(hasOwnGait ? "files.none" : "files.sample");
+}
+
+function SlotRow({ slot, otherwise }: { slot: Slot; otherwise: string }) {
+  const name = chosenNames.value[slot];
+  return (
+    <li>
+      <span class="what">{t(`files.${slot}`)}</span>
+      <span class={name ? "name" : "name muted"}>{name || otherwise}</span>
+      {name && (
+        <button
+          class="button quiet small"
+          type="button"
+          aria-label={t("files.remove", { name })}
+          title={t("files.remove", { name })}
+          onClick={() => forget(slot)}
+        >
+          ×
+        </button>
+      )}
+    </li>
+  );
+}

@@ -1,0 +1,63 @@
+/** The link in figures, and the way to files and settings. */
+
+import { useComputed } from "@preact/signals";
+import type { Court } from "../../core/court";
+import type { Player } from "../../core/player";
+import { Phase } from "../../core/wire";
+import { seatName, team } from "../../core/words";
+import { t } from "../../i18n";
+
+interface Props {
+  court: Court;
+  player: Player;
+  onFiles: () => void;
+  onSettings: () => void;
+}
+
+export function Footer({ court, player, onFiles, onSettings }: Props) {
+  const sheet = court.sheet.value;
+  const index = player.index.value;
+  const seat = sheet?.seats[index];
+  const isPlaying = useComputed(() => {
+    const phase = court.frame.value?.phase ?? 0;
+    return phase >= Phase.COUNTDOWN && phase <= Phase.HALTED && (sheet?.duration_s ?? 0) > 0;
+  }).value;
+  const trip = player.tripMs.value;
+  const isLinked = player.canSteer.value;
+  return (
+    <footer class="foot">
+      <p class="who">
+        {sheet && <span>{sheet.title}</span>}
+        <span class="muted">
+          {t("join.court")} {court.welcome.value?.court}
+        </span>
+        {sheet && seat && sheet.seats.length > 1 && (
+          <span class="muted">
+            {team(sheet, index)} ({seatName(seat.id)})
+          </span>
+        )}
+      </p>
+      <dl>
+        <div title={t("foot.tripHint")}>
+          <dt>{t("foot.trip")}</dt>
+          <dd data-trip={trip ?? ""}>
+            {trip === null ? "–" : t("foot.ms", { count: Math.round(trip) })}
+          </dd>
+        </div>
+        <div>
+          <dt>{t("foot.frames")}</dt>
+          <dd>{t("foot.perSecond", { count: court.framesHz.value })}</dd>
+        </div>
+      </dl>
+      <p class={`link-state${isLinked ? " good" : ""}`}>
+        {t(isLinked ? "foot.linked" : "foot.broken")}
+      </p>
+      <button class="button quiet small" type="button" disabled={isPlaying} onClick={onFiles}>
+        {t("files.change")}
+      </button>
+      <button class="button quiet small" type="button" onClick={onSettings}>
+        {t("foot.settings")}
+      </button>
+    </footer>
+  );
+}

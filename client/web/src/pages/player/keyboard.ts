@@ -1,0 +1,84 @@
+/**
+ * The keyboard of a contestant.
+ *
+ * Digits, x and z steer wherever the focus is, except in a text field or a dialog: after a click
+ * on "Ready" the next digit must count. Tab and Space belong to whatever has the focus, so that
+ * the page can be used without a mouse; only on the field, which takes the focus when play begins,
+ * do they change the level and the view. Shift+Tab and Escape lead out of it.
+ */
+
+import type { Signal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import { isFromInputMethod, type Pressed, readKey } from "../../core/keys";
+
+const INPUT_METHOD_MS = 8000;
+
+export interface Steering {
+  /** Whether keys mean the game now. */
+  isOn(): boolean;
+  act(pressed: Pressed, atMs: number): void;
+  /** Escape on the field. */
+  leaveField(): void;
+}
+
+export function useKeyboard(
+  field: { current: HTMLElement | null },
+  steering: Steering,
+  hasInputMethod: Signal<boolean>,
+): void {
+  useEffect(() => {
+    let timer = 0;
+    const take = (event: KeyboardEvent) => {
+      if (!steering.isOn() || document.querySelector("dialog[open]")) return;
+      const target = event.target as HTMLElement;
+      if (isTyping(target)) return;
+      const isOnField = target === document.body || Boolean(field.current?.contains(target));
+      if (isOnField && event.code === "Escape") {
+        steering.leaveField();
+        return;
+      }
+      const pressed = readKey(event);
+      if (!pressed) return;
+      if (!isOnField && (pressed.does === "level" || pressed.does === "view")) return;
+      if (isFromInputMethod(event)) {
+        hasInputMethod.value = true;
+        clearTimeout(timer);
+        timer = window.setTimeout(() => {
+          hasInputMethod.value = false;
+        }, INPUT_METHOD_MS);
+      }
+      event.preventDefault();
+      if (!event.repeat) steering.act(pressed, event.timeStamp);
+    };
+    window.addEventListener("keydown", take);
+    return () => {
+      window.removeEventListener("keydown", take);
+      clearTimeout(timer);
+    };
+  }, []);
+}
+
+/** Keep a signal on whether this window has the keyboard. */
+export function useWindowFocus(hasFocus: Signal<boolean>): void {
+  useEffect(() => {
+    const look = (now: boolean) => () => {
+      hasFocus.value = now;
+    };
+    const [got, lost] = [look(true), look(false)];
+    hasFocus.value = document.hasFocus();
+    window.addEventListener("focus", got);
+    window.addEventListener("pointerdown", got);
+    window.addEventListener("keydown", got);
+    window.addEventListener("blur", lost);
+    return () => {
+      window.removeEventListener("focus", got);
+      window.removeEventListener("pointerdown", got);
+      window.removeEventListener("keydown", got);
+      window.removeEventListener("blur", lost);
+    };
+  }, [hasFocus]);
+}
+
+function isTyping(target: HTMLElement): boolean {
+  return Boolean(target.closest?.("input, select, textarea, [contenteditable], [role=textbox]"));
+}

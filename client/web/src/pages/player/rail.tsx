@@ -1,0 +1,96 @@
+/** The right rail: ready, keys, board, events. */
+
+import { useComputed } from "@preact/signals";
+import { useMemo } from "preact/hooks";
+import { type Court, phaseOf } from "../../core/court";
+import type { Player } from "../../core/player";
+import { Level, Phase, SeatFlag } from "../../core/wire";
+import { t } from "../../i18n";
+import { Board } from "../../ui/board";
+import { EventLog } from "../../ui/log";
+import { Coach, useLessons } from "./coach";
+import { Pad } from "./pad";
+
+interface Props {
+  court: Court;
+  player: Player;
+  alone: boolean;
+  onKey: (key: number, atMs: number) => void;
+  onLevel: (level: number) => void;
+  onView: () => void;
+  onLeave: () => void;
+}
+
+/** Said of anything a contestant need not read twice. */
+const QUIET = new Set(["ready", "key-refused", "heard"]);
+
+export function Rail(props: Props) {
+  const { court, player, alone } = props;
+  const progress = useLessons(court, player);
+  return (
+    <aside class="rail">
+      {alone ? <Coach court={court} player={player} progress={progress} /> : <Ready {...props} />}
+      <NoKeys court={court} player={player} />
+      <Pad {...props} hinted={alone ? progress.next : null} />
+      <div class="map">
+        <Board match={court} />
+      </div>
+      {!alone && (
+        <div class="events">
+          <EventLog match={court} most={30} only={(event) => !QUIET.has(event.kind)} />
+        </div>
+      )}
+    </aside>
+  );
+}
+
+function Ready({ court, player }: Props) {
+  const phase = useMemo(() => phaseOf(court), [court]).value;
+  const isReady = useMemo(
+    () => player.part((seat) => Boolean(seat.flags & SeatFlag.READY), false),
+    [player],
+  ).value;
+  if (phase !== Phase.LOBBY && phase !== Phase.READY) return null;
+  const canSteer = player.canSteer.value;
+  if (!isReady) {
+    return (
+      <button
+        class="button strong ready"
+        type="button"
+        disabled={!canSteer}
+        onClick={() => void player.ready(true)}
+      >
+        {t("ready.say")}
+      </button>
+    );
+  }
+  return (
+    <div class="ready said">
+      <span>✓ {t("ready.said")}</span>
+      <button
+        class="button"
+        type="button"
+        disabled={!canSteer}
+        onClick={() => void player.ready(false)}
+      >
+        {t("ready.takeBack")}
+      </button>
+    </div>
+  );
+}
+
+/** A gait without keys at an open level can't walk: to be known before the match. */
+function NoKeys({ court, player }: { court: Court; player: Player }) {
+  const file = useComputed(() => {
+    const sheet = court.sheet.value;
+    const seat = sheet?.seats[player.index.value];
+    if (!sheet || !seat?.team) return "";
+    if (sheet.levels.some((level) => seat.keys[level as 0 | 1]?.length)) return "";
+    return sheet.levels.includes(Level.POSTURE) ? "Loco-data" : "LocoTra-data";
+  }).value;
+  return file ? (
+    <p class="warning" role="alert">
+      {t("files.noKey", { file })}
+    </p>
+  ) : null;
+}

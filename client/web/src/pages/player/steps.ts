@@ -1,0 +1,80 @@
+/** What a contestant does next, in one line. */
+
+import type { Court } from "../../core/court";
+import type { Player } from "../../core/player";
+import { Phase, SeatFlag } from "../../core/wire";
+import { BEATS_PER_S, seatName, team } from "../../core/words";
+import { type MessageName, t } from "../../i18n";
+
+/** A line, and how much it matters. */
+export interface Step {
+  text: string;
+  tone: "do" | "wait" | "warn";
+}
+
+const GOALS: Record<string, MessageName> = {
+  othello: "next.othello",
+  "flag-strike": "next.flag-strike",
+};
+
+/** The next step; for a `computed`: it reads the newest frame. */
+export function nextStep(court: Court, player: Player, alone: boolean): Step {
+  const frame = court.frame.value;
+  const sheet = court.sheet.value;
+  const index = player.index.value;
+  const seat = frame?.seats[index];
+  if (player.standing.value === "joining") return { text: t("next.rejoin"), tone: "wait" };
+  if (!frame || !sheet || !seat) return { text: t("next.wait"), tone: "wait" };
+  const seconds = Math.ceil(seat.locked_ticks / BEATS_PER_S);
+  switch (frame.phase) {
+    case Phase.LOBBY:
+      if (alone) return { text: t("next.practice"), tone: "wait" };
+      if (!(seat.flags & SeatFlag.READY)) return { text: t("next.ready"), tone: "do" };
+      return { text: othersMissing(court, index), tone: "wait" };
+    case Phase.READY:
+      return { text: t(alone ? "next.practice" : "next.start"), tone: "wait" };
+    case Phase.COUNTDOWN:
+      return { text: t("next.countdown"), tone: "do" };
+    case Phase.PLAYING: {
+      if (seat.flags & SeatFlag.FROZEN) {
+        return { text: t("next.frozen", { seconds }), tone: "warn" };
+      }
+      if (seconds) return { text: t("next.locked", { seconds }), tone: "warn" };
+      if (seat.flags & SeatFlag.SILENT) return { text: t("next.silent"), tone: "warn" };
+      return { text: playing(court, index), tone: "do" };
+    }
+    case Phase.HALTED:
+      return { text: t("next.halted"), tone: "warn" };
+    case Phase.FINISHED:
+      return { text: t("next.finished"), tone: "wait" };
+    case Phase.OFFICIAL:
+    case Phase.VOID:
+      return { text: t("next.official"), tone: "wait" };
+    default:
+      return { text: t("next.wait"), tone: "wait" };
+  }
+}
+
+function othersMissing(court: Court, index: number): string {
+  const sheet = court.sheet.value!;
+  for (const [other, seat] of court.frame.value!.seats.entries()) {
+    if (other === index) continue;
+    if (!(seat.flags & SeatFlag.JOINED)) {
+      return t("next.joining", { seat: seatName(sheet.seats[other]!.id) });
+    }
+    if (!(seat.flags & SeatFlag.READY)) return t("next.notReady", { team: team(sheet, other) });
+  }
+  return t("next.start");
+}
+
+function playing(court: Court, index: number): string {
+  const frame = court.frame.value!;
+  const goal = t(GOALS[court.sheet.value!.arena] ?? "next.steer");
+  const own = frame.seats[index]!.score;
+  const others = frame.seats.filter((_, other) => other !== index).map((seat) => seat.score);
+  const ahead = own - Math.max(...others);
+  if (!others.length || ahead === 0) return goal;
+  return ahead > 0
+    ? t("next.ahead", { points: ahead, goal })
+    : t("next.behind", { points: -ahead, goal });
+}
