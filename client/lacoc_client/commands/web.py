@@ -76,14 +76,21 @@ def web_command(
         viewers_most=viewers,
         key=_key(plan, key),
     )
-    opened = server.listen(listen)
-    address = server.url(opened)
+    port = server.listen(listen)
+    address = server.url(port)
 
     def ready() -> None:
-        shown = browser and PageFiles().built and server.open_browser(f"{address}/watch")
-        _tell(home, address, shown, json)
+        built = PageFiles().built
+        shown = browser and built and server.open_browser(f"{address}/watch")
+        if json:
+            opened = {"kind": "open", "url": address, "key": home.key}
+            screen.print_json(opened | {"built": built, "shown": shown})
+        else:
+            _tell(home, address)
+        if not built:
+            screen.warn(NOT_BUILT)
 
-    server.run(home, opened, ready)
+    server.run(home, port, ready)
 
 
 def _courts(plan: Contest | None, court: str | None, connect: str | None) -> dict[str, str]:
@@ -102,15 +109,10 @@ def _key(plan: Contest | None, key: str | None) -> str:
     return new_key() if plan is None else lasting_key(plan)
 
 
-def _tell(home: Home, address: str, shown: bool, json: bool) -> None:
-    if json:
-        screen.print_json({"kind": "open", "url": address, "key": home.key, "shown": shown})
-    else:
-        screen.show(f"Pages of {', '.join(home.courts)}:")
-        screen.show(f"  spectators: {address}/watch")
-        screen.show(f"  broadcast: {address}/overlay")
-        screen.show(f"  recordings: {address}/replay")
-        screen.show(f"  contestants: {address}/play#key={home.key}")
-        screen.show(f"  referee: {address}/referee#key={home.key}")
-    if not PageFiles().built:
-        screen.warn(NOT_BUILT)
+def _tell(home: Home, address: str) -> None:
+    screen.show(f"Pages of {', '.join(home.courts)}:")
+    screen.show(f"  spectators: {address}/watch")
+    screen.show(f"  broadcast: {address}/overlay")
+    screen.show(f"  recordings: {address}/replay")
+    screen.show(f"  contestants: {address}/play#key={home.key}")
+    screen.show(f"  referee: {address}/referee#key={home.key}")

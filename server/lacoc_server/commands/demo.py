@@ -88,7 +88,8 @@ def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> 
     if not line:
         raise UserError("The pages did not open; what is wrong is said above.")
     opened = json.loads(line)
-    screen.show(f"Watch at {opened['url']}/watch")
+    if opened["built"]:
+        screen.show(f"Watch at {opened['url']}/watch")
     return bool(opened["shown"])
 
 

@@ -1,0 +1,30 @@
+"""Venues for the tests of the gateway; makes `venue` and `page_client` importable."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+sys.path.append(str(Path(__file__).parent))
+sys.path.append(str(Path(__file__).parents[1] / "client"))
+
+from venue import Venue
+
+
+@pytest.fixture
+def venue(tmp_path: Path) -> Iterator[Venue]:
+    """A contest; nothing of it runs yet."""
+    with ExitStack() as stack:
+        yield Venue(tmp_path, stack)
+
+
+@pytest.fixture(scope="module")
+def open_venue(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Venue]:
+    """A court in the lobby with its gateway, for tests that change nothing."""
+    with ExitStack() as stack:
+        venue = Venue(tmp_path_factory.mktemp("venue"), stack)
+        venue.court()
+        venue.web("--host", "Pages.Example")
+        yield venue

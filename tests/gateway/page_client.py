@@ -1,0 +1,204 @@
+"""A page without a browser: what it was sent, and asking."""
+
+import itertools
+import socket
+import struct
+import threading
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from typing import Any
+from urllib.parse import urlsplit
+
+import msgpack
+from websockets.client import ClientProtocol
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
+from websockets.uri import parse_uri
+
+from lacoc_client.gateway.wire import Kind
+from lacoc_shared.codec import decode
+from lacoc_shared.messages import Event, Frame, Health, Scene, SeatFrame, Sheet
+from lacoc_shared.seat import Phase
+
+TIMEOUT_S = 20.0
+
+
+class Refused(Exception):
+    """The gateway, or the court behind it, said no."""
+
+    def __init__(self, error: str, mistakes: list[dict[str, Any]]) -> None:
+        super().__init__(error)
+        self.mistakes = mistakes
+
+
+class PageClient:
+    """A page's connection; a thread takes in what comes."""
+
+    def __init__(
+        self, url: str, key: str | None = None, *, watch: bool = True, **options: Any
+    ) -> None:
+        fields = {name: options.pop(name, None) for name in ("court", "hz")}
+        self._stack = ExitStack()
+        address = f"{url.replace('http', 'ws')}/ws"
+        self.socket: ClientConnection = self._stack.enter_context(
+            connect(address, compression=None, max_size=None, **options)
+        )
+        self.order: list[Kind] = []
+        self.welcome: dict[str, Any] = {}
+        self.link: dict[str, Any] = {}
+        self.links: list[dict[str, Any]] = []
+        self.seat: dict[str, Any] = {}
+        self.referee: dict[str, Any] = {}
+        self.sheet: Sheet | None = None
+        self.scene: tuple[bytes, Scene] | None = None
+        self.frame: Frame | None = None
+        self.frames: list[tuple[float, int]] = []
+        """When each came, and its beat."""
+        self.health: Health | None = None
+        self.events: list[Event] = []
+        self.closed = threading.Event()
+        self._replies: dict[int, dict[str, Any]] = {}
+        self._changed = threading.Condition()
+        self._ids = itertools.count(1)
+        threading.Thread(target=self._listen, daemon=True).start()
+        if watch:
+            self.ask("watch", key=key, **fields)
+
+    def ask(self, do: str, **fields: Any) -> Any:
+        """Ask and wait for the value of the reply."""
+        return self.reply(self.send(do, **fields))
+
+    def send(self, do: str, **fields: Any) -> int:
+        """Ask without waiting; the id."""
+        number = next(self._ids)
+        self.socket.send(msgpack.packb({"id": number, "do": do, **fields}))
+        return number
+
+    def reply(self, number: int) -> Any:
+        """The value of a reply."""
+        self.wait(lambda: number in self._replies)
+        reply = self._replies.pop(number)
+        if not reply["ok"]:
+            raise Refused(reply["error"], reply["mistakes"])
+        return reply["value"]
+
+    def wait(self, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:
+        """Wait until something is true."""
+        with self._changed:
+            assert self._changed.wait_for(condition, timeout_s), "it did not become true"
+
+    def phase(self, phase: Phase) -> None:
+        """Wait for a phase."""
+        self.wait(lambda: self.frame is not None and self.frame.phase == phase)
+
+    def own(self) -> SeatFrame:
+        """The seat that this page holds."""
+        assert self.frame is not None
+        return self.frame.seats[self.seat["index"]]
+
+    def close(self) -> None:
+        self._stack.close()
+
+    def __enter__(self) -> "PageClient":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _listen(self) -> None:
+        try:
+            for message in self.socket:
+                assert isinstance(message, bytes)
+                with self._changed:
+                    self._take(Kind(message[0]), message[1:])
+                    self._changed.notify_all()
+        except ConnectionClosed:
+            pass
+        with self._changed:
+            self.closed.set()
+            self._changed.notify_all()
+
+    def _take(self, kind: Kind, payload: bytes) -> None:
+        self.order.append(kind)
+        match kind:
+            case Kind.FRAME:
+                self.frame = decode(payload, Frame)
+                self.frames.append((time.monotonic(), self.frame.beat))
+            case Kind.EVENT:
+                event = decode(payload, Event)
+                if not any(event.number == known.number for known in self.events):
+                    self.events.append(event)
+            case Kind.SHEET:
+                self.sheet = decode(payload, Sheet)
+            case Kind.SCENE:
+                self.scene = (payload[:8], decode(payload[8:], Scene, 1 << 20))
+            case Kind.HEALTH:
+                self.health = decode(payload, Health)
+            case _:
+                self._take_own(kind, msgpack.unpackb(payload))
+
+    def _take_own(self, kind: Kind, body: dict[str, Any]) -> None:
+        match kind:
+            case Kind.WELCOME:
+                self.welcome = body
+            case Kind.LINK:
+                if self.link and self.link["log"] != body["log"]:
+                    self.events = []
+                self.link = body
+                self.links.append(body)
+            case Kind.SEAT:
+                self.seat = body
+            case Kind.REFEREE:
+                self.referee = body
+            case Kind.REPLY:
+                self._replies[body["id"]] = body
+
+
+class SleepyPage:
+    """A page that reads only when it is told to, with little room in between."""
+
+    def __init__(self, url: str) -> None:
+        parts = urlsplit(url)
+        assert parts.hostname is not None
+        self._socket = socket.socket()
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        self._socket.connect((parts.hostname, parts.port))
+        self._protocol = ClientProtocol(parse_uri(f"ws://{parts.netloc}/ws"))
+        self._protocol.send_request(self._protocol.connect())
+        self._flush()
+        self._protocol.receive_data(self._socket.recv(4096))
+
+    def watch(self, **fields: Any) -> None:
+        self._protocol.send_binary(msgpack.packb({"id": 1, "do": "watch", **fields}))
+        self._flush()
+
+    def read_until(self, beat: int) -> list[int]:
+        """The beats of all frames up to one, in their order."""
+        beats: list[int] = []
+        deadline_s = time.monotonic() + TIMEOUT_S
+        while not beats or beats[-1] < beat:
+            assert time.monotonic() < deadline_s
+            self._protocol.receive_data(self._socket.recv(65_536))
+            self._flush()  # answers pings
+            for event in self._protocol.events_received():
+                data = bytes(getattr(event, "data", b""))
+                if data[:1] == bytes((Kind.FRAME,)):
+                    beats.append(decode(data[1:], Frame).beat)
+        return beats
+
+    def _flush(self) -> None:
+        for data in self._protocol.data_to_send():
+            self._socket.sendall(data)
+
+    def __enter__(self) -> "SleepyPage":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._socket.close()
+
+
+def x_of(frame: Frame, robot: int, bytes_a_robot: int) -> float:
+    """Where a robot is along x [m]."""
+    (x_m,) = struct.unpack_from("<f", frame.poses, robot * bytes_a_robot)
+    return float(x_m)

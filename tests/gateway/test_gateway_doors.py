@@ -1,0 +1,356 @@
+"""Who is let in, and that nothing that comes in disturbs anybody else."""
+
+import http.client
+import json
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import msgpack
+import pytest
+from page_client import PageClient, Refused
+from venue import REFEREE, TOKENS, Venue
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from lacoc_client.gateway import wire
+from lacoc_shared.seat import Phase
+
+pytestmark = pytest.mark.slow
+
+ACTS: list[tuple[str, dict[str, Any]]] = [
+    ("join", {"seat": "left", "token": TOKENS["left"], "name": "Ants"}),
+    ("ready", {"ready": True}),
+    ("leave", {}),
+    ("key", {"level": 1, "key": 2}),
+    ("enter", {"token": REFEREE, "by": "Kim"}),
+    ("take_over", {}),
+    ("decide", {"decision": {"type": "abort"}, "reason": "x"}),
+]
+
+
+def get(venue: Venue, path: str, **headers: str) -> tuple[int, http.client.HTTPMessage, bytes]:
+    """Fetch a path as it is, dots and all."""
+    connection = http.client.HTTPConnection("127.0.0.1", venue.web_port, timeout=20)
+    try:
+        connection.putrequest("GET", path, skip_host="Host" in headers)
+        for name, value in headers.items():
+            connection.putheader(name.replace("_", "-"), value)
+        connection.endheaders()
+        response = connection.getresponse()
+        return response.status, response.headers, response.read()
+    finally:
+        connection.close()
+
+
+@pytest.mark.parametrize(
+    "host",
+    [
+        "127.0.0.1:{port}",
+        "localhost:{port}",
+        "LOCALHOST",
+        "[::1]:{port}",
+        "192.168.7.9:80",
+        "pages.example:{port}",
+        "pages.example.",
+        socket.gethostname(),
+    ],
+)
+def test_the_names_of_this_machine_are_known(open_venue: Venue, host: str) -> None:
+    """Numbers, localhost, the machine's name, and what --host says."""
+    status, _, _ = get(open_venue, "/recordings", Host=host.format(port=open_venue.web_port))
+    assert status == 200
+
+
+@pytest.mark.parametrize(
+    "host", ["evil.example", "127.0.0.1.evil.example", "", "evil.example:80@127.0.0.1"]
+)
+def test_a_foreign_name_is_refused(open_venue: Venue, host: str) -> None:
+    """A site whose name was made to point to this machine (DNS rebinding)."""
+    status, _, body = get(open_venue, "/recordings", Host=host)
+    assert status in (400, 403)
+    if status == 403:
+        assert b"--host" in body
+    with (
+        pytest.raises(InvalidStatus),
+        connect(
+            f"ws://evil.example:{open_venue.web_port}/ws",
+            sock=socket.create_connection(("127.0.0.1", open_venue.web_port)),
+        ),
+    ):
+        pass
+
+
+@pytest.mark.parametrize(
+    "origin",
+    ["http://evil.example", "null", "http://127.0.0.1", "http://127.0.0.1:1", "file://", "x"],
+)
+def test_a_page_of_another_site_gets_no_socket(open_venue: Venue, origin: str) -> None:
+    """Any web site can open ws://127.0.0.1: its origin gives it away."""
+    with (
+        pytest.raises(InvalidStatus) as caught,
+        connect(
+            f"ws://127.0.0.1:{open_venue.web_port}/ws",
+            origin=origin,  # type: ignore[arg-type]
+        ),
+    ):
+        pass
+    assert caught.value.response.status_code == 403
+
+
+def test_the_own_page_gets_a_socket(open_venue: Venue) -> None:
+    """Same origin, and no origin at all: a program that is no browser."""
+    origin = f"http://127.0.0.1:{open_venue.web_port}"
+    with PageClient(open_venue.url, origin=origin) as page:
+        assert page.welcome["court"] == "main"
+
+
+@pytest.mark.parametrize("key", [None, "", "wrong", "\u00e4" * 20])
+@pytest.mark.parametrize(("do", "fields"), ACTS, ids=[do for do, _ in ACTS])
+def test_without_the_key_a_page_only_watches(
+    open_venue: Venue, key: str | None, do: str, fields: dict[str, Any]
+) -> None:
+    """Seat and referee tokens are of no use without the key of the run."""
+    with PageClient(open_venue.url, key) as page:
+        assert page.welcome["can_act"] is False
+        with pytest.raises(Refused, match="may only watch"):
+            page.ask(do, **fields)
+        assert page.ask("ping", t=1.5) == {"t": 1.5}
+
+
+@pytest.mark.parametrize(("do", "fields"), ACTS, ids=[do for do, _ in ACTS])
+def test_watch_comes_first(open_venue: Venue, do: str, fields: dict[str, Any]) -> None:
+    """Nothing can be done at no court."""
+    with (
+        PageClient(open_venue.url, watch=False) as page,
+        pytest.raises(Refused, match="which court"),
+    ):
+        page.ask(do, **fields)
+
+
+def test_wrong_tokens_are_refused_and_can_not_be_guessed(open_venue: Venue) -> None:
+    """Each with the court's own sentence; not more than a few tries."""
+    with PageClient(open_venue.url, open_venue.key) as page:
+        with pytest.raises(Refused, match="does not open seat left"):
+            page.ask("join", seat="left", token=TOKENS["right"], name="Ants")
+        with pytest.raises(Refused, match="not a referee's token"):
+            page.ask("enter", token=TOKENS["left"], by="Kim")
+        with pytest.raises(Refused, match="no seat 'middle'"):
+            page.ask("join", seat="middle", token=TOKENS["left"], name="Ants")
+        with pytest.raises(Refused, match="token is missing"):
+            page.ask("join", seat="left", token=None, name="Ants")
+        with pytest.raises(Refused, match="Say who you are"):
+            page.ask("enter", token=REFEREE, by=" ")
+        said: set[str] = set()
+        for _ in range(20):
+            with pytest.raises(Refused) as caught:
+                page.ask("enter", token="guess", by="Kim")
+            said.add(str(caught.value)[:14])
+        assert said == {"This is not a ", "Too many tries"}
+        assert page.referee == {"acting": None, "mine": False}
+
+
+def test_wrong_files_come_back_as_mistakes(open_venue: Venue) -> None:
+    """Rules 2: every mistake with its place."""
+    wrong = {"name": "mine.txt", "data": b"Num of Posture\t1\n0 Key\t1\t2\tthree\n"}
+    with PageClient(open_venue.url, open_venue.key) as page:
+        with pytest.raises(Refused, match="mistake") as caught:
+            page.ask("join", seat="left", token=TOKENS["left"], name="Ants", postures=wrong)
+        assert caught.value.mistakes[0]["file"] == "mine.txt"
+        assert {"found", "expected"} <= set(caught.value.mistakes[0])
+
+
+def test_an_unknown_court_is_said(open_venue: Venue) -> None:
+    """The page hears which there are."""
+    with PageClient(open_venue.url, watch=False) as page:
+        with pytest.raises(Refused, match="no court 'centre' here; there is main"):
+            page.ask("watch", court="centre")
+        assert page.welcome["courts"] == ["main"]
+        assert "centre" in page.link["text"]
+        page.ask("watch")
+        page.wait(lambda: page.frame)
+
+
+@pytest.mark.parametrize(
+    ("do", "fields", "reason"),
+    [
+        ("dance", {}, "not understood"),
+        ("watch", {"hz": "fast"}, "not understood"),
+        ("watch", {"key": "k" * 201}, "not understood"),
+        ("rate", {}, "not understood"),
+        ("key", {"level": 2, "key": 1}, "not understood"),
+        ("key", {"level": 0, "key": 11}, "not understood"),
+        ("key", {"level": 0, "key": True}, "not understood"),
+        ("decide", {"decision": {"type": "win"}, "reason": ""}, "not understood"),
+        ("decide", {"decision": {"type": "abort"}, "reason": "x" * 5000}, "at most 4096"),
+        ("ping", {"t": "x" * 5000}, "at most 4096"),
+    ],
+)
+def test_what_is_not_understood_is_refused(
+    open_venue: Venue, do: str, fields: dict[str, Any], reason: str
+) -> None:
+    """One sentence, and the connection lives."""
+    with PageClient(open_venue.url, open_venue.key) as page:
+        with pytest.raises(Refused, match=reason):
+            page.ask(do, **fields)
+        page.ask("ping", t=1)
+
+
+@pytest.mark.parametrize(
+    "garbage",
+    [b"", b"\xc1", b"\x93\x01\x02", msgpack.packb({"do": "ping"}), b"\x81" * 3000, "text"],
+)
+def test_garbage_ends_a_connection_and_nothing_else(
+    open_venue: Venue, garbage: bytes | str
+) -> None:
+    """A page does not send such things."""
+    with PageClient(open_venue.url) as page, PageClient(open_venue.url) as other:
+        page.socket.send(garbage)
+        page.wait(page.closed.is_set)
+        other.ask("ping", t=1)
+
+
+def test_a_message_without_end_is_cut_off(open_venue: Venue) -> None:
+    """Nobody needs more than a join with its files."""
+    with PageClient(open_venue.url, open_venue.key) as page:
+        page.socket.send(bytes(wire.JOIN_BYTES + 1))
+        page.wait(page.closed.is_set)
+    files = {"name": "x.txt", "data": bytes(60_000)}
+    with PageClient(open_venue.url, open_venue.key) as page, pytest.raises(Refused):
+        page.ask("join", seat="left", token=TOKENS["left"], name="A", postures=files)
+
+
+@pytest.mark.parametrize("path", ["/", "/play", "/practice", "/referee", "/watch", "/replay"])
+def test_pages_are_safe_from_other_sites(open_venue: Venue, path: str) -> None:
+    """Headers of every answer; a page that can act shows in no frame of another site."""
+    status, headers, _ = get(open_venue, path)
+    assert status in (200, 503)  # 503: not built
+    policy = headers["Content-Security-Policy"]
+    assert "default-src 'self'" in policy
+    assert "frame-ancestors 'none'" in policy
+    assert headers["X-Content-Type-Options"] == "nosniff"
+    assert headers["Referrer-Policy"] == "no-referrer"
+    assert headers["Cache-Control"] == "no-store"
+
+
+def test_the_overlay_may_be_embedded(open_venue: Venue) -> None:
+    """It takes no input, and broadcasters put it into their own pages."""
+    _, headers, _ = get(open_venue, "/overlay")
+    assert "frame-ancestors *" in headers["Content-Security-Policy"]
+
+
+@pytest.fixture(scope="module")
+def records(open_venue: Venue) -> Iterator[Path]:
+    """Recordings of the open venue's folder, and something beside it that nobody may have."""
+    folder = open_venue.folder / "recordings"
+    (folder / "first match.mcap").write_bytes(b"first")
+    time.sleep(0.02)
+    (folder / "second.mcap").write_bytes(b"0123456789")
+    (folder / "notes.txt").write_text("mine")
+    (open_venue.folder / "secret.mcap").write_bytes(b"secret")
+    yield folder
+    for name in ("first match.mcap", "second.mcap", "notes.txt"):
+        (folder / name).unlink()
+
+
+def test_recordings_are_listed_and_fetched(open_venue: Venue, records: Path) -> None:
+    """Finished ones, the newest first; a part of one is enough for a player that seeks."""
+    _, headers, body = get(open_venue, "/recordings")
+    listed = json.loads(body)
+    assert headers["Cache-Control"] == "no-store"
+    assert [entry["name"] for entry in listed] == ["second.mcap", "first match.mcap"]
+    assert listed[0]["bytes"] == 10
+    assert get(open_venue, "/recordings/first%20match.mcap")[2] == b"first"
+    status, _, body = get(open_venue, "/recordings/second.mcap", Range="bytes=2-4")
+    assert (status, body) == (206, b"234")
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/recordings/../secret.mcap",
+        "/recordings/..%2fsecret.mcap",
+        "/recordings/%2e%2e/secret.mcap",
+        "/recordings/..%5csecret.mcap",
+        "/recordings/notes.txt",
+        "/recordings/nothing.mcap",
+        "/recordings/%00.mcap",
+        "/recordings//etc/passwd",
+        "/assets/../../page_client.py",
+        "/assets/..%2f..%2fcontroller.py",
+        "/assets/%2fetc%2fpasswd",
+        "/assets/%00",
+        "/..%2fcontroller.py",
+        "/%2e%2e",
+        "/.",
+    ],
+)
+def test_no_path_leads_out(open_venue: Venue, records: Path, path: str) -> None:
+    """Only the recordings of the folder, only the files of the pages."""
+    status, _, body = get(open_venue, path)
+    assert status == 404
+    assert b"secret" not in body
+
+
+def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
+    """They hear why; those who watch are not disturbed, and a place that gets free is given."""
+    venue.court()
+    venue.web("--viewers", "2")
+    first, second = venue.page(), venue.page()
+    third = venue.page(watch=False)
+    with pytest.raises(Refused, match="2 pages already"):
+        third.ask("watch")
+    third.wait(third.closed.is_set)
+    assert "2 pages already" in third.link["text"]
+    second.close()
+    deadline_s = time.monotonic() + 10
+    while True:
+        fourth = venue.page(watch=False)
+        try:
+            fourth.ask("watch")
+            break
+        except Refused:
+            assert time.monotonic() < deadline_s
+    first.ask("ping", t=1)
+
+
+def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
+    """Keys of a contestant take effect in time while others send all they can."""
+    venue.court()
+    venue.web()
+    left, right = venue.contestant("left"), venue.contestant("right")
+    referee = venue.referee()
+    referee.phase(Phase.READY)
+    referee.ask("decide", decision={"type": "start"}, reason="")
+    left.phase(Phase.PLAYING)
+    right.phase(Phase.PLAYING)
+    flooding = [venue.page(), venue.page(venue.key), right]
+    end_s = time.monotonic() + 4
+    ping = msgpack.packb({"id": 1, "do": "ping", "t": 1})
+    key = msgpack.packb({"id": 1, "do": "key", "level": 1, "key": 3})
+
+    def flood(page: PageClient, message: bytes) -> None:
+        while time.monotonic() < end_s:
+            page.socket.send(message)
+
+    threads = [
+        threading.Thread(target=flood, args=(page, message), daemon=True)
+        for page, message in zip(flooding, (ping, ping, key), strict=True)
+    ]
+    for thread in threads:
+        thread.start()
+    waits_s = []
+    while time.monotonic() < end_s:
+        for digit in (1, 2):
+            pressed_s = time.monotonic()
+            seq = left.ask("key", level=1, key=digit)["seq"]
+            left.wait(lambda seq=seq: left.own().applied_seq >= seq)  # type: ignore[misc]
+            waits_s.append(time.monotonic() - pressed_s)
+            time.sleep(0.03)
+    assert sorted(waits_s)[len(waits_s) // 2] < 0.15
+    assert max(waits_s) < 1.0
+    assert referee.frame is not None
+    assert not any(event.kind == "silent" and event.seat == 0 for event in referee.events)

@@ -1,0 +1,291 @@
+"""Whole matches through one gateway: real court, real Zenoh, pages without a browser."""
+
+import signal
+import time
+
+import pytest
+from page_client import PageClient, Refused, SleepyPage, x_of
+from venue import TOKENS, Venue
+
+from lacoc_client.gateway.wire import Kind
+from lacoc_shared.seat import Phase, SeatFlag
+
+pytestmark = pytest.mark.slow
+
+FORWARD = {"level": 1, "key": 2}
+
+
+def started(venue: Venue) -> tuple[PageClient, PageClient, PageClient]:
+    """Two contestants and a referee, and the match is on."""
+    left, right = venue.contestant("left", "Ants"), venue.contestant("right", "Bees")
+    referee = venue.referee()
+    referee.phase(Phase.READY)
+    referee.ask("decide", decision={"type": "start"}, reason="")
+    for page in (left, right):
+        page.phase(Phase.PLAYING)
+    return left, right, referee
+
+
+def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
+    """Issue 3: two seats and a referee by one gateway; a late comer has everything at once."""
+    venue.court("--seconds", "4")
+    venue.web()
+    left, right, referee = started(venue)
+    assert left.frame is not None
+    robot_bytes = len(left.frame.poses) // 2
+    began_m = x_of(left.frame, 0, robot_bytes)
+    for page in (left, right):
+        seq = page.ask("key", **FORWARD)["seq"]
+        page.wait(lambda page=page, seq=seq: page.own().applied_seq >= seq)
+    with pytest.raises(Refused, match="holds no seat"):
+        referee.ask("key", **FORWARD)
+    refused = left.ask("key", level=0, key=1)["seq"]
+    left.wait(lambda: left.own().refused_seq >= refused)
+
+    late = venue.page()
+    assert late.order[:4] == [Kind.WELCOME, Kind.LINK, Kind.SHEET, Kind.SCENE]
+    assert Kind.FRAME in late.order[: late.order.index(Kind.REPLY)]
+    assert [event.number for event in late.events] == [*range(1, len(late.events) + 1)]
+    assert late.events[-1].kind in ("phase", "key-refused", "flip")
+    assert late.sheet is not None
+    assert late.scene is not None
+    assert late.scene[0] == late.sheet.scene
+    assert [seat.team for seat in late.sheet.seats] == ["Ants", "Bees"]
+    assert late.welcome["can_act"] is False
+
+    referee.phase(Phase.FINISHED)
+    reply = referee.ask("decide", decision={"type": "official"}, reason="")
+    assert "official" in reply["text"]
+    for page in (left, right, referee, late):
+        page.phase(Phase.OFFICIAL)
+    decision = next(one for one in late.events if one.kind == "decision" and one.beat)
+    assert decision.text.startswith("Referee Kim: ")
+    assert left.frame is not None
+    assert x_of(left.frame, 0, robot_bytes) > began_m + 0.05
+    assert left.seat["hold"] == "held"
+    assert 0 < left.seat["round_trip_ms"] < 1000
+    referee.ask("decide", decision={"type": "next"}, reason="")
+    late.wait(lambda: late.frame is not None and late.frame.match == 2)
+
+
+def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
+    """Rules 3: a lost contestant stands; a page that comes back joins again and goes on."""
+    venue.court()
+    venue.web()
+    left, _, referee = started(venue)
+    left.ask("key", **FORWARD)
+    left.wait(lambda: left.own().key == 2)
+    gone_s = time.monotonic()
+    left.close()
+    referee.wait(lambda: any(event.kind == "silent" for event in referee.events), 5)
+    assert 0.9 < time.monotonic() - gone_s < 2.5
+    referee.wait(lambda: referee.frame is not None and referee.frame.seats[0].key == 0)
+
+    back = venue.page(venue.key)
+    back.ask("join", seat="left", token=TOKENS["left"], name="Ants")
+    seq = back.ask("key", **FORWARD)["seq"]
+    back.wait(lambda: back.own().applied_seq >= seq and back.own().key == 2)
+    assert not back.own().flags & SeatFlag.SILENT
+
+
+def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
+    """A cable that was pulled closes no connection: who is not heard is not spoken for."""
+    venue.court()
+    venue.web()
+    left, _, referee = started(venue)
+    left.ask("key", **FORWARD)
+    left.wait(lambda: left.own().key == 2)
+    left.socket.socket.settimeout(None)
+    left.socket.protocol.receive_data = lambda data: None  # type: ignore[method-assign]
+    referee.wait(lambda: any(event.kind == "silent" for event in referee.events), 6)
+
+
+def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
+    """A page that is back at once never lets the robot stand."""
+    venue.court()
+    venue.web()
+    left, _, referee = started(venue)
+    left.ask("key", **FORWARD)
+    left.wait(lambda: left.own().key == 2)
+    left.close()
+    back = venue.page(venue.key)
+    back.ask("join", seat="left", token=TOKENS["left"], name="Ants")
+    time.sleep(1.5)
+    assert back.own().key == 2
+    assert not any(event.kind == "silent" for event in referee.events)
+
+
+def test_a_newer_page_takes_the_seat(venue: Venue) -> None:
+    """The newest join wins; the older page is told, and can't steer."""
+    venue.court()
+    venue.web()
+    first = venue.contestant("left")
+    second = venue.contestant("left")
+    first.wait(lambda: first.seat["hold"] == "replaced")
+    with pytest.raises(Refused, match="not yours now"):
+        first.ask("key", **FORWARD)
+    assert second.seat["hold"] == "held"
+    second.ask("leave")
+    second.wait(lambda: second.seat["hold"] == "left")
+
+
+def test_one_referee_acts_until_another_takes_over(venue: Venue) -> None:
+    """Issue 3: one acts, the others watch; who acts stands in the record."""
+    venue.court()
+    venue.web()
+    venue.contestant("left")
+    kim, lee = venue.referee("Kim"), venue.referee("Lee")
+    kim.wait(lambda: kim.referee == {"acting": "Kim", "mine": True})
+    lee.wait(lambda: lee.referee == {"acting": "Kim", "mine": False})
+    abort = {"decision": {"type": "abort"}, "reason": "a test"}
+    with pytest.raises(Refused, match="Kim acts as referee now: take over first"):
+        lee.ask("decide", **abort)
+    lee.ask("take_over")
+    kim.wait(lambda: kim.referee == {"acting": "Lee", "mine": False})
+    with pytest.raises(Refused, match="Lee acts"):
+        kim.ask("decide", **abort)
+    with pytest.raises(Refused, match=r"only in READY; the match is LOBBY"):
+        lee.ask("decide", decision={"type": "start"}, reason="")
+    lee.ask("decide", **abort)
+    kim.wait(lambda: any(one.text.startswith("Referee Lee: ") for one in kim.events))
+    lee.close()
+    kim.wait(lambda: kim.referee == {"acting": None, "mine": False})
+    again = venue.referee("Lee")
+    again.wait(lambda: again.referee == {"acting": "Lee", "mine": True})
+
+
+def test_a_killed_court_comes_back(venue: Venue) -> None:
+    """Every page says what it waits for and goes on by itself; seats are held again."""
+    court = venue.court()
+    venue.web()
+    left, _, referee = started(venue)
+    court.kill()
+    referee.wait(lambda: not referee.link["connected"])
+    assert "court 'main'" in referee.link["text"] or "at tcp/" in referee.link["text"]
+    silent_s = referee.link["silent_s"]
+    referee.wait(lambda: referee.link["silent_s"] > silent_s + 0.8)
+    known = len(referee.events)
+    time.sleep(1.0)
+    venue.court()
+    referee.wait(lambda: referee.link["connected"])
+    for page in (left, referee):
+        page.phase(Phase.HALTED)
+    assert [event.number for event in referee.events] == [*range(1, len(referee.events) + 1)]
+    assert len(referee.events) >= known
+    left.wait(lambda: left.seat["hold"] == "held" and left.health is not None)
+    referee.wait(
+        lambda: (
+            referee.frame is not None
+            and not any(seat.flags & SeatFlag.SILENT for seat in referee.frame.seats)
+        )
+    )
+    referee.ask("decide", decision={"type": "resume"}, reason="the court is back")
+    left.phase(Phase.PLAYING)
+    seq = left.ask("key", **FORWARD)["seq"]
+    left.wait(lambda: left.own().applied_seq >= seq)
+
+
+def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
+    """Another match with the same number: no event of the old one is kept."""
+    court = venue.court()
+    venue.web()
+    watcher = venue.page()
+    left = venue.contestant("left", "Old Ants")
+    watcher.wait(lambda: any("Old Ants is ready" in event.text for event in watcher.events))
+    left.close()
+    court.close()
+    venue.court("--fresh")
+    watcher.wait(lambda: watcher.link["connected"] and watcher.links[-2]["connected"] is False)
+    venue.contestant("left", "New Ants")
+    watcher.wait(lambda: any("New Ants is ready" in event.text for event in watcher.events))
+    assert [event.number for event in watcher.events] == [*range(1, len(watcher.events) + 1)]
+    assert not any("Old Ants" in event.text for event in watcher.events)
+    late = venue.page()
+    assert late.events == watcher.events
+
+
+def test_a_stopped_court_is_not_shown_as_live(venue: Venue) -> None:
+    """A late comer gets no old frame as a new one."""
+    court = venue.court()
+    venue.web()
+    watcher = venue.page()
+    watcher.wait(lambda: watcher.frame)
+    court.signal(signal.SIGSTOP)
+    watcher.wait(lambda: not watcher.link["connected"])
+    late = venue.page()
+    assert late.frame is None
+    assert late.link["connected"] is False
+    assert late.sheet is not None
+    court.signal(signal.SIGCONT)
+    late.wait(lambda: late.frame is not None and late.link["connected"])
+
+
+def test_a_gateway_may_come_before_its_court(venue: Venue) -> None:
+    """It waits, says so, and shows the match as soon as there is one."""
+    venue.web()
+    early = venue.page(venue.key)
+    early.wait(lambda: "Nobody listens at tcp/127.0.0.1:" in early.link["text"])
+    assert early.link["connected"] is False
+    with pytest.raises(Refused, match="Nobody listens"):
+        early.ask("join", seat="left", token=TOKENS["left"], name="Ants")
+    with pytest.raises(Refused, match="is not there yet"):
+        early.ask("enter", token=TOKENS["left"], by="Kim")
+    venue.court()
+    early.wait(lambda: early.link["connected"] and early.frame and early.sheet and early.scene)
+    early.ask("join", seat="left", token=TOKENS["left"], name="Ants")
+
+
+def test_a_restarted_gateway_knows_its_pages_again(venue: Venue) -> None:
+    """The key of a contest's gateway lasts, so pages that are open go on."""
+    venue.court()
+    web = venue.web()
+    left = started(venue)[0]
+    key = venue.key
+    web.kill()
+    left.wait(left.closed.is_set)
+    venue.web()
+    assert venue.key == key
+    back = venue.page(key)
+    back.ask("join", seat="left", token=TOKENS["left"], name="Ants")
+    seq = back.ask("key", **FORWARD)["seq"]
+    back.wait(lambda: back.own().applied_seq >= seq)
+    assert [event.number for event in back.events] == [*range(1, len(back.events) + 1)]
+
+
+def test_a_gateway_ends_cleanly(venue: Venue) -> None:
+    """Ctrl-C: pages are told to come again, the exit code is 0."""
+    venue.court()
+    web = venue.web()
+    page = venue.contestant("left")
+    web.signal(signal.SIGINT)
+    assert web.process.wait(15) == 0
+    page.wait(page.closed.is_set)
+    assert (venue.folder / "web.log").read_text().count("Traceback") == 0
+
+
+@pytest.mark.parametrize(("hz", "least", "most"), [(50, 44, 51), (25, 22, 26), (5, 4, 6)])
+def test_a_page_gets_as_many_frames_as_it_asks_for(
+    open_venue: Venue, hz: int, least: int, most: int
+) -> None:
+    """25 Hz by default, less when asked."""
+    with PageClient(open_venue.url, hz=hz) as page:
+        page.wait(lambda: len(page.frames) > 3)
+        count, at_s = len(page.frames), time.monotonic()
+        time.sleep(2)
+        rate = (len(page.frames) - count) / (time.monotonic() - at_s)
+    assert least <= rate <= most
+
+
+def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
+    """One slot: after a long time without reading there come a few old frames, then new ones."""
+    with PageClient(open_venue.url, hz=50) as quick, SleepyPage(open_venue.url) as sleepy:
+        sleepy.watch(hz=50)
+        time.sleep(8)
+        assert quick.frame is not None
+        beat = quick.frame.beat
+        beats = sleepy.read_until(beat + 25)
+    old = [one for one in beats if one < beat - 25]
+    assert len(old) < 4 * 50
+    assert len([one for one in beats if one >= beat]) >= 10
+    rate = len(quick.frames) / (quick.frames[-1][0] - quick.frames[0][0])
+    assert rate > 44  # nobody waits for it

@@ -1,0 +1,108 @@
+"""A court and a gateway, each a process of its own."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+from contextlib import ExitStack
+from pathlib import Path
+
+from court_process import LACOC, environment
+from page_client import PageClient
+
+TOKENS = {"left": "l" * 26, "right": "r" * 26}
+REFEREE = "w" * 26
+
+
+def free_port() -> int:
+    """A port that was free a moment ago: for what must come back at the same place."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+class Process:
+    """A command that says in one line of JSON that it is open."""
+
+    def __init__(self, folder: Path, *words: str, name: str = "process") -> None:
+        with (folder / f"{name}.log").open("ab") as log:
+            self.process = subprocess.Popen(
+                [*LACOC, *words],
+                stdout=subprocess.PIPE,
+                stderr=log,
+                stdin=subprocess.DEVNULL,
+                text=True,
+                env=environment(),
+                cwd=folder,
+            )
+        assert self.process.stdout is not None
+        self.opened = json.loads(self.process.stdout.readline())
+
+    def kill(self) -> None:
+        """End it as a power cut does."""
+        self.process.kill()
+        self.process.wait(20)
+
+    def signal(self, number: signal.Signals) -> None:
+        os.kill(self.process.pid, number)
+
+    def close(self) -> None:
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGCONT)
+            self.process.terminate()
+        self.process.communicate(timeout=30)
+
+
+class Venue:
+    """A contest of one court, its court and its gateway at ports that stay."""
+
+    def __init__(self, folder: Path, stack: ExitStack) -> None:
+        self.folder = folder
+        self._stack = stack
+        self.court_port, self.web_port = free_port(), free_port()
+        self.url = f"http://127.0.0.1:{self.web_port}"
+        self.key = ""
+        self.contest = folder / "contest.toml"
+        seats = "".join(f'[court.main.seat.{s}]\ntoken = "{t}"\n' for s, t in TOKENS.items())
+        self.contest.write_text(
+            f'[court.main]\narena = "othello"\nlisten = ["tcp/127.0.0.1:{self.court_port}"]\n'
+            f'{seats}[court.main.referee]\ntoken = "{REFEREE}"\n'
+        )
+
+    def court(self, *words: str) -> Process:
+        """Start the court."""
+        contest = ("--contest", str(self.contest))
+        return self._started("serve", "--json", *contest, *words, name="court")
+
+    def web(self, *words: str) -> Process:
+        """Start the gateway."""
+        where = ("--contest", str(self.contest), "--listen", f"127.0.0.1:{self.web_port}")
+        web = self._started("web", "--json", *where, *words, name="web")
+        assert web.opened["url"] == self.url
+        self.key = web.opened["key"]
+        return web
+
+    def page(self, key: str | None = None, **options: object) -> PageClient:
+        """Open a page; it closes with the test."""
+        page = PageClient(self.url, key, **options)
+        self._stack.callback(page.close)
+        return page
+
+    def contestant(self, seat: str, name: str = "") -> PageClient:
+        """A page that holds a seat and has said ready."""
+        page = self.page(self.key, hz=50)
+        page.ask("join", seat=seat, token=TOKENS[seat], name=name or seat.title())
+        page.ask("ready", ready=True)
+        return page
+
+    def referee(self, by: str = "Kim") -> PageClient:
+        """A page that has entered as a referee."""
+        page = self.page(self.key)
+        page.ask("enter", token=REFEREE, by=by)
+        return page
+
+    def _started(self, *words: str, name: str) -> Process:
+        process = Process(self.folder, *words, name=name)
+        self._stack.callback(process.close)
+        return process
