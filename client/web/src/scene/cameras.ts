@@ -206,7 +206,7 @@ export class Rig {
         );
       }
       default:
-        return fitField(field, SOUTH - 0.3, aspect < 0.8 ? 1.05 : 0.78, aspect, frame);
+        return fitField(field, SOUTH - 0.2, aspect < 0.8 ? 1.05 : 0.78, aspect, frame);
     }
   }
 

@@ -3,7 +3,7 @@
 import {
   type Color,
   type Material,
-  MeshLambertMaterial,
+  MeshBasicMaterial,
   MeshStandardMaterial,
   type WebGLProgramParametersWithUniforms,
 } from "three";
@@ -52,24 +52,53 @@ if (vPattern.x > 0.5) {
 }
 `;
 
+/**
+ * Light for machines without a graphics card, worked out at the corners of shapes, not in each
+ * pixel: bright from above, a little from the side.
+ */
+const COARSE = `
+vec3 columns = vec3(dot(instanceMatrix[0], instanceMatrix[0]), dot(instanceMatrix[1], instanceMatrix[1]), dot(instanceMatrix[2], instanceMatrix[2]));
+vec3 outward = normalize(mat3(instanceMatrix) * (normal / max(columns, vec3(1e-9))));
+float light = 0.52 + 0.26 * outward.z + 0.26 * max(0.0, dot(outward, vec3(-0.4, -0.32, 0.86)));
+vColor.rgb *= light;
+`;
+
 /** How a kind of thing shines. */
 export interface Finish {
   roughness: number;
   metalness: number;
 }
 
-/** A material for instances with patterns. */
-export function patterned(fine: boolean, finish: Finish): Material {
-  const material = fine ? new MeshStandardMaterial(finish) : new MeshLambertMaterial();
-  return patch(material, VERTEX_HEAD, VERTEX_BODY, FRAGMENT_HEAD, FRAGMENT_BODY, "pattern");
+/** The materials of instances, without a pattern and with one. */
+export interface Pair {
+  plain: Material;
+  patterned: Material;
+}
+
+/** Materials for instances. */
+export function pairOf(fine: boolean, finish: Finish): Pair {
+  const make = () => (fine ? new MeshStandardMaterial(finish) : new MeshBasicMaterial());
+  const light = fine ? "" : COARSE;
+  const plain = make();
+  if (light) patch(plain, "", light, "", "", "coarse");
+  const partners = fine ? "" : "vPatternColour *= light;";
+  return {
+    plain,
+    patterned: patch(
+      make(),
+      VERTEX_HEAD,
+      `${VERTEX_BODY}${light}${partners}`,
+      FRAGMENT_HEAD,
+      FRAGMENT_BODY,
+      `pattern ${fine}`,
+    ),
+  };
 }
 
 /** The floor: lines each 0.1 m, stronger each 0.5 m. */
 export function floor(fine: boolean, colour: Color): Material {
-  const material = fine
-    ? new MeshStandardMaterial({ color: colour, roughness: 0.82, metalness: 0.05 })
-    : new MeshLambertMaterial({ color: colour });
-  if (!fine) return material;
+  if (!fine) return new MeshBasicMaterial({ color: colour });
+  const material = new MeshStandardMaterial({ color: colour, roughness: 0.82, metalness: 0.05 });
   return patch(
     material,
     "varying vec2 vFloor;",
@@ -95,11 +124,11 @@ function patch<M extends Material>(
   name: string,
 ): M {
   material.onBeforeCompile = (shader: WebGLProgramParametersWithUniforms) => {
-    shader.vertexShader = `${vertexHead}${shader.vertexShader.replace(
+    shader.vertexShader = `${vertexHead}\n${shader.vertexShader.replace(
       "#include <begin_vertex>",
       `#include <begin_vertex>\n${vertexBody}`,
     )}`;
-    shader.fragmentShader = `${fragmentHead}${shader.fragmentShader.replace(
+    shader.fragmentShader = `${fragmentHead}\n${shader.fragmentShader.replace(
       "#include <color_fragment>",
       `#include <color_fragment>\n${fragmentBody}`,
     )}`;

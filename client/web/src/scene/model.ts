@@ -97,9 +97,8 @@ export class Model {
 function fieldOf(scene: Scene, sheet: Sheet): Field {
   let height = 0;
   for (const geom of scene.geoms) {
-    if (geom.body === 0 && geom.type !== "plane") {
-      height = Math.max(height, geom.pos[2] + Math.max(geom.size[1], geom.size[2]));
-    }
+    if (geom.body !== 0 || geom.type === "plane") continue;
+    height = Math.max(height, geom.pos[2] + (geom.type === "box" ? geom.size[2] : geom.size[1]));
   }
   for (const { type, size, pos } of scene.geoms) {
     if (type === "plane" && Math.min(size[0], size[1]) > 0) {

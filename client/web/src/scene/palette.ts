@@ -52,8 +52,8 @@ export function evening([red, green, blue]: Rgb): Rgb {
   const strong = most > 0 ? (most - Math.min(red, green, blue)) / most : 0;
   if (strong > 0.38) return [red, green, blue];
   const light = luma([red, green, blue]);
-  const turned = light < 0.2 ? light : 0.115 + (1 - light) * 0.62;
-  return [turned * 0.9, turned * 0.98, turned * 1.14];
+  const turned = light < 0.2 ? light : 0.18 + (1 - light) * 0.6;
+  return [turned * 0.8, turned * 0.98, turned * 1.22];
 }
 
 /** The colour of a marker's shape that belongs to nobody. */

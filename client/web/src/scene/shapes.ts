@@ -14,7 +14,8 @@ import {
   SphereGeometry,
 } from "three";
 import type { SceneGeom } from "../core/wire";
-import { partner, type Rgb } from "./palette";
+import type { Pair } from "./materials";
+import { PATTERNS, partner, type Rgb } from "./palette";
 
 /** A geometry that several geoms can share, and how much each stretches it. */
 export interface Shape {
@@ -101,7 +102,13 @@ export class Batch {
   private readonly partners: Float32Array;
   private count = 0;
 
-  constructor(geometry: BufferGeometry, material: Material, most: number) {
+  /** @param raw Colours go to the screen as they are, not through the light's arithmetic. */
+  constructor(
+    geometry: BufferGeometry,
+    material: Material,
+    most: number,
+    private readonly raw: boolean,
+  ) {
     this.mesh = new InstancedMesh(geometry, material, most);
     this.mesh.frustumCulled = false;
     this.matrices = this.mesh.instanceMatrix.array as Float32Array;
@@ -133,8 +140,8 @@ export class Batch {
     this.matrices.set(matrix.elements, 16 * at);
     const other = pattern ? (pattern === 3 ? EDGE : partner(colour)) : colour;
     for (let part = 0; part < 3; part++) {
-      this.colours[3 * at + part] = linear(colour[part]!);
-      this.partners[3 * at + part] = linear(other[part]!);
+      this.colours[3 * at + part] = this.raw ? colour[part]! : linear(colour[part]!);
+      this.partners[3 * at + part] = this.raw ? other[part]! : linear(other[part]!);
     }
     this.patterns[2 * at] = pattern;
     this.patterns[2 * at + 1] = period_m;
@@ -166,22 +173,25 @@ export class Layer {
 
   constructor(
     private readonly parent: Object3D,
-    private readonly material: Material,
+    private readonly materials: Pair,
     private readonly fine: boolean,
-    private readonly shadows: { cast: boolean; receive: boolean },
+    /** What lies on top is drawn first: what it covers is not drawn at all. */
+    private readonly order: number,
   ) {}
 
   /** Make room for `most` instances of a shape. */
-  reserve(shape: Shape, most: number): void {
-    const batch = new Batch(shape.make(this.fine), this.material, most);
-    batch.mesh.castShadow = this.fine && this.shadows.cast;
-    batch.mesh.receiveShadow = this.fine && this.shadows.receive;
-    this.batches.set(shape.key, batch);
+  reserve(shape: Shape, pattern: number, most: number): void {
+    const { plain, patterned } = this.materials;
+    const batch = new Batch(shape.make(this.fine), pattern ? patterned : plain, most, !this.fine);
+    batch.mesh.castShadow = this.fine;
+    batch.mesh.receiveShadow = this.fine;
+    batch.mesh.renderOrder = this.order;
+    this.batches.set(batchKey(shape, pattern), batch);
     this.parent.add(batch.mesh);
   }
 
-  of(shape: Shape): Batch {
-    return this.batches.get(shape.key)!;
+  of(shape: Shape, pattern: number): Batch {
+    return this.batches.get(batchKey(shape, pattern))!;
   }
 
   clear(): void {
@@ -198,6 +208,12 @@ export class Layer {
       batch.dispose();
     }
     this.batches.clear();
-    this.material.dispose();
+    this.materials.plain.dispose();
+    this.materials.patterned.dispose();
   }
+}
+
+/** Shapes of one key can share a batch: patterns cost something, so only those who have one pay. */
+export function batchKey(shape: Shape, pattern: number): string {
+  return pattern === PATTERNS.plain ? shape.key : `${shape.key} pattern`;
 }

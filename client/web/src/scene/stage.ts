@@ -1,19 +1,20 @@
 /** The three-dimensional picture: builds a scene's shapes once, then only moves them. */
 
 import {
-  ACESFilmicToneMapping,
   AdditiveBlending,
   type BufferGeometry,
   Color,
   DirectionalLight,
   Float32BufferAttribute,
   HemisphereLight,
+  LinearSRGBColorSpace,
   type Material,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
+  NeutralToneMapping,
   NoToneMapping,
-  PCFSoftShadowMap,
+  PCFShadowMap,
   PerspectiveCamera,
   PlaneGeometry,
   Quaternion,
@@ -26,7 +27,7 @@ import {
 import type { SceneGeom } from "../core/wire";
 import { FOV_RAD, type ViewAxes } from "./cameras";
 import { MarkerMotion } from "./markers";
-import { floor, patterned } from "./materials";
+import { floor, pairOf } from "./materials";
 import type { Model } from "./model";
 import {
   afflicted,
@@ -40,7 +41,7 @@ import {
   teamGeoms,
 } from "./palette";
 import type { Fineness } from "./quality";
-import { Layer, type Shape, shapeOf } from "./shapes";
+import { batchKey, Layer, type Shape, shapeOf } from "./shapes";
 
 /** One shape of the scene. */
 interface Piece {
@@ -79,6 +80,7 @@ export class Stage {
   private readonly world = new World();
   private readonly camera = new PerspectiveCamera((FOV_RAD * 180) / Math.PI, 1, 0.05, 40);
   private readonly fine: boolean;
+  private readonly space: typeof SRGBColorSpace | typeof LinearSRGBColorSpace;
   private readonly extras: { geometry: BufferGeometry; material: Material }[] = [];
   private model: Model | null = null;
   private motion: MarkerMotion | null = null;
@@ -111,23 +113,23 @@ export class Stage {
       alpha: true,
       premultipliedAlpha: true,
     });
-    this.renderer.outputColorSpace = SRGBColorSpace;
+    // Going from light to screen takes three powers a pixel: too much without a graphics card.
+    this.space = this.fine ? SRGBColorSpace : LinearSRGBColorSpace;
+    this.renderer.outputColorSpace = this.space;
     this.renderer.setClearColor(0x000000, 0);
-    this.renderer.toneMapping = this.fine ? ACESFilmicToneMapping : NoToneMapping;
+    this.renderer.toneMapping = this.fine ? NeutralToneMapping : NoToneMapping;
     this.renderer.toneMappingExposure = 1.12;
     this.renderer.shadowMap.enabled = this.fine;
-    this.renderer.shadowMap.type = PCFSoftShadowMap;
+    this.renderer.shadowMap.type = PCFShadowMap;
     this.sun = this.light();
     this.ring = this.mark(new RingGeometry(0.92, 1, this.fine ? 64 : 32), [1, 1, 1], 0.9);
-    if (!transparent) this.ground();
+    if (!transparent && this.fine) this.ground();
   }
 
   private light(): DirectionalLight {
-    this.world.add(new HemisphereLight(0xdfe9ff, 0x2a2620, this.fine ? 1.25 : 1.5));
-    const sun = new DirectionalLight(0xfff3e0, this.fine ? 2.6 : 1.9);
-    sun.position.set(-1.4, -1.1, 3);
-    this.world.add(sun, sun.target);
+    const sun = new DirectionalLight(0xfff6ea, 2.7);
     if (!this.fine) return sun;
+    this.world.add(sun, sun.target, new HemisphereLight(0xdfe9ff, 0x3a4250, 1.5));
     const back = new DirectionalLight(0x9cc2ff, 0.9);
     back.position.set(1.6, 2.4, 1.2);
     this.world.add(back);
@@ -153,6 +155,7 @@ export class Stage {
     const material = new MeshBasicMaterial({ vertexColors: true, transparent: true });
     const mesh = new Mesh(geometry, material);
     mesh.position.z = -0.012;
+    mesh.renderOrder = 4;
     this.world.add(mesh);
     this.extras.push({ geometry, material });
   }
@@ -160,7 +163,7 @@ export class Stage {
   /** A flat mark on the floor, hidden until it is used. */
   private mark(geometry: BufferGeometry, colour: Rgb, opacity: number): Mesh {
     const material = new MeshBasicMaterial({
-      color: new Color().setRGB(...(colour as [number, number, number]), SRGBColorSpace),
+      color: new Color().setRGB(...(colour as [number, number, number]), this.space),
       transparent: true,
       opacity,
       depthWrite: false,
@@ -179,13 +182,13 @@ export class Stage {
     const { scene, sheet, fk } = model;
     this.motion = new MarkerMotion(scene, sheet.markers);
     const { fine } = this;
-    const field = patterned(fine, { roughness: 0.75, metalness: 0.05 });
-    const markers = patterned(fine, { roughness: 0.42, metalness: 0.08 });
-    const robots = patterned(fine, { roughness: 0.36, metalness: 0.18 });
+    const field = pairOf(fine, { roughness: 0.75, metalness: 0.05 });
+    const markers = pairOf(fine, { roughness: 0.42, metalness: 0.08 });
+    const robots = pairOf(fine, { roughness: 0.36, metalness: 0.18 });
     this.layers = {
-      still: new Layer(this.world, field, fine, { cast: true, receive: true }),
-      markers: new Layer(this.world, markers, fine, { cast: true, receive: true }),
-      robots: new Layer(this.world, robots, fine, { cast: true, receive: true }),
+      still: new Layer(this.world, field, fine, 2),
+      markers: new Layer(this.world, markers, fine, 1),
+      robots: new Layer(this.world, robots, fine, 0),
     };
     const still: Piece[] = [];
     const teams = teamGeoms(scene, sheet);
@@ -292,13 +295,14 @@ export class Stage {
     const [x, y] = geom.size;
     const geometry = new PlaneGeometry(2 * (x || 10), 2 * (y || 10));
     const own = evening(geom.rgba.slice(0, 3) as unknown as Rgb);
-    const colour = new Color().setRGB(own[0], own[1], own[2], SRGBColorSpace);
+    const colour = new Color().setRGB(own[0], own[1], own[2], this.space);
     const material = floor(this.fine, colour);
     const mesh = new Mesh(geometry, material);
     mesh.position.set(...geom.pos);
     mesh.quaternion.set(geom.quat[1], geom.quat[2], geom.quat[3], geom.quat[0]);
     mesh.receiveShadow = this.fine;
     mesh.name = "floor";
+    mesh.renderOrder = 3;
     this.world.add(mesh);
   }
 
@@ -406,7 +410,7 @@ export class Stage {
 
   private put(layer: Layer, piece: Piece, pose: Matrix4, colour = piece.colour): void {
     this.matrix.multiplyMatrices(pose, piece.local);
-    layer.of(piece.shape).add(this.matrix, colour, piece.pattern, piece.period_m);
+    layer.of(piece.shape, piece.pattern).add(this.matrix, colour, piece.pattern, piece.period_m);
   }
 
   private poseOf(body: number): Matrix4 {
@@ -494,11 +498,12 @@ const axisY = new Vector3();
 const axisZ = new Vector3();
 
 function reserve(layer: Layer, pieces: readonly Piece[]): void {
-  const counts = new Map<string, { shape: Shape; most: number }>();
-  for (const { shape } of pieces) {
-    const known = counts.get(shape.key);
+  const counts = new Map<string, { piece: Piece; most: number }>();
+  for (const piece of pieces) {
+    const key = batchKey(piece.shape, piece.pattern);
+    const known = counts.get(key);
     if (known) known.most++;
-    else counts.set(shape.key, { shape, most: 1 });
+    else counts.set(key, { piece, most: 1 });
   }
-  for (const { shape, most } of counts.values()) layer.reserve(shape, most);
+  for (const { piece, most } of counts.values()) layer.reserve(piece.shape, piece.pattern, most);
 }

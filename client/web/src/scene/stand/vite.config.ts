@@ -5,7 +5,6 @@ import { defineConfig } from "vite";
 export default defineConfig({
   base: "./",
   build: {
-    outDir: "../../../node_modules/.stand",
     emptyOutDir: true,
     target: "es2022",
     chunkSizeWarningLimit: 800,
