@@ -49,9 +49,19 @@ const WORDS: readonly Pattern[] = [
 
 /** What stands around another sentence; these come first. */
 const FRAMES: readonly Pattern[] = [
-  ["Referee {by}: {Sentence} Reason: {reason}", "審判 {by}：{Sentence}理由：{reason}"],
+  ["Referee {by}: {Sentence} Reason: {Reason}", "審判 {by}：{Sentence}理由：{Reason}"],
   ["Referee {by}: {Sentence}", "審判 {by}：{Sentence}"],
   ["Judged again: {Sentence}", "再判定：{Sentence}"],
+  // The reasons that the referee's page offers; the rest of a reason is free text.
+  ["fell over: {words}", "転倒（{words}）"],
+  ["stuck: {words}", "動けない（{words}）"],
+  ["network: {words}", "通信（{words}）"],
+  ["rule: {words}", "規則（{words}）"],
+  ["fell over", "転倒"],
+  ["stuck", "動けない"],
+  ["network", "通信"],
+  ["rule", "規則"],
+  ["the court was started again", "コートの再起動"],
 ];
 
 /** What the match tells: the log (lacoc_server/match.py, contestant.py, the games). */
@@ -444,10 +454,67 @@ const ROBOTS: readonly Pattern[] = [
   ['"{one}" or "{other}"', "「{one}」または「{other}」"],
 ];
 
-/** What the gateway and the page themselves say no to. */
+/** What the gateway and the page themselves say no to (client/lacoc_client/gateway). */
 const GATEWAY: readonly Pattern[] = [
   ["not connected", "接続されていません。"],
   ["the connection broke", "接続が切れました。"],
+  ["Enter with the referee's token first.", "先に審判用トークンで入室してください。"],
+  ["Nobody acts as referee now: take over first.", "審判がいません。先に交代してください。"],
+  [
+    "{name} acts as referee now: take over first.",
+    "{name} が審判を担当中です。先に交代してください。",
+  ],
+  [
+    "There is no court {court} here; there is {courts}.",
+    "ここにコート {court} はありません（{courts} があります）。",
+  ],
+  [
+    "Court {court} speaks {Version} of the protocol, this gateway version {#n}: install the version of lacoc that the court has.",
+    "コート {court} の通信方式は{Version}、このサーバーは第 {#n} 版です。コートと同じ版の lacoc を入れてください。",
+  ],
+  ["version {#n}", "第 {#n} 版"],
+  ["another version", "別の版"],
+  ["Court {court} is not there yet.", "コート {court} はまだありません。"],
+  ["Waiting for court {court} at {address}.", "コート {court}（{address}）を待っています。"],
+  ["This was not understood: {error}.", "要求を読み取れませんでした：{error}"],
+  ["{#n} bytes, at most {#most} are read", "{#n} バイト（上限 {#most} バイト）"],
+  ["Say first which court to watch.", "先にコートを指定してください。"],
+  ["Say who you are: it stands in the record.", "お名前を入力してください（記録に残ります）。"],
+  [
+    "This page may only watch: open the address with its key, as the one who started the gateway has it.",
+    "このページは閲覧専用です。サーバーを起動した人から、鍵の付いたアドレスを受け取って開いてください。",
+  ],
+  ["Too many tries: wait a few seconds.", "試行回数が多すぎます。数秒お待ちください。"],
+  ["Too much at once: wait for the answers.", "要求が多すぎます。応答をお待ちください。"],
+  [
+    "The token is missing: the organiser has it.",
+    "トークンがありません。主催者から受け取ってください。",
+  ],
+  [
+    "This page holds no seat: join one first.",
+    "このページは席に着いていません。先に参加してください。",
+  ],
+  [
+    "This gateway shows the match to {#n} pages already: try again later, or watch the stream if there is one.",
+    "すでに {#n} ページが接続しています。後でもう一度試すか、配信をご覧ください。",
+  ],
+  ["Team {Seat}", "チーム {Seat}"],
+  [
+    "Nobody listens at {address}. Is the court running, and is this its port?",
+    "{address} では何も応答しません。コートが起動しているか、ポートが正しいか確かめてください。",
+  ],
+  [
+    "The name in {address} is not known on this network.",
+    "{address} の名前がこのネットワークで見つかりません。",
+  ],
+  [
+    "{address} can't be reached ({why}). Check the address, the network and firewalls.",
+    "{address} に接続できません（{why}）。アドレス、ネットワーク、ファイアウォールを確かめてください。",
+  ],
+  [
+    "Something answers at {address}, but it does not let this program in. Is it a court, and of the same version?",
+    "{address} は応答しますが接続できません。コートかどうか、同じ版かどうかを確かめてください。",
+  ],
 ];
 
 /** How lists are split, and put together again. */
@@ -475,7 +542,7 @@ const HOLE = /\{(#?)(\w+)\}/g;
 const NUMBER = "[-+]?(?:\\d[\\d.,]*(?:e[-+]?\\d+)?|nan|inf)";
 
 /** What ends so may have its full stop in the hole; elsewhere the stop is not part of a name. */
-const TAKES_STOP = /(\.|\{Sentence\}|\{reason\})$/;
+const TAKES_STOP = /(\.|\{Sentence\}|\{Reason\})$/;
 
 /** Sentences without holes are found at once; the others are tried in their order. */
 const WHOLE = new Map([...WORDS, ...PATTERNS.filter(([english]) => !english.includes("{"))]);

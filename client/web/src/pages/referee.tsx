@@ -9,7 +9,7 @@ import { LinkBanner } from "../ui/banner";
 import { Dialog } from "../ui/dialog";
 import { ScoreBug } from "../ui/score";
 import { Settings } from "../ui/settings";
-import { Toasts } from "../ui/toasts";
+import { Toasts, toast } from "../ui/toasts";
 import "./referee.css";
 import { Reasons } from "./referee/act";
 import { AskDialog } from "./referee/ask";
@@ -173,5 +173,7 @@ function useShortcuts(pickRobot: (seat: number) => void, help: () => void): void
 
 function takeNewestBack(): void {
   const event = newestToTakeBack(court.events.value);
-  if (event !== null && !desk.whyNot("take-back")) desk.draft.value = drafts.takeBack(event);
+  const why = desk.whyNot("take-back") || (event === null ? t("refLog.nothing") : "");
+  if (why) toast(why, "no");
+  else if (event !== null) desk.draft.value = drafts.takeBack(event);
 }

@@ -36,7 +36,6 @@ export const NEED_A_REASON: ReadonlySet<DecisionName> = new Set<DecisionName>([
 export interface Answer {
   good: boolean;
   text: string;
-  atMs: number;
 }
 
 export class Desk {
@@ -53,16 +52,16 @@ export class Desk {
   /** What the open dialog asks for. */
   readonly draft = signal<Draft | null>(null);
   /** Match and beat in which the phase began. */
-  private readonly since: ReadonlySignal<readonly [match: number, beat: number]>;
+  private readonly since = signal<readonly [match: number, beat: number]>([0, 0]);
   private readonly flagsOf: ReadonlySignal<number>[] = [];
 
   constructor(readonly court: Court) {
     this.mine = computed(() => this.entered.value && court.referee.value?.mine === true);
     this.phase = phaseOf(court);
     const match = part(court, (frame) => frame.match, 0);
-    this.since = computed(() => {
+    effect(() => {
       this.phase.value; // counts from the frame that brings another phase
-      return [match.value, court.frame.peek()?.beat ?? 0];
+      this.since.value = [match.value, court.frame.peek()?.beat ?? 0];
     });
     effect(() => {
       if (!court.connection.state.value.open) this.entered.value = false;
@@ -166,10 +165,11 @@ export class Desk {
     const health = this.court.health.value;
     if (!health) return "the court does not answer";
     const why = health.decisions[name] ?? "";
-    // Legality comes twice a second; where the phase is newer, the one next step is open already.
+    // Legality comes twice a second; where the phase is newer, its one next step is open already.
     const [match, beat] = this.since.value;
     const outdated = health.match !== match || health.beat < beat;
-    return outdated && nextStep(this.phase.value) === name ? "" : why;
+    const phase = this.phase.value;
+    return outdated && phase >= Phase.READY && nextStep(phase) === name ? "" : why;
   }
 
   private async again(token: string): Promise<void> {
@@ -183,8 +183,10 @@ export class Desk {
   }
 
   private say(good: boolean, text: string): void {
-    this.answer.value = { good, text, atMs: performance.now() };
-    toast(text, good ? "yes" : "no");
+    // The court's words stand within sentences elsewhere; here they begin one.
+    const sentence = text.charAt(0).toUpperCase() + text.slice(1);
+    this.answer.value = { good, text: sentence };
+    toast(sentence, good ? "yes" : "no");
   }
 }
 

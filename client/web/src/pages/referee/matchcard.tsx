@@ -5,7 +5,7 @@ import { part } from "../../core/court";
 import { type DecisionName, Phase, SeatFlag } from "../../core/wire";
 import { seatName, team } from "../../core/words";
 import { type MessageName, t } from "../../i18n";
-import { Hint, PhaseWord } from "../../ui/score";
+import { Hint, PhaseWord, SeatMark } from "../../ui/score";
 import { Act } from "./act";
 import { type Desk, nextStep } from "./desk";
 import * as drafts from "./drafts";
@@ -26,7 +26,7 @@ export function MatchCard({ desk }: { desk: Desk }) {
       <h2 id="match-title" class="hidden-text">
         {t("referee.flow")}
       </h2>
-      <div class="state" role="status">
+      <div class="match-state" role="status">
         <PhaseWord match={desk.court} />
         <Hint match={desk.court} />
       </div>
@@ -111,6 +111,8 @@ function Groups({ desk }: { desk: Desk }) {
         {step("start")}
         {step("halt")}
         {step("resume")}
+        {step("official")}
+        {step("next")}
         <Act why={desk.whyNot("abort")} tone="danger" onAct={() => ask(drafts.abort())}>
           {t("decide.abort")}
         </Act>
@@ -131,16 +133,16 @@ function Groups({ desk }: { desk: Desk }) {
           <Act
             key={seat.id}
             why={desk.whyNot("declare")}
+            label={t("decide.declareTeam", { team: team(sheet, index) })}
             onAct={() => ask(drafts.declare(court, index))}
           >
-            <span class="cut">{t("decide.declareTeam", { team: team(sheet, index) })}</span>
+            <SeatMark sheet={sheet} index={index} />
+            <span class="cut">{team(sheet, index)}</span>
           </Act>
         ))}
         <Act why={desk.whyNot("declare")} onAct={() => ask(drafts.declare(court, null))}>
           {t("decide.declareDraw")}
         </Act>
-        {step("official")}
-        {step("next")}
       </Group>
     </div>
   );
