@@ -19,6 +19,11 @@ effect(() => {
   document.documentElement.lang = language.value;
 });
 
+// After the server was updated a part of the old page can't be loaded any more: take the new page,
+// but wait, or a server that is down would be asked without end.
+const RELOAD_MS = 3000;
+addEventListener("vite:preloadError", () => setTimeout(() => location.reload(), RELOAD_MS));
+
 const path = location.pathname.replace(/\/+$/, "") || "/";
 const { default: Page } = await (PAGES[path] ?? PAGES["/"]!)();
 document.body.dataset.page = path.slice(1) || "home";

@@ -3,9 +3,9 @@
 import { effect } from "@preact/signals";
 import type { Match } from "./court";
 
-/** Keep `--seat-N` and what can be read on it as the sheet says. */
-export function followColours(match: Match): void {
-  effect(() => {
+/** Keep `--seat-N` and what can be read on it as the sheet says, until the returned is called. */
+export function followColours(match: Match): () => void {
+  return effect(() => {
     const style = document.documentElement.style;
     for (const [index, seat] of (match.sheet.value?.seats ?? []).entries()) {
       style.setProperty(`--seat-${index}`, seat.colour);

@@ -1,4 +1,90 @@
-/** Messages of this part: English, Japanese. */
+/** Messages of recordings: English, Japanese. */
 export const replay = {
-  "replay.title": ["replay", "replay"],
+  "replay.title": ["Replays", "リプレイ"],
+  "replay.choose": ["Open a recording of this machine", "このパソコンの記録ファイルを開く"],
+  "replay.dropHint": [
+    "or drop .mcap files anywhere on this page; several parts of one match together",
+    "または .mcap ファイルをこのページにドロップ（1 試合が複数に分かれている場合はまとめて）",
+  ],
+  "replay.drop": ["Drop to play", "ドロップして再生"],
+  "replay.onServer": ["Recordings of the server", "サーバーの記録"],
+  "replay.noneYet": ["No match was recorded here yet", "記録された試合はまだありません"],
+  "replay.noList": [
+    "The server's list can't be had; files of this machine can be opened all the same.",
+    "サーバーの一覧を取得できません。このパソコンのファイルは開けます。",
+  ],
+  "replay.loading": ["Loading {name} …", "{name} を読み込んでいます…"],
+  "replay.reading": ["Reading the match …", "試合を読み取っています…"],
+  "replay.others": ["Other recordings", "ほかの記録"],
+  "replay.play": ["Play", "再生"],
+  "replay.pause": ["Pause", "一時停止"],
+  "replay.playKey": ["{what} (Space)", "{what}（スペース）"],
+  "replay.back": ["One beat back (,)", "1 ビート戻る（,）"],
+  "replay.ahead": ["One beat ahead (.)", "1 ビート進む（.）"],
+  "replay.previous": ["Previous event (P)", "前のイベント（P）"],
+  "replay.next": ["Next event (N)", "次のイベント（N）"],
+  "replay.speed": ["Speed (- and +)", "速度（- と +）"],
+  "replay.seek": ["Position in the match", "試合の再生位置"],
+  "replay.position": ["{time} of {total}", "{total} 中 {time}"],
+  "replay.beat": ["beat {beat}", "ビート {beat}"],
+  "replay.share": ["Copy the address of this moment", "この場面の URL をコピー"],
+  "replay.shared": ["The address of this moment is copied", "この場面の URL をコピーしました"],
+  "replay.notShared": [
+    "Recordings of this machine have no address: others need the file",
+    "このパソコンのファイルには URL がありません。共有するにはファイルを渡してください",
+  ],
+  "replay.transport": ["Playback", "再生操作"],
+  "replay.noteCut": [
+    "{file} stops at beat {beat} without an end: it was never closed, or not copied whole. What is there is shown.",
+    "{file} はビート {beat} で途切れています（記録が終了していないか、コピーが不完全です）。残っている部分を再生します。",
+  ],
+  "replay.noteDamaged": [
+    "{file} is damaged after beat {beat}: what comes before is shown. Copy it again from where it was made.",
+    "{file} はビート {beat} より後が壊れています。それより前を再生します。元の場所からコピーし直してください。",
+  ],
+  "replay.noteGap": [
+    "Part {segment} of this match is missing: drop all its files together.",
+    "この試合のパート {segment} がありません。すべてのファイルをまとめてドロップしてください。",
+  ],
+  "replay.noteHide": ["Hide", "閉じる"],
+  "replay.bad.notMcap": [
+    "{name} is not a LACOC record: it is no MCAP file. Choose the .mcap of a match.",
+    "{name} は LACOC の記録ではありません（MCAP ファイルではありません）。試合の .mcap を選んでください。",
+  ],
+  "replay.bad.notLacoc": [
+    "{name} is an MCAP file, but not a LACOC record. Choose the .mcap of a match (one that was exported for Foxglove can't be read back).",
+    "{name} は MCAP ファイルですが、LACOC の記録ではありません。試合の .mcap を選んでください（Foxglove 用に書き出したものは読み込めません）。",
+  ],
+  "replay.bad.format": [
+    "{name} has format {format}, and this page reads format {ours}. Open it with the version of LACOC that wrote it ({version}).",
+    "{name} の形式は {format} ですが、このページが読めるのは形式 {ours} です。記録した版の LACOC（{version}）で開いてください。",
+  ],
+  "replay.bad.noHeader": [
+    "There is no match in {name}: a record begins with its header, and none was written.",
+    "{name} に試合がありません（記録の先頭にあるはずのヘッダーがありません）。",
+  ],
+  "replay.bad.otherMatch": [
+    "{name} belongs to match {match}, another file to {other}. Choose the files of one match.",
+    "{name} は試合 {match} のもの、ほかのファイルは {other} のものです。1 つの試合のファイルだけを選んでください。",
+  ],
+  "replay.bad.nothing": [
+    "{name} has no picture of the match: it stops before the first one.",
+    "{name} には試合の映像がありません（最初の 1 枚より前で途切れています）。",
+  ],
+  "replay.bad.missing": [
+    "The server has no recording {name} (any more).",
+    "サーバーに記録 {name} がありません。",
+  ],
+  "replay.bad.unreachable": [
+    "The server does not answer. Try again, or open a file of this machine.",
+    "サーバーが応答しません。もう一度試すか、このパソコンのファイルを開いてください。",
+  ],
+  "replay.bad.unreadable": [
+    "{name} can't be read. Folders can't be dropped: drop the files in them.",
+    "{name} を読み込めません。フォルダーではなく、中のファイルをドロップしてください。",
+  ],
+  "replay.bad.fault": [
+    "The recording can't be read ({error}). Load this page again.",
+    "記録を読み込めません（{error}）。ページを再読み込みしてください。",
+  ],
 } as const satisfies Record<string, readonly [string, string]>;

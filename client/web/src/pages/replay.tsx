@@ -1,3 +1,425 @@
+/** Recordings: from the server's folder or this machine, without any court. */
+
+import { effect, signal } from "@preact/signals";
+import { useEffect, useMemo } from "preact/hooks";
+import { amount, setting } from "../core/address";
+import { followColours } from "../core/colours";
+import type { Note, RecordFile } from "../core/record";
+import { BadRecord, dropped, fetched, readBeside } from "../core/record_files";
+import { Recording } from "../core/recording";
+import { quality, remembered } from "../core/settings";
+import { BEATS_PER_S, team } from "../core/words";
+import { type MessageName, t } from "../i18n";
+import { View } from "../scene/View";
+import { Board } from "../ui/board";
+import { Icon } from "../ui/icons";
+import { Countdown } from "../ui/opening";
+import { ResultCard } from "../ui/result";
+import { Hint, ScoreBug } from "../ui/score";
+import { isNarrow, toggleFullscreen } from "../ui/screen";
+import { Settings } from "../ui/settings";
+import { useShortcuts } from "../ui/shortcuts";
+import { Thirds } from "../ui/thirds";
+import { Toasts, toast } from "../ui/toasts";
+import { SeekBar, seconds } from "./replay/bar";
+import { Chooser } from "./replay/chooser";
+import { ReplayLog } from "./replay/log";
+import { Player, SPEEDS } from "./replay/player";
+import { Cameras, cameraKeys, cameraOfAddress } from "./watch/cameras";
+import "./watch/frame.css";
+import "./replay/replay.css";
+
+const WIDE_PX = 1280;
+
+/** What the page is about now. */
+type State =
+  | { is: "choosing"; trouble: BadRecord | null }
+  | { is: "loading"; name: string; part: number }
+  | { is: "open"; player: Player; server: string | null };
+
+declare global {
+  interface Window {
+    /** What tests look at. */
+    __replay?: Player | undefined;
+  }
+}
+
+const state = signal<State>({ is: "choosing", trouble: null });
+const camera = signal(cameraOfAddress());
+const panel = remembered("replay.panel", innerWidth >= WIDE_PX);
+const settings = signal(false);
+const dragging = signal(false);
+/** Counts what was opened, so that an older one that arrives late is not shown. */
+let opening = 0;
+let unfollow = () => {};
+
+effect(() => {
+  const now = state.value;
+  window.__replay = now.is === "open" ? now.player : undefined;
+});
+
+async function open(get: () => Promise<RecordFile[]>, server: string | null, beat: number | null) {
+  const mine = ++opening;
+  if (state.value.is === "open") state.value.player.pause();
+  const fresh = () => mine === opening;
+  try {
+    const files = await get();
+    if (!fresh()) return;
+    state.value = { is: "loading", name: "", part: 1 };
+    const recording = new Recording(await readBeside(files));
+    if (!fresh()) return;
+    const player = new Player(recording);
+    if (beat !== null) player.seek(beat);
+    unfollow();
+    unfollow = followColours(recording);
+    const [left, right] = recording.sheet.value?.seats.map((_, i) => seatTitle(recording, i)) ?? [];
+    document.title = right ? `${left} – ${right}` : `LACOC ${recording.record.header.match_id}`;
+    state.value = { is: "open", player, server };
+    if (beat === null) player.play();
+  } catch (error) {
+    if (!fresh()) return;
+    const trouble =
+      error instanceof BadRecord ? error : new BadRecord("fault", { error: String(error) });
+    state.value = { is: "choosing", trouble };
+  }
+}
+
+function seatTitle(recording: Recording, index: number): string {
+  const last = recording.record.sheets.at(-1)!.value;
+  return team(last, index);
+}
+
+function openServer(name: string, beat: number | null, push: boolean): void {
+  if (push) history.pushState(null, "", `?file=${encodeURIComponent(name)}`);
+  state.value = { is: "loading", name, part: 0 };
+  const progress = (part: number) => {
+    if (state.value.is === "loading") state.value = { is: "loading", name, part };
+  };
+  void open(() => fetched(name, progress), name, beat);
+}
+
+function openFiles(files: readonly File[]): void {
+  if (!files.length) return;
+  history.pushState(null, "", location.pathname);
+  state.value = { is: "loading", name: files[0]!.name, part: 0 };
+  void open(() => dropped(files), null, null);
+}
+
+/** What the address says: a recording and a moment, or the list. */
+function followAddress(): void {
+  const query = new URLSearchParams(location.search);
+  const file = query.get("file");
+  const beat = query.has("t") ? amount("t", 0, 0, 1e6) * BEATS_PER_S : null;
+  opening++;
+  if (file) openServer(file, beat, false);
+  else {
+    if (state.value.is === "open") state.value.player.pause();
+    state.value = { is: "choosing", trouble: null };
+  }
+}
+
+if (setting("file")) followAddress();
+addEventListener("popstate", followAddress);
+
 export default function Replay() {
-  return <main />;
+  useDrop();
+  const now = state.value;
+  return (
+    <>
+      {now.is === "choosing" && (
+        <main class="replay choosing">
+          <Chooser
+            trouble={now.trouble}
+            onServer={(name) => openServer(name, null, true)}
+            onFiles={openFiles}
+          />
+        </main>
+      )}
+      {now.is === "loading" && <Loading name={now.name} part={now.part} />}
+      {now.is === "open" && <Show key={now.player} player={now.player} server={now.server} />}
+      {dragging.value && <div class="dropping">{t("replay.drop")}</div>}
+      <Toasts />
+    </>
+  );
+}
+
+function Loading({ name, part }: { name: string; part: number }) {
+  const text = part < 1 ? t("replay.loading", { name }) : t("replay.reading");
+  return (
+    <main class="replay choosing">
+      <p role="status">{text}</p>
+      <progress value={part < 1 ? part : undefined} aria-label={text} />
+    </main>
+  );
+}
+
+function Show({ player, server }: { player: Player; server: string | null }) {
+  const { recording } = player;
+  useShortcuts(useMemo(() => shortcutsOf(player), [player]));
+  useEffect(() => () => player.pause(), [player]);
+  const narrow = isNarrow.value;
+  const beside = panel.value && !narrow;
+  const inset = narrow
+    ? { top: 92, bottom: 8 }
+    : { top: 100, bottom: 186, right: beside ? 314 : 0 };
+  return (
+    <main class="show replay">
+      <div class="scene">
+        <View
+          source={recording}
+          camera={camera.value}
+          quality={quality}
+          inset={inset}
+          labels
+          orbit={!narrow}
+          label={t("watch.view")}
+        />
+      </div>
+      <div class="corner left">
+        <a class="button others" href="/replay" title={t("replay.others")}>
+          <Icon name="open" />
+          <span>{t("replay.others")}</span>
+        </a>
+      </div>
+      <header class="head">
+        <ScoreBug match={recording} />
+        <Hint match={recording} />
+      </header>
+      <Corner player={player} server={server} />
+      <div class="middle-stage">
+        <Countdown match={recording} />
+        <ResultCard match={recording} />
+      </div>
+      <div class="lower">
+        <Notes notes={recording.record.notes} />
+        <Thirds match={recording} />
+      </div>
+      <div class="foot">
+        <Cameras camera={camera} sheet={recording.sheet.value} />
+        <Transport player={player} />
+      </div>
+      {(narrow || panel.value) && (
+        <aside class="panel" aria-label={t("watch.panel")}>
+          <Board match={recording} />
+          <h2>{t("log.title")}</h2>
+          <ReplayLog player={player} />
+        </aside>
+      )}
+      {settings.value && (
+        <Settings
+          onClose={() => {
+            settings.value = false;
+          }}
+        />
+      )}
+    </main>
+  );
+}
+
+function Corner({ player, server }: { player: Player; server: string | null }) {
+  return (
+    <nav class="corner right" aria-label={t("watch.controls")}>
+      <button
+        class="button"
+        type="button"
+        aria-label={t("replay.share")}
+        title={t("replay.share")}
+        onClick={() => share(player, server)}
+      >
+        <Icon name="link" />
+      </button>
+      {!isNarrow.value && (
+        <button
+          class="button"
+          type="button"
+          aria-expanded={panel.value}
+          aria-label={t("watch.panel")}
+          title={t("watch.panelKey")}
+          onClick={togglePanel}
+        >
+          <Icon name="panel" />
+        </button>
+      )}
+      <button
+        class="button"
+        type="button"
+        aria-label={t("settings.title")}
+        title={t("watch.settingsKey")}
+        onClick={openSettings}
+      >
+        <Icon name="settings" />
+      </button>
+      <button
+        class="button"
+        type="button"
+        aria-label={t("watch.fullscreen")}
+        title={t("watch.fullscreen")}
+        onClick={toggleFullscreen}
+      >
+        <Icon name="full" />
+      </button>
+    </nav>
+  );
+}
+
+function Transport({ player }: { player: Player }) {
+  const { recording } = player;
+  const { firstBeat, lastBeat } = recording;
+  const beat = Math.floor(recording.beat.value);
+  const playWord = t(player.playing.value ? "replay.pause" : "replay.play");
+  return (
+    <section class="transport" aria-label={t("replay.transport")}>
+      <SeekBar player={player} />
+      <div class="controls">
+        <Step name="previous" onClick={() => player.jump(-1)} />
+        <Step name="back" onClick={() => player.step(-1)} />
+        <button
+          class="button strong"
+          type="button"
+          aria-label={playWord}
+          title={t("replay.playKey", { what: playWord })}
+          onClick={() => player.toggle()}
+        >
+          <Icon name={player.playing.value ? "pause" : "play"} />
+        </button>
+        <Step name="ahead" onClick={() => player.step(1)} />
+        <Step name="next" onClick={() => player.jump(1)} />
+        <span class="position">
+          <b>{seconds(beat - firstBeat)}</b> / {seconds(lastBeat - firstBeat)}
+          <small class="muted">{t("replay.beat", { beat })}</small>
+        </span>
+        <label class="speed">
+          <span class="hidden-text">{t("replay.speed")}</span>
+          <select
+            title={t("replay.speed")}
+            value={player.speed.value}
+            onChange={(event) => {
+              player.speed.value = Number(event.currentTarget.value);
+            }}
+          >
+            {SPEEDS.map((speed) => (
+              <option key={speed} value={speed}>
+                {speed}×
+              </option>
+            ))}
+          </select>
+        </label>
+      </div>
+    </section>
+  );
+}
+
+interface StepProps {
+  name: "previous" | "back" | "ahead" | "next";
+  onClick: () => void;
+}
+
+function Step({ name, onClick }: StepProps) {
+  const label = t(`replay.${name}` as MessageName);
+  return (
+    <button class="button" type="button" aria-label={label} title={label} onClick={onClick}>
+      <Icon name={name} />
+    </button>
+  );
+}
+
+function Notes({ notes }: { notes: readonly Note[] }) {
+  const hidden = useMemo(() => signal(false), [notes]);
+  if (!notes.length || hidden.value) return null;
+  return (
+    <div class="notes" role="alert">
+      {notes.map((note, index) => (
+        <p key={index}>{noteText(note)}</p>
+      ))}
+      <button
+        class="button quiet"
+        type="button"
+        onClick={() => {
+          hidden.value = true;
+        }}
+      >
+        {t("replay.noteHide")}
+      </button>
+    </div>
+  );
+}
+
+function noteText(note: Note): string {
+  if (note.what === "gap") return t("replay.noteGap", { segment: note.segment + 1 });
+  const name = note.what === "cut" ? "replay.noteCut" : "replay.noteDamaged";
+  return t(name, { file: note.file, beat: note.beat });
+}
+
+function share(player: Player, server: string | null): void {
+  if (server === null) {
+    toast(t("replay.notShared"), "no");
+    return;
+  }
+  player.pause();
+  const time = (Math.floor(player.recording.beat.value) / BEATS_PER_S).toFixed(2);
+  history.replaceState(null, "", `?file=${encodeURIComponent(server)}&t=${time}`);
+  // Without a secure address there is no clipboard: the address bar has it all the same.
+  navigator.clipboard?.writeText(location.href).then(
+    () => toast(t("replay.shared"), "yes"),
+    () => undefined,
+  );
+}
+
+function togglePanel(): void {
+  panel.value = !panel.value;
+}
+
+function openSettings(): void {
+  settings.value = true;
+}
+
+function shortcutsOf(player: Player): Record<string, () => void> {
+  const { recording } = player;
+  return {
+    ...cameraKeys(camera, () => recording.sheet.peek()),
+    Space: () => player.toggle(),
+    KeyK: () => player.toggle(),
+    Comma: () => player.step(-1),
+    Period: () => player.step(1),
+    ArrowLeft: () => player.skip(-5),
+    ArrowRight: () => player.skip(5),
+    Home: () => player.seek(recording.firstBeat),
+    End: () => player.seek(recording.lastBeat),
+    KeyN: () => player.jump(1),
+    KeyP: () => player.jump(-1),
+    Minus: () => player.faster(-1),
+    NumpadSubtract: () => player.faster(-1),
+    Equal: () => player.faster(1),
+    NumpadAdd: () => player.faster(1),
+    KeyE: togglePanel,
+    KeyF: toggleFullscreen,
+    KeyS: openSettings,
+  };
+}
+
+/** Files can be dropped anywhere, at any time. */
+function useDrop(): void {
+  useEffect(() => {
+    const over = (event: DragEvent) => {
+      if (!event.dataTransfer?.types.includes("Files")) return;
+      event.preventDefault();
+      dragging.value = true;
+    };
+    const leave = (event: DragEvent) => {
+      if (event.relatedTarget === null) dragging.value = false;
+    };
+    const drop = (event: DragEvent) => {
+      event.preventDefault();
+      dragging.value = false;
+      openFiles([...(event.dataTransfer?.files ?? [])]);
+    };
+    addEventListener("dragover", over);
+    addEventListener("dragleave", leave);
+    addEventListener("drop", drop);
+    return () => {
+      removeEventListener("dragover", over);
+      removeEventListener("dragleave", leave);
+      removeEventListener("drop", drop);
+    };
+  }, []);
 }

@@ -1,3 +1,213 @@
+/** The spectators' page: the match as on television, and nothing that one could break. */
+
+import { computed, signal } from "@preact/signals";
+import { amount, flag, setting } from "../core/address";
+import { followColours } from "../core/colours";
+import { Court } from "../core/court";
+import { quality, remembered } from "../core/settings";
+import { team } from "../core/words";
+import { t } from "../i18n";
+import { View } from "../scene/View";
+import { LinkBanner, waitsFor } from "../ui/banner";
+import { Board } from "../ui/board";
+import { Icon } from "../ui/icons";
+import { EventLog } from "../ui/log";
+import { Countdown, OpeningCard } from "../ui/opening";
+import { ResultCard } from "../ui/result";
+import { Hint, ScoreBug } from "../ui/score";
+import { isNarrow, toggleFullscreen } from "../ui/screen";
+import { Settings } from "../ui/settings";
+import { useShortcuts } from "../ui/shortcuts";
+import { Thirds } from "../ui/thirds";
+import { Cameras, cameraKeys, cameraOfAddress } from "./watch/cameras";
+import "./watch/frame.css";
+
+const HZ = 25;
+const DELAY_MOST_S = 600;
+const WIDE_PX = 1280;
+
+const court = new Court(amount("hz", HZ, 1, 50), 1000 * amount("delay", 0, 0, DELAY_MOST_S));
+const camera = signal(cameraOfAddress());
+const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
+const settings = signal(false);
+/** The match whose result was put away. */
+const putAway = signal<number | null>(null);
+const title = computed(() => {
+  const sheet = court.sheet.value;
+  const scores = court.frame.value?.seats.map((seat) => seat.score).join(" : ");
+  if (!sheet || !scores || sheet.seats.length < 2) return "LACOC";
+  return `${scores} · ${team(sheet, 0)} – ${team(sheet, 1)}`;
+});
+followColours(court);
+title.subscribe((text) => {
+  document.title = text;
+});
+
+const SHORTCUTS = {
+  ...cameraKeys(camera, () => court.sheet.peek()),
+  KeyE: () => togglePanel(),
+  KeyF: () => toggleFullscreen(),
+  KeyS: () => {
+    settings.value = true;
+  },
+};
+
+function togglePanel(): void {
+  panel.value = !panel.value;
+}
+
 export default function Watch() {
-  return <main />;
+  useShortcuts(SHORTCUTS);
+  const hud = flag("hud", true);
+  const beside = !isNarrow.value && panel.value && hud;
+  const inset = isNarrow.value
+    ? { top: 92, bottom: 8 }
+    : { top: hud ? 100 : 0, bottom: hud ? 66 : 0, right: beside ? 314 : 0 };
+  return (
+    <main class="show watch">
+      <div class={`scene${court.frame.value && !court.live.value ? " stale" : ""}`}>
+        <View
+          source={court}
+          camera={camera.value}
+          quality={quality}
+          inset={inset}
+          labels
+          orbit={!isNarrow.value}
+          label={t("watch.view")}
+        />
+      </div>
+      {!court.frame.value && <Waiting />}
+      {hud && <Hud />}
+      {hud && (isNarrow.value || panel.value) && <Panel />}
+      <LinkBanner court={court} />
+      {settings.value && (
+        <Settings
+          onClose={() => {
+            settings.value = false;
+          }}
+        />
+      )}
+    </main>
+  );
+}
+
+function Hud() {
+  const match = court.frame.value?.match ?? null;
+  return (
+    <>
+      <Brand />
+      <header class="head">
+        <ScoreBug match={court} />
+        <Hint match={court} />
+      </header>
+      <nav class="corner right" aria-label={t("watch.controls")}>
+        {!isNarrow.value && (
+          <button
+            class="button"
+            type="button"
+            aria-expanded={panel.value}
+            aria-label={t("watch.panel")}
+            title={t("watch.panelKey")}
+            onClick={togglePanel}
+          >
+            <Icon name="panel" />
+          </button>
+        )}
+        <button
+          class="button"
+          type="button"
+          aria-label={t("settings.title")}
+          title={t("watch.settingsKey")}
+          onClick={SHORTCUTS.KeyS}
+        >
+          <Icon name="settings" />
+        </button>
+        <button
+          class="button"
+          type="button"
+          aria-label={t("watch.fullscreen")}
+          title={t("watch.fullscreen")}
+          onClick={toggleFullscreen}
+        >
+          <Icon name="full" />
+        </button>
+      </nav>
+      <div class="middle-stage">
+        <Countdown match={court} />
+        {putAway.value !== match && (
+          <ResultCard
+            match={court}
+            onClose={() => {
+              putAway.value = match;
+            }}
+          />
+        )}
+      </div>
+      <div class="before">
+        <OpeningCard match={court} />
+      </div>
+      <div class="lower">
+        <Thirds match={court} />
+      </div>
+      <div class="foot">
+        <Cameras camera={camera} sheet={court.sheet.value} />
+      </div>
+    </>
+  );
+}
+
+/** Which court and match this is; with several courts, the way to another one. */
+function Brand() {
+  const sheet = court.sheet.value;
+  const courts = court.welcome.value?.courts ?? [];
+  const current = court.welcome.value?.court ?? setting("court");
+  const delay = court.delayMs / 1000;
+  return (
+    <div class="corner left">
+      <a class="brand" href="/">
+        <b>LACOC</b>
+        <small>
+          {sheet ? `${sheet.title} · ${t("watch.match", { number: sheet.match })}` : ""}
+          {delay > 0 && ` · ${t("watch.delayed", { seconds: delay })}`}
+        </small>
+      </a>
+      {courts.length > 1 && (
+        <label class="field">
+          <span class="hidden-text">{t("watch.court")}</span>
+          <select
+            value={current}
+            onChange={(event) => {
+              const query = new URLSearchParams(location.search);
+              query.set("court", event.currentTarget.value);
+              location.search = query.toString();
+            }}
+          >
+            {courts.map((name) => (
+              <option key={name}>{name}</option>
+            ))}
+          </select>
+        </label>
+      )}
+    </div>
+  );
+}
+
+function Panel() {
+  return (
+    <aside class="panel" aria-label={t("watch.panel")}>
+      <Board match={court} />
+      <h2>{t("log.title")}</h2>
+      <EventLog match={court} />
+    </aside>
+  );
+}
+
+/** Before the first frame. */
+function Waiting() {
+  return (
+    <div class="waiting">
+      <h1>LACOC</h1>
+      <p class="muted">{waitsFor(court) || t("link.connecting")}</p>
+    </div>
+  );
 }

@@ -1,0 +1,292 @@
+/**
+ * Reads records of matches (MCAP): packed files, segments of a running or crashed court, whole or
+ * cut. The same reading as `lacoc_shared/record/{stream,reader}.py`, but what can be had of a
+ * damaged file is shown rather than refused. Runs in a worker (record.worker.ts).
+ */
+
+import { McapStreamReader } from "@mcap/core";
+import { decode } from "@msgpack/msgpack";
+import { decompress } from "fzstd";
+import { type Event, type Header, type Result, readFrame, type Scene, type Sheet } from "./wire";
+
+/** A file as it was dropped or fetched. */
+export interface RecordFile {
+  name: string;
+  data: Uint8Array;
+}
+
+/** Something by the beat from which it is valid. */
+export interface Since<T> {
+  beat: number;
+  value: T;
+}
+
+/** What is wrong with a record that can be played all the same. */
+export type Note =
+  | { what: "cut"; file: string; beat: number }
+  | { what: "damaged"; file: string; beat: number }
+  | { what: "gap"; segment: number };
+
+/** A match: the reader's `Record`, without what only a court understands. */
+export interface MatchRecord {
+  header: Header;
+  files: string[];
+  events: Event[];
+  sheets: Since<Sheet>[];
+  scenes: Since<Scene>[];
+  result: Result | null;
+  frames: PackedFrames;
+  /** Where the scores changed, and to what. */
+  scores: Since<readonly number[]>[];
+  /** Where the phase changed, and to which. */
+  phases: Since<number>[];
+  /** The last beat of which anything is known. */
+  lastBeat: number;
+  notes: Note[];
+}
+
+/** All frames in one piece of memory, as they were published: 3 minutes are 3 MB. */
+export interface PackedFrames {
+  /** In rising order. */
+  beats: Uint32Array<ArrayBuffer>;
+  /** Where each frame begins, and where the last one ends. */
+  starts: Uint32Array<ArrayBuffer>;
+  bytes: Uint8Array<ArrayBuffer>;
+}
+
+/** Why files can't be played: the names of messages of the page (i18n/replay.ts). */
+export type Why = "notMcap" | "notLacoc" | "format" | "noHeader" | "otherMatch" | "nothing";
+
+/** There is nothing to play, and why. */
+export class Unplayable extends Error {
+  constructor(
+    readonly why: Why,
+    readonly holes: Record<string, string | number>,
+  ) {
+    super(why);
+  }
+}
+
+const FORMAT = 1;
+const PROFILE = "lacoc";
+const BEAT_NS = 20_000_000n;
+const MAGIC = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a];
+/** A larger chunk is no record's: a damaged size must not take all memory. */
+const CHUNK_MOST_BYTES = 1 << 28;
+
+/** What one header begins: a court that was started again writes another segment. */
+interface Segment {
+  file: string;
+  header: Header;
+  events: Event[];
+  sheets: Since<Sheet>[];
+  scenes: Since<Scene>[];
+  results: Result[];
+  frames: Since<Uint8Array>[];
+  lastBeat: number;
+  note: Note | null;
+}
+
+/**
+ * Read a match.
+ *
+ * @param files A packed file, or the segments of one match, in any order.
+ * @throws Unplayable if there is no match in them, or more than one.
+ */
+export function readRecord(files: readonly RecordFile[]): MatchRecord {
+  const segments = inOrder(files.flatMap(readFile));
+  const [first] = segments;
+  if (!first) throw new Unplayable("noHeader", { name: files.map(({ name }) => name).join(", ") });
+  for (const { header, file } of segments) {
+    if (header.match_id !== first.header.match_id) {
+      throw new Unplayable("otherMatch", {
+        name: file,
+        match: header.match_id,
+        other: first.header.match_id,
+      });
+    }
+  }
+  const joined = join(segments);
+  if (!joined.frames.length || !joined.sheets.length) {
+    throw new Unplayable("nothing", { name: first.file });
+  }
+  return {
+    header: first.header,
+    files: [...new Set(segments.map(({ file }) => file))],
+    events: joined.events,
+    sheets: joined.sheets,
+    scenes: joined.scenes,
+    result: joined.results.at(-1) ?? null,
+    frames: pack(joined.frames),
+    ...changes(joined.frames),
+    lastBeat: joined.lastBeat,
+    notes: notesOf(segments),
+  };
+}
+
+/** The segments of a file; its note stands at the last of them. */
+function readFile({ name, data }: RecordFile): Segment[] {
+  if (!startsAsMcap(data)) throw new Unplayable("notMcap", { name });
+  const segments: Segment[] = [];
+  const topics = new Map<number, string>();
+  const reader = new McapStreamReader({ decompressHandlers: { zstd: unpack } });
+  let closed = false;
+  let broken = false;
+  try {
+    reader.append(data);
+    for (let record = reader.nextRecord(); record && !closed; record = reader.nextRecord()) {
+      if (record.type === "Message") {
+        const beat = Number(record.logTime / BEAT_NS);
+        const topic = topics.get(record.channelId);
+        if (topic === "/lacoc/header") segments.push(begin(name, record.data));
+        else if (topic && segments.length) take(segments.at(-1)!, topic, beat, record.data);
+      } else if (record.type === "Channel") topics.set(record.id, record.topic);
+      else if (record.type === "DataEnd") closed = true;
+      else if (record.type === "Header" && record.profile !== PROFILE) {
+        throw new Unplayable("notLacoc", { name });
+      }
+    }
+  } catch (error) {
+    if (error instanceof Unplayable) throw error;
+    // What is not understood: a file that was finished is damaged, another one stops here.
+    broken = endsAsMcap(data);
+  }
+  const last = segments.at(-1);
+  if (last && !closed) {
+    last.note = { what: broken ? "damaged" : "cut", file: name, beat: last.lastBeat };
+  }
+  return segments;
+}
+
+function begin(file: string, data: Uint8Array): Segment {
+  const header = decode(data) as Header;
+  if (header.format !== FORMAT) {
+    throw new Unplayable("format", {
+      name: file,
+      format: header.format,
+      ours: FORMAT,
+      version: header.versions?.lacoc ?? "?",
+    });
+  }
+  return {
+    file,
+    header,
+    events: [],
+    sheets: [],
+    scenes: [],
+    results: [],
+    frames: [],
+    lastBeat: header.first_beat - 1,
+    note: null,
+  };
+}
+
+function take(segment: Segment, topic: string, beat: number, data: Uint8Array): void {
+  switch (topic) {
+    case "/lacoc/event":
+      segment.events.push(decode(data) as Event);
+      break;
+    case "/lacoc/frame":
+      segment.frames.push({ beat, value: data });
+      break;
+    case "/lacoc/sheet":
+      segment.sheets.push({ beat, value: decode(data) as Sheet });
+      break;
+    case "/lacoc/scene":
+      segment.scenes.push({ beat, value: decode(data) as Scene });
+      break;
+    case "/lacoc/result":
+      segment.results.push(decode(data) as Result);
+      return; // its time is that of its match's end, not of its writing
+  }
+  segment.lastBeat = Math.max(segment.lastBeat, beat);
+}
+
+/** By number; of one that is there twice (a packed file beside its segments) the fuller one. */
+function inOrder(segments: Segment[]): Segment[] {
+  const found = new Map<string, Segment>();
+  for (const segment of segments) {
+    const key = `${segment.header.match_id} ${segment.header.segment}`;
+    const other = found.get(key);
+    if (!other || other.lastBeat < segment.lastBeat) found.set(key, segment);
+  }
+  return [...found.values()].sort((one, other) => one.header.segment - other.header.segment);
+}
+
+/** What a segment holds from the next one's first beat on was never answered: it does not count. */
+function join(segments: readonly Segment[]): Omit<Segment, "file" | "header" | "note"> {
+  const all: ReturnType<typeof join> = {
+    events: [],
+    sheets: [],
+    scenes: [],
+    results: [],
+    frames: [],
+    lastBeat: -1,
+  };
+  for (const segment of segments) {
+    const first = segment.header.first_beat;
+    if (all.lastBeat >= first) {
+      all.events = all.events.filter(({ beat }) => beat < first);
+      all.sheets = all.sheets.filter(({ beat }) => beat < first);
+      all.scenes = all.scenes.filter(({ beat }) => beat < first);
+      all.frames = all.frames.filter(({ beat }) => beat < first);
+      all.results = all.results.filter(({ beats }) => beats <= first);
+    }
+    all.events.push(...segment.events);
+    all.sheets.push(...segment.sheets);
+    all.scenes.push(...segment.scenes);
+    all.results.push(...segment.results);
+    all.frames = all.frames.concat(segment.frames);
+    all.lastBeat = segment.lastBeat;
+  }
+  return all;
+}
+
+function notesOf(segments: readonly Segment[]): Note[] {
+  const notes: Note[] = [];
+  let expected = 0;
+  for (const [index, { header, note }] of segments.entries()) {
+    for (; expected < header.segment; expected++) notes.push({ what: "gap", segment: expected });
+    expected = header.segment + 1;
+    // A court that was killed leaves a segment cut; the next one goes on where it stopped.
+    if (note && (note.what === "damaged" || index === segments.length - 1)) notes.push(note);
+  }
+  return notes;
+}
+
+function pack(frames: readonly Since<Uint8Array>[]): PackedFrames {
+  const beats = Uint32Array.from(frames, ({ beat }) => beat);
+  const starts = new Uint32Array(frames.length + 1);
+  for (const [index, { value }] of frames.entries()) {
+    starts[index + 1] = starts[index]! + value.length;
+  }
+  const bytes = new Uint8Array(starts[frames.length]!);
+  for (const [index, { value }] of frames.entries()) bytes.set(value, starts[index]!);
+  return { beats, starts, bytes };
+}
+
+function changes(frames: readonly Since<Uint8Array>[]): Pick<MatchRecord, "scores" | "phases"> {
+  const scores: Since<readonly number[]>[] = [];
+  const phases: Since<number>[] = [];
+  for (const { beat, value } of frames) {
+    const frame = readFrame(value);
+    const now = frame.seats.map((seat) => seat.score);
+    if (String(scores.at(-1)?.value) !== String(now)) scores.push({ beat, value: now });
+    if (phases.at(-1)?.value !== frame.phase) phases.push({ beat, value: frame.phase });
+  }
+  return { scores, phases };
+}
+
+function unpack(data: Uint8Array, size: bigint): Uint8Array {
+  if (size > CHUNK_MOST_BYTES) throw new Error("too large");
+  return decompress(data, new Uint8Array(Number(size)));
+}
+
+function startsAsMcap(data: Uint8Array): boolean {
+  return MAGIC.every((byte, index) => data[index] === byte);
+}
+
+function endsAsMcap(data: Uint8Array): boolean {
+  const end = data.length - MAGIC.length;
+  return end > MAGIC.length && MAGIC.every((byte, index) => data[end + index] === byte);
+}

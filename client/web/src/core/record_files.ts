@@ -1,0 +1,103 @@
+/** Gets records into the page: from the server's folder, or from this machine. */
+
+import type { MatchRecord, RecordFile } from "./record";
+import type { Answer } from "./record.worker";
+
+/** A recording of the server's folder. */
+export interface Listed {
+  name: string;
+  bytes: number;
+  /** ISO 8601, UTC. */
+  modified: string;
+}
+
+/** It could not be had: the name of a message `replay.bad.…`, and what belongs into its holes. */
+export class BadRecord extends Error {
+  constructor(
+    readonly why: string,
+    readonly holes: Record<string, string | number> = {},
+  ) {
+    super(why);
+  }
+}
+
+/** The server's recordings, the newest first. */
+export async function listed(): Promise<Listed[]> {
+  const response = await ask("/recordings");
+  if (!response.ok) throw new BadRecord("unreachable");
+  return (await response.json()) as Listed[];
+}
+
+/**
+ * Fetch a recording of the server.
+ *
+ * @param progress Told the part that is here, 0 to 1.
+ */
+export async function fetched(
+  name: string,
+  progress: (part: number) => void,
+): Promise<RecordFile[]> {
+  const response = await ask(`/recordings/${encodeURIComponent(name)}`);
+  if (!response.ok || !response.body) throw new BadRecord("missing", { name });
+  const total = Number(response.headers.get("Content-Length"));
+  const parts: Uint8Array[] = [];
+  let length = 0;
+  const reader = response.body.getReader();
+  try {
+    for (let got = await reader.read(); !got.done; got = await reader.read()) {
+      parts.push(got.value);
+      length += got.value.length;
+      if (total) progress(Math.min(1, length / total));
+    }
+  } catch {
+    throw new BadRecord("unreachable");
+  }
+  const data = new Uint8Array(length);
+  let at = 0;
+  for (const part of parts) {
+    data.set(part, at);
+    at += part.length;
+  }
+  return [{ name, data }];
+}
+
+/** Take in files of this machine. */
+export async function dropped(files: readonly File[]): Promise<RecordFile[]> {
+  try {
+    return await Promise.all(
+      files.map(async (file) => ({
+        name: file.name,
+        data: new Uint8Array(await file.arrayBuffer()),
+      })),
+    );
+  } catch {
+    throw new BadRecord("unreadable", { name: files.map(({ name }) => name).join(", ") });
+  }
+}
+
+/** Read a match, beside the page; rejects with `BadRecord`. */
+export function readBeside(files: RecordFile[]): Promise<MatchRecord> {
+  const worker = new Worker(new URL("./record.worker.ts", import.meta.url), { type: "module" });
+  const answer = new Promise<MatchRecord>((resolve, reject) => {
+    worker.onmessage = ({ data }: MessageEvent<Answer>) => {
+      if ("record" in data) resolve(data.record);
+      else if ("why" in data) reject(new BadRecord(data.why, data.holes));
+      else reject(new BadRecord("fault", { error: data.fault }));
+    };
+    worker.onerror = (event) =>
+      reject(new BadRecord("fault", { error: event.message || "the reader was not loaded" }));
+  });
+  worker.postMessage(
+    files,
+    files.map(({ data }) => data.buffer),
+  );
+  return answer.finally(() => worker.terminate());
+}
+
+async function ask(path: string): Promise<Response> {
+  try {
+    return await fetch(path);
+  } catch {
+    throw new BadRecord("unreachable");
+  }
+}

@@ -1,0 +1,60 @@
+/** The cameras to choose from, as buttons and keys. */
+
+import type { Signal } from "@preact/signals";
+import { setting } from "../../core/address";
+import type { Sheet } from "../../core/wire";
+import { type MessageName, t } from "../../i18n";
+import { CAMERAS, type CameraName } from "../../scene/View";
+
+const CHOICE: readonly CameraName[] = ["auto", "arena", "top", "left", "right", "map"];
+const ALONE: readonly CameraName[] = ["auto", "arena", "top", "chase", "map"];
+
+/** The camera of the address; the automatic one else. */
+export function cameraOfAddress(): CameraName {
+  const wanted = setting("cam", "auto") as CameraName;
+  return CAMERAS.includes(wanted) ? wanted : "auto";
+}
+
+/** Keys 1 to 6. */
+export function cameraKeys(
+  camera: Signal<CameraName>,
+  sheet: () => Sheet | null,
+): Record<string, () => void> {
+  const press = (index: number) => () => {
+    const chosen = choiceOf(sheet())[index];
+    if (chosen) camera.value = chosen;
+  };
+  return Object.fromEntries(CHOICE.map((_, index) => [`Digit${index + 1}`, press(index)]));
+}
+
+export function Cameras({ camera, sheet }: { camera: Signal<CameraName>; sheet: Sheet | null }) {
+  return (
+    <fieldset class="cameras">
+      <legend class="hidden-text">{t("camera.label")}</legend>
+      {choiceOf(sheet).map((name, index) => {
+        const word = t(`camera.${name}` as MessageName);
+        return (
+          <button
+            key={name}
+            type="button"
+            class="button"
+            aria-pressed={camera.value === name}
+            title={t("camera.key", { name: word, key: index + 1 })}
+            onClick={() => {
+              camera.value = name;
+            }}
+          >
+            <span class="key" aria-hidden="true">
+              {index + 1}
+            </span>
+            {word}
+          </button>
+        );
+      })}
+    </fieldset>
+  );
+}
+
+function choiceOf(sheet: Sheet | null): readonly CameraName[] {
+  return sheet?.seats.length === 1 ? ALONE : CHOICE;
+}

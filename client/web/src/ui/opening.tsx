@@ -1,0 +1,78 @@
+/** Before play: who meets whom, who is still missing, what the game is; then the countdown. */
+
+import { computed } from "@preact/signals";
+import { useMemo } from "preact/hooks";
+import { type Match, phaseOf } from "../core/court";
+import { Phase, SeatFlag, type Sheet } from "../core/wire";
+import { BEATS_PER_S, clock, hint, team } from "../core/words";
+import { catalogue, type MessageName, t } from "../i18n";
+import { SeatMark } from "./score";
+import "./opening.css";
+
+const WAITING = new Set<number>([Phase.CREATED, Phase.LOBBY, Phase.READY]);
+/** "Go" stands for so long. */
+const GO_TICKS = 0.9 * BEATS_PER_S;
+
+/** The two teams while a match is being prepared; nothing afterwards. */
+export function OpeningCard({ match }: { match: Match }) {
+  const phase = useMemo(() => phaseOf(match), [match]).value;
+  const flags = useMemo(
+    () => computed(() => match.frame.value?.seats.map((seat) => seat.flags).join(" ") ?? ""),
+    [match],
+  ).value;
+  const next = useMemo(() => computed(() => hint(match)), [match]).value;
+  const sheet = match.sheet.value;
+  if (!sheet || !flags || !WAITING.has(phase) || sheet.seats.length < 2) return null;
+  const game = `game.${sheet.arena}`;
+  return (
+    <section class="opening" aria-label={t("opening.title")}>
+      <p class="kicker">
+        {sheet.title}
+        {sheet.duration_s > 0 && ` · ${clock(sheet.duration_s * BEATS_PER_S)}`}
+      </p>
+      <div class="meeting">
+        {flags.split(" ").map((flag, index) => (
+          <Side key={index} sheet={sheet} index={index} flags={Number(flag)} />
+        ))}
+      </div>
+      <p class="next">{next}</p>
+      {game in catalogue && <p class="rules">{t(game as MessageName)}</p>}
+    </section>
+  );
+}
+
+function Side({ sheet, index, flags }: { sheet: Sheet; index: number; flags: number }) {
+  const joined = flags & SeatFlag.JOINED;
+  const ready = joined && flags & SeatFlag.READY;
+  const state = ready ? "opening.ready" : joined ? "opening.joined" : "seat.nobody";
+  return (
+    <div class={`side${joined ? "" : " away"}`} data-seat={index}>
+      <SeatMark sheet={sheet} index={index} />
+      <span class="name">{team(sheet, index)}</span>
+      <span class={`state${ready ? " ready" : ""}`}>{t(state)}</span>
+    </div>
+  );
+}
+
+/** The seconds to the start, large; then "Go". */
+export function Countdown({ match }: { match: Match }) {
+  const shown = useMemo(
+    () =>
+      computed(() => {
+        const frame = match.frame.value;
+        if (frame?.phase === Phase.COUNTDOWN) {
+          return String(Math.max(1, Math.ceil(frame.countdown_beats / BEATS_PER_S)));
+        }
+        if (frame?.phase !== Phase.PLAYING) return "";
+        const begun = match.events.value.findLast(({ data }) => data.after === "PLAYING");
+        return begun && frame.beat >= begun.beat && frame.beat - begun.beat < GO_TICKS ? "go" : "";
+      }),
+    [match],
+  ).value;
+  if (!shown) return null;
+  return (
+    <div class="countdown" role="status" key={shown}>
+      {shown === "go" ? t("countdown.go") : shown}
+    </div>
+  );
+}

@@ -1,0 +1,35 @@
+/** Keys of a page, by their place on the keyboard. */
+
+import { useEffect } from "preact/hooks";
+
+type Keys = Record<string, (event: KeyboardEvent) => void>;
+
+const ARROWS = /^(Arrow|Home|End|Page)/;
+
+/**
+ * Listen for keys while the page is there.
+ *
+ * @param keys By `event.code`. What a focused control does with a key itself stays its own.
+ */
+export function useShortcuts(keys: Keys): void {
+  useEffect(() => {
+    const press = (event: KeyboardEvent) => {
+      const act = keys[event.code];
+      if (!act || event.ctrlKey || event.altKey || event.metaKey) return;
+      if (takesKey(event)) return;
+      event.preventDefault();
+      act(event);
+    };
+    addEventListener("keydown", press);
+    return () => removeEventListener("keydown", press);
+  });
+}
+
+function takesKey({ target, code }: KeyboardEvent): boolean {
+  if (!(target instanceof HTMLElement)) return false;
+  if (target.closest("dialog")) return true;
+  if (target instanceof HTMLInputElement && target.type === "range") return ARROWS.test(code);
+  if (target.matches("input, select, textarea")) return true;
+  // Space on a button that was reached by keyboard presses it; one that was clicked is done with.
+  return code === "Space" && target.matches("button:focus-visible, a:focus-visible");
+}

@@ -1,0 +1,116 @@
+/** What just happened, across the lower part of the picture, in the colour of who did it. */
+
+import { computed } from "@preact/signals";
+import { useMemo } from "preact/hooks";
+import type { Match } from "../core/court";
+import type { Event } from "../core/wire";
+import { BEATS_PER_S, team } from "../core/words";
+import { type MessageName, said, t } from "../i18n";
+import { SeatMark } from "./score";
+import "./thirds.css";
+
+const SHOWN_BEATS = 4.5 * BEATS_PER_S;
+const MOST = 3;
+
+/** The decisions that another part of the picture tells. */
+const TOLD_ELSEWHERE = new Set(["start", "resume", "official", "next", "ready", "declare"]);
+const KINDS_TOLD = new Set(["restart", "silent", "fault"]);
+
+/**
+ * The events of the last seconds. By beats, not by wall time: so it is right for a late comer,
+ * with a delay, and at any place and speed of a recording.
+ */
+export function Thirds({ match }: { match: Match }) {
+  const shown = useMemo(
+    () =>
+      computed(() => {
+        const beat = match.frame.value?.beat ?? -1;
+        const events = match.events.value;
+        const from = events.findLastIndex((event) => event.beat <= beat - SHOWN_BEATS) + 1;
+        const recent = events.slice(from).filter((event) => event.beat <= beat && isTold(event));
+        return recent
+          .slice(-MOST)
+          .map(({ number }) => number)
+          .join(" ");
+      }),
+    [match],
+  );
+  const numbers = shown.value ? shown.value.split(" ").map(Number) : [];
+  const events = match.events.peek();
+  return (
+    <ol class="thirds" aria-live="polite" aria-label={t("thirds.label")}>
+      {numbers.map((number) => {
+        const event = events.find((one) => one.number === number);
+        return event && <Third key={number} match={match} event={event} />;
+      })}
+    </ol>
+  );
+}
+
+function Third({ match, event }: { match: Match; event: Event }) {
+  const sheet = match.sheet.value;
+  const seat = sheet?.seats[event.seat];
+  const points = pointsOf(event);
+  if (!sheet) return null;
+  return (
+    <li
+      class={`third${seat ? "" : " neutral"}`}
+      data-kind={event.kind}
+      {...(seat && { "data-seat": event.seat })}
+    >
+      {seat ? (
+        <SeatMark sheet={sheet} index={event.seat} />
+      ) : (
+        <span class="seat-mark" aria-hidden="true">
+          !
+        </span>
+      )}
+      <span class="what">{sentence(match, event)}</span>
+      {points !== 0 && <span class="gain">{points > 0 ? `+${points}` : points}</span>}
+    </li>
+  );
+}
+
+/** What a game's event says, short; what has no short form, as the court said it. */
+export function sentence(match: Match, event: Event): string {
+  const sheet = match.sheet.peek();
+  const { marker, also } = event.data as { marker?: string; also?: string[] };
+  if (!sheet || !marker || event.seat < 0) return said(event.text);
+  const name = team(sheet, event.seat);
+  switch (event.kind) {
+    case "flip": {
+      const count = 1 + (also?.length ?? 0);
+      const many = count > 1 ? "thirds.flips" : "thirds.flip";
+      return t(many, { team: name, count, marker: markerName(marker) });
+    }
+    case "capture":
+    case "strike":
+      return t(`thirds.${event.kind}`, { team: name, marker: markerName(marker) });
+    default:
+      return said(event.text);
+  }
+}
+
+/** A marker as one says it: "corner 2". */
+export function markerName(name: string): string {
+  const [, kind, number] = /^(corner|flag)(\d+)$/.exec(name) ?? [];
+  if (kind) return t(`marker.${kind}` as MessageName, { number: number! });
+  return /^c\d+r\d+$/.test(name) ? t("marker.disc", { name }) : name;
+}
+
+/** Whether a third shows an event. */
+export function isTold(event: Event): boolean {
+  if (event.kind === "decision") return !TOLD_ELSEWHERE.has(String(event.data.decision));
+  return isScoring(event) || KINDS_TOLD.has(event.kind);
+}
+
+/** Whether an event is a game's own: it changed the board. */
+export function isScoring(event: Event): boolean {
+  return event.seat >= 0 && "marker" in event.data;
+}
+
+function pointsOf(event: Event): number {
+  const given = isScoring(event) ? event.data : (event.data.arguments as object | undefined);
+  const points = (given as { points?: unknown } | undefined)?.points;
+  return typeof points === "number" ? points : 0;
+}
