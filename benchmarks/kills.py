@@ -130,6 +130,8 @@ class _Trial:
 
     def _stop(self) -> None:
         assert self._process is not None
+        if (code := self._process.poll()) is not None:
+            print(f"the court had ended with {code}", file=sys.stderr)
         self._process.terminate()
         self._process.communicate(timeout=WAIT_S)
 
@@ -199,6 +201,7 @@ class _Trial:
         for controller in self._controllers:
             controller.poll(time.monotonic())
         before = self._frame
+        old_health = self._controllers[0].view.health
         begin_s = time.monotonic()
         self._serve()
         # The frames of the court that came back are those that arrive from now on.
@@ -213,6 +216,7 @@ class _Trial:
         for old, new in zip(before.seats, after.seats, strict=True):
             figures.commands += old.applied_seq
             figures.lost_commands += max(0, old.applied_seq - new.applied_seq)
+        self._until(lambda: self._controllers[0].view.health is not old_health)
         self._until(lambda: all(self._is_held(c) for c in self._controllers))
 
     def _settled(self, wanted: Phase) -> Frame:

@@ -179,7 +179,7 @@ class FlagStrike:
             seat=seat,
             marker=info.name,
             points=info.points,
-            text=f"{{team}} {does} {info.name} for {info.points} points.",
+            text=f"{{team}} {does} {info.name} for {info.points} point{'s' * (info.points != 1)}.",
         )
 
     def board(self, state: State) -> tuple[int, ...]:
