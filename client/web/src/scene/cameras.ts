@@ -45,7 +45,7 @@ const WALL_M = 0.055;
 /** Beyond the floor's edge is the wall. */
 const RIM_M = 0.045;
 
-const CHASE = { distance: 0.92, elevation: 0.52, ahead_m: 0.1, place_ms: 220, turn_ms: 520 };
+const CHASE = { distance: 1.35, elevation: 0.5, ahead_m: 0.16, place_ms: 220, turn_ms: 520 };
 
 /** The whole field, seen from a direction, as large as it fits. */
 export function fitField(

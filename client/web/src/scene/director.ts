@@ -12,7 +12,7 @@ import { type Aim, FOV_RAD, fit, type Rig, type Shot } from "./cameras";
 const LEAST_MS = 4200;
 /** The whole field again after this long: who leads is seen there. */
 const CLOSE_MOST_MS = 8500;
-const WIDE_LEAST_MS = 6500;
+const WIDE_LEAST_MS = 8000;
 /** Robots nearer than this are worth a look, and until they are farther apart than that. */
 const NEAR_M = 0.5;
 const APART_M = 0.68;

@@ -32,7 +32,11 @@ varying vec3 vScale;
 varying vec2 vPattern;
 varying vec3 vPatternColour;
 float inside(float distance) { // smooth over one pixel
+#ifdef COARSE
+  return step(distance, 0.0);
+#else
   return clamp(0.5 - distance / max(fwidth(distance), 1e-6), 0.0, 1.0);
+#endif
 }
 `;
 
@@ -79,6 +83,7 @@ export interface Pair {
 export function pairOf(fine: boolean, finish: Finish): Pair {
   const make = () => (fine ? new MeshStandardMaterial(finish) : new MeshBasicMaterial());
   const light = fine ? "" : COARSE;
+  const coarse = fine ? "" : "#define COARSE\n";
   const plain = make();
   if (light) patch(plain, "", light, "", "", "coarse");
   const partners = fine ? "" : "vPatternColour *= light;";
@@ -88,7 +93,7 @@ export function pairOf(fine: boolean, finish: Finish): Pair {
       make(),
       VERTEX_HEAD,
       `${VERTEX_BODY}${light}${partners}`,
-      FRAGMENT_HEAD,
+      `${coarse}${FRAGMENT_HEAD}`,
       FRAGMENT_BODY,
       `pattern ${fine}`,
     ),

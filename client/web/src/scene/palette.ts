@@ -1,6 +1,6 @@
 /** Colours: teams, and the arena's own turned into those of a dark hall. */
 
-import { MARKER_STATES, type Scene, SeatFlag, type Sheet } from "../core/wire";
+import { MARKER_STATES, type Scene, type SceneGeom, SeatFlag, type Sheet } from "../core/wire";
 
 /** Red, green, blue from 0 to 1, as on a screen (sRGB). */
 export type Rgb = readonly [number, number, number];
@@ -80,12 +80,16 @@ export function teamGeoms(scene: Scene, sheet: Sheet): number[] {
     if (geom.seat >= 0) return geom.seat;
     const seat = geom.state - 1;
     if (geom.marker < 0 || seat < 0 || seat >= sheet.seats.length || geom.state === 3) return -1;
-    const shared = scene.geoms.some(
-      (other) =>
-        other.marker === geom.marker &&
-        other.state !== geom.state &&
-        other.rgba.every((part, index) => part === geom.rgba[index]),
-    );
-    return shared ? -1 : seat;
+    return isSame(scene, geom) ? -1 : seat;
   });
+}
+
+/** Whether a marker's shape looks the same in another of its states: a flag's pole. */
+export function isSame(scene: Scene, geom: SceneGeom): boolean {
+  return scene.geoms.some(
+    (other) =>
+      other.marker === geom.marker &&
+      other.state !== geom.state &&
+      other.rgba.every((part, index) => part === geom.rgba[index]),
+  );
 }

@@ -32,6 +32,7 @@ import type { Model } from "./model";
 import {
   afflicted,
   evening,
+  isSame,
   markerColour,
   mix,
   PATTERNS,
@@ -64,6 +65,7 @@ export interface Ring {
 }
 
 const GROUND: Rgb = [0.055, 0.072, 0.1];
+const DARK = [0.066, 0.09, 0.13] as const;
 const JOINT: Rgb = [0.13, 0.15, 0.18];
 const EYE: Rgb = [0.96, 0.98, 1];
 const PLATE_PART = 0.62;
@@ -71,6 +73,8 @@ const ROBOT_PERIOD_M = 0.03;
 const DISC_PERIOD_M = 0.048;
 const CLOTH_PERIOD_M = 0.026;
 const CLOTH_EDGE_M = 0.005;
+const FOOT_M = 0.032;
+const FOOT_TOP_M = 0.0012;
 const PULSE_MS = 900;
 const MOST_PULSES = 24;
 const SHADOW_MAP = 2048;
@@ -116,7 +120,8 @@ export class Stage {
     // Going from light to screen takes three powers a pixel: too much without a graphics card.
     this.space = this.fine ? SRGBColorSpace : LinearSRGBColorSpace;
     this.renderer.outputColorSpace = this.space;
-    this.renderer.setClearColor(0x000000, 0);
+    if (transparent || this.fine) this.renderer.setClearColor(0x000000, 0);
+    else this.renderer.setClearColor(new Color().setRGB(...DARK, this.space), 1);
     this.renderer.toneMapping = this.fine ? NeutralToneMapping : NoToneMapping;
     this.renderer.toneMappingExposure = 1.12;
     this.renderer.shadowMap.enabled = this.fine;
@@ -127,9 +132,9 @@ export class Stage {
   }
 
   private light(): DirectionalLight {
-    const sun = new DirectionalLight(0xfff6ea, 2.7);
+    const sun = new DirectionalLight(0xfff6ea, 2.5);
     if (!this.fine) return sun;
-    this.world.add(sun, sun.target, new HemisphereLight(0xdfe9ff, 0x3a4250, 1.5));
+    this.world.add(sun, sun.target, new HemisphereLight(0xe6eeff, 0x6a7688, 1.9));
     const back = new DirectionalLight(0x9cc2ff, 0.9);
     back.position.set(1.6, 2.4, 1.2);
     this.world.add(back);
@@ -206,6 +211,7 @@ export class Stage {
       else still.push(piece);
     });
     this.robotPieces.push(...this.details(model));
+    this.markerPieces.push(...this.feet());
     reserve(this.layers.still, still);
     reserve(this.layers.markers, this.markerPieces);
     reserve(this.layers.robots, this.robotPieces);
@@ -231,9 +237,9 @@ export class Stage {
       // Legs are too thin for a pattern: the body has it.
       if (geom.marker < 0 && geom.type !== "box") pattern = PATTERNS.plain;
     } else if (geom.marker >= 0) {
-      const pole = tall && geom.type !== "box";
+      const pole = tall && isSame(this.model!.scene, geom);
       colour = pole ? evening(own) : markerColour(geom.state, own, tall);
-      if (tall && geom.type === "box" && geom.state === 0) {
+      if (tall && !pole && geom.type === "box" && geom.state === 0) {
         pattern = PATTERNS.edge;
         period_m = CLOTH_EDGE_M;
       }
@@ -289,6 +295,19 @@ export class Stage {
       }
     });
     return found;
+  }
+
+  /** Round the foot of what stands a spot in its colour: seen from above it is a line otherwise. */
+  private feet(): Piece[] {
+    return this.markerPieces
+      .filter(({ pattern }) => pattern === PATTERNS.edge)
+      .map((cloth) => {
+        const { x_m, y_m } = this.model!.sheet.markers[cloth.marker]!;
+        const shape = shapeOf({ type: "cylinder", size: [FOOT_M, FOOT_TOP_M, 0] }, false)!;
+        const local = new Matrix4().makeTranslation(x_m, y_m, FOOT_TOP_M);
+        local.scale(new Vector3(...shape.scale));
+        return { ...cloth, shape, local, pattern: PATTERNS.plain };
+      });
   }
 
   private plane(geom: SceneGeom): void {

@@ -5,7 +5,7 @@ import type { Model } from "./model";
 import { luma, rgb } from "./palette";
 import { seatLetters } from "./topview";
 
-const ABOVE_M = 0.15;
+const ABOVE_M = 0.11;
 
 type Placing = (x: number, y: number, z: number) => { x: number; y: number; far: number } | null;
 

@@ -130,7 +130,8 @@ export class TopView {
     context.lineWidth = small && state === 0 ? 0.008 : 0.004;
     this.circle(marker.x_m, marker.y_m, size);
     context.stroke();
-    const value = small && state === 0 ? String(marker.points) : "";
+    const worth = state === 0 && (small || marker.points > 1);
+    const value = worth ? String(marker.points) : "";
     const text = taken ? (letters[state - 1] ?? "") : value;
     if (!text) return;
     const ink = luma(colour) > 0.5 ? DARK : LIGHT;

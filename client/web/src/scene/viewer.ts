@@ -179,7 +179,8 @@ export class Viewer {
       }
       const canvas = this.newCanvas();
       const probe = canvas.getContext("webgl2", {
-        alpha: true,
+        // Blending the picture into the page costs something, and low quality has no glow below it.
+        alpha: this.options.transparent || this.options.quality !== "low",
         antialias: this.options.quality !== "low" && !this.slow,
         powerPreference: "high-performance",
         stencil: false,
