@@ -113,6 +113,8 @@ const EVENTS: readonly Pattern[] = [
   ["{team} flips {disc}.", "{team} が {disc} を反転。"],
   ["{team} takes {corner} for {#n} points.", "{team} が {corner} を獲得（{#n} 点）。"],
   ["{team} strikes {flag} for {#n} points.", "{team} が {flag} を倒しました（{#n} 点）。"],
+  ["{team} strikes {flag} for 1 point.", "{team} が {flag} を倒しました（1 点）。"],
+  ["{team} takes {corner} for 1 point.", "{team} が {corner} を獲得（1 点）。"],
 ];
 
 /** What a referee decides, and why it can't be (lacoc_server/referee.py). */
