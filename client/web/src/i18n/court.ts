@@ -111,6 +111,8 @@ const EVENTS: readonly Pattern[] = [
   ["{team} goes back to the start.", "{team} がスタート位置に戻ります。"],
   ["{team} flips {disc} and with it {discs}.", "{team} が {disc} を反転、続いて {discs} も反転。"],
   ["{team} flips {disc}.", "{team} が {disc} を反転。"],
+  ["{team} takes {corner} for {#n} point.", "{team} が {corner} を獲得（{#n} 点）。"],
+  ["{team} strikes {flag} for {#n} point.", "{team} が {flag} を倒しました（{#n} 点）。"],
   ["{team} takes {corner} for {#n} points.", "{team} が {corner} を獲得（{#n} 点）。"],
   ["{team} strikes {flag} for {#n} points.", "{team} が {flag} を倒しました（{#n} 点）。"],
   ["{team} strikes {flag} for 1 point.", "{team} が {flag} を倒しました（1 点）。"],

@@ -14,8 +14,6 @@ const SHAPES: Record<VerdictName, string> = { good: "●", watch: "▲", bad: "�
 const LOOK_BACK_MS = 10_000;
 const WATCH_FACTOR = 0.985;
 const BAD_FACTOR = 0.95;
-/** Of 500 beats in ten seconds. */
-const BAD_SLOW_BEATS = 25;
 
 export function Verdict({ name, text }: { name: VerdictName; text: string }) {
   return (
@@ -62,7 +60,7 @@ export function HealthCard({ desk }: { desk: Desk }) {
 
 function verdict(health: Health | null, recent: number): VerdictName {
   if (!health) return "unknown";
-  if (health.real_time_factor < BAD_FACTOR || recent >= BAD_SLOW_BEATS) return "bad";
+  if (health.real_time_factor < BAD_FACTOR) return "bad";
   return health.real_time_factor < WATCH_FACTOR || recent > 0 ? "watch" : "good";
 }
 

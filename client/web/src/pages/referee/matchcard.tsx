@@ -28,7 +28,11 @@ export function MatchCard({ desk }: { desk: Desk }) {
       </h2>
       <div class="match-state" role="status">
         <PhaseWord match={desk.court} />
-        <Hint match={desk.court} />
+        {desk.court.live.value ? (
+          <Hint match={desk.court} />
+        ) : (
+          <span class="hint">{t("referee.stale")}</span>
+        )}
       </div>
       <BigButton desk={desk} />
       <Missing desk={desk} />

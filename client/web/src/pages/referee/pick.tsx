@@ -32,7 +32,7 @@ export function PickPopover({ desk, picked, onClose }: Props) {
   const element = useRef<HTMLDivElement>(null);
   useEffect(() => {
     const before = document.activeElement;
-    element.current?.querySelector<HTMLElement>("button")?.focus();
+    element.current?.querySelector<HTMLElement>("button:not([aria-disabled])")?.focus();
     const outside = (event: PointerEvent) => {
       if (!element.current?.contains(event.target as Node)) onClose();
     };
