@@ -11,9 +11,9 @@ import { t } from "../i18n";
 import { View } from "../scene/View";
 import { waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
-import { Countdown, OpeningCard } from "../ui/opening";
+import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard } from "../ui/result";
-import { Hint, ScoreBug, SeatMark } from "../ui/score";
+import { Hint, ScoreBug } from "../ui/score";
 import { Thirds } from "../ui/thirds";
 import { cameraOfAddress } from "./watch/cameras";
 import "./overlay.css";
@@ -66,6 +66,7 @@ export default function Overlay() {
 
 function Whole() {
   const edge = hud ? scale.value : 0;
+  const opening = useOpening(court);
   return (
     <div class="picture">
       <View
@@ -73,7 +74,7 @@ function Whole() {
         camera={camera}
         quality={quality}
         transparent={transparent}
-        inset={{ top: 150 * edge, bottom: 40 * edge }}
+        inset={{ top: (opening ? 140 : 190) * edge, bottom: (opening ? 370 : 30) * edge }}
         labels={hud}
         label={t("watch.view")}
       />
@@ -97,12 +98,6 @@ function Windows() {
             inset={{ top: 140 * scale.value }}
             label={team(sheet, index)}
           />
-          {hud && (
-            <p class="whose">
-              <SeatMark sheet={sheet} index={index} />
-              {team(sheet, index)}
-            </p>
-          )}
         </section>
       ))}
       {hud && sheet?.markers.length ? (

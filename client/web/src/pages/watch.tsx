@@ -12,7 +12,7 @@ import { LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
 import { Icon } from "../ui/icons";
 import { EventLog } from "../ui/log";
-import { Countdown, OpeningCard } from "../ui/opening";
+import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
 import { isNarrow, toggleFullscreen } from "../ui/screen";
@@ -60,9 +60,12 @@ export default function Watch() {
   useShortcuts(SHORTCUTS);
   const hud = flag("hud", true);
   const beside = !isNarrow.value && panel.value && hud;
-  const inset = isNarrow.value
-    ? { top: 92, bottom: 8 }
-    : { top: hud ? 100 : 0, bottom: hud ? 66 : 0, right: beside ? 314 : 0 };
+  const opening = useOpening(court);
+  const inset = !hud
+    ? {}
+    : isNarrow.value
+      ? { top: opening ? 64 : 92, bottom: 8 }
+      : { top: opening ? 78 : 108, bottom: opening ? 272 : 66, right: beside ? 314 : 0 };
   return (
     <main class="show watch">
       <div class={`scene${court.frame.value && !court.live.value ? " stale" : ""}`}>

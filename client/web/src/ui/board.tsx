@@ -18,6 +18,8 @@ interface Props {
 
 const LOOK_MS = 80;
 const ROBOT_M = 0.1;
+/** Else a flag's letter can't be read. */
+const LEAST_MARKER_M = 0.05;
 const NEUTRAL = "#5d6674";
 const DOWN = "#3b424d";
 
@@ -49,7 +51,7 @@ export function Board({ match, onPick, picked }: Props) {
             <rect width="0.02" height="0.05" fill="rgb(0 0 0 / 30%)" />
           </pattern>
         </defs>
-        <rect x={box[0]} y={box[1]} width={box[2]} height={box[3]} fill="#171e28" />
+        <rect x={box[0]} y={box[1]} width={box[2]} height={box[3]} fill="#1b2533" />
         {sheet.markers.map((marker, index) => (
           <g
             key={marker.name}
@@ -91,7 +93,7 @@ interface MarkerProps {
 }
 
 function Marker({ marker, state, sheet, picked }: MarkerProps) {
-  const radius = Math.max(0.035, marker.radius_m);
+  const radius = Math.max(LEAST_MARKER_M, marker.radius_m);
   const seat = state > 0 && state <= sheet.seats.length ? state - 1 : null;
   const fill =
     seat === null

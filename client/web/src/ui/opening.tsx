@@ -13,16 +13,23 @@ const WAITING = new Set<number>([Phase.CREATED, Phase.LOBBY, Phase.READY]);
 /** "Go" stands for so long. */
 const GO_TICKS = 0.9 * BEATS_PER_S;
 
+/** Whether the card is there: it stands low in the picture. */
+export function useOpening(match: Match): boolean {
+  const phase = useMemo(() => phaseOf(match), [match]).value;
+  const seats = match.sheet.value?.seats.length ?? 0;
+  return WAITING.has(phase) && seats > 1;
+}
+
 /** The two teams while a match is being prepared; nothing afterwards. */
 export function OpeningCard({ match }: { match: Match }) {
-  const phase = useMemo(() => phaseOf(match), [match]).value;
+  const shown = useOpening(match);
   const flags = useMemo(
     () => computed(() => match.frame.value?.seats.map((seat) => seat.flags).join(" ") ?? ""),
     [match],
   ).value;
   const next = useMemo(() => computed(() => hint(match)), [match]).value;
   const sheet = match.sheet.value;
-  if (!sheet || !flags || !WAITING.has(phase) || sheet.seats.length < 2) return null;
+  if (!shown || !sheet || !flags) return null;
   const game = `game.${sheet.arena}`;
   return (
     <section class="opening" aria-label={t("opening.title")}>
