@@ -11,9 +11,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Setup
 
 
-def match_file(
-    arena: str, seconds: float, robots: Sequence[str] = ("hexapod", "hexapod")
-) -> bytes:
+def match_file(arena: str, seconds: float, robots: Sequence[str] = ("hexapod", "hexapod")) -> bytes:
     """Play a match and pack what a court would have published.
 
     Args:

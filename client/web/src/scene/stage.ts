@@ -360,6 +360,11 @@ export class Stage {
     this.sun.target.position.set(field.x, field.y, 0);
   }
 
+  /** Whether markers are on their way to another state. */
+  get moving(): boolean {
+    return this.motion?.moving ?? false;
+  }
+
   /** Set the drawing size. */
   resize(width: number, height: number, ratio: number): void {
     this.renderer.setPixelRatio(ratio);

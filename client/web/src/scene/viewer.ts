@@ -51,6 +51,8 @@ export interface ViewHook {
   /** "low", "high", or "map" where nothing is drawn in three dimensions. */
   readonly quality: string;
   readonly eye: [number, number, number] | null;
+  /** Whether a disc is turning over or a flag is falling. */
+  readonly moving: boolean;
   bodyPos(name: string): [number, number, number] | null;
   marker(index: number): number;
   /** Where on the page a point of the world is [px]. */
@@ -146,6 +148,9 @@ export class Viewer {
       },
       get eye() {
         return viewer.axes?.eye ?? null;
+      },
+      get moving() {
+        return viewer.stage?.moving ?? false;
       },
       bodyPos: (name) => viewer.model?.bodyPos(name) ?? null,
       marker: (index) => viewer.model?.states[index] ?? -1,

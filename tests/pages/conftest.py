@@ -1,0 +1,121 @@
+"""A browser, and pages in it whose errors fail the test; makes this folder's modules importable."""
+
+import re
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import (
+    Browser,
+    BrowserContext,
+    ConsoleMessage,
+    Error,
+    Page,
+    sync_playwright,
+)
+
+for _folder in ("pages", "gateway", "client"):
+    sys.path.append(str(Path(__file__).parents[1] / _folder))
+
+from chromium import FLAGS, NoBrowser, OpenPage, build_pages, find_chromium
+from contestant import Contestant, Sit
+from venue import Venue
+
+WAIT_MS = 15_000
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Chromium, drawing in software."""
+    try:
+        program = find_chromium()
+    except NoBrowser as why:
+        pytest.fail(str(why), pytrace=False)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=list(FLAGS))
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def built_pages() -> Path:
+    """The pages, built from the source as it is now."""
+    return build_pages()
+
+
+class Console:
+    """What pages say in their consoles that they should not."""
+
+    def __init__(self) -> None:
+        self.errors: list[str] = []
+        self._expected: list[re.Pattern[str]] = []
+
+    def expect(self, pattern: str) -> None:
+        """Such errors belong to the test, as when it ends a gateway."""
+        self._expected.append(re.compile(pattern))
+
+    def watch(self, page: Page) -> None:
+        """Collect the errors of a page."""
+        page.on("console", self._said)
+        page.on("pageerror", self._raised)
+
+    def unexpected(self) -> list[str]:
+        """The errors that no test expected."""
+        return [text for text in self.errors if not any(p.search(text) for p in self._expected)]
+
+    def _said(self, message: ConsoleMessage) -> None:
+        if message.type == "error":
+            self.errors.append(f"{message.text} ({message.location.get('url', '')})")
+
+    def _raised(self, error: Error) -> None:
+        self.errors.append(f"{error.name}: {error.message}\n{error.stack}")
+
+
+@pytest.fixture
+def console() -> Iterator[Console]:
+    """The consoles of all pages of a test; an error in one of them fails it."""
+    console = Console()
+    yield console
+    assert console.unexpected() == []
+
+
+@pytest.fixture
+def open_page(browser: Browser, console: Console) -> Iterator[OpenPage]:
+    """Opens pages, each in a fresh context, as if by different people."""
+    contexts: list[BrowserContext] = []
+
+    def opened(**options: Any) -> Page:
+        options.setdefault("viewport", {"width": 800, "height": 450})
+        options.setdefault("locale", "en-GB")
+        context = browser.new_context(**options)
+        context.set_default_timeout(WAIT_MS)
+        contexts.append(context)
+        page = context.new_page()
+        console.watch(page)
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+
+
+@pytest.fixture
+def page(open_page: OpenPage) -> Page:
+    """One page of 800 x 450."""
+    return open_page()
+
+
+@pytest.fixture
+def venue(tmp_path: Path, built_pages: Path) -> Iterator[Venue]:
+    """A contest with its court and gateway; nothing of it runs yet."""
+    with ExitStack() as stack:
+        yield Venue(tmp_path, stack)
+
+
+@pytest.fixture
+def sit(open_page: OpenPage) -> Sit:
+    """Opens contestants' pages at a gateway: `sit(url, locale="ja-JP")`."""
+    return lambda url, **options: Contestant(open_page, url, **options)

@@ -1,0 +1,157 @@
+// The cases of test_scene.py::test_timeline; each gives a list of what was wrong.
+const timelineCases = (() => {
+  const frame = (beat, match = 1) => ({ match, beat });
+
+  /** Frames of a court; `arrival` says when each arrives [ms], Infinity: never. */
+  function play(Timeline, { ms, beatsPerMs = 0.05, arrival = (at) => at, timeline, quietMs = 3000 }) {
+    const line = timeline ?? new Timeline();
+    const trouble = [];
+    const arrivals = [];
+    for (let beat = 0; beat < ms * beatsPerMs; beat++) {
+      const at = 1000 + arrival(beat / beatsPerMs, beat);
+      if (Number.isFinite(at)) arrivals.push([at, beat]);
+    }
+    arrivals.sort((one, other) => one[0] - other[0] || one[1] - other[1]);
+    let next = 0;
+    let last = null;
+    let worst = 0;
+    let behind = 0;
+    let frames = 0;
+    for (let now = 1000; now < 1000 + ms; now += 1000 / 60) {
+      for (; next < arrivals.length && arrivals[next][0] <= now; next++) {
+        line.push(frame(arrivals[next][1]), arrivals[next][0]);
+      }
+      const moment = line.sample(now);
+      if (!moment) continue;
+      const { before, after, part, beat } = moment;
+      if (!(part >= 0 && part <= 1)) trouble.push(`part ${part}`);
+      if (beat < before.beat || beat > after.beat) trouble.push(`beat ${beat} not within`);
+      if (last !== null && beat < last) trouble.push(`back from ${last} to ${beat}`);
+      if (now > 1000 + quietMs) {
+        const step = (beat - last) / ((1000 / 60) * beatsPerMs);
+        worst = Math.max(worst, Math.abs(step - 1));
+        behind = Math.max(behind, (now - 1000) - beat / beatsPerMs);
+        frames++;
+      }
+      last = beat;
+    }
+    return { line, trouble, worst, behind, last, frames };
+  }
+
+  const chance = (() => {
+    let seed = 1;
+    return () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+  })();
+
+  function check(found, { uneven, behindMs }) {
+    const { trouble, worst, behind } = found;
+    if (worst > uneven) trouble.push(`uneven: a step is ${worst.toFixed(2)} off`);
+    if (behind > behindMs) trouble.push(`${behind.toFixed(0)} ms behind`);
+    return trouble;
+  }
+
+  return {
+    even: (T) => check(play(T, { ms: 10000 }), { uneven: 0.1, behindMs: 50 }),
+    jitter: (T) =>
+      check(play(T, { ms: 20000, arrival: (at) => at + 15 * chance() }), {
+        uneven: 0.25,
+        behindMs: 80,
+      }),
+    // Three frames at a time, as after a slow Wi-Fi.
+    bursts: (T) =>
+      check(play(T, { ms: 20000, arrival: (at) => Math.ceil(at / 60) * 60 }), {
+        uneven: 0.3,
+        behindMs: 150,
+      }),
+    // One frame in five is lost.
+    gaps: (T) =>
+      check(play(T, { ms: 20000, arrival: (at, beat) => (beat % 5 === 3 ? Infinity : at) }), {
+        uneven: 0.25,
+        behindMs: 80,
+      }),
+    speed4: (T) => {
+      const found = play(T, { ms: 12000, beatsPerMs: 0.2, quietMs: 5000 });
+      const { beatsPerMs } = found.line;
+      if (Math.abs(beatsPerMs - 0.2) > 0.01) found.trouble.push(`rate ${beatsPerMs}`);
+      return check(found, { uneven: 0.3, behindMs: 80 });
+    },
+    halfSpeed: (T) =>
+      check(play(T, { ms: 16000, beatsPerMs: 0.025, quietMs: 6000 }), {
+        uneven: 0.3,
+        behindMs: 130,
+      }),
+    // 25 frames a second, every second beat.
+    spectator: (T) =>
+      check(
+        play(T, { ms: 20000, arrival: (at, beat) => (beat % 2 ? Infinity : at + 10 * chance()) }),
+        { uneven: 0.3, behindMs: 90 },
+      ),
+    // Frames arrive, nothing is drawn: rAF stands still in a hidden tab.
+    hidden: (T) => {
+      const { line, trouble } = play(T, { ms: 4000 });
+      for (let beat = 200; beat < 3200; beat++) line.push(frame(beat), 1000 + beat * 20);
+      if (line.length > 100) trouble.push(`${line.length} frames kept`);
+      const { beat } = line.sample(1000 + 3200 * 20);
+      if (3200 - beat > 8) trouble.push(`${3200 - beat} beats behind after the pause`);
+      return trouble;
+    },
+    // Nothing arrives for a minute, then everything at once: the whole page was frozen.
+    frozen: (T) => {
+      const { line, trouble } = play(T, { ms: 4000 });
+      const backMs = 1000 + 3200 * 20;
+      for (let beat = 200; beat < 3200; beat++) line.push(frame(beat), backMs + beat * 0.005);
+      let last = line.sample(backMs + 20).beat;
+      if (3201 - last > 12) trouble.push(`${3201 - last} beats behind after the freeze`);
+      for (let beat = 3201; beat < 3500; beat++) {
+        line.push(frame(beat), 1000 + beat * 20);
+        const now = line.sample(1000 + beat * 20 + 5).beat;
+        if (now < last || now > beat) trouble.push(`at ${beat}: from ${last} to ${now}`);
+        last = now;
+      }
+      if (Math.abs(line.beatsPerMs - 0.05) > 0.002) trouble.push(`rate ${line.beatsPerMs}`);
+      if (3500 - last > 8) trouble.push(`${3500 - last} beats behind at the end`);
+      return trouble;
+    },
+    // The court stands still for 5 s and goes on where it was.
+    stopped: (T) => {
+      const { line, trouble } = play(T, { ms: 4000 });
+      const held = line.sample(1000 + 4000 + 4900).beat;
+      if (held !== line.newest.beat) trouble.push(`held at ${held}`);
+      let last = held;
+      for (let beat = 200; beat < 400; beat++) {
+        const at = 1000 + 5000 + beat * 20;
+        line.push(frame(beat), at);
+        const now = line.sample(at + 5).beat;
+        if (now < last) trouble.push(`back from ${last} to ${now}`);
+        last = now;
+      }
+      if (399 - last > 5) trouble.push(`${399 - last} beats behind`);
+      return trouble;
+    },
+    newMatch: (T) => {
+      const { line, trouble } = play(T, { ms: 4000 });
+      line.push(frame(3, 2), 5010);
+      line.push(frame(4, 2), 5030);
+      const { before, after } = line.sample(5031);
+      if (before.match !== 2 || after.match !== 2) trouble.push("the old match is shown");
+      if (line.length !== 2) trouble.push(`${line.length} frames kept`);
+      return trouble;
+    },
+    beatGoesBack: (T) => {
+      const { line, trouble } = play(T, { ms: 4000 });
+      line.push(frame(150), 5010);
+      const { before } = line.sample(5012);
+      if (before.beat !== 150) trouble.push(`${before.beat} is shown`);
+      return trouble;
+    },
+    extraDelay: (T) => {
+      const timeline = new T();
+      timeline.extraDelayMs = 2000;
+      const found = play(T, { ms: 10000, timeline });
+      if (found.behind < 2000) found.trouble.push(`only ${found.behind} ms behind`);
+      if (found.line.length > 250) found.trouble.push(`${found.line.length} frames kept`);
+      return check(found, { uneven: 0.1, behindMs: 2060 });
+    },
+    empty: (T) => (new T().sample(5) === null ? [] : ["a moment of nothing"]),
+  };
+})();
