@@ -135,6 +135,7 @@ export const play = {
   "pad.level": ["Level of control", "操作レベル"],
   "pad.levelA": ["A posture", "A 姿勢"],
   "pad.levelB": ["B locomotion", "B 移動動作"],
+  "pad.only": ["Level {level}", "レベル {level}"],
   "pad.tab": [
     "Tab changes the level; that alone moves nothing",
     "Tab でレベルを切り替え（それだけでは動きません）",
@@ -281,6 +282,7 @@ export const play = {
   ],
   "coach.pressed": ["Pressed", "押したキー"],
   "coach.skip": ["Skip", "とばす"],
+  "coach.repeat": ["Start again", "最初から"],
   "walk.heading": ["Heading", "向き"],
   "walk.walked": ["Walked", "歩行距離"],
   "walk.speed": ["Speed", "速さ"],

@@ -1,6 +1,6 @@
 /** The card before a seat is held: who, where, with what. */
 
-import { useSignal } from "@preact/signals";
+import { useComputed, useSignal } from "@preact/signals";
 import type { Court } from "../../core/court";
 import { isAboutToken, type Player } from "../../core/player";
 import { remembered } from "../../core/settings";
@@ -125,7 +125,7 @@ function JoinCard({ court, player, alone }: Props) {
       {sheet && (
         <fieldset class="seats">
           <legend>
-            {t("join.seat")} <span class="muted">{sheet.title}</span>
+            {t("join.seat")} · {sheet.title}
           </legend>
           {sheet.seats.map((one, index) => (
             <label key={one.id} class={`seat${one.id === seat ? " on" : ""}`} data-seat={index}>
@@ -143,7 +143,7 @@ function JoinCard({ court, player, alone }: Props) {
               </span>
               <span>
                 {seatName(one.id)}
-                <small>{seatedThere(court, sheet, index)}</small>
+                <SeatTaken court={court} sheet={sheet} index={index} />
               </span>
             </label>
           ))}
@@ -217,9 +217,13 @@ function JoinCard({ court, player, alone }: Props) {
   );
 }
 
-function seatedThere(court: Court, sheet: Sheet, index: number): string {
-  const flags = court.frame.peek()?.seats[index]?.flags ?? 0;
-  return flags & SeatFlag.JOINED ? t("join.takenBy", { team: team(sheet, index) }) : t("join.free");
+function SeatTaken({ court, sheet, index }: { court: Court; sheet: Sheet; index: number }) {
+  const isTaken = useComputed(
+    () => ((court.frame.value?.seats[index]?.flags ?? 0) & SeatFlag.JOINED) > 0,
+  ).value;
+  return (
+    <small>{isTaken ? t("join.takenBy", { team: team(sheet, index) }) : t("join.free")}</small>
+  );
 }
 
 /** Another court is another address: a reload then comes back to it. */

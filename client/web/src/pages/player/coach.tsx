@@ -59,7 +59,12 @@ export function useLessons(court: Court, player: Player): Progress {
         seen.value = count;
         const lesson = LESSONS[learnt.peek()];
         const last = player.pressed.peek().at(-1);
-        if (!lesson || !last || last.level !== lesson.level || last.key === RESTART_KEY) return;
+        if (!lesson || !last || last.key === RESTART_KEY) return;
+        if (last.level !== lesson.level) {
+          // Who walks at level B already needs no more lessons.
+          if (last.level === Level.LOCOMOTION && last.key > 0) learnt.value = LESSONS.length;
+          return;
+        }
         const expected = lesson.keys[done.peek()];
         done.value = last.key === expected ? done.peek() + 1 : last.key === lesson.keys[0] ? 1 : 0;
         if (done.peek() === lesson.keys.length) {
@@ -97,6 +102,17 @@ export function Coach({ court, player, progress }: Props) {
       <p class="lesson" role="status">
         {t(text)}
       </p>
+      {!lesson && !hasOwn && (
+        <button
+          class="button quiet small again"
+          type="button"
+          onClick={() => {
+            learnt.value = 0;
+          }}
+        >
+          {t("coach.repeat")}
+        </button>
+      )}
       {lesson && (
         <ol class="steps">
           {lesson.keys.map((key, index) => (

@@ -2,7 +2,7 @@
 
 import { type Signal, useComputed, useSignal, useSignalEffect } from "@preact/signals";
 import type { Ref } from "preact";
-import { useMemo } from "preact/hooks";
+import { useEffect, useMemo } from "preact/hooks";
 import { type Court, phaseOf } from "../../core/court";
 import type { Player } from "../../core/player";
 import { quality } from "../../core/settings";
@@ -19,6 +19,8 @@ export type ViewName = (typeof VIEWS)[number];
 const GO_MS = 900;
 /** The arena is fitted between the score bug above and the badge below. */
 const INSET = { top: 118, bottom: 40 };
+const INSET_NARROW = { top: 88, bottom: 6 };
+const NARROW = matchMedia("(max-width: 820px)");
 const INSET_OUTSIDE = {};
 
 interface Props {
@@ -43,6 +45,14 @@ export function Field(props: Props) {
     }),
     [court],
   );
+  const isNarrow = useSignal(NARROW.matches);
+  useEffect(() => {
+    const look = () => {
+      isNarrow.value = NARROW.matches;
+    };
+    NARROW.addEventListener("change", look);
+    return () => NARROW.removeEventListener("change", look);
+  }, [isNarrow]);
   const standing = player.standing.value;
   const isIn = standing === "seated" || standing === "joining";
   return (
@@ -61,7 +71,7 @@ export function Field(props: Props) {
           seat={Math.max(0, player.index.value)}
           quality={quality}
           labels={!alone}
-          inset={isIn ? INSET : INSET_OUTSIDE}
+          inset={isIn ? (isNarrow.value ? INSET_NARROW : INSET) : INSET_OUTSIDE}
           label={t("views.label")}
         />
       </div>
@@ -92,6 +102,7 @@ function NextStep({ court, player, alone }: Props) {
     return `${step.tone}|${step.text}`;
   }).value;
   const [tone, ...words] = text.split("|");
+  if (alone && tone === "do") return null; // the coach says it
   return (
     <p class={`next ${tone}`} role="status">
       {words.join("|")}

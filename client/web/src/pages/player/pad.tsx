@@ -101,8 +101,12 @@ function StandingLine({ standing }: { standing: Standing }) {
 function LevelSwitch({ court, player, onLevel }: Props) {
   const levels = court.sheet.value?.levels ?? [];
   const now = player.level.value;
+  if (levels.length < 2) {
+    const only = t(levels[0] === Level.POSTURE ? "pad.levelA" : "pad.levelB");
+    return <p class="one-level">{t("pad.only", { level: only })}</p>;
+  }
   return (
-    <fieldset class="levels" title={levels.length > 1 ? t("pad.tab") : undefined}>
+    <fieldset class="levels" title={t("pad.tab")}>
       <legend class="hidden-text">{t("pad.level")}</legend>
       {levels.map((level) => (
         <button
@@ -115,7 +119,7 @@ function LevelSwitch({ court, player, onLevel }: Props) {
           {t(level === Level.POSTURE ? "pad.levelA" : "pad.levelB")}
         </button>
       ))}
-      {levels.length > 1 && <kbd>Tab</kbd>}
+      <kbd>Tab</kbd>
     </fieldset>
   );
 }

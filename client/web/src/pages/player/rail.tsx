@@ -21,8 +21,8 @@ interface Props {
   onLeave: () => void;
 }
 
-/** Said of anything a contestant need not read twice. */
-const QUIET = new Set(["ready", "key-refused", "heard"]);
+/** What the page shows elsewhere already. */
+const QUIET = new Set(["phase", "ready", "key-refused", "heard"]);
 
 export function Rail(props: Props) {
   const { court, player, alone } = props;
