@@ -10,10 +10,6 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).parents[2]
-sys.path.append(str(ROOT / "tests" / "server"))
-
 from stage import LEFT, QUICK, RIGHT, Script, Stage, decide, join, key, setup
 
 from lacoc_arenas import arena as arenas
@@ -28,6 +24,7 @@ from lacoc_shared.mistakes import FileRefused
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import NO_SENTENCES, Phase
 
+ROOT = Path(__file__).parents[2]
 COURT_TS = ROOT / "client" / "web" / "src" / "i18n" / "court.ts"
 P = Phase
 SCRIPT = """
@@ -95,6 +92,7 @@ PARTS = {
     "mass_kg and masses_kg",
     # Of an organiser's arena file, of a log and of a thread: no page shows them.
     "Cannot read 7: 7.",
+    "7 7 7 for 7 point7.",
     "disc_radius_m 7 is more than half of pitch_m 7: the discs overlap; make the radius smaller or "
     "the pitch larger",
     "start 7 is outside the walls",

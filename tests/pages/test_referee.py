@@ -1,0 +1,441 @@
+"""The referee's page against a real court and gateway: what a referee does, and is told."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from chromium import OpenPage
+from playwright.sync_api import Locator, Page, expect
+from venue import REFEREE, TOKENS, Venue
+
+pytestmark = pytest.mark.slow
+
+WAIT_MS = 45_000
+"""A machine with two busy cores needs long, and no test waits where it need not."""
+JAPANESE_NAMES = re.compile(
+    r"Kim|Ants|Bees|Left|Right|Hexapod|LACOC|Robot-Othello|Ctrl|Enter|main|MuJoCo|lacoc web"
+)
+
+Referee = Callable[..., Page]
+
+expect.set_options(timeout=WAIT_MS)
+
+
+@pytest.fixture
+def court(venue: Venue) -> Venue:
+    """A contest with its court in the lobby, and its gateway."""
+    venue.court()
+    venue.web()
+    return venue
+
+
+@pytest.fixture
+def referee(venue: Venue, open_page: OpenPage) -> Referee:
+    """Opens the referee's page, each time as another person."""
+
+    def opened(key: bool = True, size: tuple[int, int] = (1366, 768), query: str = "") -> Page:
+        page = open_page(viewport={"width": size[0], "height": size[1]})
+        page.set_default_timeout(WAIT_MS)
+        fragment = f"#key={venue.key}" if key else ""
+        page.goto(f"{venue.url}/referee{query}{fragment}")
+        expect(page.locator(".score-bug")).to_be_visible()
+        return page
+
+    return opened
+
+
+def enter(page: Page, name: str = "Kim", token: str = REFEREE) -> None:
+    page.locator("input[name=by]").fill(name)
+    page.locator("input[name=token]").fill(token)
+    page.locator(".enter button[type=submit]").click()
+
+
+def at_the_desk(page: Page, name: str = "Kim") -> Page:
+    """Enter as the one who acts."""
+    enter(page, name)
+    expect(page.locator(".acting.mine")).to_be_visible()
+    return page
+
+
+def big(page: Page) -> Locator:
+    return page.locator(".big .act")
+
+
+def phase(page: Page, number: int) -> None:
+    """Wait for a phase."""
+    expect(page.locator("main.referee")).to_have_attribute("data-phase", str(number))
+
+
+def group(page: Page, name: str) -> Locator:
+    """A button of the match card."""
+    return page.locator(".groups").get_by_role("button", name=name, exact=True)
+
+
+def seat(page: Page, index: int, name: str) -> Locator:
+    """A button of a seat's card."""
+    return page.locator(f".seat[data-seat='{index}']").get_by_role("button", name=name, exact=True)
+
+
+def log_has(page: Page, text: str) -> None:
+    expect(page.locator(".log")).to_contain_text(text)
+
+
+def confirm(page: Page, chip: str | None = None, words: str = "") -> None:
+    """Give the reason in the open dialog, and confirm; it closes when the court has done it."""
+    dialog = page.get_by_role("dialog")
+    if chip:
+        expect(dialog.locator("[type=submit]")).to_be_disabled()
+        dialog.locator("label.chip", has_text=re.compile(f"^{chip}$")).click()
+    if words:
+        dialog.locator("input[name=words]").fill(words)
+    dialog.locator("[type=submit]").click()
+    expect(dialog).to_have_count(0)
+
+
+def why(button: Locator) -> str:
+    """Why a button can't be pressed, as a screen reader has it."""
+    expect(button).to_have_attribute("aria-disabled", "true")
+    described = button.get_attribute("aria-describedby")
+    return button.page.locator(f"[id='{described}']").inner_text()
+
+
+def scores(page: Page) -> list[str]:
+    return page.locator(".score-bug .points").all_inner_texts()
+
+
+def has_scores(page: Page, *points: int) -> None:
+    expect(page.locator(".score-bug .points")).to_have_text([str(point) for point in points])
+
+
+def disc(page: Page, name: str) -> Locator:
+    return page.locator(f".board g[aria-label^='{name}:']")
+
+
+def to_playing(page: Page, venue: Venue) -> None:
+    venue.contestant("left", "Ants")
+    venue.contestant("right", "Bees")
+    phase(page, 2)
+    big(page).click()
+    phase(page, 4)
+
+
+def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> None:
+    """Interface 8: a whole match and each decision through the page, each in the log."""
+    page = at_the_desk(referee())
+    # The lobby: all that is missing, and ready in the place of a contestant.
+    expect(page.locator(".missing li")).to_have_text(
+        ["left: nobody has joined", "right: nobody has joined"]
+    )
+    ants = court.page(court.key, hz=50)
+    ants.ask("join", seat="left", token=TOKENS["left"], name="Ants")
+    expect(page.locator(".missing li")).to_have_text(
+        ["Ants has not said ready", "right: nobody has joined"]
+    )
+    expect(big(page)).to_have_attribute("aria-disabled", "true")
+    seat(page, 0, "Say ready").click()
+    log_has(page, "Referee Kim: ready for Ants.")
+    court.contestant("right", "Bees")
+    phase(page, 2)
+    page.keyboard.press("Control+Enter")
+    log_has(page, "Referee Kim: play begins in 3 s.")
+    phase(page, 4)
+    # While it is played.
+    seat(page, 0, "Restart").click()
+    confirm(page, "fell over")
+    log_has(page, "Referee Kim: Ants goes back to the start. Reason: fell over")
+    seat(page, 1, "Freeze").click()
+    page.get_by_role("dialog").get_by_role("button", name="30", exact=True).click()
+    confirm(page, "rule", "pushed")
+    log_has(page, "Referee Kim: Bees is frozen for 30 s. Reason: rule: pushed")
+    seat(page, 1, "Unfreeze").click()
+    log_has(page, "Referee Kim: Bees may move again.")
+    seat(page, 0, "Score ±").click()
+    page.locator("input[name=amount]").fill("-3")
+    expect(page.locator(".shows")).to_have_text("18 → 15")
+    confirm(page, "other", "a warning")
+    log_has(page, "Referee Kim: -3 for Ants. Reason: a warning")
+    has_scores(page, 15, 18)
+    # Halted: the board, the clock, what was wrong is taken back.
+    group(page, "Halt").click()
+    phase(page, 5)
+    disc(page, "c0r0").click()
+    page.locator(".pick .states .act").nth(2).click()
+    confirm(page, "rule")
+    log_has(page, "Referee Kim: c0r0 is set to right. Reason: rule")
+    has_scores(page, 14, 19)
+    page.keyboard.press("Control+z")
+    preview = page.locator(".preview")
+    expect(preview.locator(".then")).to_have_text("15 : 18")
+    has_scores(page, 14, 19)
+    confirm(page, "other", "wrong disc")
+    log_has(page, "is taken back. Reason: wrong disc")
+    has_scores(page, 15, 18)
+    expect(page.locator(".fate")).to_have_text("taken back")
+    group(page, "+10 s").click()
+    confirm(page, "network")
+    log_has(page, "Referee Kim: the clock moves by -10 s. Reason: network")
+    group(page, "Other …").click()
+    page.locator("input[name=amount]").fill("-600")
+    confirm(page, "rule")
+    log_has(page, "the clock moves by +600 s.")
+    big(page).click()
+    log_has(page, "Referee Kim: play goes on in 3 s.")
+    phase(page, 6)
+    # After the end.
+    group(page, "Draw").click()
+    confirm(page, "rule")
+    log_has(page, "Referee Kim: the match is declared a draw. Reason: rule")
+    page.keyboard.press("Control+Enter")
+    expect(page.get_by_role("dialog")).to_contain_text("15 : 18")
+    phase(page, 6)
+    confirm(page)
+    phase(page, 7)
+    log_has(page, "Referee Kim: the result is official: draw.")
+    big(page).click()
+    confirm(page)
+    expect(page.locator(".top h1")).to_contain_text("Match 2")
+    phase(page, 1)
+    # A match that comes to nothing.
+    group(page, "Declare void").click()
+    confirm(page, "network")
+    phase(page, 8)
+    log_has(page, "Referee Kim: the match is void. Reason: network")
+    group(page, "Next match").click()
+    confirm(page)
+    expect(page.locator(".top h1")).to_contain_text("Match 3")
+
+
+def test_declaring_a_winner_ends_a_halted_match(court: Venue, referee: Referee) -> None:
+    """Rules 4, `declare`: the referee's word stands beside what was computed."""
+    page = at_the_desk(referee())
+    to_playing(page, court)
+    page.keyboard.press("Control+Enter")
+    phase(page, 5)
+    group(page, "Bees wins").click()
+    confirm(page, "stuck", "Ants can't go on")
+    phase(page, 6)
+    log_has(page, "Referee Kim: Bees is declared the winner. Reason: stuck: Ants can't go on")
+    log_has(page, "By the rules: a draw, 18 : 18.")
+
+
+def test_a_wrong_token_is_said_beside_the_field(court: Venue, referee: Referee) -> None:
+    """The court says no; the name stays, and the right token goes in."""
+    page = referee()
+    enter(page, token="x" * 26)
+    expect(page.locator("#token-refused")).to_have_text(
+        "This is not a referee's token of this court."
+    )
+    assert page.locator("input[name=token]").get_attribute("aria-invalid") == "true"
+    expect(page.locator("input[name=by]")).to_have_value("Kim")
+    assert why(group(page, "Declare void")) == "enter with the referee's token first"
+    at_the_desk(page)
+
+
+def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
+    """A link without its key shows everything and says how to get one that may act."""
+    page = referee(key=False)
+    expect(page.locator(".enter")).to_contain_text("#key=")
+    expect(page.locator("input[name=token]")).to_have_count(0)
+    expect(page.locator(".health .verdict")).to_be_visible()
+    log_has(page, "LOBBY.")
+    expect(big(page)).to_have_attribute("aria-disabled", "true")
+
+
+def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
+    """Interface 8: only legal decisions enabled, each other one says why not, to every sense."""
+    page = at_the_desk(referee())
+    expect(big(page)).to_have_attribute("aria-disabled", "true")
+    assert why(big(page)) == (
+        "only in READY; the match is LOBBY; nobody has joined left; nobody has joined right"
+    )
+    assert why(group(page, "Halt")) == "only in COUNTDOWN or PLAYING; the match is LOBBY"
+    assert why(group(page, "Draw")) == "only in HALTED or FINISHED; the match is LOBBY"
+    assert why(seat(page, 0, "Say ready")) == "nobody has joined"
+    assert why(seat(page, 1, "Freeze")) == "only in PLAYING or HALTED; the match is LOBBY"
+    bubble = page.locator(".reason-bubble")
+    group(page, "Resume").focus()
+    expect(bubble).to_have_text("only in HALTED; the match is LOBBY")
+    group(page, "Resume").press("Enter")
+    expect(bubble).to_be_visible()
+    group(page, "Make official").hover()
+    expect(bubble).to_have_text("only in FINISHED; the match is LOBBY")
+    page.keyboard.press("Control+Enter")  # not legal: nothing happens
+    expect(page.locator(".log li")).to_have_count(1)
+    # Set from the board: the popover opens, its choices say why not.
+    disc(page, "c3r3").focus()
+    page.keyboard.press("Enter")
+    choice = page.locator(".pick .states .act").first
+    assert "the match is LOBBY" in why(choice)
+    page.keyboard.press("Escape")
+    expect(page.locator(".pick")).to_have_count(0)
+
+
+def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
+    """What needs a reason can't be confirmed without one; Escape lets all be."""
+    page = at_the_desk(referee())
+    group(page, "Declare void").click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text("Choose a reason first")
+    expect(dialog.locator("[type=submit]")).to_be_disabled()
+    dialog.locator("label.chip", has_text="other").click()
+    expect(dialog).to_contain_text("Say the reason in words")
+    expect(dialog.locator("[type=submit]")).to_be_disabled()
+    page.keyboard.press("Escape")
+    expect(dialog).to_have_count(0)
+    phase(page, 1)
+
+
+def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
+    """Interface 8: one acts, the other watches until they take over."""
+    first, second = at_the_desk(referee(), "Kim"), referee()
+    enter(second, "Sato")
+    expect(second.locator(".acting.other")).to_contain_text("Kim acts as referee")
+    assert why(group(second, "Declare void")) == "Kim acts now: take over first"
+    second.locator(".acting").get_by_role("button", name="Take over").click()
+    second.get_by_role("dialog").get_by_role("button", name="Take over").click()
+    expect(second.locator(".acting.mine")).to_be_visible()
+    expect(first.locator(".acting.other")).to_contain_text("Sato acts as referee")
+    group(second, "Declare void").click()
+    confirm(second, "network")
+    log_has(first, "Referee Sato: the match is void. Reason: network")
+    assert why(group(first, "Next match")) == "Sato acts now: take over first"
+    second.close()  # nobody acts: no question is asked
+    expect(first.locator(".acting.other")).to_contain_text("Nobody acts")
+    first.locator(".acting").get_by_role("button", name="Take over").click()
+    expect(first.locator(".acting.mine")).to_be_visible()
+
+
+def test_a_reload_goes_on(court: Venue, referee: Referee) -> None:
+    """The tab remembers the token, this browser the name; leaving forgets the token."""
+    page = at_the_desk(referee())
+    page.reload()
+    expect(page.locator(".acting.mine")).to_contain_text("Kim")
+    page.get_by_role("button", name="Leave").click()
+    expect(page.locator("input[name=by]")).to_have_value("Kim")
+    expect(page.locator(".acting")).to_have_count(0)
+
+
+def test_a_court_that_was_killed(venue: Venue, referee: Referee, console: Any) -> None:
+    """It is never shown as live, nothing can be decided; when it comes back, the desk goes on."""
+    console.expect("WebSocket")  # the gateway is killed too
+    court, web = venue.court(), venue.web()
+    page = at_the_desk(referee())
+    to_playing(page, venue)
+    court.kill()
+    expect(page.locator(".banner")).to_contain_text("court main")
+    expect(page.locator("main.referee")).to_have_attribute("data-live", "false")
+    expect(page.locator(".stale")).to_be_visible()
+    expect(page.locator(".health .verdict")).to_contain_text("no news")
+    assert why(big(page)) == "no connection to the court"
+    venue.court()
+    phase(page, 5)  # a court that was killed in play goes on halted
+    expect(page.locator("main.referee")).to_have_attribute("data-live", "true")
+    expect(page.locator(".banner")).to_have_count(0)
+    log_has(page, "Referee court: halted. Reason: the court was started again")
+    web.kill()
+    expect(page.locator(".banner")).to_be_visible()
+    venue.web()
+    expect(page.locator(".banner")).to_have_count(0)
+    expect(page.locator(".acting.mine")).to_be_visible()  # it has entered again by itself
+    group(page, "Declare void").click()
+    confirm(page, "network")
+    phase(page, 8)
+
+
+def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
+    """The dry run shows the score and what vanishes; only then it is done."""
+    text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")
+    venue.contest.write_text(text, "utf-8")
+    venue.court()
+    venue.web()
+    page = referee()
+    at_the_desk(page)
+    ants, bees = venue.contestant("left", "Ants"), venue.contestant("right", "Bees")
+    phase(page, 2)
+    big(page).click()
+    phase(page, 4)
+    for robot in (ants, bees):
+        robot.ask("key", level=1, key=2)
+    strike = page.locator(".log li[data-kind=strike]").last
+    expect(strike).to_be_visible()
+    assert why(strike.locator(".act")) == "only in HALTED or FINISHED; the match is PLAYING"
+    page.keyboard.press("Control+Enter")
+    phase(page, 5)
+    before = scores(page)
+    expect(strike.locator(".act")).not_to_have_attribute("aria-disabled", "true")
+    strike.locator(".act").click()
+    preview = page.locator(".preview")
+    expect(preview).to_contain_text("vanishes: strike flag")
+    then = preview.locator(".then").inner_text().split(" : ")
+    assert then != before == scores(page)
+    confirm(page, "rule")
+    has_scores(page, *map(int, then))
+    expect(strike.locator(".fate")).to_have_text("taken back")
+    # A robot is acted on from the field as well.
+    page.locator(".board g[aria-label='Ants (left)']").click()
+    page.locator(".pick").get_by_role("button", name="Restart").click()
+    confirm(page, "stuck")
+    log_has(page, "Ants goes back to the start. Reason: stuck")
+
+
+def test_the_log_is_filtered(court: Venue, referee: Referee) -> None:
+    """Decisions, the game, and links: each by itself."""
+    page = at_the_desk(referee())
+    court.contestant("left", "Ants")
+    log_has(page, "Ants is ready.")
+    card = page.locator(".log-card")
+    card.locator("label.chip", has_text="Links").click()
+    expect(page.locator(".log li")).to_have_count(1)
+    log_has(page, "Ants takes the left seat")
+    card.locator("label.chip", has_text="Decisions").click()
+    expect(card).to_contain_text("Nothing has happened yet")
+
+
+def test_all_of_it_in_japanese(court: Venue, referee: Referee) -> None:
+    """No English is left in the page, its reasons, its log and its dialogs."""
+    page = at_the_desk(referee(query="?lang=ja"))
+    court.contestant("left", "Ants")
+    log_has(page, "Ants の準備が完了しました。")
+    group(page, "無効試合にする").click()
+    texts = [page.locator("main").inner_text(), *page.locator(".hidden-text").all_inner_texts()]
+    left = [
+        line
+        for text in texts
+        for line in text.splitlines()
+        if re.search(r"[A-Za-z]{2,} [A-Za-z]{2,}", JAPANESE_NAMES.sub("", line))
+    ]
+    assert not left
+    confirm(page, "通信", "LAN")
+    log_has(page, "審判 Kim：無効試合としました。理由：通信（LAN）")
+
+
+@pytest.mark.parametrize("size", [(1366, 768), (1920, 1080), (390, 844)], ids=str)
+def test_nothing_runs_off_the_screen(court: Venue, referee: Referee, size: tuple[int, int]) -> None:
+    """The next step is in sight at each size, and nothing is wider than the screen."""
+    page = at_the_desk(referee(size=size))
+    expect(big(page)).to_be_in_viewport(ratio=1)
+    wide = page.evaluate(
+        "[...document.querySelectorAll('main *')].filter(e => {"
+        " const box = e.getBoundingClientRect();"
+        " return box.width && box.right > innerWidth + 1; }).map(e => e.className || e.tagName)"
+    )
+    assert not wide
+
+
+def test_no_serious_barriers(court: Venue, referee: Referee) -> None:
+    """axe-core: names, roles and contrast, in the lobby, in a dialog and in a popover."""
+    axe = pytest.importorskip("axe_core_python.sync_playwright")
+    page = at_the_desk(referee())
+
+    def look() -> None:
+        found = axe.Axe().run(page)["violations"]
+        serious = [one for one in found if one["impact"] in ("serious", "critical")]
+        assert not [(one["id"], [n["html"] for n in one["nodes"]]) for one in serious]
+
+    look()
+    group(page, "Declare void").click()
+    look()
+    page.keyboard.press("Escape")
+    disc(page, "c3r3").click()
+    look()
