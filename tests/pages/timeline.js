@@ -147,7 +147,7 @@ const timelineCases = (() => {
     extraDelay: (T) => {
       const timeline = new T();
       timeline.extraDelayMs = 2000;
-      const found = play(T, { ms: 10000, timeline });
+      const found = play(T, { ms: 10000, timeline, quietMs: 5000 });
       if (found.behind < 2000) found.trouble.push(`only ${found.behind} ms behind`);
       if (found.line.length > 250) found.trouble.push(`${found.line.length} frames kept`);
       return check(found, { uneven: 0.1, behindMs: 2060 });

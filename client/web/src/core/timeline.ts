@@ -109,7 +109,8 @@ export class Timeline {
     const passedMs = nowMs - this.sampledMs;
     this.sampledMs = nowMs;
     const behindMs = (target - this.shown) / this.rate - passedMs;
-    if (!(Math.abs(behindMs) < SNAP_MS)) this.shown = target;
+    // After a pause without pictures nobody sees a leap, either.
+    if (!(Math.abs(behindMs) < SNAP_MS && passedMs < SNAP_MS)) this.shown = target;
     else {
       const hurry = Math.max(-GENTLE_MOST, Math.min(GENTLE_MOST, behindMs * GENTLE_PER_MS));
       this.shown += passedMs * this.rate * (1 + hurry);

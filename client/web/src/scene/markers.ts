@@ -35,7 +35,7 @@ interface Form {
 
 export class MarkerMotion {
   /** Whether anything has to be drawn anew. */
-  moving = false;
+  stale = false;
   private states: readonly number[] = [];
   private readonly changes = new Map<number, Change>();
   private readonly forms: Map<number, Form>[];
@@ -64,7 +64,7 @@ export class MarkerMotion {
   follow(states: readonly number[], nowMs: number, animate: boolean): number[] {
     const changed: number[] = [];
     // A change that is over is drawn once more, at its end.
-    this.moving = this.changes.size > 0;
+    this.stale = this.moving;
     if (states !== this.states) {
       states.forEach((state, marker) => {
         const from = this.states[marker];
@@ -78,8 +78,13 @@ export class MarkerMotion {
     for (const [marker, { sinceMs }] of this.changes) {
       if (nowMs - sinceMs > CHANGE_MS || nowMs < sinceMs) this.changes.delete(marker);
     }
-    this.moving ||= changed.length > 0;
+    this.stale ||= changed.length > 0;
     return changed;
+  }
+
+  /** Whether a marker is on its way to another state. */
+  get moving(): boolean {
+    return this.changes.size > 0;
   }
 
   /** How a marker stands now. */

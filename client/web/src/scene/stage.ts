@@ -384,7 +384,7 @@ export class Stage {
     let changed: number[] = [];
     if (model && motion && layers) {
       changed = motion.follow(model.states, nowMs, animate);
-      if (motion.moving || !this.markersDrawn) this.drawMarkers(nowMs);
+      if (motion.stale || !this.markersDrawn) this.drawMarkers(nowMs);
       if (animate) for (const marker of changed) this.pulse(marker, nowMs);
       this.drawRobots(layers.robots, model);
     }
