@@ -172,9 +172,13 @@ export class Court implements Match {
     this.log = link.log;
   }
 
-  /** Keep the events in their order: one that was lost on the way may come late. */
+  /**
+   * Keep the events in their order: one that was lost on the way may come late, and all come again
+   * when the gateway has found its court again.
+   */
   private takeEvent(event: Event): void {
     const known = this.events.value;
+    if (known.some((one) => one.number === event.number)) return;
     const later = known.findLastIndex((one) => one.number < event.number) + 1;
     this.events.value = [...known.slice(0, later), event, ...known.slice(later)];
   }
