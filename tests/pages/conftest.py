@@ -17,8 +17,9 @@ from playwright.sync_api import (
     sync_playwright,
 )
 
-for _folder in ("pages", "gateway", "client"):
-    sys.path.append(str(Path(__file__).parents[1] / _folder))
+sys.path.append(str(Path(__file__).parent))
+sys.path.append(str(Path(__file__).parents[1] / "gateway"))
+sys.path.append(str(Path(__file__).parents[1] / "client"))
 
 from chromium import FLAGS, NoBrowser, OpenPage, build_pages, find_chromium
 from contestant import Contestant, Sit

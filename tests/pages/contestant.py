@@ -1,0 +1,106 @@
+"""A contestant at a page: what a person would do with it, and what they would see."""
+
+import re
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from chromium import OpenPage
+from playwright.sync_api import Locator, Page, expect
+
+from lacoc_shared.seat import Phase
+
+TIMEOUT_MS = 30_000
+
+
+class Contestant:
+    """One page in a browser profile of its own.
+
+    Args:
+        open_page: opens pages.
+        url: of the gateway.
+        options: of the browser's profile: `locale`, `viewport`, `has_touch` and so on.
+    """
+
+    def __init__(self, open_page: OpenPage, url: str, **options: Any) -> None:
+        settings: dict[str, Any] = {"viewport": {"width": 1000, "height": 700}}
+        self.url = url
+        self.page: Page = open_page(**settings | options)
+        self.page.set_default_timeout(TIMEOUT_MS)
+
+    def open(self, path: str = "/play", key: str | None = None, query: str = "") -> None:
+        """Go to the page, with the key that lets it act."""
+        fragment = "" if key is None else f"#key={key}"
+        self.page.goto(f"{self.url}{path}?q=low{query}{fragment}")
+
+    def find(self, selector: str) -> Locator:
+        return self.page.locator(selector)
+
+    def sees(self, selector: str, text: str | None = None) -> None:
+        """Wait until something is shown, and says what it should."""
+        found = self.find(selector).first
+        expect(found).to_be_visible(timeout=TIMEOUT_MS)
+        if text is not None:
+            expect(found).to_contain_text(text, timeout=TIMEOUT_MS)
+
+    def misses(self, selector: str) -> None:
+        """Wait until something is not shown any more."""
+        expect(self.find(selector)).to_have_count(0, timeout=TIMEOUT_MS)
+
+    def is_told(self, text: str) -> None:
+        """Wait for the line that says what to do next."""
+        self.sees(".next", text)
+
+    def is_toasted(self, text: str) -> None:
+        """Wait for a short note."""
+        expect(self.find(".toast").filter(has_text=text).first).to_be_visible(timeout=TIMEOUT_MS)
+
+    def stands(self, how: str) -> None:
+        """Wait until the page is seated, outside, lost, left or watching."""
+        self.sees(f"main[data-standing={how}]")
+
+    def phase(self, phase: Phase) -> None:
+        self.sees(f'.score-bug .phase[data-phase="{int(phase)}"]')
+
+    def join(self, token: str, name: str = "Ants", seat: str = "left") -> None:
+        """Fill the card in and send it."""
+        self.sees(".entrance .seat")
+        self.find(f".seats input[value={seat}]").check(force=True)
+        self.page.fill("#join-name", name)
+        self.page.fill("#join-token", token)
+        self.page.click("button[type=submit]")
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            self.page.keyboard.press(key)
+
+    def key_stands(self, digit: int) -> None:
+        """Wait until the pad shows that a key's command stands."""
+        self.sees(f'.key[data-key="{digit}"][aria-pressed=true]')
+
+    def until(self, condition: str) -> None:
+        """Wait until something is true in the page, which itself lets no text be evaluated."""
+        end_s = time.monotonic() + TIMEOUT_MS / 1000
+        while not self.page.evaluate(condition):
+            assert time.monotonic() < end_s, condition
+            self.page.wait_for_timeout(40)
+
+    def download(self, act: Callable[[], None], folder: Path) -> tuple[str, str]:
+        """Do what gives a file; its name and its text."""
+        with self.page.expect_download(timeout=TIMEOUT_MS) as coming:
+            act()
+        path = folder / "download"
+        coming.value.save_as(path)
+        return coming.value.suggested_filename, path.read_text(encoding="utf-8")
+
+    def number(self, selector: str) -> float:
+        """A number that stands somewhere."""
+        text = self.find(selector).first.inner_text()
+        found = re.search(r"-?\d+(\.\d+)?", text)
+        assert found is not None, text
+        return float(found[0])
+
+
+Sit = Callable[..., Contestant]
+"""Opens a contestant's page at a gateway: `sit(url, locale="ja-JP")`."""

@@ -1,0 +1,481 @@
+"""/play: a contestant's page at a real court, through the real gateway (workshop 5-4)."""
+
+import base64
+import json
+import math
+import random
+import re
+import signal
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from contestant import Contestant, Sit
+from page_client import PageClient
+from venue import TOKENS, Venue
+
+from lacoc_robots.library import sample_gait_files
+from lacoc_shared.codec import encode
+from lacoc_shared.messages import Frame, SeatFrame
+from lacoc_shared.record.pos_data import PosData
+from lacoc_shared.seat import Phase
+
+pytestmark = pytest.mark.slow
+
+
+def opened(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
+    """A court, its gateway, and a page with the key."""
+    venue.court(*words)
+    venue.web()
+    page = sit(venue.url, **options)
+    page.open(key=venue.key)
+    return page
+
+
+def seated(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
+    """The same, and the page holds the left seat."""
+    page = opened(venue, sit, *words, **options)
+    page.join(TOKENS["left"])
+    page.stands("seated")
+    return page
+
+
+def playing(venue: Venue, page: Contestant) -> PageClient:
+    """Bring a match on against a page without a browser."""
+    page.page.click("button.ready")
+    other = venue.contestant("right", "Bees")
+    referee = venue.referee()
+    referee.phase(Phase.READY)
+    page.phase(Phase.READY)
+    referee.ask("decide", decision={"type": "start"}, reason="")
+    page.phase(Phase.PLAYING)
+    return other
+
+
+def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """Issue 3: connect card, every mistake of a file, the token only for this tab."""
+    page = opened(venue, sit)
+    page.sees(".safety", "'lacoc play' is safer")
+    page.page.click("button[type=submit]")
+    page.sees("#join-name-error", "1 to 24 characters")
+    page.join("not-the-token")
+    page.sees("#join-token-error", "This token does not open seat left.")
+    assert page.find("#join-token").get_attribute("aria-invalid") == "true"
+
+    angles = ["45"] * 16
+    bad = tmp_path / "LocoTra-data-new.txt"
+    bad.write_text("1\n1\n" + "\t".join([*angles, "x", "200"]) + "\n")
+    page.find("input[type=file]").set_input_files(bad)
+    page.sees(".files li:nth-child(2)", "LocoTra-data-new.txt")
+    page.join(TOKENS["left"])
+    page.sees(".refusal", "Your files have 2 mistakes.")
+    rows = page.find(".mistakes tbody tr")
+    assert rows.nth(0).inner_text().split("\t") == [
+        *("LocoTra-data-new.txt", "3", "17", "16 (L,C)", '"x"', "an angle from -150 to 150 degrees")
+    ]
+    assert "17 (L,F)" in rows.nth(1).inner_text()
+    page.sees("main[data-standing=outside]")
+
+    sample = sample_gait_files("hexapod").locomotion
+    assert sample is not None
+    bad.write_bytes(sample.data)
+    page.find("input[type=file]").set_input_files(bad)
+    page.page.click("button[type=submit]")
+    page.stands("seated")
+    page.is_told("Press Ready when you are")
+    kept: dict[str, str] = page.page.evaluate("({...localStorage})")
+    assert TOKENS["left"] not in json.dumps(kept)
+    assert json.loads(kept["lacoc.team"]) == "Ants"
+
+    page.page.reload()
+    page.stands("seated")
+    other = sit(venue.url)
+    other.open(key=venue.key)
+    other.sees(".seats [data-seat='0']", "Ants sits here")
+
+
+def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """Rules 2: whatever the files are called, in whatever text they were saved."""
+    page = opened(venue, sit)
+    page.sees(".entrance .seat")
+    sample = sample_gait_files("hexapod")
+    assert sample.postures is not None
+    assert sample.locomotion is not None
+    files = {
+        "a.txt": sample.postures.data.decode().encode("utf-16"),
+        "b.txt": b"\xef\xbb\xbf" + sample.locomotion.data,
+        "c.toml": b"name = 'My robot'",
+    }
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
+    page.find("input[type=file]").set_input_files([tmp_path / name for name in files])
+    for slot, name in (("Robot", "c.toml"), ("Level A", "a.txt"), ("Level B", "b.txt")):
+        page.sees(f".files li:has-text('{slot}')", name)
+    page.page.click("[aria-label='Take c.toml away']")
+    page.sees(".files li:has-text('Robot')", "the contest's")
+    page.join(TOKENS["left"])
+    page.stands("seated")
+
+
+def test_a_link_without_the_key_only_watches(venue: Venue, sit: Sit) -> None:
+    """interface.md 9.3: it says where a link comes from that may act."""
+    venue.court()
+    venue.web()
+    page = sit(venue.url)
+    page.open()
+    page.stands("watching")
+    page.sees(".entrance", "#key=")
+    page.misses("form")
+
+
+def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """Issue 3, workshop 5-4: from the lobby to Pos-data.txt, with every key."""
+    page = seated(venue, sit, "--seconds", "120")
+    page.press("2")
+    page.is_toasted("[2] Keys work only while the match is being played")
+    page.page.click("button.ready")
+    page.is_told("You are ready. Waiting for the right seat")
+    page.page.click(".ready.said button")
+    page.is_told("Press Ready when you are")
+    other = playing(venue, page)
+    page.is_told("Walk over discs")
+
+    page.press("2")
+    page.key_stands(2)
+    page.sees(".stands", "B 2: posture")
+    page.sees(".foot dd[data-trip]:not([data-trip=''])")
+    before = other.frame
+    assert before is not None
+    other.wait(lambda: other.frame and other.frame.beat > before.beat + 100)
+    assert moved_m(before, other.frame, seat=0) > 0.05  # 90 mm/s, once it has begun
+
+    page.press("7")
+    page.is_toasted("[7] Your gait file has no such key")
+    page.press("Tab")
+    page.is_toasted("This arena opens level B only")
+    page.press("ArrowLeft")
+    page.key_stands(1)
+    page.press("Numpad3")
+    page.key_stands(3)
+    seq = other.own().applied_seq, other.frame.seats[0].applied_seq  # type: ignore[union-attr]
+    page.page.keyboard.down("2")
+    page.page.keyboard.down("2")  # as a key that is held repeats
+    page.page.keyboard.up("2")
+    page.key_stands(2)
+    assert other.frame is not None
+    assert other.frame.seats[0].applied_seq == seq[1] + 1
+    page.find('.key[data-key="1"]').click()
+    page.key_stands(1)
+    page.press("3")  # the pad did not take the focus
+    page.key_stands(3)
+
+    page.press("x")
+    page.is_told("Restarted: keys again in")
+    page.key_stands(0)
+    page.sees(".restart", "in ")
+    page.press("2")
+    page.is_toasted("[2] Restarted a moment ago")
+
+    page.press("z")
+    page.sees("dialog", "Your robot will stand.")
+    page.press("Escape")
+    page.misses("dialog")
+    page.press("z")
+    name, text = page.download(lambda: page.page.click("text=Save and leave"), tmp_path)
+    assert name == "Pos-data.txt"
+    header, *rows = text.splitlines()
+    assert header.split("\t")[:8] == [
+        *("time_s", "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg", "j0_deg")
+    ]
+    assert len(header.split("\t")) == 7 + 18
+    assert len(rows) > 100
+    assert float(rows[0].split("\t")[1]) == pytest.approx(-0.75, abs=0.02)  # column 0 (rules 5)
+    page.stands("left")
+    other.wait(lambda: any("Ants has left" in event.text for event in other.events))
+    page.page.click("text=Join again")
+    page.stands("seated")
+    page.phase(Phase.PLAYING)
+    other.close()
+
+
+def moved_m(before: Frame, after: Frame | None, seat: int) -> float:
+    """How far a robot's body went between two frames."""
+    assert after is not None
+    size = 4 * (7 + 18)
+    places = [np.frombuffer(f.poses[seat * size :][:8], "<f4") for f in (before, after)]
+    return float(np.hypot(*(places[1] - places[0])))
+
+
+def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
+    """Issue 3: three views, "click here to steer", keys by their place, a way out for Tab."""
+    page = seated(venue, sit)
+    page.sees(".badge", "View 1/3")
+    for number, camera in ((2, "top"), (3, "chase"), (1, "arena")):
+        page.press("Space")
+        page.sees(".badge", f"View {number}/3")
+        page.until(f"window.__lacoc.view?.camera === '{camera}'")
+    other = playing(venue, page)
+    page.until("document.activeElement.matches('.field3d')")
+
+    page.page.evaluate("window.dispatchEvent(new Event('blur'))")
+    page.sees(".curtain", "Click here to steer")
+    page.page.click(".curtain")
+    page.misses(".curtain")
+
+    typed = {"code": "Digit1", "key": "Process", "keyCode": 229, "bubbles": True}
+    page.page.evaluate(
+        f"document.activeElement.dispatchEvent(new KeyboardEvent('keydown', {json.dumps(typed)}))"
+    )
+    page.sees(".ime", "半角/全角")
+    page.key_stands(1)
+
+    page.page.focus(".field3d")
+    page.press("Escape")
+    page.until("document.activeElement.closest('.rail, .foot') !== null")
+    page.press("Tab")
+    page.until("document.activeElement.closest('.rail, .foot') !== null")
+    assert page.find(".toast").count() == 0  # it went on, and changed no level
+    page.press("2")
+    page.key_stands(2)
+    page.page.focus(".key[data-key='3']")
+    page.press("Enter")
+    page.key_stands(3)
+    other.close()
+
+
+def test_the_key_test_and_the_language(venue: Venue, sit: Sit) -> None:
+    """Issue 3: settings; the language changes at once, and nothing stays in the other one."""
+    page = seated(venue, sit)
+    page.page.click("text=Settings")
+    page.page.click(".keytest")
+    page.press("Numpad4", "KeyK", "x")
+    page.sees(".keytest", "Numpad4 digit 4")
+    page.sees(".keytest", "KeyK does nothing")
+    page.sees(".keytest", "KeyX restart")
+    page.page.select_option("dialog select", "ja")
+    page.sees("dialog", "キーのテスト")
+    page.press("Escape")
+    page.is_told("準備ができたら「準備完了」を押してください")
+    assert page.find("html").get_attribute("lang") == "ja"
+
+
+def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None:
+    """Issue 3: the page follows the browser; what the court says is translated, too."""
+    page = opened(venue, sit, locale="ja-JP")
+    page.sees(".entrance h1", "試合に参加")
+    page.join("not-the-token")
+    page.sees("#join-token-error", "トークン")
+    page.join(TOKENS["left"])
+    page.stands("seated")
+    page.press("2")
+    page.is_toasted("キーは試合中だけ使えます")
+    words = page.find("main").inner_text().replace("LACOC", "")
+    # Names, keys and units stay.
+    english = set(re.findall(r"[A-Za-z]{4,}", words)) - {"Ants", "Space", "Hexapod", "main"}
+    assert english <= {"Robot", "Othello"}, english
+
+
+def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> None:
+    """Issue 3: the loss is a clear card, and nothing fights for the seat by itself."""
+    page = seated(venue, sit)
+    elsewhere = venue.contestant("left", "Ants")
+    page.stands("lost")
+    page.sees(".entrance", "was joined again from another window or machine")
+    assert elsewhere.seat["hold"] == "held"
+    page.page.click("text=Join again")
+    page.stands("seated")
+    elsewhere.wait(lambda: elsewhere.seat["hold"] == "replaced")
+
+
+def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None:
+    """Issue 3: banner and grey keys while the link is lost; then all goes on by itself."""
+    court = venue.court("--seconds", "120")
+    web = venue.web()
+    page = sit(venue.url)
+    page.open(key=venue.key)
+    page.join(TOKENS["left"])
+    page.stands("seated")
+    other = playing(venue, page)
+    page.press("2")
+    page.key_stands(2)
+
+    court.kill()
+    page.sees(".banner", "Waiting for court main")
+    page.sees(".pad.off")
+    page.press("3")  # goes nowhere, and does no harm
+    venue.court("--seconds", "120")
+    page.misses(".banner")
+    page.misses(".pad.off")
+    page.phase(Phase.HALTED)
+    page.is_told("Halted by the referee")
+    other.close()
+
+    console.expect("WebSocket connection")
+    web.kill()
+    page.sees(".banner", "The connection is lost.")
+    page.sees(".pad.off")
+    page.is_told("No link to the court")
+    venue.web()
+    page.stands("seated")
+    page.misses(".banner")
+    referee = venue.referee()
+    referee.ask("decide", decision={"type": "resume"}, reason="power cut")
+    page.phase(Phase.PLAYING)
+    page.press("1")
+    page.key_stands(1)
+    said = page.find(".log li").all_inner_texts()
+    assert len(said) == len(set(said))
+
+
+def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
+    """Issue 3: never a stale picture as live."""
+    court = venue.court()
+    venue.web()
+    page = sit(venue.url)
+    page.open(key=venue.key)
+    page.join(TOKENS["left"])
+    page.stands("seated")
+    court.signal(signal.SIGSTOP)
+    page.sees(".banner")
+    page.sees(".link-state:not(.good)")
+    court.signal(signal.SIGCONT)
+    page.sees(".link-state.good")
+
+
+def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: Sit) -> None:
+    """Issue 3: a stranger can tell who won, and what comes next; the seat stays."""
+    page = seated(venue, sit, "--seconds", "1")
+    other = playing(venue, page)
+    page.sees(".result h1", "A draw")
+    page.sees(".result", "The referee confirms the result")
+    referee = venue.referee()
+    referee.ask("take_over")
+    decision = {"type": "adjust", "seat": "left", "points": 3}
+    referee.ask("decide", decision=decision, reason="for the test")
+    decision = {"type": "declare", "winner": "left"}
+    referee.ask("decide", decision=decision, reason="for the test")
+    page.sees(".result h1", "You win")
+    page.sees(".result .by", "by 3")
+    referee.ask("decide", decision={"type": "official"}, reason="")
+    page.sees(".result", "Wait here: you play in the next match too")
+    referee.ask("decide", decision={"type": "next"}, reason="")
+    page.phase(Phase.LOBBY)
+    page.is_told("Press Ready when you are")
+    page.misses(".result")
+    other.close()
+
+
+def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
+    """Issue 3: touch steers, and all that is needed fits a phone."""
+    phone = {"width": 390, "height": 844}
+    page = seated(venue, sit, viewport=phone, has_touch=True, is_mobile=True)
+    page.find("button.ready").tap()
+    page.is_told("You are ready")
+    page.find(".ready.said button").tap()
+    other = playing(venue, page)
+    for digit in (2, 1):
+        page.find(f'.key[data-key="{digit}"]').tap()
+        page.key_stands(digit)
+    page.find(".badge").tap()
+    page.sees(".badge", "View 2/3")
+    assert page.page.evaluate("document.documentElement.scrollWidth") <= phone["width"]
+    for digit in range(10):
+        box = page.find(f'.key[data-key="{digit}"]').bounding_box()
+        assert box is not None
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= phone["width"]
+        assert box["y"] + box["height"] <= phone["height"]
+        assert min(box["width"], box["height"]) >= 44
+    other.close()
+
+
+def test_accessible(venue: Venue, sit: Sit) -> None:
+    """Done means 2: axe-core finds no serious violation in the card, the cockpit, the dialogs."""
+    axe = pytest.importorskip("axe_core_python.sync_playwright").Axe()
+
+    def check(where: str) -> None:
+        found = axe.run(page.page)["violations"]
+        grave = [
+            (one["id"], [node["html"][:200] for node in one["nodes"]])
+            for one in found
+            if one["impact"] in ("serious", "critical")
+        ]
+        assert not grave, (where, grave)
+
+    page = opened(venue, sit)
+    page.sees(".entrance .seat")
+    check("card")
+    page.join("not-the-token")
+    page.sees("#join-token-error", "token")
+    check("wrong token")
+    page.join(TOKENS["left"])
+    page.stands("seated")
+    check("lobby")
+    for dialog in ("Settings", "Change files"):
+        page.page.click(f"text={dialog}")
+        page.sees("dialog")
+        check(dialog)
+        page.press("Escape")
+        page.misses("dialog")
+    other = playing(venue, page)
+    page.press("2")
+    page.key_stands(2)
+    check("playing")
+    other.close()
+
+
+def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
+    """Rules 2: byte for byte the file that `lacoc replay export` makes of the same frames."""
+    page = opened(venue, sit)
+    page.until("Boolean(window.__lacoc?.posData)")
+    joints = (12, 18)
+    for seat in range(2):
+        frames = list(walk(random.Random(seat), joints))
+        expected = PosData(seat, joints)
+        for frame in frames:
+            expected.add(frame)
+        sent = [base64.b64encode(encode(frame)).decode() for frame in frames]
+        text = page.page.evaluate(
+            """([seat, joints, frames]) => window.__lacoc.posData(seat, joints, frames.map(
+                (text) => Uint8Array.from(atob(text), (one) => one.charCodeAt(0))))""",
+            [seat, joints, sent],
+        )
+        assert text == expected.text()
+
+
+def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
+    """Frames with gaps, phases, late ones, and numbers that are hard to round."""
+    phases = [Phase.LOBBY, Phase.READY, Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED]
+    beats = sorted(chance.sample(range(4000), 600))
+    beats[10:12] = beats[11:9:-1]  # one comes late
+    frames = []
+    for index, beat in enumerate(beats):
+        phase = phases[min(index // 100, 4)] if index < 560 else Phase.PLAYING
+        if index >= len(beats) - 2:
+            phase = Phase.FINISHED
+        numbers: list[float] = []
+        for count in joints:
+            place = [chance.randrange(-400, 400) / 128 for _ in range(3)]
+            quat = [chance.gauss(0, 1) for _ in range(4)]
+            length = math.hypot(*quat)
+            angles = [chance.choice([0.0, -0.0, chance.uniform(-2.7, 2.7)]) for _ in range(count)]
+            numbers += [*place, *(part / length for part in quat), *angles]
+        poses = b"" if phase == Phase.LOBBY else np.array(numbers, "<f4").tobytes()
+        seat = SeatFrame(3, 0, 0, 0, 0, 0, 0, 0, 0, 0)
+        clock = min(index, len(beats) - 2)  # the last one is a decision: nothing moved
+        frames.append(
+            Frame(1, beat, int(phase), 0, clock, (seat, seat), b"", poses, bytes(8), bytes(8))
+        )
+    return frames
+
+
+def test_no_message_stands_in_two_catalogues() -> None:
+    """Pages share one catalogue: a name that two parts use would silently be the later one's."""
+    folder = Path(__file__).parents[2] / "client" / "web" / "src" / "i18n"
+    names = [
+        name
+        for file in ("common", "play", "referee", "watch", "replay")
+        for name in re.findall(r'^  "([\w.-]+)": \[', (folder / f"{file}.ts").read_text(), re.M)
+    ]
+    assert sorted(names) == sorted(set(names))
