@@ -1,0 +1,96 @@
+"""A page that shows a match: /watch, /overlay or /replay, as a person sees it."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from page_client import PageClient
+from playwright.sync_api import Locator, Page, expect
+from venue import Venue
+
+from lacoc_shared.seat import Phase
+
+WAIT_MS = 45_000
+"""A machine with two busy cores needs long, and no test waits where it need not."""
+
+STALE = ".stale"
+
+
+class Show:
+    """An open page.
+
+    Args:
+        page: a new page.
+        url: of the gateway.
+        path: with its query.
+        drawn: wait until there is a picture.
+    """
+
+    def __init__(self, page: Page, url: str, path: str, *, drawn: bool = True) -> None:
+        self.page = page
+        page.set_default_timeout(WAIT_MS)
+        page.goto(url + path)
+        if drawn:
+            self.until(lambda: self.view("drawnFrames") or 0, "no picture was drawn")
+
+    def view(self, what: str, index: int = 0) -> Any:
+        """A value of the picture's hook; None before there is a picture."""
+        return self.page.evaluate(f"window.__lacoc?.views?.[{index}]?.{what}")
+
+    def until(self, condition: Callable[[], Any], otherwise: str) -> None:
+        """Wait for a condition; pages refuse to evaluate texts, so it is asked from here."""
+        end_s = time.monotonic() + WAIT_MS / 1000
+        while not condition():
+            assert time.monotonic() < end_s, otherwise
+            self.page.wait_for_timeout(40)
+
+    def find(self, selector: str, **options: Any) -> Locator:
+        return self.page.locator(selector, **options)
+
+    def sees(self, selector: str, text: str = "") -> None:
+        """Wait until it is there, with a text."""
+        expect(self.find(selector).first).to_be_visible(timeout=WAIT_MS)
+        if text:
+            expect(self.find(selector).first).to_contain_text(text, timeout=WAIT_MS)
+
+    def misses(self, selector: str) -> None:
+        """Wait until it is not there."""
+        expect(self.find(selector)).to_have_count(0, timeout=WAIT_MS)
+
+    def has_scores(self, *points: int) -> None:
+        expect(self.find(".score-bug .points")).to_have_text(
+            [str(one) for one in points], timeout=WAIT_MS
+        )
+
+    def moves(self) -> None:
+        """Wait until time goes on in the picture."""
+        beat = self.view("drawnBeat")
+        self.until(lambda: self.view("drawnBeat") != beat, "the picture stands still")
+
+
+def violations(page: Page) -> list[tuple[str, list[str]]]:
+    """The grave mistakes that axe-core finds: its rule, and where."""
+    import axe_core_python.sync_playwright  # type: ignore[import-not-found,import-untyped]
+
+    found = axe_core_python.sync_playwright.Axe().run(page)["violations"]
+    return [
+        (one["id"], [node["html"][:200] for node in one["nodes"]])
+        for one in found
+        if one["impact"] in ("serious", "critical")
+    ]
+
+
+def playing(venue: Venue) -> PageClient:
+    """Two teams, and the match is on; the referee."""
+    venue.contestant("left", "Ants")
+    venue.contestant("right", "Bees")
+    referee = venue.referee()
+    referee.phase(Phase.READY)
+    decide(referee, type="start")
+    referee.phase(Phase.PLAYING)
+    return referee
+
+
+def decide(referee: PageClient, reason: str = "", **decision: object) -> Any:
+    """Decide something; the court's reply."""
+    return referee.ask("decide", decision=decision, reason=reason)

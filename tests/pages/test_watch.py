@@ -1,0 +1,259 @@
+"""/watch: what a spectator sees of a match at a real court, through the real gateway."""
+
+import re
+from typing import Any
+
+import pytest
+from chromium import OpenPage
+from playwright.sync_api import expect
+from show import STALE, WAIT_MS, Show, decide, playing, violations
+from venue import Venue
+
+from lacoc_shared.seat import Phase
+
+pytestmark = pytest.mark.slow
+
+LAPTOP = {"width": 1366, "height": 768}
+PHONE = {"width": 390, "height": 844}
+LOW = "/watch?q=low&cam=arena"
+
+
+def on_clock(text: str) -> int:
+    """Seconds of "2:59"."""
+    minutes, seconds = text.split(":")
+    return 60 * int(minutes) + int(seconds)
+
+
+def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPage) -> None:
+    """Score, clock, board and the whole log are the court's; what follows is shown in a third."""
+    venue.court()
+    venue.web()
+    referee = playing(venue)
+    decide(referee, "touched by hand", type="set", marker="c5r5", state="left")
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    show.has_scores(19, 17)
+    show.sees(".score-bug .team[data-seat='0']", "Ants")
+    show.sees(".score-bug .phase", "Playing")
+    show.sees(".hint", "Ants leads")
+    expect(show.find(".panel .log li")).to_have_count(len(referee.events))
+    assert show.view("marker(35)") == 1
+    assert show.find(".board g[aria-label='c5r5: left']").count() == 1
+
+    frame = referee.frame
+    assert frame is not None
+    left_s = (9000 - frame.clock_ticks) / 50
+    shown_s = on_clock(show.find(".score-bug .clock").inner_text())
+    assert left_s - 3 <= shown_s <= left_s + 1
+
+    reply = decide(referee, "flag out of place", type="adjust", seat="right", points=4)
+    show.has_scores(19, 21)
+    show.sees(".third.neutral .what", "Referee Kim: +4 for Bees")
+    show.sees(".third.neutral .gain", "+4")
+    show.sees(".hint", "Bees leads")
+    expect(show.find(".panel .log li").first).to_contain_text("+4 for Bees")
+    show.until(lambda: show.view("drawnBeat") > reply["beat"] + 230, "time stands still")
+    show.misses(".third")
+    show.page.close()
+
+
+def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -> None:
+    """In each phase the page says how it stands and what comes next (issue 3, done means 4)."""
+    venue.court("--seconds", "2")
+    venue.web()
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    show.sees(".opening .next", "Waiting for left to join")
+    show.sees(".opening .side[data-seat='0']", "nobody yet")
+    left = venue.contestant("left", "Ants")
+    show.sees(".opening .side[data-seat='0'] .ready", "ready")
+    show.sees(".opening .next", "Waiting for right to join")
+    assert show.find(".head .hint").is_hidden()
+    venue.contestant("right", "Bees")
+    show.sees(".opening .next", "the referee starts the match")
+    referee = venue.referee()
+    referee.phase(Phase.READY)
+    decide(referee, type="start")
+    show.sees(".countdown", "3")
+    show.sees(".countdown", "1")
+    show.sees(".countdown", "GO")
+    show.misses(".opening")
+    show.sees(".result .kicker", "By the rules")
+    show.sees(".result h1", "A draw")
+    show.sees(".result", "time is up · 0:02 played")
+    show.sees(".result .next", "the referee confirms")
+    decide(referee, "the better walk", type="declare", winner="right")
+    decide(referee, type="official")
+    show.sees(".result .kicker", "Official")
+    show.sees(".result h1", "Bees wins")
+    show.sees(".result", "Decided by the referee")
+    show.sees(".result .side.won", "Bees")
+    show.sees(".result .next", "the referee opens the next match")
+    show.page.get_by_role("button", name="Look at the field").click()
+    show.misses(".result")
+    assert "18 : 18" in show.page.title()
+    decide(referee, type="next")
+    show.sees(".brand", "match 2")
+    show.sees(".opening .side[data-seat='1']", "Bees")
+    assert "Official" not in show.find(".panel").inner_text()
+    left.close()
+
+
+def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
+    venue.court()
+    venue.web()
+    referee = playing(venue)
+    show = Show(open_page(), venue.url, LOW)
+    decide(referee, "fire alarm", type="halt")
+    show.sees(".third.neutral", "fire alarm")
+    show.sees(".hint", "Halted")
+    decide(referee, "fire alarm", type="abort")
+    show.sees(".result h1", "The match is void")
+    assert show.find(".result .won").count() == 0
+
+
+def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: Any) -> None:
+    """What stands still is never shown as live; the page says what it waits for and recovers."""
+    console.expect("WebSocket|ERR_CONNECTION")
+    court, web = venue.court(), venue.web()
+    decide(playing(venue), "two", type="adjust", seat="left", points=2)
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    show.has_scores(20, 18)
+    web.kill()
+    show.sees(".banner", "Trying again")
+    show.sees(STALE)
+    web = venue.web()
+    show.misses(".banner")
+    show.misses(STALE)
+    show.moves()
+    show.has_scores(20, 18)
+
+    court.kill()
+    show.sees(".banner", "Waiting for court main")
+    show.sees(STALE)
+    venue.court()
+    show.misses(".banner")
+    show.misses(STALE)
+    show.sees(".score-bug .phase", "Halted")
+    show.has_scores(20, 18)
+    numbers = show.find(".panel .log li").count()
+    late = venue.page()
+    late.wait(lambda: late.frame is not None)
+    expect(show.find(".panel .log li")).to_have_count(len(late.events))
+    assert numbers > 0
+
+
+def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
+    """Everything can be reached by keyboard, and nothing that is typed elsewhere acts."""
+    venue.court()
+    venue.web()
+    playing(venue)
+    show = Show(open_page(viewport=LAPTOP), venue.url, "/watch?q=low")
+    assert show.view("camera") == "auto"
+    for key, camera in (("3", "top"), ("4", "left"), ("5", "right"), ("6", "map"), ("2", "arena")):
+        show.page.keyboard.press(key)
+        show.until(lambda camera=camera: show.view("camera") == camera, camera)
+    pressed = show.find(".cameras [aria-pressed='true']")
+    expect(pressed).to_have_count(1)
+    expect(pressed).to_contain_text("Arena")
+    show.page.get_by_role("button", name="Top").click()
+    show.until(lambda: show.view("camera") == "top", "the button does nothing")
+
+    panel = show.page.get_by_role("button", name="Field and events")
+    expect(panel).to_have_attribute("aria-expanded", "true")
+    show.page.keyboard.press("e")
+    show.misses(".panel")
+    panel.click()
+    show.sees(".panel .board")
+
+    show.page.keyboard.press("s")
+    language = show.page.get_by_label("Language")
+    language.select_option("日本語")
+    show.sees("dialog", "設定")
+    show.page.keyboard.press("3")
+    show.page.keyboard.press("Escape")
+    show.misses("dialog")
+    assert show.page.evaluate("document.documentElement.lang") == "ja"
+    show.sees(".score-bug .phase", "試合中")
+    show.page.reload()
+    show.sees(".score-bug .phase", "試合中")
+
+    reached = set()
+    for _ in range(14):
+        show.page.keyboard.press("Tab")
+        reached.add(show.page.evaluate("document.activeElement.textContent.trim()"))
+    assert {"1自動", "6平面図"} <= reached
+
+
+def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
+    """Upright: the picture, the cameras and the board below one another, nothing to the side."""
+    venue.court()
+    venue.web()
+    playing(venue)
+    page = open_page(viewport=PHONE, has_touch=True, is_mobile=True)
+    show = Show(page, venue.url, LOW)
+    show.sees(".board")
+    tops = [
+        show.find(selector).first.bounding_box()["y"]  # type: ignore[index]
+        for selector in (".head", ".cameras", ".board", ".panel .log")
+    ]
+    assert tops == sorted(tops)
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    for button in show.find(".cameras .button, .corner .button").all():
+        box = button.bounding_box()
+        assert box is not None
+        assert min(box["width"], box["height"]) >= 40
+        assert box["x"] + box["width"] <= PHONE["width"]
+    assert violations(page) == []
+
+
+def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
+    """The drawing from above stands in for the picture."""
+    venue.court()
+    venue.web()
+    playing(venue)
+    page = open_page(viewport=LAPTOP)
+    page.add_init_script(
+        "const get = HTMLCanvasElement.prototype.getContext;"
+        "HTMLCanvasElement.prototype.getContext = function (kind, ...more) {"
+        " return kind.startsWith('webgl') ? null : get.call(this, kind, ...more); }"
+    )
+    show = Show(page, venue.url, "/watch")
+    assert show.view("quality") == "map"
+    show.has_scores(18, 18)
+    show.moves()
+
+
+def test_accessible(venue: Venue, open_page: OpenPage) -> None:
+    """Done means 2: axe-core finds no serious violation."""
+    pytest.importorskip("axe_core_python")
+    venue.court("--seconds", "1")
+    venue.web()
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    show.sees(".opening")
+    assert violations(show.page) == []
+    referee = playing(venue)
+    referee.phase(Phase.FINISHED)
+    show.sees(".result")
+    expect(show.find(".result")).to_have_css("opacity", "1", timeout=WAIT_MS)
+    assert violations(show.page) == []
+    show.page.keyboard.press("s")
+    show.sees("dialog")
+    assert violations(show.page) == []
+
+
+def test_japanese_throughout(venue: Venue, open_page: OpenPage) -> None:
+    """A Japanese browser finds no English, but for names."""
+    venue.court("--seconds", "1")
+    venue.web()
+    show = Show(open_page(viewport=LAPTOP, locale="ja-JP"), venue.url, LOW)
+    show.sees(".opening")
+    names = r"Ants|Bees|LACOC|Robot-Othello|Hexapod|Kim|GO|main|[LRESF]"
+
+    def english() -> list[str]:
+        text = show.find("main").inner_text()
+        return re.findall(r"[A-Za-z]{2,}", re.sub(names, "", text))
+
+    assert english() == []
+    referee = playing(venue)
+    referee.phase(Phase.FINISHED)
+    show.sees(".result h1", "引き分け")
+    assert english() == []
