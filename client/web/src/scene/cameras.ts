@@ -186,16 +186,16 @@ export class Rig {
   private from: Shot | null = null;
   private sinceMs = 0;
   private now: Shot | null = null;
+  private fitted: { key: string; model: Model; shot: Shot } | null = null;
   private byHand = { azimuth: 0, elevation: 0, zoom: 1 };
 
   /** The shot of a camera that is not `auto`. */
   aim(name: CameraName, { model, aspect, frame, seat }: Aim, nowMs: number): Shot {
-    const { field } = model;
     switch (name) {
       case "top":
-        return fitField(field, SOUTH, STRAIGHT_DOWN, aspect, frame);
+        return this.whole(SOUTH, STRAIGHT_DOWN, model, aspect, frame);
       case "side":
-        return fitField(field, SOUTH, 0.3, aspect, frame);
+        return this.whole(SOUTH, 0.3, model, aspect, frame);
       case "chase":
       case "left":
       case "right": {
@@ -206,8 +206,25 @@ export class Rig {
         );
       }
       default:
-        return fitField(field, SOUTH - 0.2, aspect < 0.8 ? 1.05 : 0.78, aspect, frame);
+        return this.whole(SOUTH - 0.2, aspect < 0.8 ? 1.05 : 0.78, model, aspect, frame);
     }
+  }
+
+  /** As `fitField`, worked out again only when something is different. */
+  private whole(
+    azimuth: number,
+    elevation: number,
+    model: Model,
+    aspect: number,
+    frame: Frame2d,
+  ): Shot {
+    const { left, right, top, bottom } = frame;
+    const key = [azimuth, elevation, aspect, left, right, top, bottom].join();
+    if (this.fitted?.key !== key || this.fitted.model !== model) {
+      const shot = fitField(model.field, azimuth, elevation, aspect, frame);
+      this.fitted = { key, model, shot };
+    }
+    return { ...this.fitted.shot };
   }
 
   /** Behind a seat's robot; null while it has none. */

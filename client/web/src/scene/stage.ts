@@ -135,9 +135,12 @@ export class Stage {
     const sun = new DirectionalLight(0xfff6ea, 2.5);
     if (!this.fine) return sun;
     this.world.add(sun, sun.target, new HemisphereLight(0xe6eeff, 0x6a7688, 1.9));
+    // From behind, for edges; from where the cameras are, for faces.
     const back = new DirectionalLight(0x9cc2ff, 0.9);
     back.position.set(1.6, 2.4, 1.2);
-    this.world.add(back);
+    const front = new DirectionalLight(0xffffff, 0.85);
+    front.position.set(0.5, -3, 0.9);
+    this.world.add(back, front);
     sun.castShadow = true;
     sun.shadow.mapSize.set(SHADOW_MAP, SHADOW_MAP);
     sun.shadow.bias = -0.0004;

@@ -65,6 +65,7 @@ const LEAP_BEATS = 100;
 const RETRY_MS = 1000;
 const DRAG_PX = 5;
 const EDGE = 0.96;
+const FRAME_MS = 180;
 
 export class Viewer {
   private options: Options;
@@ -90,6 +91,8 @@ export class Viewer {
   private noWebgl = false;
   private thrift = 1;
   private size = { width: 0, height: 0 };
+  private framed: (Frame2d & { width: number; height: number }) | null = null;
+  private framedMs = 0;
 
   /** @param host Is filled with the picture. */
   constructor(
@@ -316,7 +319,7 @@ export class Viewer {
   private shot(model: Model, nowMs: number) {
     const { camera, seat } = this.options;
     const aspect = this.size.width / this.size.height;
-    const aim: Aim = { model, aspect, frame: this.frame(), seat };
+    const aim: Aim = { model, aspect, frame: this.frame(nowMs), seat };
     if (camera === "auto") {
       const { key, shot } = this.director.shoot(aim, this.actions, nowMs);
       return this.rig.move(key, shot, nowMs, 1300);
@@ -350,16 +353,28 @@ export class Viewer {
     };
   }
 
-  /** The free part of the picture, in -1 to 1. */
-  private frame(): Frame2d {
+  /** The free part of the picture, in -1 to 1; when it changes, it does so in a moment's glide. */
+  private frame(nowMs: number): Frame2d {
     const { top = 0, right = 0, bottom = 0, left = 0 } = this.options.inset;
     const { width, height } = this.size;
-    return {
+    const goal = {
       left: EDGE * (-1 + (2 * left) / width),
       right: EDGE * (1 - (2 * right) / width),
       top: EDGE * (1 - (2 * top) / height),
       bottom: EDGE * (-1 + (2 * bottom) / height),
     };
+    const part = 1 - Math.exp(-(nowMs - this.framedMs) / FRAME_MS);
+    this.framedMs = nowMs;
+    const now = this.framed;
+    if (!now || now.width !== width || now.height !== height) {
+      this.framed = { ...goal, width, height };
+      return goal;
+    }
+    for (const side of ["left", "right", "top", "bottom"] as const) {
+      const far = goal[side] - now[side];
+      now[side] = Math.abs(far) < 0.001 ? goal[side] : now[side] + far * part;
+    }
+    return now;
   }
 
   /** Where in the element a point of the world is [px]; null if it is behind the camera. */

@@ -1,0 +1,129 @@
+"""Pictures a second of the pages' scene drawn in software, and what a player loads.
+
+`python -m benchmarks.pages`; needs what the tests of the pages need (tests/pages/chromium.py).
+"""
+
+import contextlib
+import gzip
+import json
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Browser, Response, sync_playwright
+
+sys.path.append(str(Path(__file__).parents[1] / "tests" / "pages"))
+
+from chromium import FLAGS, build_pages, build_stand, find_chromium
+from match_file import match_file
+from stand import Stand, served
+
+SIZE = {"width": 800, "height": 450}
+MEASURE_S = 8.0
+_STEADY = 100
+"""Pictures before anything is measured: compiling, and the first look at everything."""
+
+
+def pages() -> dict[str, Any]:
+    """Measure.
+
+    Returns:
+        For each arena `fps`, `p95_ms` and `cpu_ms` (of all processes of the browser, a picture) of
+        low quality at 800 x 450; `js_gzip_bytes` and `css_gzip_bytes` that /play loads; `cores` and
+        `load`, the machine's load average when it began.
+    """
+    found: dict[str, Any] = {"cores": os.cpu_count(), "load": round(os.getloadavg()[0], 2)}
+    with (
+        tempfile.TemporaryDirectory() as name,
+        sync_playwright() as playwright,
+        contextlib.closing(
+            playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
+        ) as browser,
+    ):
+        folder = Path(name)
+        build_stand(folder)
+        with served(folder) as address:
+            for arena in ("othello", "flag-strike"):
+                (folder / f"{arena}.bin").write_bytes(match_file(arena, 20.0))
+                found[arena] = _drawing(browser, address, arena)
+        found |= _loading(browser)
+    return found
+
+
+def _drawing(browser: Browser, address: str, arena: str) -> dict[str, float]:
+    page = browser.new_page(viewport=SIZE)
+    stand = Stand(page, address)
+    stand.open(f"{arena}.bin", frames=_STEADY, q="low", beat=60)
+    frames, cpu_s, begin_s = stand.view("drawnFrames"), _cpu_s(), time.perf_counter()
+    page.wait_for_timeout(1000 * MEASURE_S)
+    drawn, passed_s = stand.view("drawnFrames") - frames, time.perf_counter() - begin_s
+    figures = {
+        "fps": drawn / passed_s,
+        "p95_ms": stand.view("frameMsP95"),
+        "cpu_ms": 1000 * (_cpu_s() - cpu_s) / drawn,
+    }
+    page.close()
+    return figures
+
+
+def _loading(browser: Browser) -> dict[str, int]:
+    """What /play asks for until the scene can be drawn, packed as a web server would."""
+    loaded: dict[str, bytes] = {}
+
+    def note(response: Response) -> None:
+        with contextlib.suppress(Exception):  # a response that the page left before it was whole
+            loaded[response.url.partition("?")[0]] = response.body()
+
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for child in build_pages().iterdir():
+            (folder / child.name).symlink_to(child)
+        (folder / "play").symlink_to(folder / "index.html")
+        with served(folder) as address:
+            page = browser.new_page(viewport=SIZE)
+            page.on("response", note)
+            # A file without an ending has no type: say what it is, as a gateway does.
+            html = (folder / "index.html").read_text()
+            page.route("**/play", lambda route: route.fulfill(body=html, content_type="text/html"))
+            page.goto(f"{address}/play")
+            page.wait_for_function(
+                "performance.getEntriesByType('resource').some("
+                "(entry) => entry.name.includes('/stage-'))"
+            )
+            page.wait_for_load_state("networkidle")
+            page.close()
+    sizes = {
+        kind: sum(
+            len(gzip.compress(body, 6)) for url, body in loaded.items() if url.endswith(f".{kind}")
+        )
+        for kind in ("js", "css")
+    }
+    return {"js_gzip_bytes": sizes["js"], "css_gzip_bytes": sizes["css"]}
+
+
+def _cpu_s() -> float:
+    """Processor time of this program's children and theirs: of the browser."""
+    return sum(_children_s(os.getpid()))
+
+
+def _children_s(parent: int) -> Iterator[float]:
+    table: dict[int, list[tuple[int, float]]] = {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            fields = stat.read_text().rpartition(")")[2].split()
+            used_s = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+            table.setdefault(int(fields[1]), []).append((int(stat.parent.name), used_s))
+    waiting = [parent]
+    while waiting:
+        for child, used_s in table.get(waiting.pop(), []):
+            waiting.append(child)
+            yield used_s
+
+
+if __name__ == "__main__":
+    json.dump(pages(), sys.stdout, indent=2)
+    print()
