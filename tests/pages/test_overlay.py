@@ -1,0 +1,194 @@
+"""/overlay: the browser source of a broadcast, at a real court through the real gateway."""
+
+import base64
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from chromium import OpenPage
+from playwright.sync_api import Page, expect
+from show import STALE, WAIT_MS, Show, decide, playing
+from venue import Venue
+
+from lacoc_shared.seat import Phase
+
+pytestmark = pytest.mark.slow
+
+DOC = Path(__file__).parents[2] / "docs" / "overlay.md"
+SOURCE = {"width": 1920, "height": 1080}
+SMALL = {"width": 960, "height": 540}
+LOW = "/overlay?q=low&cam=arena"
+
+PIXELS = """async (png) => {
+  const image = await createImageBitmap(await (await fetch("data:image/png;base64," + png)).blob());
+  const canvas = new OffscreenCanvas(image.width, image.height);
+  const context = canvas.getContext("2d");
+  context.drawImage(image, 0, 0);
+  const { data } = context.getImageData(0, 0, image.width, image.height);
+  const at = ([x, y]) => data[4 * (Math.floor(y * image.height) * image.width
+    + Math.floor(x * image.width)) + 3];
+  let opaque = 0;
+  for (let index = 3; index < data.length; index += 4) opaque += data[index] > 250;
+  return { corner: at([0.01, 0.4]), middle: at([0.5, 0.6]), opaque: opaque / (data.length / 4) };
+}"""
+
+
+def alphas(page: Page, blank: Page) -> dict[str, float]:
+    """How opaque the page is: at its edge, in its middle, and what share of it."""
+    png = base64.b64encode(page.screenshot(omit_background=True)).decode()
+    found: dict[str, float] = blank.evaluate(PIXELS, png)
+    return found
+
+
+def test_flags_of_the_address(venue: Venue, open_page: OpenPage) -> None:
+    """`cam`, `hud`, `q`, `transparent`, `lang`; no scroll bars, no pointer."""
+    venue.court()
+    venue.web()
+    playing(venue)
+    blank = open_page()
+    show = Show(open_page(viewport=SMALL), venue.url, "/overlay?q=low&lang=ja")
+    show.sees(".score-bug .phase", "試合中")
+    assert (show.view("camera"), show.view("quality")) == ("auto", "low")
+    assert alphas(show.page, blank) == {"corner": 255, "middle": 255, "opaque": 1}
+    assert show.page.evaluate("getComputedStyle(document.body).cursor") == "none"
+    width, height = show.page.evaluate(
+        "(() => { const d = document.documentElement; return [d.scrollWidth, d.scrollHeight]; })()"
+    )
+    assert (width, height) == (SMALL["width"], SMALL["height"])
+    assert show.page.evaluate("getComputedStyle(document.documentElement).overflow") == "hidden"
+
+    bare = Show(
+        open_page(viewport=SMALL), venue.url, "/overlay?cam=top&hud=0&transparent=1&q=low&lang=en"
+    )
+    assert bare.view("camera") == "top"
+    bare.until(lambda: alphas(bare.page, blank)["middle"] == 255, "nothing is drawn")
+    seen = alphas(bare.page, blank)
+    assert seen["corner"] == 0
+    assert 0.1 < seen["opaque"] < 0.9
+    assert bare.find(".score-bug").count() == 0
+    assert bare.find("main").inner_text() == ""
+
+    odd = Show(open_page(viewport=SMALL), venue.url, "/overlay?cam=nowhere&q=best&delay=no&hud=yes")
+    assert odd.view("camera") == "auto"
+    odd.sees(".score-bug")
+
+
+def test_the_workshops_two_windows(venue: Venue, open_page: OpenPage) -> None:
+    """Workshop 5-4, Fig. 5-11: each contestant's window, one score bug for both."""
+    venue.court()
+    venue.web()
+    playing(venue)
+    show = Show(open_page(viewport=SMALL), venue.url, "/overlay?q=low&split=1")
+    show.until(lambda: show.view("drawnFrames", 1), "the second window is empty")
+    expect(show.find(".window")).to_have_count(2)
+    expect(show.find(".score-bug")).to_have_count(1)
+    left, right = (box.bounding_box() for box in show.find(".window").all())
+    assert left is not None
+    assert right is not None
+    assert left["x"] + left["width"] <= right["x"]
+    assert left["width"] == pytest.approx(right["width"], abs=2)
+    assert [show.view("camera", index) for index in (0, 1)] == ["chase", "chase"]
+    eyes = [show.view("eye", index) for index in (0, 1)]
+    # Othello's robots begin at x = -0.75 and 0.75, and are seen from behind (rules 5).
+    assert eyes[0][0] < -1 < 1 < eyes[1][0]
+    show.moves()
+
+
+def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
+    """Score, events and picture come `delay` seconds later, and together."""
+    venue.court()
+    venue.web()
+    referee = playing(venue)
+    prompt = Show(open_page(viewport=SMALL), venue.url, LOW)
+    late = Show(open_page(viewport=SMALL), venue.url, f"{LOW}&delay=8")
+    late.has_scores(18, 18)
+    beat = decide(referee, "for the test", type="adjust", seat="left", points=5)["beat"]
+    prompt.has_scores(23, 18)
+    seen: list[dict[str, Any]] = []
+
+    def came() -> bool:
+        now = late.page.evaluate(
+            """() => ({
+              score: document.querySelector(".score-bug .points").textContent,
+              third: document.querySelector(".third .gain")?.textContent ?? "",
+              beat: window.__lacoc.view.drawnBeat,
+            })"""
+        )
+        seen.append(now)
+        return bool(now["score"] == "23" and now["third"] == "+5")
+
+    late.until(came, "the score never came")
+    # Nothing told of it while the picture was before it.
+    before = [now for now in seen if now["beat"] < beat - 10]
+    assert all((now["score"], now["third"]) == ("18", "") for now in before)
+    assert any(now["beat"] < beat - 100 for now in before)
+    assert seen[-1]["beat"] < beat + 150
+    behind = prompt.view("drawnBeat") - late.view("drawnBeat")
+    assert 320 < behind < 700
+
+
+def test_it_heals_for_ever(venue: Venue, open_page: OpenPage, console: Any) -> None:
+    """No court, no gateway: it says so in a corner, never an error page, and comes back."""
+    console.expect("WebSocket|ERR_CONNECTION")
+    web = venue.web()
+    show = Show(open_page(viewport=SOURCE), venue.url, LOW, drawn=False)
+    show.sees(".waits", "Waiting for court main")
+    waits = show.find(".waits").bounding_box()
+    assert waits is not None
+    assert waits["y"] > 0.9 * SOURCE["height"]
+    court = venue.court()
+    show.misses(".waits")
+    show.sees(".opening")
+    for _ in range(2):
+        web.kill()
+        show.sees(".waits", "connection is lost")
+        show.sees(STALE)
+        web = venue.web()
+        show.misses(".waits")
+        show.misses(STALE)
+    court.kill()
+    show.sees(".waits", "Waiting for court main")
+    show.sees(STALE)
+    venue.court()
+    show.misses(".waits")
+    show.misses(STALE)
+    show.moves()
+
+
+def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
+    """Opening, countdown, result, official: all by itself, in the size of the source."""
+    venue.court("--seconds", "1")
+    venue.web()
+    show = Show(open_page(viewport=SOURCE), venue.url, LOW)
+    show.sees(".opening", "Waiting for left to join")
+    referee = playing(venue)
+    referee.phase(Phase.FINISHED)
+    show.sees(".result .next", "the referee confirms")
+    box = show.find(".result").bounding_box()
+    assert box is not None
+    assert box["x"] + box["width"] / 2 == pytest.approx(SOURCE["width"] / 2, abs=4)
+    assert box["width"] > 700
+    assert show.find("button").count() == 0
+    decide(referee, type="official")
+    show.sees(".result .kicker", "Official")
+    decide(referee, type="next")
+    show.misses(".result")
+    expect(show.find(".opening .ready")).to_have_count(0, timeout=WAIT_MS)
+
+
+def test_the_document_has_every_flag() -> None:
+    """docs/overlay.md and the page name the same flags."""
+    web = Path(__file__).parents[2] / "client" / "web" / "src"
+    sources = "".join(
+        (web / name).read_text("utf-8")
+        for name in (
+            "pages/overlay.tsx",
+            "pages/watch/cameras.tsx",
+            "core/court.ts",
+            "i18n/index.ts",
+        )
+    )
+    read = set(re.findall(r'\b(?:setting|flag|amount)\("(\w+)"', sources))
+    told = set(re.findall(r"^\| `(\w+)` \|", DOC.read_text("utf-8"), re.MULTILINE))
+    assert told == read
