@@ -1,0 +1,201 @@
+"""A gateway with hundreds of spectators: what it costs, what they get, what the court notices.
+
+    python -m benchmarks.gateway [--pages 300] [--seconds 10] [--rounds 3]
+
+Processes: a court with two hexapods that stand in READY, the gateway, all spectators in one
+more. The processor time of each is the kernel's own count (Linux only).
+"""
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from lacoc_client.controller import Controller
+from lacoc_client.spectator import Spectator
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import Session, open_client
+
+_COURT = ("lacoc_shared", "serve", "--json", "--arena", "othello", "--listen", "tcp/127.0.0.1:0")
+_SETTLE_S = 1.0
+
+
+def gateway(
+    pages: int = 300, hz: float = 25.0, seconds: float = 10.0, rounds: int = 3
+) -> dict[str, Any]:
+    """Measure in turns without and with the pages.
+
+    Returns:
+        Shares of one core in per cent, microseconds of processor a beat, frames a second.
+    """
+    alone_us, watched_us, gateway_cpu, idle_cpu = [], [], [], []
+    slowest_hz, median_hz, frame_bytes = [], [], []
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        _process(*_COURT, "--recordings", folder) as court,
+        _opened(court) as (opened, session),
+        _process(
+            "lacoc_shared",
+            "web",
+            "--json",
+            "--connect",
+            opened["locators"][0],
+            "--viewers",
+            str(pages + 10),
+        ) as web,
+    ):
+        url = json.loads(_line(web))["url"]
+        view = Spectator(session, opened["court"])
+        for _ in range(rounds):
+            time.sleep(_SETTLE_S)
+            alone, idle = _cost(court, web, view, seconds)
+            alone_us.append(alone)
+            idle_cpu.append(idle)
+            with _process("benchmarks.spectators", url, str(pages), str(hz)) as crowd:
+                _line(crowd)
+                time.sleep(_SETTLE_S)
+                _count(crowd)
+                watched, busy = _cost(court, web, view, seconds)
+                counted = _count(crowd)
+            watched_us.append(watched)
+            gateway_cpu.append(busy)
+            rates = [frames / counted["seconds"] for frames, _ in counted["counts"]]
+            slowest_hz.append(min(rates))
+            median_hz.append(statistics.median(rates))
+            frame_bytes += [size / frames for frames, size in counted["counts"][:1]]
+    return {
+        "pages": pages,
+        "hz": hz,
+        "gateway_cpu_percent": statistics.median(gateway_cpu),
+        "gateway_idle_percent": statistics.median(idle_cpu),
+        "slowest_hz": statistics.median(slowest_hz),
+        "median_hz": statistics.median(median_hz),
+        "bytes_a_frame": statistics.median(frame_bytes),
+        "beat_alone_us": statistics.median(alone_us),
+        "beat_watched_us": statistics.median(watched_us),
+        "ratio": statistics.median(
+            watched / alone for watched, alone in zip(watched_us, alone_us, strict=True)
+        ),
+    }
+
+
+def rows(figures: dict[str, Any]) -> Iterator[tuple[str, ...]]:
+    """Rows for the table of `make bench`."""
+    crowd = f"{figures['pages']} spectators at {figures['hz']:.0f} Hz"
+    yield (
+        f"gateway's processor time, {crowd}",
+        f"{figures['gateway_cpu_percent']:.1f} % of a core",
+        f"without them {figures['gateway_idle_percent']:.1f} %",
+        "",
+        "at most 15 %",
+    )
+    yield (
+        "the slowest of them gets",
+        f"{figures['slowest_hz']:.1f} frames/s of {figures['bytes_a_frame']:.0f} bytes",
+        f"their median {figures['median_hz']:.1f}",
+        "",
+        "at least 24",
+    )
+    yield (
+        "court's processor time a beat, with them",
+        f"{figures['beat_watched_us']:.0f} us",
+        f"without them {figures['beat_alone_us']:.0f} us",
+        f"{figures['ratio']:.3f}",
+        "at most 1.10",
+    )
+
+
+@contextmanager
+def _opened(court: subprocess.Popen[str]) -> Iterator[tuple[dict[str, Any], Session]]:
+    """The court with a robot in each seat; both stand."""
+    opened = json.loads(_line(court))
+    with open_client(opened["locators"]) as session:
+        for seat, token in opened["tokens"].items():
+            controller = Controller(session, opened["court"], seat, token, seat)
+            controller.join()
+            controller.ready()
+        while (frame := controller.wait_frame(1.0)) is None or frame.phase != Phase.READY:
+            pass
+        yield opened, session
+
+
+def _cost(
+    court: subprocess.Popen[str], web: subprocess.Popen[str], view: Spectator, seconds: float
+) -> tuple[float, float]:
+    """Microseconds of processor for a beat of the court, and per cent of a core of the gateway."""
+    beat, court_s, web_s, at_s = _beat(view), _used_s(court), _used_s(web), time.monotonic()
+    time.sleep(seconds)
+    beats, passed_s = _beat(view) - beat, time.monotonic() - at_s
+    return (_used_s(court) - court_s) / beats * 1e6, (_used_s(web) - web_s) / passed_s * 100
+
+
+def _beat(view: Spectator) -> int:
+    view.poll()
+    while (frame := view.wait_frame(1.0)) is None:
+        pass
+    return frame.beat
+
+
+def _used_s(process: subprocess.Popen[str]) -> float:
+    """Processor time of all threads of a process."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def _count(crowd: subprocess.Popen[str]) -> dict[str, Any]:
+    assert crowd.stdin is not None
+    crowd.stdin.write("\n")
+    crowd.stdin.flush()
+    counted: dict[str, Any] = json.loads(_line(crowd))
+    return counted
+
+
+def _line(process: subprocess.Popen[str]) -> str:
+    assert process.stdout is not None
+    return process.stdout.readline()
+
+
+@contextmanager
+def _process(module: str, *words: str) -> Iterator[subprocess.Popen[str]]:
+    process = subprocess.Popen(
+        [sys.executable, "-m", module, *words],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
+    try:
+        yield process
+    finally:
+        process.terminate()
+        process.wait(20)
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.gateway")
+    parser.add_argument("--pages", type=int, default=300)
+    parser.add_argument("--hz", type=float, default=25.0)
+    parser.add_argument("--seconds", type=float, default=10.0, help="of each measurement")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--json", action="store_true", help="print JSON for a program to read")
+    options = vars(parser.parse_args())
+    as_json = options.pop("json")
+    figures = gateway(**options)
+    if as_json:
+        print(json.dumps(figures))
+    else:
+        for row in rows(figures):
+            print("  ".join(cell for cell in row if cell))
+
+
+if __name__ == "__main__":
+    main()
