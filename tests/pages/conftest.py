@@ -20,6 +20,7 @@ from playwright.sync_api import (
 sys.path.append(str(Path(__file__).parent))
 sys.path.append(str(Path(__file__).parents[1] / "gateway"))
 sys.path.append(str(Path(__file__).parents[1] / "client"))
+sys.path.append(str(Path(__file__).parents[1] / "server"))
 
 from chromium import FLAGS, NoBrowser, OpenPage, build_pages, find_chromium
 from contestant import Contestant, Sit

@@ -5,9 +5,12 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from chromium import OpenPage
+from chromium import WEB, OpenPage
 from playwright.sync_api import Locator, Page, expect
 from venue import REFEREE, TOKENS, Venue
+
+from lacoc_server.referee import _RULES
+from lacoc_shared.decisions import DECISIONS
 
 pytestmark = pytest.mark.slow
 
@@ -264,11 +267,14 @@ def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
     expect(page.locator(".log li")).to_have_count(1)
     # Set from the board: the popover opens, its choices say why not.
     disc(page, "c3r3").focus()
+    page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
+    expect(page.locator("#pick-title")).to_have_text("Disc c4r3")
     choice = page.locator(".pick .states .act").first
     assert "the match is LOBBY" in why(choice)
     page.keyboard.press("Escape")
     expect(page.locator(".pick")).to_have_count(0)
+    expect(disc(page, "c4r3")).to_be_focused()
 
 
 def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
@@ -284,6 +290,16 @@ def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
     phase(page, 1)
+
+
+def test_which_decisions_need_a_reason() -> None:
+    """The page asks for one exactly where the court does."""
+    text = (WEB / "src" / "pages" / "referee" / "desk.ts").read_text("utf-8")
+    found = re.search(r"NEED_A_REASON[^(]*\(\[(.*?)\]", text, re.DOTALL)
+    assert found
+    names = set(re.findall(r'"([a-z-]+)"', found[1]))
+    needed = {name for name, kind in DECISIONS.items() if _RULES[kind].needs_reason}
+    assert names == needed
 
 
 def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:

@@ -8,7 +8,7 @@ export const referee = {
     "Everything can be seen without a token. To decide, enter with the referee's token.",
     "トークンがなくても閲覧できます。判定を行うには、審判用トークンで入室してください。",
   ],
-  "referee.name": ["Your name (stands in the record)", "お名前(記録に残ります)"],
+  "referee.name": ["Your name (stands in the record)", "お名前（記録に残ります）"],
   "referee.token": ["Referee's token", "審判用トークン"],
   "referee.entering": ["Asking the court …", "コートに確認しています…"],
   "referee.leave": ["Leave", "退室"],
@@ -58,7 +58,7 @@ export const referee = {
     "Click a disc, corner, flag or robot to act on it",
     "ディスク・コーナー・フラッグ・ロボットをクリックすると操作できます",
   ],
-  "referee.stale": ["Not live: the picture is old", "最新ではありません(古い映像です)"],
+  "referee.stale": ["Not live: the picture is old", "最新ではありません（古い映像です）"],
   "referee.view3d": ["3D", "3D"],
   "referee.viewBoard": ["Board", "盤面"],
   "referee.view": ["View", "表示"],
@@ -68,7 +68,7 @@ export const referee = {
   "referee.shortcutsTitle": ["Keyboard shortcuts", "キーボードショートカット"],
   "referee.shortcutsText": [
     "All need Ctrl (on a Mac also ⌘), so that nothing happens by accident.",
-    "誤操作を防ぐため、すべて Ctrl(Mac では ⌘ も可)と一緒に押します。",
+    "誤操作を防ぐため、すべて Ctrl（Mac では ⌘ も可）と一緒に押します。",
   ],
   "referee.keyNext": [
     "the big button: start, halt, resume, official, next",
@@ -109,7 +109,7 @@ export const referee = {
   ],
   "ask.declare": [
     "Your word replaces what was computed; both are kept. A halted match ends.",
-    "計算された結果に代わって審判の宣言が有効になります(両方とも記録に残ります)。中断中の試合は終了します。",
+    "計算された結果に代わって審判の宣言が有効になります（両方とも記録に残ります）。中断中の試合は終了します。",
   ],
   "ask.restartTitle": ["Restart {team}", "{team} を再スタート"],
   "ask.restart": [
@@ -124,12 +124,12 @@ export const referee = {
   "ask.adjustTitle": ["Score of {team}", "{team} の得点を修正"],
   "ask.adjust": [
     "Points are added, or taken away with a minus.",
-    "得点を加算します(マイナスで減点)。",
+    "得点を加算します（マイナスで減点）。",
   ],
   "ask.clockTitle": ["Move the clock", "時計を修正"],
   "ask.clock": [
     "Gives time to play, or takes it away with a minus.",
-    "残り時間を増やします(マイナスで減らします)。",
+    "残り時間を増やします（マイナスで減らします）。",
   ],
   "ask.setTitle": ["{marker} becomes: {state}", "{marker} を「{state}」に"],
   "ask.set": ["The score follows the board.", "得点は盤面に合わせて変わります。"],
@@ -144,8 +144,8 @@ export const referee = {
   "ask.noChanges": ["No other event changes.", "ほかの記録は変わりません。"],
   "ask.seconds": ["Seconds", "秒数"],
   "ask.points": ["Points", "点数"],
-  "ask.between": ["{least} to {most}, not 0", "{least} ～ {most}(0 以外)"],
-  "ask.reason": ["Reason (goes into the record)", "理由(記録に残ります)"],
+  "ask.between": ["{least} to {most}, not 0", "{least} ～ {most}（0 以外）"],
+  "ask.reason": ["Reason (goes into the record)", "理由（記録に残ります）"],
   "ask.words": ["In words", "補足"],
   "ask.needReason": ["Choose a reason first", "先に理由を選んでください"],
   "ask.needWords": ["Say the reason in words", "理由を入力してください"],

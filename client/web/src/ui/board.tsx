@@ -6,7 +6,7 @@ import { type Match, markerStates } from "../core/court";
 import { floorOf, type Place, places } from "../core/poses";
 import { MARKER_STATES, type MarkerInfo, type Sheet } from "../core/wire";
 import { seatName, team } from "../core/words";
-import { t } from "../i18n";
+import { said, t } from "../i18n";
 
 interface Props {
   match: Match;
@@ -26,6 +26,7 @@ const DOWN = "#3b424d";
 export function Board({ match, onPick, picked }: Props) {
   const states = useMemo(() => markerStates(match), [match]).value;
   const robots = useRobots(match);
+  const stop = useSignal(0);
   const sheet = match.sheet.value;
   if (!sheet) return null;
   const floor = floorOf(match.scene.value, sheet);
@@ -38,7 +39,12 @@ export function Board({ match, onPick, picked }: Props) {
   const pickable = onPick ? "button" : undefined;
   return (
     <div class="board">
-      <svg viewBox={box.join(" ")} role="group" aria-label={t("board.title")}>
+      <svg
+        viewBox={box.join(" ")}
+        role="group"
+        aria-label={t("board.title")}
+        onKeyDown={onPick && moveFocus}
+      >
         <defs>
           <pattern
             id="stripes"
@@ -56,8 +62,12 @@ export function Board({ match, onPick, picked }: Props) {
           <g
             key={marker.name}
             transform={`translate(${marker.x_m} ${-marker.y_m})`}
-            {...(onPick && { role: pickable, tabIndex: 0 })}
-            aria-label={`${marker.name}: ${MARKER_STATES[states[index] ?? 0]}`}
+            // In SVG the attribute is all lower case. One stop for the tab key, arrows go on.
+            {...(onPick && { role: pickable, tabindex: index === stop.value ? 0 : -1 })}
+            aria-label={`${marker.name}: ${said(MARKER_STATES[states[index] ?? 0] ?? "")}`}
+            onFocus={() => {
+              stop.value = index;
+            }}
             onClick={() => onPick?.({ marker: index })}
             onKeyDown={(event) => event.key === "Enter" && onPick?.({ marker: index })}
             style={onPick ? "cursor: pointer" : ""}
@@ -83,6 +93,38 @@ export function Board({ match, onPick, picked }: Props) {
       </svg>
     </div>
   );
+}
+
+const ARROWS: Record<string, readonly [x: number, y: number]> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
+
+/** An arrow goes to the nearest thing in its direction. */
+function moveFocus(event: KeyboardEvent & { currentTarget: SVGSVGElement }): void {
+  const way = ARROWS[event.key];
+  if (!way || event.ctrlKey || event.metaKey || event.altKey) return;
+  event.preventDefault();
+  const here = centre(event.target as Element);
+  let nearest: SVGElement | null = null;
+  let least = Number.POSITIVE_INFINITY;
+  for (const one of event.currentTarget.querySelectorAll<SVGElement>("[role=button]")) {
+    const [x, y] = centre(one);
+    const along = (x - here[0]) * way[0] + (y - here[1]) * way[1];
+    const across = Math.abs((x - here[0]) * way[1]) + Math.abs((y - here[1]) * way[0]);
+    if (along > 1 && along + 2 * across < least) {
+      nearest = one;
+      least = along + 2 * across;
+    }
+  }
+  nearest?.focus();
+}
+
+function centre(element: Element): [number, number] {
+  const box = element.getBoundingClientRect();
+  return [box.x + box.width / 2, box.y + box.height / 2];
 }
 
 interface MarkerProps {
@@ -147,7 +189,7 @@ function Robot({ place, seat, sheet, picked, onPick }: RobotProps) {
   return (
     <g
       transform={`translate(${place.xM} ${-place.yM}) rotate(${degrees})`}
-      {...(onPick && { role: "button", tabIndex: 0, onClick: onPick })}
+      {...(onPick && { role: "button", tabindex: 0, onClick: onPick })}
       aria-label={name}
       onKeyDown={(event) => event.key === "Enter" && onPick?.()}
       style={onPick ? "cursor: pointer" : ""}

@@ -90,7 +90,7 @@ function MarkerActs({ desk, marker, then }: { desk: Desk; marker: number; then: 
     <>
       <h2 id="pick-title">
         {kindName(info.kind, info.name)}
-        {info.points > 0 && (
+        {info.points > 1 && (
           <span class="muted"> · {t("pick.points", { points: info.points })}</span>
         )}
       </h2>
