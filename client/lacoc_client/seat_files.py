@@ -8,7 +8,7 @@ from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_shared.gait import JOINTS_PER_LEG, LocomotionTable, PostureTable
 from lacoc_shared.gait_cells import leg_labels
 from lacoc_shared.gait_text import write_gait
-from lacoc_shared.gait_workbook import read_gait_file
+from lacoc_shared.gait_workbook import read_gait_file, read_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 
@@ -45,6 +45,27 @@ def gather(robot: str | None, gaits: Sequence[Path]) -> SeatFiles:
     return SeatFiles(robot_file, *(sample_gait_files(robot) if robot else (None, None)))
 
 
+def as_text(files: SeatFiles) -> SeatFiles:
+    """Turn workbooks into the text that they stand for: that is what a court reads.
+
+    Raises:
+        FileRefused: with every mistake of every workbook.
+    """
+    mistakes: list[Mistake] = []
+    texts: list[SentFile | None] = []
+    for file in (files.postures, files.locomotion):
+        if file is None or not file.data.startswith(_ZIP):
+            texts.append(file)
+            continue
+        try:
+            texts.append(_text(file.name, read_workbook(file.data, file.name)))
+        except FileRefused as refused:
+            mistakes += refused.mistakes
+    if mistakes:
+        raise FileRefused(mistakes)
+    return SeatFiles(files.robot, *texts)
+
+
 def gaits_in(folder: Path) -> list[Path]:
     """The gait files of a folder (workshop 4-1): for each level the one that was saved last."""
     found = (
@@ -79,5 +100,9 @@ def _sent(path: Path, table: _Table) -> SentFile:
     data = path.read_bytes()
     if not data.startswith(_ZIP):
         return SentFile(path.name, data)
+    return _text(path.name, table)
+
+
+def _text(name: str, table: _Table) -> SentFile:
     text = write_gait(table, leg_labels(table.joints // JOINTS_PER_LEG))
-    return SentFile(f"{path.stem}.txt", text)
+    return SentFile(f"{Path(name).stem}.txt", text)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_client.seat_files import SeatFiles, gaits_in, gather
+from lacoc_client.seat_files import SeatFiles, as_text, gaits_in, gather
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.gait import PostureTable
 from lacoc_shared.gait_cells import leg_labels
@@ -120,3 +120,17 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
     """A wrong path is said."""
     with pytest.raises(UserError, match=r"missing\.txt"):
         gather(None, [tmp_path / "missing.txt"])
+
+
+def test_a_workbook_travels_as_text() -> None:
+    """A page sends what it was given; a court reads text. Its mistakes name their cells."""
+    book = SentFile("Loco-data.xlsx", workbook())
+    files = as_text(SeatFiles(postures=book, locomotion=SAMPLE.locomotion))
+    assert files.postures is not None
+    assert files.postures.name == "Loco-data.txt"
+    assert read_gait(files.postures.data, "a") == read_gait(POSTURES, "b")
+    assert files.locomotion == SAMPLE.locomotion
+
+    with pytest.raises(FileRefused) as caught:
+        as_text(SeatFiles(postures=SentFile("broken.xlsx", b"PK\x03\x04")))
+    assert [one.file for one in caught.value.mistakes] == ["broken.xlsx"]

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from lacoc_client.controller import REPEAT_S, Controller, Hold
-from lacoc_client.seat_files import SeatFiles
+from lacoc_client.seat_files import SeatFiles, as_text
 from lacoc_shared.contest import Access
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.session import open_client
@@ -90,7 +90,7 @@ class SeatThread:
                     access.seat,
                     access.token,
                     self._team,
-                    **self._files._asdict(),
+                    **as_text(self._files)._asdict(),
                     notify=lambda: self._jobs.put(None),
                 )
                 notes = controller.join()

@@ -8,8 +8,8 @@ import type { SentFile } from "./wire";
 export const SLOTS = ["robot", "postures", "locomotion"] as const;
 export type Slot = (typeof SLOTS)[number];
 
-/** Larger ones are no gait and no robot: the court takes 32 KiB of text, 1 MiB of workbook. */
-export const MOST_BYTES = 1 << 20;
+/** Of all files together: a join is one message, and those are at most 64 KiB long. */
+export const MOST_BYTES = 62 * 1024;
 
 interface Kept {
   name: string;

@@ -1,11 +1,11 @@
 /** A contestant: holds a seat through a gateway, sends keys, sees what became of them. */
 
 import { batch, computed, effect, type ReadonlySignal, signal, untracked } from "@preact/signals";
-import type { Refused } from "./connection";
+import { Refused } from "./connection";
 import type { Court } from "./court";
-import { chosenFiles } from "./files";
+import { chosenFiles, MOST_BYTES } from "./files";
 import { PosData } from "./posdata";
-import { type Frame, Phase, SeatFlag, type SeatFrame, sameBytes } from "./wire";
+import { type Frame, Phase, SeatFlag, type SeatFrame, type SentFile, sameBytes } from "./wire";
 
 /** The seat that this page wants to hold; it is asked for again after every break. */
 export interface Wish {
@@ -128,8 +128,15 @@ export class Player {
   /** Bring the chosen files anew; the court says what becomes of them. */
   async rejoin(): Promise<void> {
     const wish = this.wish.peek();
+    if (!wish) return;
     this.first = true;
-    if (wish) await this.ask(wish);
+    if (this.alone && this.isHeld()) {
+      // A match keeps the files that it began with. Nobody minds when one of practice ends: the
+      // next opens at once, and the seat is asked for again because it is wished for still.
+      await this.court.ask("leave").catch(() => undefined);
+      return;
+    }
+    await this.ask(wish);
   }
 
   /** Go back to the card, from having left or lost the seat. */
@@ -260,10 +267,12 @@ export class Player {
     this.asking.value = true;
     try {
       const { seat, token, name } = wish;
-      const fields = { seat, token, name, ...chosenFiles() };
+      const files = chosenFiles();
+      checkSizes(Object.values(files));
+      const fields = { seat, token, name, ...files };
       const joined = await this.court.ask<{ notes: string[]; index: number }>("join", fields);
       this.begin(wish, joined.index);
-      for (const note of joined.notes) if (note) this.say({ text: note, tone: "plain" });
+      for (const note of this.alone ? [] : joined.notes) this.say({ text: note, tone: "plain" });
     } catch (error) {
       await this.notJoined(wish, error as Refused);
     } finally {
@@ -295,7 +304,7 @@ export class Player {
 
   private async notJoined(wish: Wish, refused: Refused): Promise<void> {
     const broke = !this.court.connection.state.peek().open;
-    const isFinal = refused.mistakes.length > 0 || /token/i.test(refused.message);
+    const isFinal = refused.mistakes.length > 0 || /token|too large/i.test(refused.message);
     if (broke || !(isFinal || this.first || ++this.tries >= MOST_TRIES)) {
       await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
       return; // asked again once there is a court
@@ -368,6 +377,17 @@ export class Player {
     }
     this.data.add(frame);
   }
+}
+
+/** A longer message would only cost the connection. */
+function checkSizes(files: readonly (SentFile | null)[]): void {
+  const bytes = files.reduce((sum, file) => sum + (file?.data.length ?? 0), 0);
+  if (bytes <= MOST_BYTES) return;
+  const [size, most] = [bytes, MOST_BYTES].map((count) => Math.ceil(count / 1024));
+  throw new Refused(
+    `Your files are too large together: ${size} KiB, at most ${most} KiB travel. ` +
+      "Shorten the gait files.",
+  );
 }
 
 function kept(): Wish | null {

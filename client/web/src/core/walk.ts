@@ -19,8 +19,8 @@ const BEATS_PER_S = 50;
 /** A body sways with each step: its way is taken between points so far apart. */
 const STEP_M = 0.01;
 const WINDOW_BEATS = BEATS_PER_S;
-/** No robot walks so far between two looks: it was put back to the start. */
-const JUMP_M = 0.25;
+/** What goes faster does not walk: it was put back to the start. */
+const JUMP_MPS = 0.6;
 
 interface Spot {
   beat: number;
@@ -48,7 +48,7 @@ export class Walker {
     }
     const spot = { beat: frame.beat, xM: place.xM, yM: place.yM };
     const last = this.spots.at(-1);
-    if (!last || frame.match !== this.match || apart(last, spot) > JUMP_M) {
+    if (!last || frame.match !== this.match || isJump(last, spot)) {
       this.begin(spot, frame.match);
     }
     this.spots = [...this.spots.filter((one) => spot.beat - one.beat <= WINDOW_BEATS), spot];
@@ -73,6 +73,11 @@ export class Walker {
     this.walkedM = 0;
     this.spots = [];
   }
+}
+
+function isJump(from: Spot, to: Spot): boolean {
+  const seconds = Math.max(1, to.beat - from.beat) / BEATS_PER_S;
+  return apart(from, to) > JUMP_MPS * seconds + STEP_M;
 }
 
 function apart(one: Spot, other: Spot): number {

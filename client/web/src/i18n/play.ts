@@ -123,6 +123,10 @@ export const play = {
     "このままお待ちください。次の試合にも参加します",
   ],
   "next.practice": ["Practice begins …", "練習を始めます…"],
+  "next.lost": [
+    "No link to the court: your robot stands until it is back",
+    "コートとつながっていません。つながるまでロボットは停止します",
+  ],
   "next.rejoin": ["Taking your seat again …", "席に戻っています…"],
 
   // Ready

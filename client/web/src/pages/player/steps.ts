@@ -25,6 +25,7 @@ export function nextStep(court: Court, player: Player, alone: boolean): Step {
   const seat = frame?.seats[index];
   if (player.standing.value === "joining") return { text: t("next.rejoin"), tone: "wait" };
   if (!frame || !sheet || !seat) return { text: t("next.wait"), tone: "wait" };
+  if (!player.canSteer.value) return { text: t("next.lost"), tone: "warn" };
   const seconds = Math.ceil(seat.locked_ticks / BEATS_PER_S);
   switch (frame.phase) {
     case Phase.LOBBY:

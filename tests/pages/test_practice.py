@@ -1,0 +1,159 @@
+"""/practice: what `lacoc practice` opens (workshop 4-4, Fig. 4-3)."""
+
+import re
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+from contestant import Contestant, Sit
+from court_process import LACOC, environment
+
+from lacoc_robots.library import sample_gait_files
+from lacoc_shared.gait import PostureTable
+from lacoc_shared.gait_cells import leg_labels
+from lacoc_shared.gait_text import read_gait
+from lacoc_shared.gait_workbook import write_workbook
+from lacoc_shared.seat import Phase
+
+pytestmark = pytest.mark.slow
+
+Practise = Callable[..., Contestant]
+
+
+@pytest.fixture
+def address(tmp_path: Path, built_pages: Path) -> Iterator[str]:
+    """Where the page of a `lacoc practice` is; it ends after the browser's page."""
+    process = subprocess.Popen(
+        [*LACOC, "practice", "--no-open"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        stdin=subprocess.DEVNULL,
+        text=True,
+        cwd=tmp_path,
+        env=environment(),
+    )
+    assert process.stdout is not None
+    said = re.search(r"http://\S+", process.stdout.readline())
+    assert said is not None
+    yield said[0]
+    process.terminate()
+    process.communicate(timeout=30)
+
+
+@pytest.fixture
+def practise(address: str, sit: Sit) -> Practise:
+    """Opens the page in a browser of the tests."""
+
+    def begin(**options: object) -> Contestant:
+        parts = urlsplit(address)
+        page = sit(f"http://{parts.netloc}", **options)
+        page.open("/practice", parts.fragment.removeprefix("key="))
+        return page
+
+    return begin
+
+
+def lessons(page: Contestant, *keys: int) -> None:
+    """Press keys when they are shown as the next ones, each when the one before stands."""
+    for key in keys:
+        page.sees(".steps li.now", str(key))
+        page.press(str(key))
+        page.key_stands(key)
+        page.page.wait_for_timeout(400)  # "slow keyboard inputs" (workshop 4-4): 45 degrees
+
+
+def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> None:
+    """Issue 3: open, press 1-2-3-4, see it walk; both levels, x, z and Pos-data.txt."""
+    page = practise()
+    page.stands("seated")
+    page.phase(Phase.PLAYING)  # nobody had to say ready
+    page.sees(".lesson", "Slowly press 1, 2, 3, 4")
+    page.sees(".key.hinted[data-key='1']")
+    lessons(page, 1, 2, 3, 4)
+    page.sees(".lesson", "Well done")
+    lessons(page, 1, 2, 3, 4)
+    page.sees(".lesson", "walks back")
+    assert page.find(".pressed kbd").all_inner_texts() == [*"12341234"]
+    page.until("Number(document.querySelectorAll('.figures dd')[1].firstChild.data) > 0.04")
+    assert abs(page.number(".figures dd") - 90) < 30  # it walks straight on
+
+    page.press("Tab")
+    page.is_toasted("Level B: press a digit")
+    page.press("ArrowUp")
+    page.key_stands(2)
+    page.sees(".stands", "B 2: posture")
+    page.sees(".lesson", "That is all")
+    page.until("Number(document.querySelectorAll('.figures dd')[2].firstChild.data) > 2")
+    page.press("x")
+    page.key_stands(0)
+    page.until("Number(document.querySelectorAll('.figures dd')[1].firstChild.data) < 0.04")
+    page.press("3")  # at once: practice has no pause
+    page.key_stands(3)
+
+    page.press("z")
+    name, text = page.download(lambda: page.page.click("text=Save and leave"), tmp_path)
+    assert name == "Pos-data.txt"
+    rows = [line.split("\t") for line in text.splitlines()[1:]]
+    assert max(float(row[2]) for row in rows) > 0.04
+    times_s = [float(row[0]) for row in rows]
+    assert times_s[0] == 0
+    assert times_s == sorted(times_s)
+    page.stands("left")
+    page.page.click("text=Practise again")
+    page.stands("seated")
+    page.phase(Phase.PLAYING)
+
+
+def test_a_reload_goes_on(practise: Practise) -> None:
+    """The tab keeps its seat and its level; the robot stands until the next key."""
+    page = practise()
+    page.phase(Phase.PLAYING)
+    page.press("Tab", "1")
+    page.key_stands(1)
+    page.page.reload()
+    page.stands("seated")
+    page.phase(Phase.PLAYING)
+    page.sees(".levels button.on", "B locomotion")
+    page.press("2")
+    page.key_stands(2)
+
+
+def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> None:
+    """Rules 2: a workbook as it is; its keys are the pad's, and nothing else does anything."""
+    sample = sample_gait_files("hexapod")
+    assert sample.postures is not None
+    table = read_gait(sample.postures.data, "Loco-data.txt")
+    assert isinstance(table, PostureTable)
+    few = PostureTable({4: table.postures[1], 5: table.postures[2]})
+    book = tmp_path / "Loco-data.xlsx"
+    book.write_bytes(write_workbook(few, leg_labels(6)))
+    page = practise()
+    page.stands("seated")
+    page.page.click("text=Change files")
+    page.find("dialog input[type=file]").set_input_files(book)
+    page.sees("dialog .files li:has-text('Level A')", "Loco-data.xlsx")
+    page.page.click("text=Use these files")
+    page.sees(".lesson", "Your own gait is loaded")
+    page.sees(".key.does[data-key='4']")
+    page.sees(".key.none[data-key='1']")
+    page.stands("seated")
+    page.phase(Phase.PLAYING)
+    page.press("4")
+    page.key_stands(4)
+
+
+def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
+    """Issue 3: the pad is there without scrolling, in the browser's language."""
+    phone = {"width": 390, "height": 844}
+    page = practise(viewport=phone, has_touch=True, is_mobile=True, locale="ja-JP")
+    page.phase(Phase.PLAYING)
+    page.sees(".lesson", "ゆっくり順番に")
+    page.find(".key[data-key='1']").tap()
+    page.key_stands(1)
+    assert page.page.evaluate("document.documentElement.scrollWidth") <= phone["width"]
+    for digit in range(10):
+        box = page.find(f'.key[data-key="{digit}"]').bounding_box()
+        assert box is not None
+        assert box["y"] + box["height"] <= phone["height"]
