@@ -2,10 +2,11 @@
 
 import {
   BoxGeometry,
-  type BufferGeometry,
+  BufferGeometry,
   CapsuleGeometry,
   CylinderGeometry,
   DynamicDrawUsage,
+  Float32BufferAttribute,
   InstancedBufferAttribute,
   InstancedMesh,
   type Material,
@@ -24,6 +25,8 @@ export interface Shape {
   make(fine: boolean): BufferGeometry;
 }
 
+const FLAT_M = 0.003;
+const PLATE_CORNERS = 30;
 /** Of a robot's boxes: rounded, so that the light plays on them. */
 const ROUND_M = 0.012;
 
@@ -36,6 +39,7 @@ export function shapeOf(geom: Pick<SceneGeom, "type" | "size">, round: boolean):
     case "ellipsoid":
       return { key: "sphere", scale: [a, b, c], make: sphere };
     case "cylinder":
+      if (b < FLAT_M) return { key: "plate", scale: [a, a, b], make: plate };
       return { key: `cylinder${a < 0.03}`, scale: [a, a, b], make: (fine) => cylinder(fine, a) };
     case "capsule":
       return {
@@ -63,6 +67,30 @@ function sphere(fine: boolean): BufferGeometry {
 function cylinder(fine: boolean, radius: number): BufferGeometry {
   const segments = radius < 0.03 ? (fine ? 16 : 8) : fine ? 72 : 36;
   return new CylinderGeometry(1, 1, 2, segments).rotateX(Math.PI / 2);
+}
+
+/** A cylinder so flat that, drawn coarsely, its side is not missed. */
+function plate(fine: boolean): BufferGeometry {
+  if (fine) return cylinder(fine, 1);
+  const index: number[] = [];
+  const position: number[] = [];
+  const normal: number[] = [];
+  for (const side of [1, -1]) {
+    const first = position.length / 3;
+    for (let corner = 0; corner < PLATE_CORNERS; corner++) {
+      const turn = (corner / PLATE_CORNERS) * 2 * Math.PI;
+      position.push(Math.cos(turn), Math.sin(turn), side);
+      normal.push(0, 0, side);
+      if (corner < 2) continue;
+      const [one, other] = side > 0 ? [corner - 1, corner] : [corner, corner - 1];
+      index.push(first, first + one, first + other);
+    }
+  }
+  const geometry = new BufferGeometry();
+  geometry.setIndex(index);
+  geometry.setAttribute("position", new Float32BufferAttribute(position, 3));
+  geometry.setAttribute("normal", new Float32BufferAttribute(normal, 3));
+  return geometry;
 }
 
 /** A box whose edges are rounded: a finer box, its surface drawn to the inner box and blown up. */
@@ -100,6 +128,8 @@ export class Batch {
   private readonly colours: Float32Array;
   private readonly patterns: Float32Array;
   private readonly partners: Float32Array;
+  private readonly last: { colour: Rgb; pattern: number }[] = [];
+  private tinted = false;
   private count = 0;
 
   /** @param raw Colours go to the screen as they are, not through the light's arithmetic. */
@@ -138,7 +168,11 @@ export class Batch {
   add(matrix: Matrix4, colour: Rgb, pattern: number, period_m: number): void {
     const at = this.count++;
     this.matrices.set(matrix.elements, 16 * at);
-    const other = pattern ? (pattern === 3 ? EDGE : partner(colour)) : colour;
+    // Colours change seldom: a place that keeps its own is not sent to the graphics card again.
+    if (this.last[at]?.colour === colour && this.last[at].pattern === pattern) return;
+    this.last[at] = { colour, pattern };
+    this.tinted = true;
+    const other = pattern ? (pattern === PATTERNS.edge ? EDGE : partner(colour)) : colour;
     for (let part = 0; part < 3; part++) {
       this.colours[3 * at + part] = this.raw ? colour[part]! : linear(colour[part]!);
       this.partners[3 * at + part] = this.raw ? other[part]! : linear(other[part]!);
@@ -151,7 +185,9 @@ export class Batch {
   done(): void {
     this.mesh.count = this.count;
     this.mesh.visible = this.count > 0;
-    for (const attribute of this.attributes) attribute.needsUpdate = true;
+    this.mesh.instanceMatrix.needsUpdate = true;
+    if (this.tinted) for (const attribute of this.attributes) attribute.needsUpdate = true;
+    this.tinted = false;
   }
 
   dispose(): void {

@@ -55,6 +55,8 @@ interface Piece {
   period_m: number;
   marker: number;
   state: number;
+  /** Goes when its marker begins to fall. */
+  stays?: boolean;
 }
 
 /** What is pointed at: a ring is drawn round it. */
@@ -309,7 +311,7 @@ export class Stage {
         const shape = shapeOf({ type: "cylinder", size: [FOOT_M, FOOT_TOP_M, 0] }, false)!;
         const local = new Matrix4().makeTranslation(x_m, y_m, FOOT_TOP_M);
         local.scale(new Vector3(...shape.scale));
-        return { ...cloth, shape, local, pattern: PATTERNS.plain };
+        return { ...cloth, shape, local, pattern: PATTERNS.plain, stays: true };
       });
   }
 
@@ -412,6 +414,7 @@ export class Stage {
     for (const piece of this.markerPieces) {
       const { state, matrix } = motion.posture(piece.marker, nowMs);
       if (piece.state !== state && piece.state >= 0) continue;
+      if (matrix && piece.stays) continue;
       this.put(markers, piece, matrix ?? identity);
     }
     markers.done();

@@ -48,6 +48,8 @@ export interface ViewHook {
   readonly drawnBeat: number;
   readonly drawnFrames: number;
   readonly camera: string;
+  /** Pixels drawn for one of the page, along a side. */
+  readonly ratio: number;
   /** "low", "high", or "map" where nothing is drawn in three dimensions. */
   readonly quality: string;
   readonly eye: [number, number, number] | null;
@@ -60,6 +62,9 @@ export interface ViewHook {
 }
 
 const MOST_RATIO = 2;
+/** Low quality has fewer pixels, down to this, where frames come slower than that. */
+const LEAST_RATIO = 0.65;
+const UNEVEN_MS = 30;
 /** A leap in time of more beats shows no movements. */
 const LEAP_BEATS = 100;
 const RETRY_MS = 1000;
@@ -148,6 +153,9 @@ export class Viewer {
       },
       get quality() {
         return viewer.map ? "map" : (viewer.stage?.fineness ?? "");
+      },
+      get ratio() {
+        return viewer.stage?.renderer.getPixelRatio() ?? 0;
       },
       get eye() {
         return viewer.axes?.eye ?? null;
@@ -329,16 +337,16 @@ export class Viewer {
 
   /** Draw less finely if this machine cannot keep up. */
   private judge(): void {
-    if (!this.stage || !tooSlow(this.times)) return;
-    if (this.stage.fineness === "high") {
-      if (this.options.quality !== "auto") return;
+    if (!this.stage || !this.times.full) return;
+    if (this.stage.fineness === "low") {
+      if (this.thrift <= LEAST_RATIO || this.times.p95Ms < UNEVEN_MS) return;
+      this.thrift *= 0.8;
+      this.times.reset();
+      this.resize();
+    } else if (this.options.quality === "auto" && tooSlow(this.times)) {
       this.slow = true;
       rememberSlow(this.stage.renderer.getContext() as WebGL2RenderingContext);
       this.drop();
-    } else if (this.thrift > 0.5 && this.options.quality === "auto") {
-      this.thrift *= 0.75;
-      this.times.reset();
-      this.resize();
     }
   }
 
