@@ -11,7 +11,7 @@ from lacoc_shared import decisions as d
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import Decide
-from lacoc_shared.messages import DecisionRequest, Refusal
+from lacoc_shared.messages import DecisionRequest, Done, Enter, Refusal
 
 HASHES = [seal.hash_token("other"), seal.hash_token("whistle")]
 
@@ -68,7 +68,18 @@ def test_a_wrong_token_learns_nothing() -> None:
     assert refusal == Refusal("This is not a referee's token of this court.")
 
 
+def test_a_token_can_be_shown_without_deciding() -> None:
+    """A page asks whether it may referee before it shows buttons."""
+    desk = DecisionDesk(HASHES)
+    assert desk.enter(encode(Enter(token="whistle"))) == Done()
+    refusal = Refusal("This is not a referee's token of this court.")
+    assert desk.enter(encode(Enter(token="guess"))) == refusal
+    assert isinstance(desk.enter(encode({"token": "whistle", "more": 1})), Refusal)
+    assert desk.refused == {"wrong token": 1, "bad bytes": 1}
+
+
 @given(st.text(), st.binary(max_size=300))
 def test_no_bytes_ever_raise(name: str, payload: bytes) -> None:
     """Failure policy: bad bytes are dropped and counted."""
     assert isinstance(DecisionDesk(HASHES).decision(name, payload), Refusal)
+    assert isinstance(DecisionDesk(HASHES).enter(payload), Refusal)

@@ -311,6 +311,9 @@ class Page:
                 self._viewer.send(wire.reply(to, await work))
             except (UserError, FileRefused) as error:
                 self._viewer.send(wire.refusal(to, error))
+            except Exception:  # a bug, but no page waits for ever
+                self._viewer.send(wire.refusal(to, wire.FAULT))
+                raise
 
         task = asyncio.get_running_loop().create_task(answer())
         self._tasks.add(task)

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from lacoc_client.controller import REPEAT_S, Controller, Hold
+from lacoc_client.gateway.wire import FAULT
 from lacoc_client.seat_files import SeatFiles, as_text
 from lacoc_shared.contest import Access
 from lacoc_shared.mistakes import FileRefused, UserError
@@ -97,12 +98,16 @@ class SeatThread:
                 joined({"notes": notes, "index": controller.index}, None)
                 self._report(controller)
                 self._hold(controller)
-        except (UserError, FileRefused) as error:
+        except Exception as error:
+            known = isinstance(error, UserError | FileRefused)
+            told = error if known else UserError(FAULT)
             if not self._told:
-                joined(None, error)
+                joined(None, told)
             else:
-                lost = {"hold": Hold.REFUSED.value, "reason": str(error), "round_trip_ms": None}
+                lost = {"hold": Hold.REFUSED.value, "reason": str(told), "round_trip_ms": None}
                 self._tell(self._told | lost)
+            if not known:  # a bug, but no page waits for ever
+                raise
         finally:
             self._refuse_rest()
 

@@ -21,6 +21,9 @@ REQUEST_BYTES = 4096
 """A longer message that is no join is refused."""
 
 
+FAULT = "The gateway has a fault; its window says more. Try again, or tell the organiser."
+
+
 class Kind(IntEnum):
     """What a message to a page is."""
 

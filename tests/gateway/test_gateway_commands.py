@@ -1,0 +1,150 @@
+"""Commands that open a page: what they print, what they fill in, how they end."""
+
+import re
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from court_process import LACOC, CourtProcess, environment
+from page_client import PageClient
+
+from lacoc_client.gateway.files import NOT_BUILT, PageFiles
+from lacoc_robots.library import sample_gait_files
+from lacoc_shared.seat import Phase
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not PageFiles().built, reason=NOT_BUILT),
+]
+
+
+class Command:
+    """A command that says where its page is."""
+
+    def __init__(self, folder: Path, *words: str) -> None:
+        self.process = subprocess.Popen(
+            [*LACOC, *words, "--no-open"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            cwd=folder,
+            env=environment(),
+        )
+        assert self.process.stdout is not None
+        self.said = ""
+        found = None
+        while found is None:
+            line = self.process.stdout.readline()
+            assert line, self.said
+            self.said += line
+            found = re.search(r"Open (http://127\.0\.0\.1:\d+)(/\w+)(?:#key=(\S+))?", line)
+        self.url, self.path, self.key = found.groups()
+
+    def ended(self) -> int:
+        self.process.send_signal(signal.SIGINT)
+        out, _ = self.process.communicate(timeout=30)
+        self.said += out
+        return self.process.returncode
+
+
+@pytest.fixture
+def stack() -> Iterator[ExitStack]:
+    with ExitStack() as opened:
+        yield opened
+
+
+def test_play_fills_its_page_in(tmp_path: Path, stack: ExitStack) -> None:
+    """Seat, token, name and files of the command line; a join that names none takes them."""
+    court = CourtProcess(tmp_path, "--arena", "othello")
+    stack.callback(court.close)
+    gait = sample_gait_files("hexapod").locomotion
+    assert gait is not None
+    (tmp_path / "LocoTra-data.txt").write_bytes(gait.data)
+    play = Command(tmp_path, "play", "--name", "Ants", *court.where("left"))
+    assert play.path == "/play"
+    assert "Taken from this folder: LocoTra-data.txt." in play.said
+    with PageClient(play.url) as stranger:
+        assert stranger.welcome["prefill"] is None
+    with PageClient(play.url, play.key) as page:
+        assert page.welcome["home"] == "player"
+        assert page.welcome["prefill"] == {
+            "seat": "left",
+            "name": "Ants",
+            "has_token": True,
+            "files": ["LocoTra-data.txt"],
+        }
+        page.ask("join", seat="left", token=None, name="Ants")
+        page.wait(lambda: page.sheet is not None and page.sheet.seats[0].team == "Ants")
+        assert page.sheet is not None
+        assert page.sheet.seats[0].keys == ((), (0, 1, 2, 3))
+    assert play.ended() == 0
+    assert "Traceback" not in play.said
+
+
+def test_play_needs_no_seat_to_open(tmp_path: Path, stack: ExitStack) -> None:
+    """What is not said is asked for by the page, also where no court runs yet."""
+    play = Command(tmp_path, "play", "--connect", "tcp/127.0.0.1:1")
+    with PageClient(play.url, play.key) as page:
+        expected = {"seat": "", "name": "", "has_token": False, "files": []}
+        assert page.welcome["prefill"] == expected
+        page.wait(lambda: "Nobody listens" in page.link["text"])
+    assert play.ended() == 0
+
+
+def test_practice_has_a_court_of_its_own(tmp_path: Path) -> None:
+    """Workshop 4-4: join, ready, press; the court ends with the page's gateway."""
+    practice = Command(tmp_path, "practice", "--recordings", "kept")
+    assert practice.path == "/practice"
+    with PageClient(practice.url, practice.key, hz=50) as page:
+        assert page.welcome["home"] == "practice"
+        assert page.welcome["prefill"]["seat"] == "solo"
+        page.ask("join", seat="solo", token=None, name="")
+        page.ask("ready", ready=True)
+        page.phase(Phase.PLAYING)
+        seq = page.ask("key", level=0, key=1)["seq"]
+        page.wait(lambda: page.own().applied_seq >= seq)
+    assert practice.ended() == 0
+    assert [path.suffix for path in (tmp_path / "kept").iterdir()] == [".mcap"]
+
+
+def test_watch_shows_a_court(tmp_path: Path, stack: ExitStack) -> None:
+    """Read-only: its address carries no key."""
+    court = CourtProcess(tmp_path, "--arena", "othello")
+    stack.callback(court.close)
+    watch = Command(tmp_path, "watch", *court.where())
+    assert (watch.path, watch.key) == ("/watch", None)
+    with PageClient(watch.url) as page:
+        page.wait(lambda: page.frame and page.scene)
+    assert watch.ended() == 0
+
+
+def test_demo_says_where_its_page_is_early(tmp_path: Path) -> None:
+    """The page comes before the match; everything ends with it."""
+    words = ("demo", "--seconds", "2", "--speed", "4")
+    done = subprocess.run(
+        [*LACOC, *words],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env={**environment(), "DISPLAY": "", "WAYLAND_DISPLAY": "", "BROWSER": ""},
+        timeout=90,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("Watch at http://127.0.0.1:")
+    assert "OFFICIAL." in done.stdout
+
+
+def test_demo_without_a_head_opens_nothing(tmp_path: Path) -> None:
+    """For servers and continuous integration."""
+    words = ("demo", "--headless", "--seconds", "2", "--speed", "4")
+    done = subprocess.run(
+        [*LACOC, *words], capture_output=True, text=True, cwd=tmp_path, env=environment(),
+        timeout=90, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "http://" not in done.stdout

@@ -1,0 +1,209 @@
+"""The parts of a gateway that need no court."""
+
+import contextlib
+import re
+from pathlib import Path
+from typing import Any, get_args
+
+import msgpack
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_client.controller import Hold
+from lacoc_client.event_log import EventLog
+from lacoc_client.gateway import home, server, wire
+from lacoc_client.gateway.guard import Guard
+from lacoc_client.gateway.page import Allowance
+from lacoc_client.gateway.site import PATHS
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_shared.codec import BadMessage
+from lacoc_shared.contest import throwaway
+from lacoc_shared.messages import Event
+from lacoc_shared.mistakes import UserError
+
+PAGE = (Path(__file__).parents[2] / "docs" / "gateway.md").read_text(encoding="utf-8")
+
+
+def rows(title: str) -> list[list[str]]:
+    """The cells of a section's table, without its head."""
+    match = re.search(rf"^## {title}\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL)
+    assert match
+    lines = [line for line in match[1].splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+
+
+def test_the_document_has_every_kind() -> None:
+    """docs/gateway.md: numbers and names of what a page gets."""
+    found = [(int(number), name.upper()) for number, name, _ in rows("Gateway to page")]
+    assert found == [(kind.value, kind.name) for kind in wire.Kind]
+
+
+def test_the_document_has_every_request_with_its_fields() -> None:
+    """docs/gateway.md: what a page may ask."""
+    found = {do.strip("`"): set(re.findall(r"`(\w+)`", f)) for do, f, _ in rows("Page to gateway")}
+    expected = {
+        str(kind.__struct_config__.tag): {field.name for field in msgspec.structs.fields(kind)}
+        - {"id"}
+        for kind in get_args(wire.Asked)
+    }
+    assert found == expected
+
+
+def test_the_document_has_every_path_and_hold() -> None:
+    """docs/gateway.md: paths, and how a seat is."""
+    assert re.findall(r"`([^`]+)`", rows("Paths")[0][0]) == list(PATHS)
+    for hold in set(Hold) - {Hold.NOT_JOINED}:
+        assert f"`{hold.value}`" in PAGE
+
+
+@given(st.binary(max_size=300))
+def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
+    """Bad input never raises anything but the documented error."""
+    with contextlib.suppress(BadMessage):
+        wire.read(data)
+    wire.read_id(data)
+
+
+@given(
+    st.dictionaries(
+        st.sampled_from(["id", "do", "seat", "token", "level", "key", "hz", "decision", "court"]),
+        st.none() | st.integers(-(2**63), 2**64 - 1) | st.floats() | st.text() | st.binary(),
+    )
+)
+def test_no_map_of_a_page_breaks_the_reader(fields: dict[str, Any]) -> None:
+    """The same, closer to what is expected."""
+    data = msgpack.packb(fields, unicode_errors="surrogatepass")
+    with contextlib.suppress(BadMessage):
+        wire.read(data)
+    wire.read_id(data)
+
+
+@pytest.mark.parametrize("size", [0, 1, 124, 125, 126, 65_534, 65_535, 70_000])
+def test_a_message_is_a_websocket_frame(size: int) -> None:
+    """RFC 6455: each of the three lengths."""
+    framed = wire.message(wire.Kind.EVENT, bytes(size))
+    assert framed[0] == 0x82
+    length, head = framed[1], 2
+    if length == 126:
+        length, head = int.from_bytes(framed[2:4]), 4
+        assert length >= 126
+    elif length == 127:
+        length, head = int.from_bytes(framed[2:10]), 10
+        assert length >= 65_536
+    assert length == size + 1 == len(framed) - head
+    assert framed[head] == wire.Kind.EVENT
+
+
+class Wire:
+    """A socket that takes what it is told to take."""
+
+    def __init__(self) -> None:
+        self.written: list[bytes] = []
+        self.keeps_up = True
+        self.drained: Any = None
+
+    def write(self, framed: bytes) -> None:
+        self.written.append(framed)
+
+
+def test_a_viewer_has_one_slot() -> None:
+    """While a page does not keep up, the newest frame takes the place of the one before."""
+    socket = Wire()
+    viewer = Viewer(socket)  # type: ignore[arg-type]
+    viewer.rate(50)
+    socket.keeps_up = False
+    for number in range(20):
+        viewer.offer(b"%d" % number, number * 0.02)
+    viewer.send_if_fast(b"health")
+    assert socket.written == []
+    viewer.send(b"event")
+    socket.drained()
+    assert socket.written == [b"event", b"19"]
+    socket.drained()
+    assert socket.written == [b"event", b"19"]
+
+
+@pytest.mark.parametrize(
+    ("hz", "expected"),
+    [(50, 500), (25, 250), (10, 100), (1, 10), (0, 10), (-3, 10), (1e9, 500), (float("nan"), 500)],
+)
+def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
+    """Evenly, also with jitter; what is no rate is the nearest that is one."""
+    socket = Wire()
+    viewer = Viewer(socket)  # type: ignore[arg-type]
+    viewer.rate(hz)
+    for beat in range(500):
+        viewer.offer(b"%d" % beat, 100 + beat * 0.02 + (beat * 7 % 5 - 2) * 0.002)
+    assert len(socket.written) == pytest.approx(expected, rel=0.02, abs=1)
+
+
+def event(number: int, text: str = "", match: int = 1) -> Event:
+    return Event(number=number, match=match, beat=0, clock_ticks=0, kind="phase", text=text)
+
+
+def test_a_log_that_begins_again() -> None:
+    """What is sent again is not new; where it differs, what came before it stays true."""
+    log: EventLog[str] = EventLog()
+    assert [log.add(event(n, "old"), f"old {n}") for n in (1, 2, 3)] == [True] * 3
+    assert [log.add(event(n, "old"), "again") for n in (1, 2, 3)] == [False] * 3
+    assert (list(log), log.number) == (["old 1", "old 2", "old 3"], 0)
+    assert log.add(event(2, "new"), "new 2")
+    assert (list(log), log.number) == (["old 1", "new 2"], 1)
+    assert log.add(event(3, "new"), "new 3")
+    assert log.number == 1
+    assert log.add(event(1, "next", match=2), "next 1")
+    assert (list(log), log.number) == (["next 1"], 2)
+
+
+def test_an_allowance_is_spent_and_comes_back() -> None:
+    """A burst, then the rate."""
+    allowance = Allowance(1000.0, 5)
+    assert [allowance.take() for _ in range(4)] == [0.0] * 4
+    assert max(allowance.take() for _ in range(200)) > 0.1
+
+
+@pytest.mark.parametrize(
+    "where", ["", "here", "127.0.0.1", ":80", "127.0.0.1:99999", "no.such.name.example:0", "[::1"]
+)
+def test_a_wrong_place_to_listen_is_said(where: str) -> None:
+    """One sentence with the way to mend it."""
+    with pytest.raises(UserError, match=r"no place to listen|not possible to listen"):
+        server.listen(where)
+
+
+def test_a_port_that_is_in_use_is_said() -> None:
+    """The second gateway says what to do."""
+    with server.listen("127.0.0.1:0") as opened:
+        address = server.url(opened)
+        with pytest.raises(UserError, match="Choose another port"):
+            server.listen(address.removeprefix("http://"))
+
+
+def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
+    """Made from the contest's tokens; else random."""
+    contest, other = throwaway("othello"), throwaway("othello")
+    assert home.lasting_key(contest) == home.lasting_key(contest)
+    assert home.lasting_key(contest) != home.lasting_key(other)
+    assert len({home.new_key() for _ in range(100)}) == 100
+    assert min(len(home.new_key()), len(home.lasting_key(contest))) >= 22
+
+
+def test_browsers_without_a_screen_are_not_opened(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a server a browser for terminals would take the terminal away."""
+    monkeypatch.setattr("sys.platform", "linux")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
+        monkeypatch.delenv(name, raising=False)
+    assert server.open_browser("http://127.0.0.1:1/") is False
+
+
+@given(st.text(), st.text())
+def test_no_header_breaks_the_guard(host: str, origin: str) -> None:
+    """Only names of this machine get in, whatever is in the headers."""
+    guard = Guard(None, ["pages.example"])  # type: ignore[arg-type]
+    headers = [
+        (b"host", host.encode("latin-1", "replace")),
+        (b"origin", origin.encode("latin-1", "replace")),
+    ]
+    assert guard._why_not({"type": "websocket", "headers": headers})
