@@ -1,12 +1,16 @@
 """A contestant at a page: what a person would do with it, and what they would see."""
 
 import re
+import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from chromium import OpenPage
+from court_process import LACOC, environment
 from playwright.sync_api import Locator, Page, expect
 
 from lacoc_shared.seat import Phase
@@ -100,6 +104,29 @@ class Contestant:
         found = re.search(r"-?\d+(\.\d+)?", text)
         assert found is not None, text
         return float(found[0])
+
+
+@contextmanager
+def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
+    """Run a command that opens a page for one person; the gateway's address and its key."""
+    process = subprocess.Popen(
+        [*LACOC, *words, "--no-open"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        stdin=subprocess.DEVNULL,
+        text=True,
+        cwd=folder,
+        env=environment(),
+    )
+    try:
+        assert process.stdout is not None
+        said = re.search(r"http://\S+", process.stdout.readline())
+        assert said is not None
+        parts = urlsplit(said[0])
+        yield f"http://{parts.netloc}", parts.fragment.removeprefix("key=")
+    finally:
+        process.terminate()
+        process.communicate(timeout=30)
 
 
 Sit = Callable[..., Contestant]

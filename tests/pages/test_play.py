@@ -6,12 +6,13 @@ import math
 import random
 import re
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from contestant import Contestant, Sit
+from contestant import Contestant, Sit, own_page
 from page_client import PageClient
 from venue import TOKENS, Venue
 
@@ -115,6 +116,34 @@ def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: P
     page.page.click("[aria-label='Take c.toml away']")
     page.sees(".files li:has-text('Robot')", "the contest's")
     page.join(TOKENS["left"])
+    page.stands("seated")
+
+
+@pytest.fixture
+def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
+    """Where the page of a `lacoc play` is that was told everything."""
+    court = venue.court()
+    sample = sample_gait_files("hexapod").locomotion
+    assert sample is not None
+    (tmp_path / "LocoTra-data.txt").write_bytes(sample.data)
+    words = ("--connect", court.opened["locators"][0], "--seat", "right", "--name", "Bees")
+    with own_page(tmp_path, "play", *words, "--token", TOKENS["right"]) as address:
+        yield address
+
+
+def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: Sit) -> None:
+    """Issue 3: `lacoc play` fills the card in, and the page never learns the token."""
+    url, key = own
+    page = sit(url)
+    page.open(key=key)
+    page.sees(".seat.on", "right")
+    page.sees(".files", "from the command line: LocoTra-data.txt")
+    assert page.find("#join-name").input_value() == "Bees"
+    page.misses(".safety")
+    page.page.click("button[type=submit]")
+    page.stands("seated")
+    page.sees(".foot .who", "Bees (right)")
+    page.page.reload()
     page.stands("seated")
 
 

@@ -1,14 +1,10 @@
 """/practice: what `lacoc practice` opens (workshop 4-4, Fig. 4-3)."""
 
-import re
-import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from urllib.parse import urlsplit
 
 import pytest
-from contestant import Contestant, Sit
-from court_process import LACOC, environment
+from contestant import Contestant, Sit, own_page
 
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.gait import PostureTable
@@ -23,33 +19,20 @@ Practise = Callable[..., Contestant]
 
 
 @pytest.fixture
-def address(tmp_path: Path, built_pages: Path) -> Iterator[str]:
+def address(tmp_path: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
     """Where the page of a `lacoc practice` is; it ends after the browser's page."""
-    process = subprocess.Popen(
-        [*LACOC, "practice", "--no-open"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        stdin=subprocess.DEVNULL,
-        text=True,
-        cwd=tmp_path,
-        env=environment(),
-    )
-    assert process.stdout is not None
-    said = re.search(r"http://\S+", process.stdout.readline())
-    assert said is not None
-    yield said[0]
-    process.terminate()
-    process.communicate(timeout=30)
+    with own_page(tmp_path, "practice") as address:
+        yield address
 
 
 @pytest.fixture
-def practise(address: str, sit: Sit) -> Practise:
+def practise(address: tuple[str, str], sit: Sit) -> Practise:
     """Opens the page in a browser of the tests."""
 
     def begin(**options: object) -> Contestant:
-        parts = urlsplit(address)
-        page = sit(f"http://{parts.netloc}", **options)
-        page.open("/practice", parts.fragment.removeprefix("key="))
+        url, key = address
+        page = sit(url, **options)
+        page.open("/practice", key)
         return page
 
     return begin
@@ -84,7 +67,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     page.press("ArrowUp")
     page.key_stands(2)
     page.sees(".stands", "B 2: posture")
-    page.sees(".lesson", "That is all")
+    page.sees(".lesson", "Walk where you like")
     page.until("Number(document.querySelectorAll('.figures dd')[2].firstChild.data) > 2")
     page.press("x")
     page.key_stands(0)

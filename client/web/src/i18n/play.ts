@@ -277,8 +277,8 @@ export const play = {
     "次は Tab でレベル B に切り替えて 2。キー 1 つで歩き続けます。",
   ],
   "coach.free": [
-    "That is all. Walk where you like; x puts it back, z saves its way.",
-    "これで全部です。自由に歩かせよう。x でスタート位置へ、z で軌跡を保存。",
+    "Walk where you like: x puts it back, z saves where it went.",
+    "自由に歩かせよう。x でスタート位置へ、z で軌跡を保存。",
   ],
   "coach.own": [
     "Your own gait is loaded: press its keys and see where it goes.",

@@ -11,6 +11,7 @@ import { BEATS_PER_S, team, winnerOf } from "../../core/words";
 import { t } from "../../i18n";
 import { View } from "../../scene/View";
 import { ScoreBug } from "../../ui/score";
+import { Thirds } from "../../ui/thirds";
 import { nextStep } from "./steps";
 
 export const VIEWS = ["arena", "top", "chase"] as const;
@@ -86,6 +87,7 @@ export function Field(props: Props) {
             {t("views.badge", { number: VIEWS.indexOf(view.value) + 1 })}
             <span>{t(`views.${view.value}`)}</span>
           </button>
+          {!alone && <Thirds match={court} />}
           {!alone && <Countdown court={court} />}
           {!alone && <ResultCard {...props} />}
           <InputMethodHint {...props} />
