@@ -258,6 +258,10 @@ const CONTESTANTS: readonly Pattern[] = [
     "チーム名は 1～{#most} 文字で、表示できる文字だけを使ってください（入力：{name}）。",
   ],
   [
+    "A file's name has 1-{#most} printable characters: rename it.",
+    "ファイル名は 1～{#most} 文字で、表示できる文字だけを使ってください。名前を変えてください。",
+  ],
+  [
     "The request's seal is not that of seat {Seat}: join again.",
     "要求の署名が{Seat}の席のものではありません。もう一度参加してください。",
   ],
@@ -387,6 +391,9 @@ const GAITS: readonly Pattern[] = [
   ["a workbook that can't be read", "読み込めないブック"],
   ["sequences of postures", "姿勢の並び"],
   ["an old .xls workbook, or one with a password", "古い .xls 形式、またはパスワード付きのブック"],
+  ["a zip that is no workbook", "ブックではない zip ファイル"],
+  ["a workbook of more than {#n} elements", "要素が {#n} 個を超えるブック"],
+  ["a workbook that defines XML entities", "XML の実体を定義しているブック"],
   ["a damaged file, or no workbook", "壊れたファイル、またはブックではないファイル"],
   ["a workbook that unpacks to more than 8 MiB", "展開すると 8 MiB を超えるブック"],
   ["a file with a password", "パスワード付きのファイル"],
@@ -436,6 +443,10 @@ const ROBOTS: readonly Pattern[] = [
   ["{#low} to {#high} m for this start posture", "この開始姿勢では {#low}～{#high} m"],
   ["at most {#n}", "{#n} 以下"],
   ["a TOML file saved as UTF-8", "UTF-8 で保存した TOML ファイル"],
+  [
+    "TOML of at most {#n} bytes: lines such as  name = value",
+    "{#n} バイト以下の TOML（「名前 = 値」の形の行）",
+  ],
   ["TOML: lines such as  name = value", "TOML（「名前 = 値」の形の行）"],
   ["{#n} entries", "{#n} 個の値"],
   ["a table", "表"],

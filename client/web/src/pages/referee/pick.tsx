@@ -1,6 +1,6 @@
 /** The popover of what was clicked on the field: a disc, corner or flag, or a robot. */
 
-import { useEffect, useMemo, useRef } from "preact/hooks";
+import { useLayoutEffect, useMemo, useRef } from "preact/hooks";
 import { markerStates } from "../../core/court";
 import { MARKER_STATES } from "../../core/wire";
 import { team } from "../../core/words";
@@ -30,7 +30,8 @@ const HEIGHT_PX = 260;
 
 export function PickPopover({ desk, picked, onClose }: Props) {
   const element = useRef<HTMLDivElement>(null);
-  useEffect(() => {
+  // Before anything is drawn: who is quick presses Escape at once.
+  useLayoutEffect(() => {
     const before = document.activeElement;
     element.current?.querySelector<HTMLElement>("button:not([aria-disabled])")?.focus();
     const outside = (event: PointerEvent) => {
