@@ -93,7 +93,8 @@ def npm(*words: str) -> None:
     found = shutil.which("npm")
     command = [found] if found else [sys.executable, "-c", _NPM]
     with locked("npm"):
-        if not (WEB / "node_modules" / "vite").exists():
+        # npm writes this file last: without it the packages are not whole.
+        if not (WEB / "node_modules" / ".package-lock.json").exists():
             _run([*command, "ci", "--no-audit", "--no-fund"])
     _run([*command, *words])
 

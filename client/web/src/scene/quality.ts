@@ -57,13 +57,25 @@ export function rendererName(gl: WebGL2RenderingContext): string {
   return String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 }
 
-/** What to begin with where nothing was chosen; a slow machine is remembered by its card. */
-export function firstFineness(gl: WebGL2RenderingContext): Fineness {
-  if (drawsInSoftware(gl)) return "low";
+/**
+ * What to begin with where nothing was chosen; a slow machine is remembered by its card.
+ *
+ * @param canvas Of no other use; "none" if it can't have WebGL.
+ */
+export function firstFineness(canvas: HTMLCanvasElement): Fineness | "none" {
+  const gl = canvas.getContext("webgl2");
+  if (!gl) return "none";
+  const isSlow = drawsInSoftware(gl) || kept() === rendererName(gl);
+  // Browsers allow only some contexts at a time.
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return isSlow ? "low" : "high";
+}
+
+function kept(): string | null {
   try {
-    return localStorage.getItem(KEPT) === rendererName(gl) ? "low" : "high";
+    return localStorage.getItem(KEPT);
   } catch {
-    return "high";
+    return null;
   }
 }
 

@@ -94,6 +94,7 @@ export class Viewer {
   private ended = false;
   private slow = false;
   private noWebgl = false;
+  private first: Fineness | "none" | null = null;
   private thrift = 1;
   private size = { width: 0, height: 0 };
   private framed: (Frame2d & { width: number; height: number }) | null = null;
@@ -179,60 +180,64 @@ export class Viewer {
 
   // Building
 
-  private fineness(probe: WebGL2RenderingContext): Fineness {
+  /** How finely to draw; null where there is no WebGL. */
+  private fineness(): Fineness | null {
     const { quality } = this.options;
+    // A look at the card first: smooth edges can't be taken back from a context that has them.
+    this.first ??= firstFineness(document.createElement("canvas"));
+    if (this.first === "none") return null;
     if (quality !== "auto") return quality;
-    return this.slow ? "low" : firstFineness(probe);
+    return this.slow ? "low" : this.first;
   }
 
   /** Make what draws; the three-dimensional part is loaded when it is needed. */
   private async build(): Promise<void> {
     this.building = true;
     try {
-      if (this.flat) {
-        this.place2d();
+      const fineness = this.flat ? null : this.fineness();
+      const made = fineness && (await this.stageOf(fineness));
+      // Meanwhile something else may be wanted.
+      if (this.ended || (made && (this.flat || this.fineness() !== fineness))) {
+        made?.dispose();
         return;
       }
-      const canvas = this.newCanvas();
-      const probe = canvas.getContext("webgl2", {
-        // Blending the picture into the page costs something, and low quality has no glow below it.
-        alpha: this.options.transparent || this.options.quality !== "low",
-        antialias: this.options.quality !== "low" && !this.slow,
-        powerPreference: "high-performance",
-        stencil: false,
-      });
-      if (!probe) {
-        this.noWebgl = true;
-        this.place2d();
+      if (!made) {
+        this.noWebgl ||= this.options.camera !== "map";
+        const canvas = newCanvas();
+        this.map = new TopView(canvas);
+        this.show(canvas);
         return;
       }
-      const { Stage } = await import("./stage");
-      if (this.ended || this.flat) return;
-      const fineness = this.fineness(probe);
-      this.stage = new Stage(canvas, probe, fineness, this.options.transparent);
-      if (this.model) this.stage.setModel(this.model);
-      canvas.addEventListener("webglcontextlost", (event) => {
-        event.preventDefault();
-        // A new canvas is a new context; the old one may never come back.
-        if (canvas === this.canvas)
-          setTimeout(() => canvas === this.canvas && this.drop(), RETRY_MS);
-      });
-      this.show(canvas);
+      this.stage = made;
+      if (this.model) made.setModel(this.model);
+      this.show(made.canvas);
+    } catch (error) {
+      // Such as a part that could not be loaded: the next try is not at once.
+      await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+      console.warn(error);
     } finally {
       this.building = false;
     }
   }
 
-  private place2d(): void {
-    const canvas = this.newCanvas();
-    this.map = new TopView(canvas);
-    this.show(canvas);
-  }
-
-  private newCanvas(): HTMLCanvasElement {
-    const canvas = document.createElement("canvas");
-    canvas.className = "view-canvas";
-    return canvas;
+  private async stageOf(fineness: Fineness): Promise<Stage | null> {
+    const { transparent } = this.options;
+    const { Stage } = await import("./stage");
+    const canvas = newCanvas();
+    const context = canvas.getContext("webgl2", {
+      // Blending the picture into the page costs something, and low quality has no glow below it.
+      alpha: transparent || fineness === "high",
+      antialias: fineness === "high",
+      powerPreference: "high-performance",
+      stencil: false,
+    });
+    if (!context) return null;
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      // A new canvas is a new context; the old one may never come back.
+      if (canvas === this.canvas) setTimeout(() => canvas === this.canvas && this.drop(), RETRY_MS);
+    });
+    return new Stage(canvas, context, fineness, transparent);
   }
 
   private show(canvas: HTMLCanvasElement): void {
@@ -486,4 +491,10 @@ export class Viewer {
       { passive: false },
     );
   }
+}
+
+function newCanvas(): HTMLCanvasElement {
+  const canvas = document.createElement("canvas");
+  canvas.className = "view-canvas";
+  return canvas;
 }
