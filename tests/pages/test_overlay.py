@@ -184,7 +184,7 @@ def test_the_document_has_every_flag() -> None:
         (web / name).read_text("utf-8")
         for name in (
             "pages/overlay.tsx",
-            "pages/watch/cameras.tsx",
+            "pages/watch/flags.ts",
             "core/court.ts",
             "i18n/index.ts",
         )

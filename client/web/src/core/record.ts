@@ -74,6 +74,13 @@ const MAGIC = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a];
 /** A larger chunk is no record's: a damaged size must not take all memory. */
 const CHUNK_MOST_BYTES = 1 << 28;
 
+interface FrameBytes {
+  beat: number;
+  bytes: Uint8Array;
+  scores: readonly number[];
+  phase: number;
+}
+
 /** What one header begins: a court that was started again writes another segment. */
 interface Segment {
   file: string;
@@ -82,7 +89,7 @@ interface Segment {
   sheets: Since<Sheet>[];
   scenes: Since<Scene>[];
   results: Result[];
-  frames: Since<Uint8Array>[];
+  frames: FrameBytes[];
   lastBeat: number;
   note: Note | null;
 }
@@ -186,9 +193,11 @@ function take(segment: Segment, topic: string, beat: number, data: Uint8Array): 
     case "/lacoc/event":
       segment.events.push(decode(data) as Event);
       break;
-    case "/lacoc/frame":
-      segment.frames.push({ beat, value: data });
+    case "/lacoc/frame": {
+      const { seats, phase } = readFrame(data); // bytes that are no frame must not wait for the page
+      segment.frames.push({ beat, bytes: data, scores: seats.map(({ score }) => score), phase });
       break;
+    }
     case "/lacoc/sheet":
       segment.sheets.push({ beat, value: decode(data) as Sheet });
       break;
@@ -254,27 +263,26 @@ function notesOf(segments: readonly Segment[]): Note[] {
   return notes;
 }
 
-function pack(frames: readonly Since<Uint8Array>[]): PackedFrames {
+function pack(frames: readonly FrameBytes[]): PackedFrames {
   const beats = Uint32Array.from(frames, ({ beat }) => beat);
   const starts = new Uint32Array(frames.length + 1);
-  for (const [index, { value }] of frames.entries()) {
-    starts[index + 1] = starts[index]! + value.length;
+  for (const [index, { bytes }] of frames.entries()) {
+    starts[index + 1] = starts[index]! + bytes.length;
   }
-  const bytes = new Uint8Array(starts[frames.length]!);
-  for (const [index, { value }] of frames.entries()) bytes.set(value, starts[index]!);
-  return { beats, starts, bytes };
+  const all = new Uint8Array(starts[frames.length]!);
+  for (const [index, { bytes }] of frames.entries()) all.set(bytes, starts[index]!);
+  return { beats, starts, bytes: all };
 }
 
-function changes(frames: readonly Since<Uint8Array>[]): Pick<MatchRecord, "scores" | "phases"> {
-  const scores: Since<readonly number[]>[] = [];
-  const phases: Since<number>[] = [];
-  for (const { beat, value } of frames) {
-    const frame = readFrame(value);
-    const now = frame.seats.map((seat) => seat.score);
-    if (String(scores.at(-1)?.value) !== String(now)) scores.push({ beat, value: now });
-    if (phases.at(-1)?.value !== frame.phase) phases.push({ beat, value: frame.phase });
+function changes(frames: readonly FrameBytes[]): Pick<MatchRecord, "scores" | "phases"> {
+  const found: Pick<MatchRecord, "scores" | "phases"> = { scores: [], phases: [] };
+  for (const { beat, scores, phase } of frames) {
+    if (String(found.scores.at(-1)?.value) !== String(scores)) {
+      found.scores.push({ beat, value: scores });
+    }
+    if (found.phases.at(-1)?.value !== phase) found.phases.push({ beat, value: phase });
   }
-  return { scores, phases };
+  return found;
 }
 
 function unpack(data: Uint8Array, size: bigint): Uint8Array {

@@ -2,10 +2,9 @@
 
 import { computed, effect, signal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
-import { amount, flag, setting } from "../core/address";
+import { amount, flag } from "../core/address";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
-import type { Quality } from "../core/settings";
 import { team } from "../core/words";
 import { t } from "../i18n";
 import { View } from "../scene/View";
@@ -15,12 +14,10 @@ import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
 import { Thirds } from "../ui/thirds";
-import { cameraOfAddress } from "./watch/cameras";
+import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import "./overlay.css";
 
 const HZ = 25;
-const DELAY_MOST_S = 600;
-const QUALITIES: readonly Quality[] = ["auto", "low", "high"];
 /** What is drawn has this size; on another screen it is scaled. */
 const WIDTH_PX = 1920;
 const HEIGHT_PX = 1080;
@@ -29,7 +26,7 @@ const RELOAD_MS = 5000;
 
 const court = new Court(HZ, 1000 * amount("delay", 0, 0, DELAY_MOST_S));
 const camera = cameraOfAddress();
-const quality = QUALITIES.find((name) => name === setting("q")) ?? "auto";
+const quality = qualityOfAddress() ?? "auto";
 const transparent = flag("transparent", false);
 const split = flag("split", false);
 const hud = flag("hud", true);

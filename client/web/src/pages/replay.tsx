@@ -2,7 +2,7 @@
 
 import { effect, signal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
-import { amount, setting } from "../core/address";
+import { setting } from "../core/address";
 import { followColours } from "../core/colours";
 import type { Note, RecordFile } from "../core/record";
 import { BadRecord, dropped, fetched, readBeside } from "../core/record_files";
@@ -25,7 +25,8 @@ import { SeekBar, seconds } from "./replay/bar";
 import { Chooser } from "./replay/chooser";
 import { ReplayLog } from "./replay/log";
 import { Player, SPEEDS } from "./replay/player";
-import { Cameras, cameraKeys, cameraOfAddress } from "./watch/cameras";
+import { Cameras, cameraKeys } from "./watch/cameras";
+import { cameraOfAddress, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 import "./replay/replay.css";
 
@@ -46,6 +47,7 @@ declare global {
 
 const state = signal<State>({ is: "choosing", trouble: null });
 const camera = signal(cameraOfAddress());
+const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("replay.panel", innerWidth >= WIDE_PX);
 const settings = signal(false);
 const dragging = signal(false);
@@ -58,9 +60,8 @@ effect(() => {
   window.__replay = now.is === "open" ? now.player : undefined;
 });
 
-async function open(get: () => Promise<RecordFile[]>, server: string | null, beat: number | null) {
+async function show(get: () => Promise<RecordFile[]>, server: string | null, beat: number | null) {
   const mine = ++opening;
-  if (state.value.is === "open") state.value.player.pause();
   const fresh = () => mine === opening;
   try {
     const files = await get();
@@ -95,21 +96,22 @@ function openServer(name: string, beat: number | null, push: boolean): void {
   const progress = (part: number) => {
     if (state.value.is === "loading") state.value = { is: "loading", name, part };
   };
-  void open(() => fetched(name, progress), name, beat);
+  void show(() => fetched(name, progress), name, beat);
 }
 
 function openFiles(files: readonly File[]): void {
   if (!files.length) return;
   history.pushState(null, "", location.pathname);
   state.value = { is: "loading", name: files[0]!.name, part: 0 };
-  void open(() => dropped(files), null, null);
+  void show(() => dropped(files), null, null);
 }
 
 /** What the address says: a recording and a moment, or the list. */
 function followAddress(): void {
   const query = new URLSearchParams(location.search);
   const file = query.get("file");
-  const beat = query.has("t") ? amount("t", 0, 0, 1e6) * BEATS_PER_S : null;
+  const time = Number(query.get("t") ?? Number.NaN);
+  const beat = Number.isFinite(time) ? Math.round(time * BEATS_PER_S) : null;
   opening++;
   if (file) openServer(file, beat, false);
   else {
@@ -168,7 +170,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
         <View
           source={recording}
           camera={camera.value}
-          quality={quality}
+          quality={fineness}
           inset={inset}
           labels
           orbit={!narrow}

@@ -19,15 +19,16 @@ import { isNarrow, toggleFullscreen } from "../ui/screen";
 import { Settings } from "../ui/settings";
 import { useShortcuts } from "../ui/shortcuts";
 import { Thirds } from "../ui/thirds";
-import { Cameras, cameraKeys, cameraOfAddress } from "./watch/cameras";
+import { Cameras, cameraKeys } from "./watch/cameras";
+import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 
 const HZ = 25;
-const DELAY_MOST_S = 600;
 const WIDE_PX = 1280;
 
 const court = new Court(amount("hz", HZ, 1, 50), 1000 * amount("delay", 0, 0, DELAY_MOST_S));
 const camera = signal(cameraOfAddress());
+const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
 const settings = signal(false);
 /** The match whose result was put away. */
@@ -72,7 +73,7 @@ export default function Watch() {
         <View
           source={court}
           camera={camera.value}
-          quality={quality}
+          quality={fineness}
           inset={inset}
           labels
           orbit={!isNarrow.value}

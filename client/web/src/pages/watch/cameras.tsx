@@ -1,19 +1,12 @@
 /** The cameras to choose from, as buttons and keys. */
 
 import type { Signal } from "@preact/signals";
-import { setting } from "../../core/address";
 import type { Sheet } from "../../core/wire";
 import { type MessageName, t } from "../../i18n";
-import { CAMERAS, type CameraName } from "../../scene/View";
+import type { CameraName } from "../../scene/View";
 
 const CHOICE: readonly CameraName[] = ["auto", "arena", "top", "left", "right", "map"];
 const ALONE: readonly CameraName[] = ["auto", "arena", "top", "chase", "map"];
-
-/** The camera of the address; the automatic one else. */
-export function cameraOfAddress(): CameraName {
-  const wanted = setting("cam", "auto") as CameraName;
-  return CAMERAS.includes(wanted) ? wanted : "auto";
-}
 
 /** Keys 1 to 6. */
 export function cameraKeys(

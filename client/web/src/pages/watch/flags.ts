@@ -1,0 +1,21 @@
+/** What the address of a page that shows a match asks for. */
+
+import { setting } from "../../core/address";
+import type { Quality } from "../../core/settings";
+import { CAMERAS, type CameraName } from "../../scene/View";
+
+const QUALITIES: readonly Quality[] = ["auto", "low", "high"];
+
+/** Longer than this nobody delays a stream. */
+export const DELAY_MOST_S = 600;
+
+/** The camera of the address; the automatic one else. */
+export function cameraOfAddress(): CameraName {
+  const wanted = setting("cam", "auto") as CameraName;
+  return CAMERAS.includes(wanted) ? wanted : "auto";
+}
+
+/** How finely to draw, by the address; null: it says nothing. */
+export function qualityOfAddress(): Quality | null {
+  return QUALITIES.find((name) => name === setting("q")) ?? null;
+}
