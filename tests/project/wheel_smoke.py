@@ -5,10 +5,13 @@
 The wheel without MuJoCo is a contestant's machine, the source archive with it a court's.
 """
 
+import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
+import urllib.request
 import venv
 from pathlib import Path
 
@@ -51,8 +54,33 @@ class Environment:
         return done
 
 
+def try_pages(env: Environment) -> None:
+    """The pages are in what was installed, and need no Node."""
+    command = [str(env.bin / "lacoc"), "web", "--json", "--connect", "tcp/127.0.0.1:1"]
+    with subprocess.Popen(
+        command, cwd=env.folder, env={**os.environ, "PATH": str(env.bin)}, stdout=subprocess.PIPE
+    ) as gateway:
+        try:
+            assert gateway.stdout is not None
+            url = json.loads(gateway.stdout.readline())["url"]
+            page = fetch(f"{url}/watch")
+            scripts = re.findall(r'src="(/assets/[^"]+)"', page)
+            assert scripts, page
+            assert all(fetch(url + script) for script in scripts)
+        finally:
+            gateway.terminate()
+
+
+def fetch(url: str) -> str:
+    """What a gateway answers."""
+    with urllib.request.urlopen(url, timeout=30) as response:
+        text: str = response.read().decode()
+        return text
+
+
 def try_both(env: Environment) -> None:
     """What must work with and without MuJoCo."""
+    try_pages(env)
     env.run("lacoc", "--version")
     assert "practice" in env.run("lacoc", "--help").stdout
     sample = env.run("python", "-c", SAMPLE).stdout.strip()
