@@ -1,8 +1,10 @@
 import { defineConfig } from "vite";
+import { leanThree } from "./src/scene/lean_three";
 
 // One page for all paths; each of them loads its own part (src/main.tsx).
 export default defineConfig({
   base: "/",
+  plugins: [leanThree()],
   build: {
     outDir: "../lacoc_client/pages",
     emptyOutDir: true,

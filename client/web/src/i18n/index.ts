@@ -1,10 +1,9 @@
 /** Messages in the reader's language; every message stands in all languages, side by side. */
 
-import { computed } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { setting } from "../core/address";
 import { remembered } from "../core/settings";
 import { common } from "./common";
-import { toJapanese } from "./court";
 import { play } from "./play";
 import { referee } from "./referee";
 import { replay } from "./replay";
@@ -34,7 +33,17 @@ export function t(name: MessageName, holes: Record<string, string | number> = {}
   return text.replace(/\{(\w+)\}/g, (hole, key: string) => String(holes[key] ?? hole));
 }
 
+/** Turns the court's sentences into Japanese; only who reads Japanese loads it. */
+const translate = signal<(text: string) => string>((text) => text);
+
+effect(() => {
+  if (language.value !== "ja") return;
+  void import("./court").then(({ toJapanese }) => {
+    translate.value = toJapanese;
+  });
+});
+
 /** A sentence of the court, which speaks English. */
 export function said(text: string): string {
-  return language.value === "ja" ? toJapanese(text) : text;
+  return language.value === "ja" ? translate.value(text) : text;
 }
