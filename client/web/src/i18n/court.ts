@@ -349,6 +349,8 @@ const GAITS: readonly Pattern[] = [
     "{#n} 個の角度（{#legs} 脚に {#each} 個ずつ）",
   ],
   ["an angle from {#low} to {#high} degrees", "{#low} 度から {#high} 度までの角度"],
+  ["a gait of at most {#n} lines", "{#n} 行以下の歩容"],
+  ["{#n} lines", "{#n} 行"],
   ["a gait file of at most 32 KiB", "32 KiB 以下の歩容ファイル"],
   ["text in UTF-8, UTF-16 or Shift-JIS", "UTF-8、UTF-16、Shift-JIS のいずれかのテキスト"],
   [
@@ -471,6 +473,10 @@ const ROBOTS: readonly Pattern[] = [
 
 /** What the gateway and the page themselves say no to (client/lacoc_client/gateway). */
 const GATEWAY: readonly Pattern[] = [
+  [
+    "The gateway has a fault; its window says more. Try again, or tell the organiser.",
+    "サーバーで異常が起きました（詳しくはサーバーの画面に表示されます）。もう一度試すか、主催者に知らせてください。",
+  ],
   ["not connected", "接続されていません。"],
   ["the connection broke", "接続が切れました。"],
   ["Enter with the referee's token first.", "先に審判用トークンで入室してください。"],

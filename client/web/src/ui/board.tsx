@@ -69,7 +69,7 @@ export function Board({ match, onPick, picked }: Props) {
               stop.value = index;
             }}
             onClick={() => onPick?.({ marker: index })}
-            onKeyDown={(event) => event.key === "Enter" && onPick?.({ marker: index })}
+            onKeyDown={(event) => isPress(event) && onPick?.({ marker: index })}
             style={onPick ? "cursor: pointer" : ""}
           >
             <Marker
@@ -93,6 +93,13 @@ export function Board({ match, onPick, picked }: Props) {
       </svg>
     </div>
   );
+}
+
+/** Whether a key presses a button; it does nothing else then, as in what a pick may open. */
+function isPress(event: KeyboardEvent): boolean {
+  const press = (event.key === "Enter" || event.key === " ") && !event.ctrlKey;
+  if (press) event.preventDefault();
+  return press;
 }
 
 const ARROWS: Record<string, readonly [x: number, y: number]> = {
@@ -191,7 +198,7 @@ function Robot({ place, seat, sheet, picked, onPick }: RobotProps) {
       transform={`translate(${place.xM} ${-place.yM}) rotate(${degrees})`}
       {...(onPick && { role: "button", tabindex: 0, onClick: onPick })}
       aria-label={name}
-      onKeyDown={(event) => event.key === "Enter" && onPick?.()}
+      onKeyDown={(event) => isPress(event) && onPick?.()}
       style={onPick ? "cursor: pointer" : ""}
     >
       <title>{name}</title>
