@@ -121,7 +121,8 @@ class Controller:
         self._pressed: dict[int, _Press] = {}
         self._refused: list[RefusedKey] = []
         self.repeating = True
-        """Whether `poll` repeats the command; False where the one who steers has gone."""
+        """Whether `poll` repeats the command, and takes the seat back from a court that was
+        restarted; False where the one who steers has gone."""
         self.hold = Hold.NOT_JOINED
         self.reason = ""
         """Why the seat is not held, where there is more to say."""
@@ -230,9 +231,9 @@ class Controller:
         frame = self.view.poll()
         if frame is not None and self.index < len(frame.seats):
             self._compare(frame.seats[self.index])
-        if self.hold in (Hold.HELD, Hold.LOST):
+        if self.repeating and self.hold in (Hold.HELD, Hold.LOST):
             self._check_hold()
-        if self.hold is Hold.HELD and self.repeating and now_s - self._sent_s >= REPEAT_S:
+        if self.repeating and self.hold is Hold.HELD and now_s - self._sent_s >= REPEAT_S:
             self._commands.put(self._command)
             self._sent_s = now_s
         return frame
