@@ -349,8 +349,8 @@ const GAITS: readonly Pattern[] = [
     "{#n} 個の角度（{#legs} 脚に {#each} 個ずつ）",
   ],
   ["an angle from {#low} to {#high} degrees", "{#low} 度から {#high} 度までの角度"],
-  ["a gait of at most {#n} lines", "{#n} 行以下の歩容"],
-  ["{#n} lines", "{#n} 行"],
+  ["a gait of at most {#n} rows", "{#n} 行以下の歩容"],
+  ["{#n} rows", "{#n} 行"],
   ["a gait file of at most 32 KiB", "32 KiB 以下の歩容ファイル"],
   ["text in UTF-8, UTF-16 or Shift-JIS", "UTF-8、UTF-16、Shift-JIS のいずれかのテキスト"],
   [
