@@ -8,8 +8,13 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.beat import beat, whole_match
-from benchmarks.gateway import gateway, rows
+from benchmarks.gateway import gateway
+from benchmarks.gateway import rows as gateway_rows
 from benchmarks.latency import latency
+from benchmarks.page_latency import page_latency
+from benchmarks.page_latency import rows as page_latency_rows
+from benchmarks.pages import pages
+from benchmarks.pages import rows as pages_rows
 from benchmarks.paths import started
 
 ARENAS = ("othello", "flag-strike")
@@ -61,8 +66,14 @@ def main() -> None:
     )
     if sys.platform == "linux":  # it reads what the kernel counts
         figures = found["gateway"] = gateway(rounds=max(1, options.rounds // 4))
-        for row in rows(figures):
+        for row in gateway_rows(figures):
             table.add_row(*row)
+        figures = found["pages"] = pages()
+        for row in pages_rows(figures):
+            table.add_row(*row)
+    figures = found["page latency"] = page_latency(options.rounds * 10)
+    for row in page_latency_rows(figures):
+        table.add_row(*row)
     if options.json:
         json.dump(found, sys.stdout)
     else:

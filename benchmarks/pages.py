@@ -55,6 +55,22 @@ def pages() -> dict[str, Any]:
     return found
 
 
+def rows(figures: dict[str, Any]) -> list[tuple[str, str, str, str, str]]:
+    """Rows for the table of `make bench`."""
+    drawn = [
+        (
+            f"pictures at q=low, 800 x 450, software GL, {arena}",
+            f"{figures[arena]['fps']:.0f} a second, p95 {figures[arena]['p95_ms']:.0f} ms",
+            f"load {figures['load']} on {figures['cores']} cores",
+            f"{figures[arena]['pixel_ratio']:.2f} pixels a side",
+            "50 a second",
+        )
+        for arena in ("othello", "flag-strike")
+    ]
+    size = f"{figures['js_gzip_bytes'] / 1000:.0f} kB"
+    return [*drawn, ("JavaScript that a player loads, gzipped", size, "", "", "200 kB")]
+
+
 def _drawing(browser: Browser, address: str, arena: str) -> dict[str, float]:
     page = browser.new_page(viewport=SIZE)
     stand = Stand(page, address)

@@ -1,0 +1,171 @@
+"""A key pressed in a real page, until the frame that shows it is there; against a bare echo.
+
+`python -m benchmarks.page_latency`; needs what tests of the pages need (tests/pages/chromium.py).
+"""
+
+import contextlib
+import json
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Browser, Page, TimeoutError, sync_playwright
+from websockets.sync.server import ServerConnection
+from websockets.sync.server import serve as serve_websocket
+
+from lacoc_shared.seat import BEAT_S
+
+sys.path.append(str(Path(__file__).parents[1] / "tests" / "pages"))
+
+from chromium import FLAGS, find_chromium
+
+FRAME_BYTES = 200
+"""About a frame of practice: what the echo sends."""
+_ECHO = """
+async ([url, count, bytes]) => {
+  const socket = new WebSocket(url);
+  socket.binaryType = "arraybuffer";
+  await new Promise((open) => { socket.onopen = open; });
+  const times = [];
+  for (let n = 0; n < count; n++) {
+    const begin = performance.now();
+    socket.send(new Uint8Array(bytes));
+    await new Promise((came) => { socket.onmessage = came; });
+    times.push(performance.now() - begin);
+    await new Promise((on) => setTimeout(on, 40));
+  }
+  socket.close();
+  return times;
+}
+"""
+
+
+def page_latency(keys: int = 100) -> dict[str, float]:
+    """Measure, in turns.
+
+    Args:
+        keys: how many are pressed, and how many echoes are asked for.
+
+    Returns:
+        Milliseconds: `key_p50_ms`, `key_p95_ms`, `echo_p50_ms`, `over_echo_ms`, and the aim for
+        that, a tick and 10 ms.
+    """
+    turns = 5
+    key_ms: list[float] = []
+    echo_ms: list[float] = []
+    with (
+        sync_playwright() as playwright,
+        contextlib.closing(
+            playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
+        ) as browser,
+        _practice() as url,
+        _echo() as echo,
+    ):
+        page = _walking(browser, url)
+        bare = browser.new_page()
+        for _ in range(turns):
+            page.bring_to_front()
+            key_ms += _press(page, keys // turns)
+            bare.bring_to_front()
+            echo_ms += bare.evaluate(_ECHO, [echo, keys // turns, FRAME_BYTES])
+    key_p50_ms, echo_p50_ms = statistics.median(key_ms), statistics.median(echo_ms)
+    return {
+        "key_p50_ms": key_p50_ms,
+        "key_p95_ms": statistics.quantiles(key_ms, n=20)[-1],
+        "echo_p50_ms": echo_p50_ms,
+        "over_echo_ms": key_p50_ms - echo_p50_ms,
+        "aim_ms": 1000 * BEAT_S + 10,
+    }
+
+
+def rows(figures: dict[str, Any]) -> list[tuple[str, str, str, str, str]]:
+    """Rows for the table of `make bench`."""
+    return [
+        (
+            "key in the page to the frame that shows it",
+            f"p50 {figures['key_p50_ms']:.1f} ms, p95 {figures['key_p95_ms']:.1f} ms",
+            f"bare WebSocket echo p50 {figures['echo_p50_ms']:.2f} ms",
+            f"{figures['over_echo_ms']:.1f} ms over",
+            f"at most {figures['aim_ms']:.0f} ms over",
+        )
+    ]
+
+
+def _walking(browser: Browser, url: str) -> Page:
+    """The page of practice, when its keys work."""
+    page = browser.new_page(viewport={"width": 800, "height": 450})
+    page.goto(url.replace("/practice", "/practice?q=low"))
+    page.wait_for_selector('.phase[data-phase="4"]', timeout=60_000)
+    page.locator("canvas").first.click()
+    _press(page, 5)  # whatever is slow the first time
+    return page
+
+
+def _press(page: Page, count: int) -> list[float]:
+    """Press keys; returns the page's own measure of each."""
+    times_ms: list[float] = []
+    for number in range(count):
+        shown = page.locator("[data-trip]")
+        before = shown.get_attribute("data-trip")
+        page.keyboard.press("1234"[number % 4])
+        with contextlib.suppress(TimeoutError):  # two can take the same time to a tenth
+            page.wait_for_function(
+                "(before) => document.querySelector('[data-trip]').dataset.trip !== before",
+                arg=before,
+                timeout=1000,
+            )
+        times_ms.append(float(shown.get_attribute("data-trip") or "nan"))
+        page.wait_for_timeout(37)  # not in step with the beat
+    return times_ms
+
+
+@contextlib.contextmanager
+def _practice() -> Iterator[str]:
+    """`lacoc practice`; gives the address of its page."""
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        subprocess.Popen(
+            [sys.executable, "-u", "-m", "lacoc_shared", "practice", "--no-open"],
+            cwd=folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        ) as practice,
+    ):
+        try:
+            assert practice.stdout is not None
+            said = ""
+            for line in practice.stdout:
+                said += line
+                if found := re.search(r"http://\S+#key=\S+", line):
+                    yield found[0]
+                    break
+            else:
+                raise RuntimeError(f"practice did not open: {said}")
+        finally:
+            practice.terminate()
+            practice.wait(30)
+
+
+@contextlib.contextmanager
+def _echo() -> Iterator[str]:
+    def answer(socket: ServerConnection) -> None:
+        for message in socket:
+            socket.send(message)
+
+    with serve_websocket(answer, "127.0.0.1", 0, compression=None) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        port = server.socket.getsockname()[1]
+        yield f"ws://127.0.0.1:{port}"
+        server.shutdown()
+
+
+if __name__ == "__main__":
+    json.dump(page_latency(), sys.stdout, indent=2)
+    print()
