@@ -12,7 +12,7 @@ PAGES_FROM := $(shell find client/web/src client/web/public -type f) \
 	$(addprefix client/web/,index.html package-lock.json vite.config.ts)
 NPM := PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix client/web --loglevel=error
 
-.PHONY: help demo test format lint type walls check build bench wheel-smoke web clean
+.PHONY: help demo test format lint type walls check build bench fuzz wheel-smoke web clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list.
@@ -57,6 +57,9 @@ wheel-smoke: build ## Install wheel and source archive in clean environments and
 
 bench: .venv/.test ## Measure the court against bare physics and bare Zenoh.
 	$(BIN)/python -m benchmarks $(ARGS)
+
+fuzz: .venv/.test ## Feed a million hostile packets and 100,000 hostile files to all that reads them.
+	$(BIN)/python tests/fuzz $(ARGS)
 
 clean: ## Remove everything that was made.
 	rm -rf .venv build dist client/web/node_modules client/lacoc_client/pages .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

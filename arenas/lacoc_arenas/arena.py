@@ -6,7 +6,6 @@ entry (rules 1, "Where each number lives").
 """
 
 import importlib
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -18,6 +17,7 @@ from lacoc_arenas.game import AnyGame
 from lacoc_shared import plugins
 from lacoc_shared.gait import Level
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.toml_text import BadToml, read_toml
 
 Seconds = Annotated[float, msgspec.Meta(ge=0, le=86_400)]
 
@@ -114,8 +114,8 @@ def load(name: str, overrides: Mapping[str, Any] | None = None) -> Arena:
     module = plugins.package("lacoc.arenas", "arena", name)
     path = plugins.folder_of(module) / "arena.toml"
     try:
-        settings = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError) as error:
+        settings = read_toml(path.read_bytes())
+    except (OSError, BadToml) as error:
         raise UserError(f"The arena file {path} can't be read: {error}.") from None
     return Arena(_canonical(name), merge(settings, overrides or {}), module.__name__)
 

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from lacoc_shared.mistakes import Mistake
+from lacoc_shared.mistakes import Mistake, printable
 
 _HUGE = sys.float_info.max
 
@@ -39,7 +39,11 @@ class Entries:
         """Note a mistake of an entry."""
         self._book.append(
             Mistake(
-                file=self._file, field=self.place + name, found=found, expected=expected, **where
+                file=self._file,
+                field=self.place + printable(name),
+                found=found,
+                expected=expected,
+                **where,
             )
         )
 
@@ -174,5 +178,8 @@ def _shown(value: Any) -> str:
         return str(value).lower()
     if isinstance(value, int) and abs(value) > 10**15:
         return "a number of very many digits"
-    text = f'"{value}"' if isinstance(value, str) else str(value)
-    return text if len(text) <= 40 else text[:37] + "..."
+    try:
+        text = f'"{value}"' if isinstance(value, str) else str(value)
+    except ValueError:  # such a number in a list
+        return "a number of very many digits"
+    return printable(text if len(text) <= 40 else text[:37] + "...")

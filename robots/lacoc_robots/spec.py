@@ -5,8 +5,6 @@ first part makes numbers NaN, and the whole is judged only where its numbers are
 """
 
 import math
-import re
-import tomllib
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -17,6 +15,7 @@ from lacoc_robots.robot import RobotSpec
 from lacoc_shared.gait import JOINTS_PER_LEG, LEVEL_NAMES, Posture, leg_and_level
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.seat import BEAT_S
+from lacoc_shared.toml_text import BadToml, read_toml
 
 __all__ = ["Capsule", "LegSpec", "Limits", "Point", "RobotSpec", "read_robot"]
 
@@ -55,24 +54,12 @@ def read_robot(text: str | bytes, file: str, limits: Limits | None = None) -> Ro
 
 
 def _parse(text: str | bytes, file: str) -> dict[str, object]:
-    def refused(found: str, expected: str, row: int | None = None) -> FileRefused:
-        return FileRefused([Mistake(file=file, found=found, expected=expected, row=row)])
-
-    if len(text) > LARGEST_FILE:
-        raise refused(f"{len(text)} bytes", f"at most {LARGEST_FILE}")
     try:
-        return tomllib.loads(text if isinstance(text, str) else text.decode("utf-8-sig"))
-    except UnicodeDecodeError:
-        raise refused("bytes that are no text", "a TOML file saved as UTF-8") from None
-    except ValueError as error:  # also a number too long for Python
-        line = re.search(r" \(at line (\d+), column \d+\)", str(error))
-        found = str(error).replace(line[0], "") if line else str(error)
-        row = int(line[1]) if line else None
-        raise refused(found[:80], "TOML: lines such as  name = value", row) from None
-    except RecursionError:
-        raise refused(
-            "brackets in brackets, too deep", "TOML: lines such as  name = value"
-        ) from None
+        return read_toml(text, LARGEST_FILE, any_integers=True)
+    except BadToml as error:
+        expected = f"TOML of at most {LARGEST_FILE} bytes: lines such as  name = value"
+        mistake = Mistake(file=file, found=error.reason, expected=expected, row=error.row)
+        raise FileRefused([mistake]) from None
 
 
 def _robot(root: Entries, limits: Limits) -> RobotSpec:

@@ -43,6 +43,8 @@ COMMANDS_PER_BEAT = 16
 COMMANDS_HZ = 200.0
 """Nor more than this in the long run; a controller sends 10 and what is pressed, a bot 60."""
 NAME_MAX = 24
+FILE_NAME_MAX = 100
+"""A file's name stands in each of its mistakes."""
 
 _JOINS_HZ, _JOINS_BURST = 1.0, 5  # each may cost the reading of three files
 _RATE_WINDOW_S = 2.0
@@ -169,6 +171,12 @@ class Inbox:
             return seat.refuse(
                 Why.BAD_NAME,
                 f"A team's name has 1-{NAME_MAX} printable characters; found {join.name!r:.60}.",
+            )
+        files = [one for one in (join.robot, join.postures, join.locomotion) if one is not None]
+        if not all(0 < len(one.name) <= FILE_NAME_MAX and one.name.isprintable() for one in files):
+            return seat.refuse(
+                Why.BAD_NAME,
+                f"A file's name has 1-{FILE_NAME_MAX} printable characters: rename it.",
             )
         try:
             checked = self._check_files(join)

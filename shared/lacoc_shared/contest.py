@@ -7,7 +7,6 @@ and what is still None is looked up here.
 """
 
 import math
-import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -18,6 +17,7 @@ from lacoc_shared.address import endpoint
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seal import new_token
+from lacoc_shared.toml_text import BadToml, read_toml
 
 T = TypeVar("T")
 
@@ -110,8 +110,8 @@ def load(path: Path) -> Contest:
         UserError: if it can't be read, or at the first wrong entry; the message names it.
     """
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        table = read_toml(path.read_bytes())
+    except (OSError, BadToml) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise UserError(
             f"The contest file {path} can't be read: {reason}. 'lacoc contest init' writes one."
@@ -235,9 +235,12 @@ class _Wrong(Exception):
     """What is wrong with a contest file, and where in it."""
 
 
+_PathText = Annotated[str, msgspec.Meta(pattern="^[^\\x00]*$")]
+
+
 class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     name: str = "Contest"
-    recordings: str = "recordings"
+    recordings: _PathText = "recordings"
     robot: str = "hexapod"
 
 
@@ -302,4 +305,7 @@ def _convert(value: Any, kind: type[T], where: str) -> T:
 def _beside(folder: Path, name: str) -> str:
     """A name of something installed as it is; a path as seen from the contest file's folder."""
     is_path = "/" in name or "." in name or "\\" in name
-    return str((folder / Path(name).expanduser()).resolve()) if is_path else name
+    try:
+        return str((folder / Path(name).expanduser()).resolve()) if is_path else name
+    except (ValueError, RuntimeError, OSError):  # a NUL, a user who is not known, a loop of links
+        raise _Wrong(f"{name!r:.80} is no path.") from None

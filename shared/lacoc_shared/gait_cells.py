@@ -16,6 +16,7 @@ from lacoc_shared.gait import (
     PostureTable,
     leg_and_level,
 )
+from lacoc_shared.mistakes import printable
 
 RANGE_DEG = 150.0
 """The movable range is -150 to +150 degrees (workshop 3-1)."""
@@ -116,8 +117,7 @@ def shown(cell: str) -> str:
     """A cell as a mistake quotes it: short, and safe to print."""
     if not cell:
         return "nothing"
-    text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in cell[:41])
-    text = text if len(cell) <= 40 else text[:40] + "…"
+    text = printable(cell)
     return text if number_of(cell) is not None else f'"{text}"'
 
 

@@ -32,6 +32,9 @@ Range = float | Sequence[tuple[float, float]]
 """Range of the angles [deg]: the same bound both ways for every joint, or (lowest, highest) of
 each joint id."""
 
+MAX_MISTAKES = 1000
+"""Reading ends there: a file of garbage has thousands, and a court reads files within a beat."""
+
 _KEY = re.compile(r"(\d)\s*key", re.IGNORECASE | re.ASCII)
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
 _LEGEND_LABELS = ("id of joint", "position")
@@ -49,7 +52,7 @@ def read_cells(
         range_deg: the range of the angles.
 
     Raises:
-        FileRefused: with every mistake.
+        FileRefused: with every mistake, or the first `MAX_MISTAKES`.
     """
     return _Reader(file, legs, range_deg).read(rows)
 
@@ -119,6 +122,8 @@ class _Reader:
                 expected=expected,
             )
         )
+        if len(self._mistakes) == MAX_MISTAKES:
+            self._refuse()
 
     def _missing_header(self, row: Row) -> None:
         self._add(

@@ -17,6 +17,7 @@ from lacoc_shared.gait_reader import Legs, Range, read_cells
 from lacoc_shared.mistakes import FileRefused, Mistake
 
 MAX_BYTES = 32 * 1024
+_MAX_ROWS = 1200  # a gait has 1011, and lines of remarks
 
 _BOMS = (
     (codecs.BOM_UTF8, "utf-8"),
@@ -45,10 +46,11 @@ def read_gait(
     Raises:
         FileRefused: with every mistake in the file; nothing is clamped or skipped.
     """
-    rows = [
-        Row(number, _cells(line))
-        for number, line in enumerate(_LINE_END.split(_text(data, name)), start=1)
-    ]
+    lines = _LINE_END.split(narrow(_text(data, name)))
+    filled = [(number, line) for number, line in enumerate(lines, start=1) if line.strip()]
+    if len(filled) > _MAX_ROWS:
+        raise _refused(name, f"{len(filled)} rows", f"a gait of at most {_MAX_ROWS} rows")
+    rows = [Row(number, _cells(line)) for number, line in filled]
     return read_cells(rows, name, legs=legs, range_deg=range_deg)
 
 
@@ -100,7 +102,6 @@ def _decoded(data: bytes, encoding: str, name: str) -> str:
 
 
 def _cells(line: str) -> list[str]:
-    line = narrow(line)
     cells = line.split("\t") if "\t" in line else _SPACED_CELL.findall(line)
     return [_unquoted(cell.strip()) for cell in cells]
 

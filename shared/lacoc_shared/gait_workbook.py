@@ -10,6 +10,8 @@ import zipfile
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
+from xml.parsers import expat
 
 import msgspec
 import openpyxl
@@ -21,11 +23,13 @@ from lacoc_shared.gait_cells import RANGE_DEG, Row, narrow, number_text, posture
 from lacoc_shared.gait_reader import Legs, Range, read_cells
 from lacoc_shared.gait_sheets import INPUT_SHEET, MIRROR_SHEET, add_sheets
 from lacoc_shared.gait_text import read_gait
-from lacoc_shared.mistakes import FileRefused, Mistake, UserError
+from lacoc_shared.mistakes import FileRefused, Mistake, UserError, printable
 
 MAX_BYTES = 1024 * 1024
 
 _MAX_UNPACKED_BYTES = 8 * MAX_BYTES  # a sheet of angles has a hundredth of that
+_MAX_PARTS = 200  # files in the zip; a workbook has a dozen
+_MAX_ELEMENTS = 50_000  # XML elements in all of them; a table has two thousand
 _MAX_ROWS, _MAX_COLUMNS = 1000, 100  # what is looked at; a table has 14 rows, 25 columns
 _ZIP = b"PK\x03\x04"
 _COMPOUND_FILE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"  # .xls, or a workbook with a password
@@ -106,10 +110,10 @@ def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
 
 
 def _require_harmless(data: bytes, name: str) -> None:
-    """Look at the zip's list before anything is unpacked.
+    """Look at the zip's list before anything is unpacked, and at the XML before openpyxl does.
 
     Raises:
-        FileRefused: if it is no zip, has a password, or would fill the memory.
+        FileRefused: if it is no zip, has a password, or would fill the memory or take long.
     """
     if len(data) > MAX_BYTES:
         raise _refused(name, f"more than {MAX_BYTES} bytes", "a workbook of at most 1 MiB")
@@ -118,12 +122,56 @@ def _require_harmless(data: bytes, name: str) -> None:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             parts = archive.infolist()
+            if sum(part.file_size for part in parts) > _MAX_UNPACKED_BYTES:
+                found = "a workbook that unpacks to more than 8 MiB"
+                raise _refused(name, found, "a table of angles")
+            if any(part.flag_bits & 1 for part in parts):
+                raise _refused(name, "a file with a password", _WANTED)
+            packed = {part.compress_type for part in parts}
+            if len(parts) > _MAX_PARTS or packed - {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
+                raise _refused(name, "a zip that is no workbook", _WANTED)
+            counter = _ElementCounter()
+            for part in parts:
+                counter.look_at(archive.read(part))
+    except FileRefused:
+        raise
+    except _TooMuchXmlError as error:
+        raise _refused(name, str(error), "a table of angles") from None
     except Exception:  # a damaged list of contents raises more than BadZipFile
         raise _refused(name, "a damaged file, or no workbook", _WANTED) from None
-    if sum(part.file_size for part in parts) > _MAX_UNPACKED_BYTES:
-        raise _refused(name, "a workbook that unpacks to more than 8 MiB", "a table of angles")
-    if any(part.flag_bits & 1 for part in parts):
-        raise _refused(name, "a file with a password", _WANTED)
+
+
+class _TooMuchXmlError(Exception):
+    """XML that no spreadsheet program writes; the message says what is in it."""
+
+
+class _ElementCounter:
+    """Counts the XML elements of a workbook: openpyxl makes objects of each."""
+
+    def __init__(self) -> None:
+        self._left = _MAX_ELEMENTS
+
+    def look_at(self, part: bytes) -> None:
+        """Go through a part of the workbook; one that is no XML is had up to where it stops.
+
+        Raises:
+            _TooMuchXmlError: if there is too much, or a definition of entities.
+        """
+        parser = expat.ParserCreate()
+        parser.StartElementHandler = self._element
+        parser.StartDoctypeDeclHandler = self._doctype
+        try:
+            parser.Parse(part, True)
+        except expat.ExpatError:
+            return
+
+    def _element(self, name: str, attributes: dict[str, str]) -> None:
+        self._left -= 1 + len(attributes) // 8
+        if self._left < 0:
+            raise _TooMuchXmlError(f"a workbook of more than {_MAX_ELEMENTS} elements")
+
+    def _doctype(self, *_: Any) -> None:
+        raise _TooMuchXmlError("a workbook that defines XML entities")
 
 
 def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
@@ -137,7 +185,7 @@ def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
     names = books[0].sheetnames
     sheet = MIRROR_SHEET if names == [MIRROR_SHEET] else INPUT_SHEET
     if sheet not in names:
-        found = "the sheets " + ", ".join(f'"{title[:40]}"' for title in names[:10])
+        found = "the sheets " + ", ".join(f'"{printable(title)}"' for title in names[:10])
         raise _refused(name, found, f'a sheet "{INPUT_SHEET}", or "{MIRROR_SHEET}" alone')
     values, formulas = (
         book[sheet].iter_rows(max_row=_MAX_ROWS, max_col=_MAX_COLUMNS, values_only=True)

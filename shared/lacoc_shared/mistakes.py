@@ -57,3 +57,9 @@ class FileRefused(ValueError):
 
 class UserError(Exception):
     """Something a person can put right; the message says how."""
+
+
+def printable(text: str, longest: int = 40) -> str:
+    """Somebody else's text as a mistake may quote it: short, and safe on a terminal."""
+    safe = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text[:longest])
+    return safe if len(text) <= longest else f"{safe}…"

@@ -232,3 +232,19 @@ def test_a_range_for_each_joint():
     assert len(refusal.value.mistakes) == 13
     with pytest.raises(FileRefused):
         read_gait(data, "x", range_deg=44.9)
+
+
+@pytest.mark.parametrize(
+    ("data", "count"),
+    [
+        (b"1\n" * 16_000, 1),
+        (b"9\n9\n" + (b"\t".join([b"x"] * 18) + b"\n") * 880, 1000),
+        (b"\t" * 32_000, 1),
+    ],
+    ids=["lines", "mistakes", "tabs"],
+)
+def test_garbage_is_refused_soon(data: bytes, count: int) -> None:
+    """A court reads files within a beat: it stops where no gait could go on."""
+    with pytest.raises(FileRefused) as refusal:
+        read_gait(data, "Loco-data.txt")
+    assert len(refusal.value.mistakes) == count

@@ -239,7 +239,19 @@ def test_an_entity_bomb_is_refused(sample):
         '<sst xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main">'
         "<si><t>&e11;</t></si></sst>"
     ).encode()
-    assert refused(zipped(parts))[0][5] == "a workbook that can't be read"
+    assert refused(zipped(parts))[0][5] == "a workbook that defines XML entities"
+
+
+@pytest.mark.parametrize(
+    "content", ["<si/>" * 60_000, "<si><t>a</t></si>" * 30_000], ids=["empty", "strings"]
+)
+def test_more_xml_than_a_table_has_is_refused(sample, content):
+    """Design, failure policy: what is small to unpack may still be long to read."""
+    with zipfile.ZipFile(io.BytesIO(sample)) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+    parts["xl/sharedStrings.xml"] = f'<sst xmlns="{main}">{content}</sst>'.encode()
+    assert refused(zipped(parts))[0][5] == "a workbook of more than 50000 elements"
 
 
 def test_a_row_far_below_costs_nothing(sample):

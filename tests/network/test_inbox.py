@@ -96,6 +96,8 @@ def test_a_join_gives_a_session_only_when_the_match_has_taken_it_in() -> None:
         (join_bytes(name="x" * 25), "1-24 printable", "bad name"),
         (join_bytes(name="a\x1b[31m"), "1-24 printable", "bad name"),
         (join_bytes(postures=SentFile("a.txt", b"wrong")), "mistakes", "bad files"),
+        (join_bytes(robot=SentFile("x" * 101, b"")), "100 printable", "bad name"),
+        (join_bytes(robot=SentFile("\x1b[2J", b"")), "100 printable", "bad name"),
         (b"\xc1", "not understood", "bad bytes"),
         (b"x" * 70_000, "at most", "bad bytes"),
     ],

@@ -322,3 +322,37 @@ def test_the_command_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     """`lacoc replay` is an entry point; a file that is no record is one clear line, exit code 2."""
     assert cli.main(["replay", "info", str(tmp_path / "none.mcap")]) == 2
     assert "There is no record" in capsys.readouterr().err
+
+
+def test_names_in_a_hostile_record_lead_nowhere(
+    tmp_path: Path, header: MakeHeader, frame: MakeFrame, sheet: Sheet, scene: Scene
+) -> None:
+    """What match and seats are called is the record's to say, where files go is not."""
+    writer = RecordWriter(tmp_path, header(match_id="aaaaaaaaaa"))
+    writer.sheet(0, sheet)
+    writer.scene(0, scene)
+    writer.frame(1, codec.encode(frame(1)))
+    writer.close()
+    path, out = tmp_path / "hostile.mcap", tmp_path / "in" / "side"
+    data = writer.path.read_bytes().replace(b"aaaaaaaaaa", b"../../else")
+    path.write_bytes(data.replace(b"left", b"../l"))
+    before = set(tmp_path.rglob("*"))
+    assert CliRunner().invoke(app, ["export", str(path), "--out", str(out)]).exit_code == 0
+    new = set(tmp_path.rglob("*")) - before - {out, out.parent}
+    assert {file.parent for file in new} == {out}
+    assert ".._.._else-Pos-data-.._l.txt" in {file.name for file in new}
+
+
+def test_a_record_that_contradicts_itself(
+    tmp_path: Path, header: MakeHeader, frame: MakeFrame, sheet: Sheet
+) -> None:
+    """A sentence, where frames do not fit the sheet; never a traceback."""
+    writer = RecordWriter(tmp_path, header())
+    writer.sheet(0, sheet)
+    short = msgspec.structs.replace(frame(1), poses=b"abc")
+    writer.frame(1, codec.encode(short))
+    writer.close()
+    words = ["export", str(writer.path), "--out", str(tmp_path / "out"), "--pos-data", "left"]
+    done = CliRunner().invoke(app, words)
+    assert isinstance(done.exception, UserError)
+    assert "do not fit together" in str(done.exception)

@@ -2,15 +2,18 @@
 
 import os
 import signal
+import struct
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
 import msgspec
 import pytest
+import zstandard
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
@@ -53,7 +56,7 @@ def test_what_is_written_is_read(
     assert record.result == result
     assert [beat for beat, _ in record.frames] == list(range(40))
     assert codec.decode(record.frames[12][1], Frame) == frame(12)
-    assert record.inputs[13] == (KeySeat(0, 14, 1, 2), KeySeat(1, 14, 1, 3))
+    assert record.inputs[13] == [KeySeat(0, 14, 1, 2), KeySeat(1, 14, 1, 3)]
     assert [event.beat for event in record.events] == [3, 13, 23, 33]
     assert record.touches[3] == Touch(((1,), ()), (None, (0.1, 0.2, 0.3)))
     assert record.snapshots == [(5, bytes(range(256)) * 4), (25, bytes(range(256)) * 4)]
@@ -287,7 +290,7 @@ def test_a_restarted_court_goes_on_in_a_new_segment(
     record = Record.read(tmp_path / "m.001.live.mcap")
     assert [header.segment for header in record.headers] == [0, 1]
     assert [beat for beat, _ in record.frames] == list(range(34))
-    assert record.inputs[33] == (KeySeat(1, 99, 1, 0),)
+    assert record.inputs[33] == [KeySeat(1, 99, 1, 0)]
     assert 39 not in record.inputs
     assert [event.beat for event in record.events] == [3, 13, 23]
     assert list(record.touches) == [3, 13, 23]
@@ -398,3 +401,27 @@ def _messages(data: bytes) -> dict[str, list[bytes]]:
             found.setdefault(topics[channel - 1], []).append(data[at + 31 : at + 9 + length])
         at += 9 + length
     return found
+
+
+def test_a_bomb_is_no_record(segment: Path, tmp_path: Path) -> None:
+    """A packed file that unpacks to far more than a match has is refused before it does."""
+    packed = zstandard.ZstdCompressor().compress(bytes(1 << 28))
+    for told in (1 << 28, 100):
+        body = struct.pack("<QQQII", 0, 0, told, 0, 4) + b"zstd"
+        body += struct.pack("<Q", len(packed)) + packed
+        path = tmp_path / "m.mcap"
+        data = segment.read_bytes()
+        path.write_bytes(data[:8] + struct.pack("<BQ", 6, len(body)) + body + data[-8:])
+        with pytest.raises(UserError, match="damaged at its beginning"):
+            Record.read(path)
+
+
+def test_many_inputs_in_a_beat_are_read_in_linear_time(header: MakeHeader, tmp_path: Path) -> None:
+    """Nobody's record makes its reader wait for hours."""
+    writer = RecordWriter(tmp_path, header())
+    for seq in range(20_000):
+        writer.input(3, KeySeat(0, seq, 1, 2))
+    writer.close()
+    begin_s = time.process_time()
+    assert len(Record.read(writer.path).inputs[3]) == 20_000
+    assert time.process_time() - begin_s < 2

@@ -243,14 +243,32 @@ def test_broken_toml_names_the_line() -> None:
         (b"name = '\xff'", "no text"),
         (b"a = " + b"[" * 5000, "too deep"),
         (b"a = 1" + b"0" * 5000, "digits"),
+        (b"name = [0x" + b"f" * 5000 + b"]", "digits"),
+        (b"name = [{" + b"a." * 50 + b"a = 1}]", "too deep"),
+        (b"a." * 15000 + b"a = 1", "dots"),
         (b"#" * (LARGEST_FILE + 1), f"{LARGEST_FILE + 1} bytes"),
         (b"", "nothing"),
     ],
-    ids=["not UTF-8", "deep", "long number", "long file", "empty"],
+    ids=[
+        "not UTF-8",
+        "deep",
+        "long number",
+        "long number in a list",
+        "deep in a list",
+        "dotted key",
+        "long file",
+        "empty",
+    ],
 )
 def test_hostile_bytes(data: bytes, found: str) -> None:
     """Bytes that are no robot file are a mistake like any other."""
     assert any(found in mistake.found for mistake in mistakes_of(data))
+
+
+def test_mistakes_are_safe_to_print() -> None:
+    """A file can't write to the terminal of whoever checks it."""
+    for mistake in mistakes_of('"\\u001b[2J" = 1\nname = "\\u001b[31m"\n'):
+        assert str(mistake).isprintable()
 
 
 def test_byte_order_mark() -> None:

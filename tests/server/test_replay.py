@@ -103,10 +103,10 @@ def test_a_match_that_goes_on_verifies_up_to_where_it_is(live: tuple[Path, list[
 def test_a_changed_key_is_named(live: tuple[Path, list[Beat]]) -> None:
     """Design, "Record": verify names the first beat that differs."""
     record = Record.read(live[0])
-    record.inputs[260] = tuple(
+    record.inputs[260] = [
         KeySeat(item.seat, item.seq, item.level, TURN_RIGHT) if isinstance(item, KeySeat) else item
         for item in record.inputs[260]
-    )
+    ]
     found = verdict(record)
     assert found.differs_at == 260
     assert found.text.startswith("beat 260 differs: seats, poses, state hash")

@@ -1,5 +1,7 @@
 """`lacoc replay`: look at the record of a match, and take tables and pictures out of it."""
 
+import re
+import struct
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -17,6 +19,8 @@ from lacoc_shared.record import export as exports
 from lacoc_shared.record.foxglove import foxglove
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEAT_S
+
+_NOT_IN_NAMES = re.compile(r"[^\w.-]")
 
 app = lazy_group(
     "lacoc.commands.replay",
@@ -84,12 +88,28 @@ def export(
     made: list[tuple[str, bytes]] = []
     for name, make in makers:
         try:
-            made.append((name, make(record)))
+            made.append((name, _made(make, record)))
         except UserError as error:
             if not everything:
                 raise
             screen.warn(str(error))
     _save(out, record.header.match_id, made)
+
+
+def _made(make: Callable[[Record], bytes], record: Record) -> bytes:
+    """Make a file of a record.
+
+    Raises:
+        UserError: if it can't be made, also because the record's messages contradict each other:
+            it may come from anywhere.
+    """
+    try:
+        return make(record)
+    except (ValueError, ArithmeticError, LookupError, TypeError, struct.error) as error:
+        raise UserError(
+            f"The messages of the record of match {record.header.match_id!r:.80} do not fit "
+            f"together ({error!s:.80}). Copy it again from where it was made."
+        ) from None
 
 
 def _save(folder: Path, match_id: str, made: list[tuple[str, bytes]]) -> None:
@@ -98,7 +118,8 @@ def _save(folder: Path, match_id: str, made: list[tuple[str, bytes]]) -> None:
     except OSError as error:
         raise UserError(f"Cannot make the folder {folder}: {error.strerror}.") from None
     for name, data in made:
-        path = folder / f"{match_id}-{name}"
+        # The names of match and seats are the record's, and may be anything.
+        path = folder / _NOT_IN_NAMES.sub("_", f"{match_id}-{name}")
         keep.save(path, data)
         screen.show(str(path))
 
@@ -132,7 +153,7 @@ def _lines(record: Record, found: dict[str, Any]) -> list[tuple[str, str]]:
         ended = "none: the match was never finished"
     else:
         scores = ", ".join(
-            f"{team} {score}" for team, score in zip(result.teams, result.scores, strict=True)
+            f"{team} {score}" for team, score in zip(result.teams, result.scores, strict=False)
         )
         winner = result.official or f"{result.computed} (not official)"
         ended = f"{scores}; winner: {winner}; {result.reason}, after {result.clock_s:.2f} s"

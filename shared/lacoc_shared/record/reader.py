@@ -24,7 +24,7 @@ class Record:
 
     headers: list[Header] = field(default_factory=list)
     """One for each segment, in order."""
-    inputs: dict[int, tuple[Input, ...]] = field(default_factory=dict)
+    inputs: dict[int, list[Input]] = field(default_factory=dict)
     """What entered the match at a beat, in order."""
     events: list[Event] = field(default_factory=list)
     frames: list[tuple[int, bytes]] = field(default_factory=list)
@@ -101,7 +101,7 @@ class Record:
                 self.result = message
                 return
             case "/lacoc/input":
-                self.inputs[beat] = (*self.inputs.get(beat, ()), message)
+                self.inputs.setdefault(beat, []).append(message)
             case "/lacoc/event":
                 self.events.append(message)
             case "/lacoc/frame":
@@ -137,17 +137,20 @@ class Record:
         self.last_beat = beat - 1
         if self.result is not None and self.result.beats > beat:
             self.result = None
-        self.inputs = {at: items for at, items in self.inputs.items() if at < beat}
-        self.touches = {at: touch for at, touch in self.touches.items() if at < beat}
-        self.events = [event for event in self.events if event.beat < beat]
-        self.frames = _before(beat, self.frames)
-        self.snapshots = _before(beat, self.snapshots)
-        self.sheets = _before(beat, self.sheets)
-        self.scenes = _before(beat, self.scenes)
+        _drop(self.inputs, beat)
+        _drop(self.touches, beat)
+        while self.events and self.events[-1].beat >= beat:
+            self.events.pop()
+        items: list[tuple[int, Any]]
+        for items in (self.frames, self.snapshots, self.sheets, self.scenes):
+            while items and items[-1][0] >= beat:
+                items.pop()
 
 
-def _before(beat: int, items: list[tuple[int, V]]) -> list[tuple[int, V]]:
-    return [item for item in items if item[0] < beat]
+def _drop(items: dict[int, V], beat: int) -> None:
+    """Drop the entries from a beat on: they are in the order of beats."""
+    while items and next(reversed(items)) >= beat:
+        items.popitem()
 
 
 def _newest(beat: int, items: list[tuple[int, V]]) -> V | None:

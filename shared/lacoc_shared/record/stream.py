@@ -1,7 +1,7 @@
 """Reads one file of a record, message by message, in the order they were written."""
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -9,9 +9,9 @@ from typing import Any
 import msgspec
 import zstandard
 from mcap.exceptions import McapError
-from mcap.records import Channel, DataEnd, Message
+from mcap.records import Channel, Chunk, DataEnd, McapRecord, Message
 from mcap.records import Header as FileHeader
-from mcap.stream_reader import StreamReader
+from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import codec
@@ -32,7 +32,11 @@ _DAMAGE = (
 
 
 _MAX_BYTES = 1 << 26
-"""A longer message is no record's: the longest, a scene, has some 30 kB."""
+"""A longer message or chunk is no record's: the longest message, a scene, has some 30 kB, and a
+chunk 1 MiB."""
+_UNPACKED_BYTES, _UNPACKED_RATIO = 1 << 22, 50
+"""A file unpacks to no more than this and so many times its own size: a match, and also a court
+where nothing happens, packs to a third or a quarter."""
 
 Take = Callable[[str, int, bytes, Any], None]
 """Called with a message's topic, beat, bytes, and what they mean (a snapshot's: the bytes)."""
@@ -71,9 +75,8 @@ def walk(path: Path, take: Take) -> bool:
         )
     beat = -1
     topics: dict[int, str] = {}
-    reader = StreamReader(BytesIO(data), validate_crcs=True, record_size_limit=len(data))
     try:
-        for record in reader.records:
+        for record in _records(data):
             if isinstance(record, Message):
                 beat = record.log_time // BEAT_NS
                 topic = topics[record.channel_id]
@@ -95,6 +98,39 @@ def walk(path: Path, take: Take) -> bool:
                 "Copy it again from where it was made."
             ) from None
     return False
+
+
+def _records(data: bytes) -> Iterator[McapRecord]:
+    """The records of a file, also those in its chunks; no more than a match may have.
+
+    Raises:
+        McapError: if a chunk is larger than it may be, or packed in a way that records are not.
+            Much else, if the file is damaged.
+    """
+    left = _UNPACKED_BYTES + _UNPACKED_RATIO * len(data)
+    reader = StreamReader(
+        BytesIO(data), validate_crcs=True, record_size_limit=len(data), emit_chunks=True
+    )
+    for record in reader.records:
+        if not isinstance(record, Chunk):
+            yield record
+            continue
+        left -= _unpacked_bytes(record)
+        if left < 0:
+            raise McapError("it unpacks to more than a match has")
+        yield from breakup_chunk(record, validate_crc=True)
+
+
+def _unpacked_bytes(chunk: Chunk) -> int:
+    """What unpacking a chunk takes: whoever wrote it says so, and zstd believes its own word."""
+    size = len(chunk.data)
+    if chunk.compression == "zstd":
+        size = max(chunk.uncompressed_size, zstandard.frame_content_size(chunk.data))
+    elif chunk.compression:
+        raise McapError(f"a chunk is packed by {chunk.compression!r:.20}")
+    if size > _MAX_BYTES:
+        raise McapError(f"a chunk unpacks to {size} bytes")
+    return size
 
 
 def _decode(path: Path, topic: str, data: bytes) -> Any:

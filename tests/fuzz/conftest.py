@@ -1,0 +1,7 @@
+"""Makes the modules of this folder, and the court's builders, importable."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path += [str(HERE), str(HERE.parent / "server")]

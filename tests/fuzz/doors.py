@@ -1,0 +1,322 @@
+"""A court's doors under fire: a real network module, inbox, desk and match; only Zenoh is missing.
+
+A second match gets nothing but what came by right: by a token, or sealed by the seat that holds
+it. After every beat both must show the same frame, bit for bit.
+"""
+
+import hashlib
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from stage import Stage
+
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.limits import Limits
+from lacoc_server import network as court_network
+from lacoc_server.decision_desk import DecisionDesk
+from lacoc_server.entry import Admission
+from lacoc_server.inbox import Inbox
+from lacoc_server.network import Arrival, CourtNetwork
+from lacoc_server.sessions import Sessions, Why
+from lacoc_shared import codec, seal
+from lacoc_shared.decisions import DECISIONS, Adjust, Clock, Halt, Set, Start, TakeBack
+from lacoc_shared.inputs import Decide, HeardSeat, JoinSeat, KeySeat, LeaveSeat, SilentSeat
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import (
+    PROTOCOL,
+    Command,
+    DecisionReply,
+    DecisionRequest,
+    Done,
+    Enter,
+    Join,
+    Joined,
+    Refusal,
+    SeatRequest,
+    SentFile,
+)
+from lacoc_shared.seat import RESTART_KEY, Phase
+
+KEYS = Keys("main")
+SEATS = ("left", "right")
+TOKENS = {"left": "the-left-team-has-this", "right": "the-right-team-has-this"}
+REFEREE = "the-referee-has-this"
+SESSIONS = (4_000_000_001, 4_000_000_002)
+SECRETS = (b"left's secret...", b"right's secret..")
+BATCH = 12
+"""Packets a beat; a court looks at no more of a seat's commands than this and four."""
+PHASES = (Phase.LOBBY, Phase.HALTED, Phase.PLAYING, Phase.READY, Phase.FINISHED)
+_BEATS_A_MATCH = 1500
+
+
+class StateChanged(AssertionError):
+    """Something had an effect that nobody with a right to it had sent."""
+
+
+class _Request:
+    def __init__(self, key: str, payload: bytes) -> None:
+        self.key, self.payload = key, payload
+        self.answers: list[bytes] = []
+
+    def reply(self, payload: bytes) -> None:
+        self.answers.append(payload)
+
+    def refuse(self, payload: bytes) -> None:
+        codec.decode(payload, Refusal, 1 << 20)  # a client can read it
+        self.answers.append(b"")
+
+
+class _Queue:
+    """A ring or a desk."""
+
+    def __init__(self, depth: int) -> None:
+        self.waiting: deque[Any] = deque(maxlen=depth)
+
+    def take(self) -> Any:
+        return self.waiting.popleft() if self.waiting else None
+
+
+class _Session:
+    def __init__(self) -> None:
+        self.queues: dict[str, _Queue] = {}
+
+    def publisher(self, *_: Any) -> "_Session":
+        return self
+
+    history_publisher = publisher
+
+    def ring(self, key: str, depth: int) -> _Queue:
+        return self.queues.setdefault(key, _Queue(depth))
+
+    desk = ring
+
+    def announce(self, _: str) -> None: ...
+    def close(self) -> None: ...
+
+    def locators(self) -> tuple[str, ...]:
+        return ()
+
+
+class _Sessions(Sessions):
+    """Gives the same session numbers and secrets every time: then the seeds stay good."""
+
+    def begin(self, seat: int) -> tuple[int, bytes]:
+        self.end(seat, Why.REPLACED)
+        self._secrets[SESSIONS[seat]] = (seat, SECRETS[seat])
+        return SESSIONS[seat], SECRETS[seat]
+
+
+def command(seat: int, seq: int, level: int, key: int) -> bytes:
+    """A command that its seat has sealed."""
+    session, secret = SESSIONS[seat], SECRETS[seat]
+    mac = seal.command_mac(secret, KEYS.command(SEATS[seat]), session, seq, level, key)
+    return codec.encode(Command(session, seq, level, key, mac))
+
+
+def request(seat: int, what: str, ready: bool) -> bytes:
+    """A ready or leave that its seat has sealed."""
+    mac = _request_mac(seat, what, ready)
+    return codec.encode(SeatRequest(session=SESSIONS[seat], ready=ready, mac=mac))
+
+
+def _request_mac(seat: int, what: str, ready: bool) -> bytes:
+    key = KEYS.request(SEATS[seat], what)
+    return seal.request_mac(SECRETS[seat], key, SESSIONS[seat], ready)
+
+
+def join(token: str, **more: Any) -> bytes:
+    """A join."""
+    return codec.encode(Join(protocol=PROTOCOL, token=token, name="Fuzzers", **more))
+
+
+class Doors:
+    """A court with two seated teams; packets come in batches of a beat."""
+
+    def __init__(self) -> None:
+        robot, data = find_robot("hexapod")
+        self._admission = Admission(
+            SentFile(robot, data), *sample_gait_files("hexapod"), Limits(), (1,)
+        )
+        self._hashes = {seat: _hash(token) for seat, token in TOKENS.items()}
+        self._courts = 0
+        self._batch: list[tuple[str, bytes]] = []
+        self.accepted = self.refused = 0
+        self._open()
+
+    def _open(self) -> None:
+        self._session = _Session()
+        real, court_network.open_court = court_network.open_court, lambda _: self._session  # type: ignore[assignment,return-value]
+        try:
+            self._inbox = Inbox(KEYS, SEATS, self._hashes, self._admission)
+            self._inbox._sessions = _Sessions()
+            self._desk = DecisionDesk([_hash(REFEREE)])
+            self._network = CourtNetwork(KEYS, [], self._inbox, self._desk)
+        finally:
+            court_network.open_court = real
+        phase = PHASES[self._courts % len(PHASES)]
+        self._courts += 1
+        self._match, self._twin = (Stage("othello").to(phase) for _ in range(2))
+        self._now_s, self._beats = 100.0, 0
+        for seat in (0, 1):
+            self._inbox.seated(seat)
+
+    def feed(self, key: str, payload: bytes) -> None:
+        """Let a packet arrive under a key expression; the beat comes when enough have."""
+        self._batch.append((key, payload))
+        if len(self._batch) >= BATCH:
+            self.beat()
+
+    def beat(self) -> None:
+        """Let the court have a beat.
+
+        Raises:
+            StateChanged: if anything happened without a right to it.
+        """
+        batch, self._batch = self._batch, []
+        desks: dict[str, int] = {}
+        for key, payload in batch:
+            if key.endswith("/key"):
+                self._session.queues[key].waiting.append(payload)
+                continue
+            asked = KEYS.decision("*") if "/referee/" in key else key
+            desks[asked] = desks.get(asked, 0) + 1
+            self._session.queues[asked].waiting.append(_Request(key, payload))
+        # A desk gives a beat four, and no more once one has entered the match.
+        beats = max(1, *desks.values()) if desks else 1
+        for number in range(beats):
+            self._one_beat()
+            if number and not any(queue.waiting for queue in self._session.queues.values()):
+                break
+
+    def _one_beat(self) -> None:
+        own = self._own_keys()
+        before = self._state()
+        self._now_s += 0.1
+        self._beats += 1
+        arrivals = self._network.poll(self._now_s)
+        by_right = [item for item in arrivals if self._has_right(item)]
+        if len(by_right) != len(arrivals):
+            raise StateChanged(f"taken in without a right: {arrivals}")
+        if not own <= {a.input for a in arrivals if isinstance(a.input, KeySeat)}:
+            raise StateChanged(f"a seat's own new keys were lost: {own}")
+        if not arrivals and self._state() != before:
+            raise StateChanged("the doors' state changed")
+        beat = self._match.beat(*(arrival.input for arrival in arrivals))
+        twin = self._twin.beat(*(arrival.input for arrival in by_right))
+        if codec.encode(beat.frame) != codec.encode(twin.frame):
+            raise StateChanged("the match is another than its twin")
+        for arrival, outcome in zip(arrivals, beat.outcomes, strict=True):
+            if arrival.answer is not None:
+                self.accepted += 1
+                arrival.answer(outcome)
+        for seat in (0, 1):  # whose seat was left or joined by right comes back
+            if self._inbox._sessions.holder(seat) != SESSIONS[seat]:
+                self._inbox.seated(seat)
+        over = self._match.phase in (Phase.OFFICIAL, Phase.VOID) or self._match.match.next_wanted
+        if over or self._beats >= _BEATS_A_MATCH:
+            self._open()
+
+    def _own_keys(self) -> set[KeySeat]:
+        """The seats' own controllers: a sign of life each beat, and a new key now and then."""
+        new: set[KeySeat] = set()
+        for seat in (0, 1):
+            key = KEYS.command(SEATS[seat])
+            last = max(self._inbox._seats[seat].last_seq, _FIRST_OWN)
+            if self._beats % 10 == 5 * seat:
+                last += 1
+                item = KeySeat(seat, last, 1, last % 4)
+                new.add(item)
+            # The newest wins: after all that the batch has for the seat.
+            self._session.queues[key].waiting.append(command(seat, last, 1, last % 4))
+        return new
+
+    def _state(self) -> tuple[object, ...]:
+        inbox = self._inbox
+        return (
+            tuple((seat.last_seq, seat.joined, seat.silent) for seat in inbox._seats),
+            tuple(inbox._sessions._secrets.items()),
+        )
+
+    def _has_right(self, arrival: Arrival) -> bool:
+        item = arrival.input
+        if isinstance(item, SilentSeat | HeardSeat):
+            return True  # of the clock, not of a packet
+        if isinstance(item, KeySeat):
+            own = (item.level, item.key) == (1, item.seq % 4) and item.seq > _FIRST_OWN - 1
+            return own or (item.seat == 0 and (item.seq, item.level, item.key) in _SEALED)
+        assert arrival.answer is not None
+        payload = arrival.answer.args[0].payload  # type: ignore[attr-defined]
+        if isinstance(item, JoinSeat):
+            return TOKENS[SEATS[item.seat]].encode() in payload
+        if isinstance(item, Decide):
+            return REFEREE.encode() in payload
+        what = "leave" if isinstance(item, LeaveSeat) else "ready"
+        return any(_request_mac(item.seat, what, yes) in payload for yes in (True, False))
+
+
+_SEALED = {(1, 1, 2), (3, 1, RESTART_KEY), (2, 0, 3)}
+"""Sequence number, level and key of the left seat's sealed seeds."""
+_FIRST_OWN = 10
+"""The sequence numbers of the seats' own controllers begin after the seeds'."""
+
+
+def _hash(token: str) -> str:
+    """As `seal.hash_token`, with a salt that is always the same."""
+    digest = hashlib.blake2b(token.encode(), salt=bytes(16), digest_size=32, person=b"lacoc token")
+    return f"{bytes(16).hex()}${digest.hexdigest()}"
+
+
+def command_seeds() -> list[bytes]:
+    """Commands: of the seat, of the other one, of nobody, old ones and sealed nonsense."""
+    seeds = [command(0, 1, 1, 2), command(0, 3, 1, RESTART_KEY), command(0, 2, 0, 3)]
+    seeds += [command(1, 9, 1, 2), command(0, 0, 1, 2), command(0, 2**60, 1, 2)]
+    seeds += [command(0, 7, 1, 2)[:-1] + b"\0", command(0, -5, 1, 2), command(0, 8, 9, 99)]
+    return [*seeds, codec.encode(Command(17, 1, 1, 2, bytes(8)))]
+
+
+def request_seeds() -> list[bytes]:
+    """Ready and leave: of the seat, of the other, sealed for something else."""
+    good = [request(seat, what, yes) for seat in (0, 1) for what in ("ready", "leave")
+            for yes in (True, False)]  # fmt: skip
+    return [*good, *(one[:-1] + b"\0" for one in good)]
+
+
+def join_seeds() -> list[bytes]:
+    """Joins with all files, with few, with a wrong token, of another version."""
+    robot = SentFile(*find_robot("hexapod"))
+    postures, locomotion = sample_gait_files("hexapod")
+    files = {"robot": robot, "postures": postures, "locomotion": locomotion}
+    wrong = [join("guess", **files), join(TOKENS["right"]), join("", postures=postures)]
+    other = codec.encode({"protocol": 2, "token": "x", "more": [1, {"a": None}]})
+    return [join(TOKENS["left"], **files), join(TOKENS["left"]), *wrong * 2, other]
+
+
+def decision_seeds() -> list[bytes]:
+    """Decisions with a guessed token, and a few with the referee's."""
+    made = (Start(), Halt(), Adjust("left", 5), Set("c2r3", "left"), TakeBack(3, True), Clock(9.5))
+    seeds = [
+        codec.encode(DecisionRequest(token=token, by="Kubota", reason="why", decision=one))
+        for token in ("a-guess", "another", REFEREE)
+        for one in made
+    ]
+    return [*seeds, codec.encode(Enter(token="guess")), codec.encode(Enter(token=REFEREE))]
+
+
+def decision_key(payload: bytes) -> str:
+    """The key expression that a decision would come under."""
+    name = next((name for name in DECISIONS if name.encode() in payload), "enter")
+    return KEYS.decision(name)
+
+
+def seat_key(what: str) -> Callable[[bytes], str]:
+    """The left seat's."""
+    return lambda _: KEYS.request("left", what) if what != "key" else KEYS.command("left")
+
+
+def request_key(payload: bytes) -> str:
+    """Ready and leave by turns."""
+    return KEYS.request("left", ("ready", "leave")[sum(payload[-4:]) % 2])
+
+
+ANSWERS = (Done, DecisionReply, Joined)

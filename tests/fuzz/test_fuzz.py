@@ -1,0 +1,47 @@
+"""Every decoder and file reader meets hostile bytes: a short run; `make fuzz` has the long one."""
+
+from collections.abc import Iterator
+from signal import SIGPROF, getsignal, signal
+
+import pytest
+from campaign import arm, feed
+from doors import BATCH, KEYS, Doors, StateChanged, command
+from mutate import Mutator
+from targets import TARGETS, Target
+
+SLOW = {"gait workbook": 10, "gait text": 120, "record, exported": 10, "court: joins": 40}
+INPUTS = 200
+
+
+@pytest.fixture(autouse=True)
+def hangs_are_seen() -> Iterator[None]:
+    before = getsignal(SIGPROF)
+    arm()
+    yield
+    signal(SIGPROF, before)
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+def test_nothing_but_the_documented_refusals(target: Target) -> None:
+    """Good seeds, former findings and hostile bytes: no crash, no hang, no state changes."""
+    *_, figures = feed(target, len(target.seeds) + SLOW.get(target.name, INPUTS), seed=1)
+    assert not figures.findings, "\n".join(figures.findings)
+    assert figures.inputs == figures.accepted + figures.refused
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+def test_the_same_seed_makes_the_same_inputs(target: Target) -> None:
+    """A run can be made again."""
+    one, other = (Mutator(target.seeds, target.kind, "7") for _ in range(2))
+    assert [one.next() for _ in range(20)] == [other.next() for _ in range(20)]
+
+
+def test_a_change_of_state_would_be_seen() -> None:
+    """The watch over the doors is awake: a command that nobody had sealed would be found out."""
+    court = Doors()
+    court.beat()
+    forged = command(0, 99, 1, 9)  # whoever has the secret can, but neither seat has sent it
+    for _ in range(BATCH - 1):
+        court.feed(KEYS.command("left"), forged)
+    with pytest.raises(StateChanged, match="without a right"):
+        court.feed(KEYS.command("left"), forged)

@@ -1,0 +1,37 @@
+"""TOML of strangers: one error, and nothing that takes long or fills the memory."""
+
+import time
+
+import pytest
+
+from lacoc_shared.toml_text import BadToml, read_toml
+
+
+def test_what_people_write_is_read() -> None:
+    """Bytes with a byte order mark, nested tables, numbers of 64 bits, words with dots."""
+    data = '\ufeffa.b = [1, {c = 2.5}]\nd = "1.2.3"\ne = 0xffff_ffff_ffff_ffff\n'.encode()
+    assert read_toml(data) == {"a": {"b": [1, {"c": 2.5}]}, "d": "1.2.3", "e": 2**64 - 1}
+
+
+@pytest.mark.parametrize(
+    ("data", "words", "row"),
+    [
+        (b"a = 1\nb = \n", "Invalid value", 2),
+        (b"a = '\xff'", "no text", None),
+        (b"a = " + b"[" * 5000, "too deep", None),
+        (b"a = " + b"[" * 40 + b"]" * 40, "too deep", None),
+        (b"a = [{" + b"b." * 60 + b"c = 1}]", "too deep", None),
+        (b"a = 1" + b"0" * 5000, "digits", None),
+        (b"a = [0x" + b"f" * 5000 + b"]", "very many digits", None),
+        (b"a = 1\n" + b"b." * 15000 + b"c = 1", "dots in a line", 2),
+        (b"#" * 2000, "at most 1000", None),
+    ],
+    ids=["no TOML", "no UTF-8", "open", "deep", "dotted", "long", "long hex", "dots", "large"],
+)
+def test_hostile_text_is_refused_at_once(data: bytes, words: str, row: int | None) -> None:
+    """Python's own reader takes seconds and a gigabyte for some of these."""
+    begin_s = time.process_time()
+    with pytest.raises(BadToml, match=words) as caught:
+        read_toml(data, 1000 if b"##" in data else 32 * 1024)
+    assert caught.value.row == row
+    assert time.process_time() - begin_s < 0.5
