@@ -1,0 +1,278 @@
+"""`python -m benchmarks.flood`: a seat sends 10,000 commands a second; what does a beat cost?
+
+A real court on one core; on the other, in processes of their own, a controller that floods its
+seat with commands that are all sealed and new, and one that plays on. Quiet and flooded rounds
+take turns; a beat's CPU time is that of the court's own thread.
+"""
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from lacoc_arenas import arena as arenas
+from lacoc_client.controller import Controller
+from lacoc_client.referee import RefereeClient
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.limits import Limits
+from lacoc_server.court import Court, CourtSettings
+from lacoc_server.decision_desk import DecisionDesk
+from lacoc_server.entry import Admission
+from lacoc_server.inbox import Inbox
+from lacoc_server.network import CourtNetwork
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.decisions import Start
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import Command, Event, Frame, SentFile
+from lacoc_shared.seal import command_mac, hash_token, new_token
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import open_client
+
+RATE_HZ = 10_000
+COURT = "flood"
+SETTLE_BEATS = 25
+"""Left out after each change."""
+_ROUND_BEATS = 150
+_SLICE_S = 0.005
+_LOST_S = 5.0
+
+
+class _Measured(Court):
+    """A court that looks at the clock of its own thread."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self.beats_s: list[float] = []
+
+    def _beat(self, now_s: float) -> None:
+        begin_s = time.thread_time()
+        super()._beat(now_s)
+        self.beats_s.append(time.thread_time() - begin_s)
+
+
+class _Watched(CourtNetwork):
+    """A network that knows the phase."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self.phase = Phase.CREATED
+
+    def publish_frame(self, frame: bytes) -> None:
+        super().publish_frame(frame)
+        if self.phase is not Phase.PLAYING:
+            self.phase = Phase(decode(frame, Frame).phase)
+
+
+def flood(rounds: int) -> dict[str, Any]:
+    """Measure.
+
+    Returns:
+        Microseconds of CPU a beat, quiet and flooded; the ratios; what the flooder sent; and what
+        became of the other seat's commands.
+    """
+    cores = sorted(os.sched_getaffinity(0))
+    loaded = arenas.load("othello", {"match": {"duration_s": 3600.0, "countdown_s": 0.02}})
+    tokens = {seat.id: new_token() for seat in loaded.seats}
+    referee = new_token()
+    keys = Keys(COURT)
+    files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
+    admission = Admission(*files, Limits(), loaded.match.open_levels)
+    hashes = {seat: hash_token(token) for seat, token in tokens.items()}
+    inbox = Inbox(keys, list(tokens), hashes, admission)
+    with ExitStack() as stack:
+        os.sched_setaffinity(0, cores[:1])
+        stack.callback(os.sched_setaffinity, 0, cores)
+        folder = stack.enter_context(tempfile.TemporaryDirectory())
+        desk = DecisionDesk([hash_token(referee)])
+        network = stack.enter_context(_Watched(keys, ["tcp/127.0.0.1:0"], inbox, desk))
+        settings = CourtSettings(COURT, loaded, {}, Path(folder))
+        court = _Measured(settings, network, _quiet)
+        address, (left, right) = network.locators[0], tokens
+        others = [
+            _Other("flooder", cores[-1], address, left, tokens[left]),
+            _Other("player", cores[-1], address, right, tokens[right], referee),
+        ]
+        for other in others:
+            stack.callback(other.stop)
+        plan = _Plan(court, network, others[0], rounds)
+        court.run(plan.ended)
+        pressed, sent = (other.stop() for other in reversed(others))
+    quiet, flooded = plan.rounds_s[0::2], plan.rounds_s[1::2]
+    ratios = [after / before for before, after in zip(quiet, flooded, strict=True)]
+    return {
+        "quiet_us": statistics.median(quiet) * 1e6,
+        "flooded_us": statistics.median(flooded) * 1e6,
+        "ratios": [round(ratio, 3) for ratio in ratios],
+        "ratio": statistics.median(ratios),
+        "sent": sent["sent"],
+        "sent_hz": sent["sent"] / max(1e-9, sent["seconds"]),
+        "refused_left": dict(inbox.health(time.monotonic())[0].refused),
+        "right": pressed,
+    }
+
+
+class _Plan:
+    """Quiet and flooded rounds by turns, told by the court's own loop."""
+
+    def __init__(self, court: _Measured, network: _Watched, flooder: "_Other", rounds: int) -> None:
+        self._court, self._network, self._flooder = court, network, flooder
+        self._left = 2 * rounds
+        self._begin: int | None = None
+        self.rounds_s: list[float] = []
+        """Mean CPU time of a beat, for each round."""
+
+    def ended(self) -> bool:
+        """To be asked before every beat."""
+        beats_s = self._court.beats_s
+        if self._begin is None:
+            if self._network.phase is Phase.PLAYING:
+                self._begin = len(beats_s)
+            return False
+        if len(beats_s) < self._begin + SETTLE_BEATS + _ROUND_BEATS:
+            return False
+        self.rounds_s.append(statistics.mean(beats_s[self._begin + SETTLE_BEATS :]))
+        self._begin = len(beats_s)
+        self._flooder.say("quiet" if len(self.rounds_s) % 2 == 0 else "flood")
+        return len(self.rounds_s) == self._left
+
+
+class _Other:
+    """A process that holds a seat, on a core of its own."""
+
+    def __init__(self, role: str, core: int, *words: str) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "benchmarks.flood", "--role", role, str(core), *words],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        self._said: dict[str, Any] = {}
+
+    def say(self, word: str) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.write(f"{word}\n")
+        self._process.stdin.flush()
+
+    def stop(self) -> dict[str, Any]:
+        """End it; what it has counted."""
+        if not self._process.stdin or self._process.stdin.closed:
+            return self._said
+        told, _ = self._process.communicate("stop\n", timeout=20)
+        self._said = json.loads(told or "{}")
+        return self._said
+
+
+def _quiet(_: Event) -> None: ...
+
+
+def _controller(words: list[str]) -> tuple[Any, Controller]:
+    address, seat, token = words[:3]
+    session = open_client([address], timeout_s=20.0)
+    controller = Controller(session, COURT, seat, token, seat.title())
+    controller.join(20.0)
+    controller.ready()
+    return session, controller
+
+
+def _commands() -> Callable[[], str]:
+    """Gives the newest word that came through the standard input, without waiting."""
+    os.set_blocking(sys.stdin.fileno(), False)
+    words: list[str] = ["quiet"]
+
+    def newest() -> str:
+        while line := sys.stdin.readline():
+            words.append(line.strip())
+        return words[-1]
+
+    return newest
+
+
+def flooder(words: list[str]) -> dict[str, Any]:
+    """Join a seat; when told, send new sealed commands at the rate, and say how many."""
+    session, controller = _controller(words)
+    joined = controller._joined
+    assert joined is not None
+    key = Keys(COURT).command(words[1])
+    publisher = session.publisher(key)
+    newest, sent, seconds, seq = _commands(), 0, 0.0, joined.last_seq
+    with session:
+        while (word := newest()) != "stop":
+            controller.poll(time.monotonic())
+            if word != "flood":
+                time.sleep(0.02)
+                continue
+            begin_s, due = time.monotonic(), 0
+            while newest() == "flood":
+                while due < (time.monotonic() - begin_s) * RATE_HZ:
+                    seq += 1
+                    due += 1
+                    digit = seq % 4
+                    mac = command_mac(joined.secret, key, joined.session, seq, 1, digit)
+                    publisher.put(encode(Command(joined.session, seq, 1, digit, mac)))
+                time.sleep(_SLICE_S)
+            controller._seq = seq
+            sent, seconds = sent + due, seconds + time.monotonic() - begin_s
+    return {"sent": sent, "seconds": seconds}
+
+
+def player(words: list[str]) -> dict[str, Any]:
+    """Join a seat, start the match, and press a key ten times a second."""
+    session, controller = _controller(words)
+    newest = _commands()
+    with session:
+        _wait_for(controller, Phase.READY)
+        RefereeClient(session, COURT, words[3]).decide(Start(), "a benchmark", "benchmark")
+        _wait_for(controller, Phase.PLAYING)
+        pressed, applied, waits_ms = 0, 0, []
+        while newest() != "stop":
+            begin_s = time.monotonic()
+            seq = controller.press(1, pressed % 4)
+            pressed += 1
+            waited_s = 0.0
+            while waited_s < _LOST_S:
+                controller.wait_frame(0.02)
+                waited_s = time.monotonic() - begin_s
+                frame = controller.view.frame
+                if frame is not None and frame.seats[1].applied_seq >= seq:
+                    applied += 1
+                    waits_ms.append(waited_s * 1000)
+                    break
+                if newest() == "stop":  # the court has ended: nobody answers this one
+                    pressed -= 1
+                    break
+            time.sleep(max(0.0, begin_s + 0.1 - time.monotonic()))
+            controller.poll(time.monotonic())
+    return {"pressed": pressed, "applied": applied, "wait_ms": statistics.median(waits_ms)}
+
+
+def _wait_for(controller: Controller, phase: Phase) -> None:
+    while (frame := controller.wait_frame(1.0)) is None or frame.phase != phase:
+        pass
+
+
+def main() -> None:
+    """Measure and print, or play a role in a measurement."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.flood", description=__doc__)
+    parser.add_argument("--rounds", type=int, default=7, help="quiet and flooded ones each")
+    parser.add_argument("--role", nargs="+", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.role:
+        name, core, *words = options.role
+        os.sched_setaffinity(0, [int(core)])
+        print(json.dumps({"flooder": flooder, "player": player}[name](words)))
+        return
+    found = flood(options.rounds)
+    print(json.dumps(found, indent=1))
+    sys.exit(found["ratio"] > 1.5 or found["right"]["pressed"] != found["right"]["applied"])
+
+
+if __name__ == "__main__":
+    main()
