@@ -1,0 +1,214 @@
+"""Render docs/pictures/page-*.png: every page as it looks, in real matches at real courts.
+
+Run from the checkout, with what its tests need: python docs/pictures/make_pages.py
+It takes some minutes without a graphics card; words such as "replay" take only a part of them.
+"""
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+sys.path.append(str(Path(__file__).parents[2] / "tests" / "pages"))
+sys.path.append(str(Path(__file__).parents[2] / "tests" / "gateway"))
+sys.path.append(str(Path(__file__).parents[2] / "tests" / "client"))
+
+from chromium import FLAGS, build_pages, find_chromium
+from contestant import Contestant, own_page
+from court_process import LACOC, environment
+from show import Show
+from venue import REFEREE, TOKENS, Venue
+
+from lacoc_arenas import arena as arenas
+from lacoc_server.simulate import player, simulate
+from lacoc_shared.record.schema import Setup
+
+LAPTOP = {"width": 1366, "height": 768}
+SOURCE = {"width": 1920, "height": 1080}
+PATIENCE_S = 300.0
+
+Open = Callable[..., Page]
+
+
+def main() -> None:
+    """Take all pictures."""
+    build_pages()
+    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
+        browser = playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
+        for take in (practice, replay, contest, broadcast):
+            if sys.argv[1:] and take.__name__ not in sys.argv:
+                continue
+            own = Path(folder) / take.__name__
+            own.mkdir()
+            with pages(browser) as open_page:
+                take(own, open_page)
+        browser.close()
+
+
+@contextmanager
+def pages(browser: Browser) -> Iterator[Open]:
+    """Opens pages, each of another person, drawn as finely as they can be."""
+    with ExitStack() as stack:
+
+        def opened(**options: Any) -> Page:
+            context = browser.new_context(locale="en-GB", **{"viewport": LAPTOP} | options)
+            stack.callback(context.close)
+            context.add_init_script("localStorage.setItem('lacoc.quality', '\"high\"')")
+            return context.new_page()
+
+        yield opened
+
+
+def practice(folder: Path, open_page: Open) -> None:
+    """A student's first minutes."""
+    with own_page(folder, "practice") as (url, key):
+        page = Contestant(open_page, url, viewport=LAPTOP)
+        page.page.goto(f"{url}/practice#key={key}")
+        page.stands("seated")
+        for digit in ("1", "2", "3", "4", "1", "2"):
+            page.press(digit)
+            page.key_stands(int(digit))
+            page.page.wait_for_timeout(600)
+        picture(page.page, "practice")
+
+
+def replay(folder: Path, open_page: Open) -> None:
+    """A recording, in the middle of it."""
+    arena = arenas.load("othello", {"match": {"duration_s": 180}})
+    setup = Setup(
+        match_id="final", court="hall", match=7, arena="othello", settings=arena.settings, limits={}
+    )
+    bots = [
+        player(arena, seat, bot, team=team)
+        for seat, (bot, team) in enumerate((("planner", "Ants"), ("nearest", "Bees")))
+    ]
+    simulate(setup, bots, folder)
+    with venue(folder) as (place, _):
+        place.web("--recordings", str(folder))
+        show = Show(open_page(), place.url, "/replay?file=final.mcap&t=106&cam=arena")
+        show.sees(".replay-log")
+        picture(show.page, "replay")
+
+
+def contest(folder: Path, open_page: Open) -> None:
+    """A contestant and the referee, in one match."""
+    with venue(folder, "flag-strike") as (place, bot):
+        court = place.court("--seconds", "180")
+        place.web()
+        play = Contestant(open_page, place.url, viewport=LAPTOP)
+        play.page.goto(f"{place.url}/play#key={place.key}")
+        play.join(TOKENS["left"], "Ants")
+        play.stands("seated")
+        play.page.get_by_role("button", name="Ready").click()
+        bot(court.opened["locators"][0], "right", "planner", "Bees")
+        referee = open_page()
+        referee.goto(f"{place.url}/referee#key={place.key}")
+        referee.locator("input[name=by]").fill("Kim")
+        referee.locator("input[name=token]").fill(REFEREE)
+        referee.locator(".enter button[type=submit]").click()
+        Show.sees(look(referee), ".score-bug .phase", "Ready")
+        referee.locator(".big").first.click()
+        look(play.page).sees(".score-bug .phase", "Playing")
+        play.press("2")
+        play.key_stands(2)
+        # Two fine pictures at once are too much for a machine without a graphics card.
+        other = referee.context.new_page()
+        other.bring_to_front()
+        look(play.page).until(lambda: played_s(play.page) > 28, "the clock stands still")
+        picture(play.page, "play")
+        other.close()
+        referee.bring_to_front()
+        picture(referee, "referee", drawn=False)
+
+
+def broadcast(folder: Path, open_page: Open) -> None:
+    """Spectators and the stream, while something happens."""
+    with venue(folder, "othello") as (place, bot):
+        court = place.court("--seconds", "180")
+        place.web()
+        for seat, name, team in (("left", "planner", "Ants"), ("right", "nearest", "Bees")):
+            bot(court.opened["locators"][0], seat, name, team)
+        first = open_page(viewport=SOURCE)
+        show = Show(first, place.url, "/overlay?cam=arena&q=high")
+        show.sees(".opening", "the referee starts")
+        picture(first, "overlay-before")
+        first.close()
+        referee = place.referee()
+        referee.ask("decide", decision={"type": "start"}, reason="")
+        takes = (
+            ("watch", "/watch?cam=arena", LAPTOP, 20),
+            ("overlay", "/overlay?cam=auto&q=high", SOURCE, 35),
+            ("overlay-split", "/overlay?split=1&q=high", SOURCE, 45),
+        )
+        for name, path, viewport, from_s in takes:
+            from_ticks = 50 * from_s
+            referee.wait(lambda t=from_ticks: referee.frame.clock_ticks > t, PATIENCE_S)
+            page = open_page(viewport=viewport)
+            Show(page, place.url, path)
+            picture(page, name, moment=".third[data-seat] .gain")
+            page.close()
+
+
+@contextmanager
+def venue(
+    folder: Path, arena: str = "othello"
+) -> Iterator[tuple[Venue, Callable[[str, str, str, str], None]]]:
+    """A contest, and what puts a bot into a seat: address, seat, bot, team."""
+    with ExitStack() as stack:
+        place = Venue(folder, stack)
+        place.contest.write_text(place.contest.read_text("utf-8").replace("othello", arena))
+
+        def bot(address: str, seat: str, name: str, team: str) -> None:
+            where = ("--connect", address, "--seat", seat, "--token", TOKENS[seat])
+            process = subprocess.Popen(
+                [*LACOC, "bot", name, "--name", team, *where],
+                stdout=subprocess.DEVNULL,
+                env=environment(),
+            )
+            stack.callback(process.wait)
+            stack.callback(process.terminate)
+
+        yield place, bot
+
+
+def look(page: Page) -> Show:
+    """The means of `Show` for a page that is open."""
+    show = object.__new__(Show)
+    show.page = page
+    return show
+
+
+def played_s(page: Page) -> float:
+    """Seconds of a match of three minutes that its clock has used."""
+    minutes, seconds = page.locator(".score-bug .clock").inner_text().split(":")
+    return 180 - 60 * int(minutes) - int(seconds)
+
+
+def picture(page: Page, name: str, drawn: bool = True, moment: str = "main") -> None:
+    """Take a picture.
+
+    Args:
+        page: the page.
+        name: of the picture.
+        drawn: wait until the scene was drawn finely.
+        moment: wait until the page has this.
+    """
+    show = look(page)
+    if drawn:
+        show.until(lambda: show.view("quality") == "high", "nothing is drawn finely")
+        count = show.view("drawnFrames")
+        show.until(lambda: show.view("drawnFrames") > count + 1, "nothing is drawn")
+    show.sees(moment)
+    path = Path(__file__).with_name(f"page-{name}.png")
+    page.screenshot(path=path)
+    print(f"{time.strftime('%H:%M:%S')} {path.name}: {path.stat().st_size // 1024} KiB")
+
+
+if __name__ == "__main__":
+    main()
