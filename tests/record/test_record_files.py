@@ -27,6 +27,7 @@ from lacoc_shared.record import files, pack
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import BEAT_NS, KINDS, Header, Result, Touch
 from lacoc_shared.record.writer import RecordWriter
+from lacoc_shared.seat import BEATS_PER_S
 
 WriteMatch = Callable[..., Path]
 MakeHeader = Callable[..., Header]
@@ -425,3 +426,18 @@ def test_many_inputs_in_a_beat_are_read_in_linear_time(header: MakeHeader, tmp_p
     begin_s = time.process_time()
     assert len(Record.read(writer.path).inputs[3]) == 20_000
     assert time.process_time() - begin_s < 2
+
+
+def test_a_damaged_time_ends_what_is_read(
+    header: MakeHeader, frame: MakeFrame, tmp_path: Path
+) -> None:
+    """A flipped bit in a time is no match of a thousand years, which a restarted court replays."""
+    writer = RecordWriter(tmp_path, header())
+    for beat in (0, 1, 2**36 // BEATS_PER_S):
+        writer.frame(beat, codec.encode(frame(0)))
+    record = Record.read(writer.path)
+    assert record.last_beat == 1
+    assert "stops after beat 1 " in record.cut
+    writer.close()
+    with pytest.raises(UserError, match="damaged at beat 1 "):
+        Record.read(writer.path)

@@ -17,6 +17,7 @@ from mcap.writer import MCAP0_MAGIC
 from lacoc_shared import codec
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE
+from lacoc_shared.seat import BEATS_PER_S
 
 _DAMAGE = (
     McapError,
@@ -37,6 +38,10 @@ chunk 1 MiB."""
 _UNPACKED_BYTES, _UNPACKED_RATIO = 1 << 22, 50
 """A file unpacks to no more than this and so many times its own size: a match, and also a court
 where nothing happens, packs to a third or a quarter."""
+
+_LONGEST_GAP_BEATS = 3600 * BEATS_PER_S
+"""A court records a frame every second; a gap longer than an hour is a damaged time, and whoever
+counts the beats up to it would not come back."""
 
 Take = Callable[[str, int, bytes, Any], None]
 """Called with a message's topic, beat, bytes, and what they mean (a snapshot's: the bytes)."""
@@ -78,8 +83,8 @@ def walk(path: Path, take: Take) -> bool:
     try:
         for record in _records(data):
             if isinstance(record, Message):
-                beat = record.log_time // BEAT_NS
                 topic = topics[record.channel_id]
+                beat = _next_beat(beat, record.log_time // BEAT_NS, topic)
                 take(topic, beat, record.data, _decode(path, topic, record.data))
             elif isinstance(record, Channel):
                 topics[record.id] = record.topic
@@ -98,6 +103,17 @@ def walk(path: Path, take: Take) -> bool:
                 "Copy it again from where it was made."
             ) from None
     return False
+
+
+def _next_beat(before: int, beat: int, topic: str) -> int:
+    """The beat of a message.
+
+    Raises:
+        BadMessage: if it can't come after the one before it.
+    """
+    if topic != "/lacoc/header" and beat > max(before, 0) + _LONGEST_GAP_BEATS:
+        raise codec.BadMessage(f"beat {beat} after beat {before}")
+    return beat
 
 
 def _records(data: bytes) -> Iterator[McapRecord]:
