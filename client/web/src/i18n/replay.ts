@@ -1,7 +1,7 @@
 /** Messages of recordings: English, Japanese. */
 export const replay = {
   "replay.title": ["Replays", "リプレイ"],
-  "replay.choose": ["Open a recording of this machine", "このパソコンの記録ファイルを開く"],
+  "replay.choose": ["Open a recording of this machine", "この端末の記録ファイルを開く"],
   "replay.dropHint": [
     "or drop .mcap files anywhere on this page; several parts of one match together",
     "または .mcap ファイルをこのページにドロップ（1 試合が複数に分かれている場合はまとめて）",
@@ -11,7 +11,7 @@ export const replay = {
   "replay.noneYet": ["No match was recorded here yet", "記録された試合はまだありません"],
   "replay.noList": [
     "The server's list can't be had; files of this machine can be opened all the same.",
-    "サーバーの一覧を取得できません。このパソコンのファイルは開けます。",
+    "サーバーの一覧を取得できません。この端末のファイルは開けます。",
   ],
   "replay.loading": ["Loading {name} …", "{name} を読み込んでいます…"],
   "replay.reading": ["Reading the match …", "試合を読み取っています…"],
@@ -31,7 +31,7 @@ export const replay = {
   "replay.shared": ["The address of this moment is copied", "この場面の URL をコピーしました"],
   "replay.notShared": [
     "Recordings of this machine have no address: others need the file",
-    "このパソコンのファイルには URL がありません。共有するにはファイルを渡してください",
+    "この端末のファイルには URL がありません。共有するにはファイルを渡してください",
   ],
   "replay.transport": ["Playback", "再生操作"],
   "replay.noteCut": [
@@ -77,7 +77,7 @@ export const replay = {
   ],
   "replay.bad.unreachable": [
     "The server does not answer. Try again, or open a file of this machine.",
-    "サーバーが応答しません。もう一度試すか、このパソコンのファイルを開いてください。",
+    "サーバーが応答しません。もう一度試すか、この端末のファイルを開いてください。",
   ],
   "replay.bad.unreadable": [
     "{name} can't be read. Folders can't be dropped: drop the files in them.",
