@@ -177,6 +177,19 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
     expect(show.find(".opening .ready")).to_have_count(0, timeout=WAIT_MS)
 
 
+def test_a_part_that_cannot_be_loaded(venue: Venue, open_page: OpenPage, console: Any) -> None:
+    """As after an update of the server: the page takes the new one when there is one."""
+    console.expect("ERR_FAILED|Failed to fetch dynamically imported module|Unable to preload")
+    venue.court()
+    venue.web()
+    page = open_page(viewport=SMALL)
+    part = re.compile(r"/assets/overlay-[^/]*\.js$")
+    page.route(part, lambda route: route.abort(), times=1)
+    show = Show(page, venue.url, LOW, drawn=False)
+    show.sees(".opening")
+    assert any("overlay" in text for text in console.errors)
+
+
 def test_the_document_has_every_flag() -> None:
     """docs/overlay.md and the page name the same flags."""
     web = Path(__file__).parents[2] / "client" / "web" / "src"

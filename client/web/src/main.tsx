@@ -2,6 +2,7 @@
 
 import { effect } from "@preact/signals";
 import { type ComponentType, render } from "preact";
+import { reloadWhenServed } from "./core/reload";
 import { language } from "./i18n";
 import "./style.css";
 
@@ -19,10 +20,7 @@ effect(() => {
   document.documentElement.lang = language.value;
 });
 
-// After the server was updated a part of the old page can't be loaded any more: take the new page,
-// but wait, or a server that is down would be asked without end.
-const RELOAD_MS = 3000;
-addEventListener("vite:preloadError", () => setTimeout(() => location.reload(), RELOAD_MS));
+addEventListener("vite:preloadError", () => void reloadWhenServed());
 
 const path = location.pathname.replace(/\/+$/, "") || "/";
 const { default: Page } = await (PAGES[path] ?? PAGES["/"]!)();

@@ -5,6 +5,7 @@ import { useEffect, useMemo } from "preact/hooks";
 import { amount, flag } from "../core/address";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
+import { reloadWhenServed } from "../core/reload";
 import { team } from "../core/words";
 import { t } from "../i18n";
 import { View } from "../scene/View";
@@ -21,8 +22,6 @@ const HZ = 25;
 /** What is drawn has this size; on another screen it is scaled. */
 const WIDTH_PX = 1920;
 const HEIGHT_PX = 1080;
-/** A gateway of another version has another page: take it, but not again and again. */
-const RELOAD_MS = 5000;
 
 const court = new Court(HZ, 1000 * amount("delay", 0, 0, DELAY_MOST_S));
 const camera = cameraOfAddress();
@@ -37,7 +36,7 @@ addEventListener("resize", () => {
   scale.value = scaleOfWindow();
 });
 effect(() => {
-  if (court.outdated.value) setTimeout(() => location.reload(), RELOAD_MS);
+  if (court.outdated.value) void reloadWhenServed();
 });
 document.documentElement.classList.add("broadcast");
 document.documentElement.classList.toggle("transparent", transparent);
