@@ -89,6 +89,9 @@ def simulate(
     match = Match(setup, World)
     if not match.duration_ticks:
         raise UserError(f"A match of {setup.arena} has no end of its own: give --seconds.")
+    packed = folder / f"{setup.match_id}.mcap" if folder else None
+    if packed and packed.exists():
+        raise UserError(f"The record {packed} is there already, and a record is never overwritten.")
     journal = Journal(match, folder)
     try:
         for beat in _play(match, journal, players):
@@ -96,8 +99,8 @@ def simulate(
                 watch(beat.frame)
     finally:
         journal.close()
-    if journal.writer is not None and folder is not None:
-        pack([journal.writer.path], folder / f"{setup.match_id}.mcap")
+    if journal.writer is not None and packed is not None:
+        pack([journal.writer.path], packed)
     return match.result()
 
 

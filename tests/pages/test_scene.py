@@ -139,7 +139,6 @@ def test_the_picture_shows_the_frame(stand: Stand, site: Path) -> None:
         "stopped",
         "newMatch",
         "beatGoesBack",
-        "extraDelay",
         "spectator",
         "empty",
     ],

@@ -144,14 +144,6 @@ const timelineCases = (() => {
       if (before.beat !== 150) trouble.push(`${before.beat} is shown`);
       return trouble;
     },
-    extraDelay: (T) => {
-      const timeline = new T();
-      timeline.extraDelayMs = 2000;
-      const found = play(T, { ms: 10000, timeline, quietMs: 5000 });
-      if (found.behind < 2000) found.trouble.push(`only ${found.behind} ms behind`);
-      if (found.line.length > 250) found.trouble.push(`${found.line.length} frames kept`);
-      return check(found, { uneven: 0.1, behindMs: 2060 });
-    },
     empty: (T) => (new T().sample(5) === null ? [] : ["a moment of nothing"]),
   };
 })();

@@ -99,3 +99,14 @@ def test_a_match_knows_nothing_of_how_it_is_run() -> None:
     """Design, "The rooms": the headless match is the live one, made from the same setup."""
     match = Match(setup("othello", SHORT), World)
     assert match.duration_ticks == 200
+
+
+def test_a_record_is_never_overwritten(tmp_path: Path) -> None:
+    """A match of a name whose record is there already is not even begun; the record stays."""
+    there = tmp_path / "m.mcap"
+    there.write_bytes(b"yesterday's match")
+
+    with pytest.raises(UserError, match="never overwritten"):
+        play(tmp_path)
+    assert there.read_bytes() == b"yesterday's match"
+    assert list(tmp_path.iterdir()) == [there]

@@ -90,7 +90,9 @@ def simulate_command(
             repetition * _LATE_TICKS,
             str(record) if record else None,
         )
-        for number, (repetition, pair) in enumerate(itertools.product(range(repeat), pairs), 1)
+        for number, (repetition, pair) in enumerate(
+            itertools.product(range(repeat), pairs), _first_number(record)
+        )
     ]
     results = _run_one(work[0]) if len(work) == 1 else _run_many(work, jobs)
     if json:
@@ -99,6 +101,12 @@ def simulate_command(
         screen.show(_table(results, [seat.id for seat in loaded.seats]))
         if len(work) > 1 and len(loaded.seats) > 1:
             screen.show(_standings(results, work))
+
+
+def _first_number(record: Path | None) -> int:
+    """Goes on after the matches whose records lie in the folder: none is overwritten."""
+    known = [] if record is None else record.glob("simulated-[0-9]*.mcap")
+    return 1 + max((int(path.name.split("-")[1].split(".")[0]) for path in known), default=0)
 
 
 def _pairs(players: list[str], seats: int, both_sides: bool) -> list[tuple[str, ...]]:

@@ -49,8 +49,6 @@ interface Arrival {
 
 /** Plays frames as they come. */
 export class Timeline {
-  /** Shown later by so much more [ms]: `?delay=` for a stream that must not help anyone. */
-  extraDelayMs = 0;
   private frames: Frame[] = [];
   private arrivals: Arrival[] = [];
   private latenesses: number[] = [];
@@ -93,7 +91,7 @@ export class Timeline {
     else if (newest && frame.beat === newest.beat) return;
     this.frames.push(frame);
     this.note(frame.beat, arrivedMs);
-    const keep = frame.beat - (KEEP_MS + this.extraDelayMs + this.adaptiveMs) * this.rate;
+    const keep = frame.beat - (KEEP_MS + this.adaptiveMs) * this.rate;
     // Two frames stay whatever their age: a picture needs a before and an after.
     let drop = 0;
     while (drop < this.frames.length - 2 && this.frames[drop + 1]!.beat < keep) drop++;
@@ -105,7 +103,7 @@ export class Timeline {
     const first = this.frames[0];
     const newest = this.newest;
     if (!first || !newest) return null;
-    const target = this.head(nowMs) - (this.adaptiveMs + this.extraDelayMs) * this.rate;
+    const target = this.head(nowMs) - this.adaptiveMs * this.rate;
     const passedMs = nowMs - this.sampledMs;
     this.sampledMs = nowMs;
     const behindMs = (target - this.shown) / this.rate - passedMs;
