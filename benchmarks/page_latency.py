@@ -5,6 +5,7 @@
 
 import contextlib
 import json
+import random
 import re
 import statistics
 import subprocess
@@ -121,7 +122,7 @@ def _press(page: Page, count: int) -> list[float]:
                 timeout=1000,
             )
         times_ms.append(float(shown.get_attribute("data-trip") or "nan"))
-        page.wait_for_timeout(37)  # not in step with the beat
+        page.wait_for_timeout(random.uniform(20, 60))  # not in step with the beat
     return times_ms
 
 

@@ -189,12 +189,14 @@ export class Player {
   async press(key: number, atMs: number): Promise<void> {
     if (!this.canSteer.peek()) return;
     const level = this.level.peek();
+    // On its way before anything is drawn.
+    const reply = this.court.ask<{ seq: number }>("key", { level, key });
     batch(() => {
       this.pressed.value = [...this.pressed.peek().slice(1 - REMEMBERED), { level, key }];
       this.sentCount.value += 1;
     });
     try {
-      const { seq } = await this.court.ask<{ seq: number }>("key", { level, key });
+      const { seq } = await reply;
       this.sent.set(seq, { key, atMs });
       if (this.sent.size > REMEMBERED) this.sent.delete(this.sent.keys().next().value!);
       const shown = this.shown.find((one) => one.seq >= seq);
