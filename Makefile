@@ -21,7 +21,7 @@ help: ## Show this list.
 demo: .venv/.server $(PAGES) ## See a whole match: a court, two bots and a referee over the network.
 	$(BIN)/lacoc demo $(ARGS)
 
-test: .venv/.test $(PAGES) ## Run the tests.
+test: .venv/.test .venv/.web $(PAGES) ## Run the tests.
 	$(RUN) pytest $(ARGS)
 
 web: .venv/.web ## Build the pages and build them again whenever they change.
