@@ -120,7 +120,8 @@ def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
 
     late.until(came, "the score never came")
     # Nothing told of it while the picture was before it.
-    before = [now for now in seen if now["beat"] < beat - 10]
+    # The picture itself may lag by a slow machine's frame: one second is room for that.
+    before = [now for now in seen if now["beat"] < beat - 50]
     assert all((now["score"], now["third"]) == ("18", "") for now in before)
     assert any(now["beat"] < beat - 100 for now in before)
     assert seen[-1]["beat"] < beat + 150

@@ -53,6 +53,8 @@ export class Court implements Match {
   readonly referee = signal<RefereeState | null>(null);
   /** Frames that came in the last second. */
   readonly framesHz = signal(0);
+  /** Whether there ever was a frame: does not change with each. */
+  readonly begun = part(this, () => true, false);
   /** Whether what is shown is what is now. */
   readonly live = signal(false);
   /** The gateway speaks another version: only loading the page again helps. */

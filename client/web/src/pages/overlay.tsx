@@ -47,7 +47,7 @@ function scaleOfWindow(): number {
 
 export default function Overlay() {
   const seats = useMemo(() => computed(() => court.sheet.value?.seats.length ?? 0), []).value;
-  const stale = court.frame.value && !court.live.value;
+  const stale = court.begun.value && !court.live.value;
   useEffect(() => {
     document.title = "LACOC";
   }, []);
@@ -128,7 +128,7 @@ function Hud() {
 
 /** In a corner: viewers of a stream need no alarm, its operator needs to see it. */
 function Waiting() {
-  const shown = court.frame.value && court.live.value;
+  const shown = court.begun.value && court.live.value;
   const text = shown ? "" : waitsFor(court) || t("link.connecting");
   return text ? (
     <p class="waits" role="status">

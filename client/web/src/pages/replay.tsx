@@ -12,7 +12,7 @@ import { BEATS_PER_S, team } from "../core/words";
 import { type MessageName, t } from "../i18n";
 import { View } from "../scene/View";
 import { Board } from "../ui/board";
-import { Icon } from "../ui/icons";
+import { Icon, IconButton } from "../ui/icons";
 import { Countdown } from "../ui/opening";
 import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
@@ -221,45 +221,23 @@ function Show({ player, server }: { player: Player; server: string | null }) {
 function Corner({ player, server }: { player: Player; server: string | null }) {
   return (
     <nav class="corner right" aria-label={t("watch.controls")}>
-      <button
-        class="button"
-        type="button"
-        aria-label={t("replay.share")}
-        title={t("replay.share")}
-        onClick={() => share(player, server)}
-      >
-        <Icon name="link" />
-      </button>
+      <IconButton name="link" label={t("replay.share")} onClick={() => share(player, server)} />
       {!isNarrow.value && (
-        <button
-          class="button"
-          type="button"
-          aria-expanded={panel.value}
-          aria-label={t("watch.panel")}
+        <IconButton
+          name="panel"
+          label={t("watch.panel")}
           title={t("watch.panelKey")}
+          expanded={panel.value}
           onClick={togglePanel}
-        >
-          <Icon name="panel" />
-        </button>
+        />
       )}
-      <button
-        class="button"
-        type="button"
-        aria-label={t("settings.title")}
+      <IconButton
+        name="settings"
+        label={t("settings.title")}
         title={t("watch.settingsKey")}
         onClick={openSettings}
-      >
-        <Icon name="settings" />
-      </button>
-      <button
-        class="button"
-        type="button"
-        aria-label={t("watch.fullscreen")}
-        title={t("watch.fullscreen")}
-        onClick={toggleFullscreen}
-      >
-        <Icon name="full" />
-      </button>
+      />
+      <IconButton name="full" label={t("watch.fullscreen")} onClick={toggleFullscreen} />
     </nav>
   );
 }
@@ -318,11 +296,7 @@ interface StepProps {
 
 function Step({ name, onClick }: StepProps) {
   const label = t(`replay.${name}` as MessageName);
-  return (
-    <button class="button" type="button" aria-label={label} title={label} onClick={onClick}>
-      <Icon name={name} />
-    </button>
-  );
+  return <IconButton name={name} label={label} onClick={onClick} />;
 }
 
 function Notes({ notes }: { notes: readonly Note[] }) {

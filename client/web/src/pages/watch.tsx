@@ -3,14 +3,14 @@
 import { computed, signal } from "@preact/signals";
 import { amount, flag, setting } from "../core/address";
 import { followColours } from "../core/colours";
-import { Court } from "../core/court";
+import { Court, part } from "../core/court";
 import { quality, remembered } from "../core/settings";
 import { team } from "../core/words";
 import { t } from "../i18n";
 import { View } from "../scene/View";
 import { LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
-import { Icon } from "../ui/icons";
+import { IconButton } from "../ui/icons";
 import { EventLog } from "../ui/log";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard } from "../ui/result";
@@ -31,6 +31,7 @@ const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
 const settings = signal(false);
+const number = part(court, (frame) => frame.match, null as number | null);
 /** The match whose result was put away. */
 const putAway = signal<number | null>(null);
 const title = computed(() => {
@@ -69,7 +70,7 @@ export default function Watch() {
       : { top: opening ? 78 : 108, bottom: opening ? 272 : 66, right: beside ? 314 : 0 };
   return (
     <main class="show watch">
-      <div class={`scene${court.frame.value && !court.live.value ? " stale" : ""}`}>
+      <div class={`scene${court.begun.value && !court.live.value ? " stale" : ""}`}>
         <View
           source={court}
           camera={camera.value}
@@ -80,7 +81,7 @@ export default function Watch() {
           label={t("watch.view")}
         />
       </div>
-      {!court.frame.value && <Waiting />}
+      {!court.begun.value && <Waiting />}
       {hud && <Hud />}
       {hud && (isNarrow.value || panel.value) && <Panel />}
       <LinkBanner court={court} />
@@ -96,7 +97,7 @@ export default function Watch() {
 }
 
 function Hud() {
-  const match = court.frame.value?.match ?? null;
+  const match = number.value;
   return (
     <>
       <Brand />
@@ -106,35 +107,21 @@ function Hud() {
       </header>
       <nav class="corner right" aria-label={t("watch.controls")}>
         {!isNarrow.value && (
-          <button
-            class="button"
-            type="button"
-            aria-expanded={panel.value}
-            aria-label={t("watch.panel")}
+          <IconButton
+            name="panel"
+            label={t("watch.panel")}
             title={t("watch.panelKey")}
+            expanded={panel.value}
             onClick={togglePanel}
-          >
-            <Icon name="panel" />
-          </button>
+          />
         )}
-        <button
-          class="button"
-          type="button"
-          aria-label={t("settings.title")}
+        <IconButton
+          name="settings"
+          label={t("settings.title")}
           title={t("watch.settingsKey")}
           onClick={SHORTCUTS.KeyS}
-        >
-          <Icon name="settings" />
-        </button>
-        <button
-          class="button"
-          type="button"
-          aria-label={t("watch.fullscreen")}
-          title={t("watch.fullscreen")}
-          onClick={toggleFullscreen}
-        >
-          <Icon name="full" />
-        </button>
+        />
+        <IconButton name="full" label={t("watch.fullscreen")} onClick={toggleFullscreen} />
       </nav>
       <div class="middle-stage">
         <Countdown match={court} />

@@ -10,11 +10,11 @@ export function waitsFor(court: Court): string {
   const link = court.link.value;
   if (link && !link.connected) {
     const seconds = Math.round(link.silent_s);
-    return seconds > 0 && court.frame.value
+    return seconds > 0 && court.begun.value
       ? t("link.court", { court: link.court, seconds })
       : t("link.noCourt", { court: link.court });
   }
-  return court.frame.value && !court.live.value ? t("link.stale") : "";
+  return court.begun.value && !court.live.value ? t("link.stale") : "";
 }
 
 export function LinkBanner({ court }: { court: Court }) {

@@ -34,3 +34,29 @@ export function Icon({ name }: { name: IconName }) {
     </svg>
   );
 }
+
+interface ButtonProps {
+  name: IconName;
+  label: string;
+  /** What else the pointer is told, such as the key for it; else the label. */
+  title?: string;
+  /** Whether what it opens is open. */
+  expanded?: boolean;
+  onClick: () => void;
+}
+
+/** A button that is nothing but a drawing. */
+export function IconButton({ name, label, title = label, expanded, onClick }: ButtonProps) {
+  return (
+    <button
+      class="button"
+      type="button"
+      aria-expanded={expanded}
+      aria-label={label}
+      title={title}
+      onClick={onClick}
+    >
+      <Icon name={name} />
+    </button>
+  );
+}
