@@ -23,11 +23,10 @@ from lacoc_shared.messages import (
     SentFile,
 )
 from lacoc_shared.mistakes import FileRefused, UserError
-from lacoc_shared.seat import NO_SENTENCES
+from lacoc_shared.seat import NO_SENTENCES, REPEATS_HZ
 from lacoc_shared.session import Session
 
-REPEAT_S = 0.1
-"""The last command is repeated 10 times a second (rules 3)."""
+REPEAT_S = 1 / REPEATS_HZ
 SILENT_AFTER_S = 0.5
 """A court that sends no frame for so long is called silent."""
 
@@ -235,7 +234,8 @@ class Controller:
             self._check_hold()
         if self.repeating and self.hold is Hold.HELD and now_s - self._sent_s >= REPEAT_S:
             self._commands.put(self._command)
-            self._sent_s = now_s
+            # Frames wake this: what one repeat is late, the next is early.
+            self._sent_s = max(self._sent_s + REPEAT_S, now_s - REPEAT_S / 2)
         return frame
 
     def wait_frame(self, timeout_s: float) -> Frame | None:

@@ -31,6 +31,8 @@ STRUCTS = (
     messages.SceneGeom,
     messages.Scene,
     messages.SeatHealth,
+    messages.LinkVerdict,
+    messages.HealthVerdict,
     messages.Health,
     messages.DecisionReply,
     mistakes.Mistake,

@@ -7,21 +7,23 @@ answers and publishes: what anybody was told is on disk (design.md, "One beat").
 import hashlib
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from lacoc_arenas.arena import Arena
+from lacoc_server.health import MatchHealth
 from lacoc_server.journal import Journal
 from lacoc_server.match import Match
 from lacoc_server.network import Arrival, CourtNetwork
 from lacoc_server.pace import Pace
 from lacoc_server.recovery import Unfinished
 from lacoc_server.world import World
+from lacoc_shared.contest import HealthLimits
 from lacoc_shared.decisions import Next, Official
-from lacoc_shared.inputs import Decide, Input
-from lacoc_shared.messages import Event, Health
+from lacoc_shared.inputs import Advice, Decide, Input
+from lacoc_shared.messages import Event, Health, HealthVerdict
 from lacoc_shared.record.pack import pack_in_background
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
@@ -42,6 +44,8 @@ class CourtSettings:
     """Folder of the records; None: no record."""
     speed: float = 1.0
     """1: a beat every 20 ms; more for a demonstration in a hurry."""
+    health: HealthLimits = field(default_factory=HealthLimits)
+    """Beyond these a replay is advised."""
 
 
 class Court:
@@ -72,7 +76,7 @@ class Court:
         if left is None:
             self._journal = self._open(1)
         else:
-            self._journal = self._journal_of(left.match, left.segment)
+            self._journal = self._journal_of(left.match, left.segment, left.health)
             self._inputs = left.inputs
             network.publish_sheet(left.match.sheet())
             for event in left.events:
@@ -91,6 +95,7 @@ class Court:
                 time.sleep(pace.wait_s(time.monotonic()))
                 now_s = time.monotonic()
                 pace.begin(now_s)
+                self._health.begin(now_s, pace.late_s, self._network.doors())
                 self._beat(now_s)
         finally:
             self._close()
@@ -115,7 +120,7 @@ class Court:
         if beat.sheet_changed:
             network.publish_sheet(match.sheet())
         if match.beats % HEALTH_BEATS == 0:
-            network.publish_health(self._health(now_s))
+            network.publish_health(self._say_health(now_s))
         self._inputs = self._follow()
 
     def _follow(self) -> list[Input]:
@@ -126,6 +131,10 @@ class Court:
             joins: list[Input] = [seat.join for seat in match.seats if seat.join and not seat.left]
             self._journal = self._open(match.setup.match + 1)
             return joins
+        if match.phase is Phase.FINISHED:
+            reasons = self._health.verdict().advice
+            if reasons != match.advice:
+                return [Advice(reasons)]
         if match.rules.start == "ready":  # nobody judges: the court opens the next by itself
             if match.phase is Phase.FINISHED:
                 return [Decide("court", "", Official())]
@@ -146,9 +155,19 @@ class Court:
         )
         return self._journal_of(Match(setup, World))
 
-    def _journal_of(self, match: Match, segment: int = 0) -> Journal:
-        journal = Journal(match, self._settings.recordings, segment)
-        journal.verdict = self._verdict
+    def _journal_of(
+        self, match: Match, segment: int = 0, before: HealthVerdict | None = None
+    ) -> Journal:
+        settings = self._settings
+        journal = Journal(match, settings.recordings, segment)
+        journal.health = self._health = MatchHealth(
+            match,
+            settings.health,
+            self._network.doors(),
+            speed=settings.speed,
+            before=before,
+            resumptions=segment,
+        )
         return journal
 
     def _close(self) -> None:
@@ -158,16 +177,8 @@ class Court:
             packing = pack_in_background(self._settings.recordings, self.match_id)
             self._packing.append(packing)
 
-    def _verdict(self) -> dict[str, Any]:
-        pace = self._pace
-        return {
-            "real_time_factor": round(pace.real_time_factor, 3),
-            "slow_beats": pace.slow_beats,
-            "worst_late_ms": round(pace.worst_late_s * 1000, 1),
-        }
-
-    def _health(self, now_s: float) -> Health:
-        pace, match = self._pace, self._journal.match
+    def _say_health(self, now_s: float) -> Health:
+        pace, match, writer = self._pace, self._journal.match, self._journal.writer
         return Health(
             match=match.setup.match,
             beat=match.beats,
@@ -177,6 +188,8 @@ class Court:
             seats=self._network.seat_health(now_s),
             dropped=self._network.dropped,
             decisions=match.legality(),
+            verdict=self._health.verdict(),
+            record_trouble=writer.trouble if writer else "",
         )
 
 

@@ -7,6 +7,7 @@ that arrives ever raises or costs more than a fixed amount of a beat.
 
 from collections import Counter, deque
 from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import NamedTuple
 
 import msgspec
 
@@ -57,6 +58,15 @@ _SESSION_SENTENCES = {
 }
 
 
+class Door(NamedTuple):
+    """What was counted for a seat since the court was started."""
+
+    heard: int
+    """Valid commands."""
+    refused: Mapping[str, int]
+    """Refusals by reason."""
+
+
 class _Seat:
     def __init__(self, index: int, name: str, last_seq: int, joined: bool) -> None:
         self.index = index
@@ -66,6 +76,8 @@ class _Seat:
         self.heard_s: float | None = None
         self.silent = False
         self.refused: Counter[str] = Counter()
+        self.heard = 0
+        """Valid commands."""
         self.valid_s: deque[float] = deque(maxlen=int(2 * COMMANDS_HZ * _RATE_WINDOW_S))
         self.commands = Allowance(COMMANDS_HZ, COMMANDS_PER_BEAT)
         self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
@@ -223,6 +235,10 @@ class Inbox:
         seat.joined = seat.silent = False
         seat.heard_s = None
 
+    def doors(self) -> tuple[Door, ...]:
+        """What was let in and refused, for each seat."""
+        return tuple(Door(seat.heard, seat.refused) for seat in self._seats)
+
     def health(self, now_s: float) -> tuple[SeatHealth, ...]:
         """How each seat's link is."""
         return tuple(self._health(seat, now_s) for seat in self._seats)
@@ -248,6 +264,7 @@ class Inbox:
                 seat.refused[command] += 1
                 continue
             seat.heard_s = self._now_s
+            seat.heard += 1
             seat.valid_s.append(self._now_s)
             if command.seq <= seat.last_seq:  # its last one again, or no key yet: a sign of life
                 continue

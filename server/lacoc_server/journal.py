@@ -6,13 +6,11 @@ Only beats in which nothing happened at all have no frame.
 """
 
 import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
 
-import msgspec
-
+from lacoc_server.health import MatchHealth
 from lacoc_server.match import Beat, Match
 from lacoc_server.world import MUJOCO_VERSION, World
 from lacoc_shared import __version__
@@ -21,7 +19,7 @@ from lacoc_shared.inputs import Input
 from lacoc_shared.messages import PROTOCOL, Frame
 from lacoc_shared.record.schema import FORMAT, Header, Setup
 from lacoc_shared.record.writer import RecordWriter
-from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.seat import BEATS_PER_S, Phase
 
 SNAPSHOT_TICKS = 250
 """A full snapshot every 5 s of physics."""
@@ -44,8 +42,8 @@ class Journal:
         self.writer = (
             RecordWriter(folder, _header(match.setup, segment, match.beats + 1)) if folder else None
         )
-        self.verdict: Callable[[], dict[str, Any]] = dict
-        """Gives the health verdict that is stamped on the result."""
+        self.health: MatchHealth | None = None
+        """Measures how well the match is held; None: it runs headless, and nothing can be late."""
         self._ticks = 0
         self._last: tuple[object, ...] = ()
         self._scene = b""
@@ -58,6 +56,8 @@ class Journal:
         """
         match, writer = self.match, self.writer
         beat = match.beat(inputs)
+        if self.health is not None:
+            self.health.take(inputs, beat)
         encoded = encode(beat.frame)
         if writer is None:
             return beat, encoded
@@ -74,7 +74,10 @@ class Journal:
         if beat.touch is not None:
             writer.touch(number, beat.touch)
         if beat.result is not None:
-            writer.result(msgspec.structs.replace(beat.result, health=self.verdict()))
+            writer.result(beat.result)
+        playing = match.phase is Phase.PLAYING and number % BEATS_PER_S == 0
+        if self.health is not None and (playing or beat.result is not None):
+            writer.health(number, self.health.verdict())
         happened = beat.ticked or inputs or beat.events or beat.sheet_changed
         if self._new(beat.frame) or happened or number % BEATS_PER_S == 0:
             writer.frame(number, encoded)

@@ -23,6 +23,7 @@ from lacoc_server.staging import Staging
 from lacoc_shared import __version__
 from lacoc_shared.codec import pack_states
 from lacoc_shared.inputs import (
+    Advice,
     Decide,
     HeardSeat,
     Input,
@@ -115,6 +116,8 @@ class Match:
         self.declared: str | None = None
         self.ended = ""
         """Why play ended."""
+        self.advice: tuple[str, ...] = ()
+        """Why the court advises a replay."""
         self.next_wanted = False
         self.staging = Staging(self.arena, make_physics)
         self._shown: tuple[Any, bytes] = (None, b"")
@@ -254,8 +257,17 @@ class Match:
                 return contestant.heard(self, self.seats[item.seat])
             case Decide():
                 return referee.decide(self, item)
+            case Advice():
+                return self._take_advice(item.reasons)
             case KeySeat():
                 return contestant.key(self, self.seats[item.seat], item)
+
+    def _take_advice(self, reasons: tuple[str, ...]) -> Done:
+        """Log what the court measured; whether to play again is the referee's word."""
+        self.advice = reasons
+        because = f"Replay advised: {'; '.join(reasons)}."
+        self.tell("advice", because if reasons else "A replay is not advised any more.")
+        return Done()
 
     def _move_on(self) -> None:
         """Change phase where that needs nobody's word."""
@@ -411,7 +423,7 @@ def _rank(item: Input) -> int:
     match item:
         case JoinSeat() | LeaveSeat() | ReadySeat():
             return 0
-        case SilentSeat() | HeardSeat():
+        case SilentSeat() | HeardSeat() | Advice():
             return 1
         case Decide():
             return 2

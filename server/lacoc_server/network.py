@@ -10,7 +10,7 @@ from functools import partial
 from typing import NamedTuple, Self
 
 from lacoc_server.decision_desk import DecisionDesk
-from lacoc_server.inbox import COMMANDS_PER_BEAT, Inbox
+from lacoc_server.inbox import COMMANDS_PER_BEAT, Door, Inbox
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
 from lacoc_shared.keyspace import ENTER, Keys
@@ -136,6 +136,10 @@ class CourtNetwork:
     def seat_health(self, now_s: float) -> tuple[SeatHealth, ...]:
         """How each seat's link is, in the arena's order."""
         return self._inbox.health(now_s)
+
+    def doors(self) -> tuple[Door, ...]:
+        """What was let in and refused, for each seat."""
+        return self._inbox.doors()
 
     @property
     def dropped(self) -> dict[str, int]:

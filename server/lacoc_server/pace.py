@@ -27,6 +27,8 @@ class Pace:
         self._beat_s = BEAT_S / speed
         self._due_s = now_s + offset_s % self._beat_s
         self._starts_s: deque[float] = deque(maxlen=_WINDOW_BEATS)
+        self.late_s = 0.0
+        """How late the newest beat began."""
         self.slow_beats = 0
         self.worst_late_s = 0.0
 
@@ -36,7 +38,7 @@ class Pace:
 
     def begin(self, now_s: float) -> None:
         """A beat begins now."""
-        late_s = now_s - self._due_s
+        self.late_s = late_s = now_s - self._due_s
         self.worst_late_s = max(self.worst_late_s, late_s)
         if late_s > SLOW_S:
             self.slow_beats += 1

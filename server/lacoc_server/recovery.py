@@ -7,7 +7,7 @@ from lacoc_server.match import Match
 from lacoc_server.replay import resume
 from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Decide, Input, KeySeat
-from lacoc_shared.messages import Event
+from lacoc_shared.messages import Event, HealthVerdict
 from lacoc_shared.record.files import is_held, record_paths
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
@@ -26,6 +26,8 @@ class Unfinished:
     """By seat: its sequence numbers go on after this one."""
     token_hashes: dict[str, str]
     """By seat that is held: the token that opens it."""
+    health: HealthVerdict | None
+    """How well it had been held until then."""
 
     @property
     def inputs(self) -> list[Input]:
@@ -60,6 +62,7 @@ def unfinished(folder: Path, court: str) -> Unfinished | None:
         tuple(event for event in record.events if event.beat <= match.beats),
         {seat.id: _last_seq(record, seat.index) for seat in match.seats},
         {seat.id: seat.join.token_hash for seat in held if seat.join},
+        record.health,
     )
 
 

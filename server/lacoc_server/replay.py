@@ -10,8 +10,6 @@ without its frame (`journal`) was not answered: both leave it out.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from msgspec.structs import replace
-
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
 from lacoc_server.entry import Entry
@@ -200,10 +198,10 @@ def _state(match: Match) -> bytes:
 
 
 def _same_result(recorded: Result | None, again: Result | None, last: int) -> bool:
-    """Whether a recorded result is the one; its health verdict is the court's alone to say."""
+    """Whether a recorded result is the one."""
     if recorded is None or recorded.beats > last + 1:  # of a beat that was not answered
         return True
-    return again is not None and replace(recorded, health=again.health) == again
+    return recorded == again
 
 
 def _last_beat(record: Record) -> int:

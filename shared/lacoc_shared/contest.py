@@ -37,6 +37,30 @@ class Holder(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     token: Token
 
 
+_Amount = Annotated[float, msgspec.Meta(ge=0)]
+_Percent = Annotated[float, msgspec.Meta(ge=0, le=100)]
+_Times = Annotated[int, msgspec.Meta(ge=0)]
+
+
+class HealthLimits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A match that was held worse than this gets the advice to be played again."""
+
+    real_time_factor: _Amount = 0.98
+    """Least over the whole of PLAYING."""
+    slow_beats_percent: _Percent = 1.0
+    """Most, of the beats of PLAYING."""
+    worst_late_ms: _Amount = 200.0
+    """The latest that a beat of PLAYING may begin; from 100 on the match runs late."""
+    silent_s: _Amount = 5.0
+    """Most that a seat may be silent in PLAYING."""
+    heard_percent: _Percent = 70.0
+    """Least of a seat's repeats that have to arrive."""
+    faults: _Times = 0
+    """Most stops of physics."""
+    resumptions: _Times = 2
+    """Most restarts of a killed court."""
+
+
 class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A court and all that is needed to start it, or to reach it."""
 
@@ -74,6 +98,8 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """For a team that sends no robot file: an installed robot's name, or a file."""
     limits: dict[str, float] = {}
     """Limits for robots that differ from the defaults of rules 1, by name."""
+    health: HealthLimits = HealthLimits()
+    """When a replay is advised."""
     courts: dict[str, Court]
 
     def court(self, name: str | None = None) -> tuple[str, Court]:
@@ -247,6 +273,7 @@ class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     contest: dict[str, Any] = {}
     limits: dict[str, Any] = {}
+    health: dict[str, Any] = {}
     court: Annotated[dict[str, Any], msgspec.Meta(min_length=1)]
 
 
@@ -258,6 +285,7 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         recordings=folder / general.recordings,
         robot=_beside(folder, general.robot),
         limits={name: _limit(name, value) for name, value in file.limits.items()},
+        health=_convert(file.health, HealthLimits, "health"),
         courts={name: _court(name, entry, folder) for name, entry in file.court.items()},
     )
 

@@ -70,4 +70,11 @@ class Decide(_Input, frozen=True, tag="decide"):
     decision: Decision
 
 
-Input = JoinSeat | ReadySeat | LeaveSeat | KeySeat | SilentSeat | HeardSeat | Decide
+class Advice(_Input, frozen=True, tag="advice"):
+    """The court measured that the match was held badly, or after all well enough."""
+
+    reasons: tuple[str, ...]
+    """Why a replay is advised; empty: it is not any more."""
+
+
+Input = JoinSeat | ReadySeat | LeaveSeat | KeySeat | SilentSeat | HeardSeat | Decide | Advice

@@ -175,8 +175,8 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     beat: int
     clock_ticks: int
     kind: str
-    """phase, join, leave, ready, silent, heard, restart, key-refused, decision, fault, result,
-    or a game's own: flip, capture, strike."""
+    """phase, join, leave, ready, silent, heard, restart, decision, fault, result, advice, or a
+    game's own: flip, capture, strike."""
     text: str
     """A plain English sentence."""
     seat: int = -1
@@ -297,6 +297,42 @@ class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
     """How often, by reason."""
 
 
+class LinkVerdict(msgspec.Struct, frozen=True, kw_only=True):
+    """How a seat's link was in a match."""
+
+    id: str
+    silences: int
+    """How often it fell silent in PLAYING."""
+    silent_s: float
+    """Time of PLAYING in which it was silent [s]."""
+    expected: int
+    """Repeats of its command that were due in PLAYING: ten a second."""
+    arrived: int
+    """How many of them came."""
+    refused: dict[str, int]
+    """What was refused in this match, by reason: at the court's doors and by the rules."""
+
+
+class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
+    """How well a match was held, so far: measured on the wall clock, and no part of the match."""
+
+    played_beats: int
+    """Beats of PLAYING; what follows is of these."""
+    real_time_factor: float
+    """Their 20 ms each per wall time that they took; 1 is real time."""
+    slow_beats: int
+    """How many began more than 20 ms late."""
+    worst_late_ms: float
+    """The latest beginning of one."""
+    faults: int
+    """How often physics stopped."""
+    resumptions: int
+    """How often the match went on after its court was killed."""
+    seats: tuple[LinkVerdict, ...]
+    advice: tuple[str, ...]
+    """Why a replay is advised: what is beyond the contest's limits; empty: it is not advised."""
+
+
 class Health(msgspec.Struct, frozen=True, kw_only=True):
     """How the court is; twice a second."""
 
@@ -312,3 +348,7 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     """Messages that belong to no seat, by reason."""
     decisions: dict[str, str]
     """Every decision: "" if it is legal now, else why not."""
+    verdict: HealthVerdict | None = None
+    """How well this match was held; None: it was not played yet."""
+    record_trouble: str = ""
+    """What is wrong with the disk of the record, a sentence; "" while all is well."""

@@ -58,3 +58,5 @@ BEAT_S = 0.02
 """A beat comes every 20 ms in every phase (rules 4)."""
 BEAT_US = 20_000
 BEATS_PER_S = 50
+REPEATS_HZ = 10
+"""A controller repeats its last command so often (rules 3)."""

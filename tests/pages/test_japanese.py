@@ -50,6 +50,7 @@ SPEAKERS = (
     "server/lacoc_server/contestant.py",
     "server/lacoc_server/decision_desk.py",
     "server/lacoc_server/entry.py",
+    "server/lacoc_server/health.py",
     "server/lacoc_server/inbox.py",
     "server/lacoc_server/match.py",
     "server/lacoc_server/referee.py",

@@ -138,6 +138,64 @@ def test_a_killed_court_goes_on(contest: Path, tmp_path: Path) -> None:
     assert verdict.text == "same"
 
 
+def test_how_well_it_was_held_outlives_the_kill(contest: Path, tmp_path: Path) -> None:
+    """Issue 4: what was measured before the kill counts; the referee is told "replay advised"."""
+    folder = tmp_path / "recordings"
+    contest.write_text(
+        "health.resumptions = 0\n"
+        + contest.read_text().replace(
+            "settings.match.", "settings.match.duration_s = 4\nsettings.match.", 1
+        )
+    )
+    name, court = load(contest).court()
+    with ExitStack() as stack:
+        first = stack.enter_context(served(contest, folder))
+        session = stack.enter_context(open_client([court.address()]))
+        controllers = [
+            Controller(session, name, seat, holder.token, f"Team {seat}")
+            for seat, holder in court.seat.items()
+        ]
+        left = controllers[0]
+        for controller in controllers:
+            controller.join()
+            controller.ready()
+        until(controllers, lambda: phase(left) == Phase.READY)
+        referee = RefereeClient(session, name, court.referee.token)
+        referee.decide(Start(), "", "Kubota")
+        until(controllers, lambda: played(left) > 100)
+        before = left.view.health
+        os.kill(first.pid, signal.SIGKILL)
+        first.wait()
+
+        stack.enter_context(served(contest, folder))
+        until(controllers, lambda: phase(left) == Phase.HALTED)
+        until(controllers, lambda: left.view.health is not before)
+        assert played(left) > 50  # what the last second measured died with the court
+        referee.decide(Resume(), "", "Kubota")
+        until(controllers, lambda: any(e.kind == "advice" for e in left.view.events))
+        assert phase(left) == Phase.FINISHED
+        told = next(event.text for event in left.view.events if event.kind == "advice")
+        assert "the court was started again 1 times, at most 0 may be" in told
+    end_s = time.monotonic() + WAIT_S
+    while not (packed := list(folder.glob("*main-001.mcap"))):
+        assert time.monotonic() < end_s, "the record was not packed"
+        time.sleep(0.05)
+    record = Record.read(packed[0])
+    assert record.health is not None
+    assert record.health.resumptions == 1
+    assert record.health.played_beats > 150
+    assert all(seat.expected >= 20 for seat in record.health.seats)
+    *_, verdict = verify(record)
+    assert isinstance(verdict, Verdict)
+    assert verdict.text == "same"
+
+
+def played(controller: Controller) -> int:
+    """Beats that the court has measured."""
+    health = controller.view.health
+    return health.verdict.played_beats if health and health.verdict else 0
+
+
 def test_a_running_court_is_not_taken_over(contest: Path, tmp_path: Path) -> None:
     """The record of a court that lives was not left behind."""
     folder = tmp_path / "recordings"

@@ -165,14 +165,12 @@ def test_nothing_of_a_record_can_be_changed_unseen(
 
 @pytest.mark.slow
 def test_a_changed_result_is_named(tmp_path: Path) -> None:
-    """Issue 2: the recording replays to the same result; its health verdict is not judged."""
+    """Issue 2: the recording replays to the same result."""
     made = setup("othello", {"match": {"duration_s": 0.5}})
     ground = arenas.load("othello")
     simulate(made, [player(ground, seat, "straight") for seat in (0, 1)], tmp_path)
     record = Record.read(tmp_path / "m.mcap")
     assert record.result is not None
-    record.result = msgspec.structs.replace(record.result, health={"slow_beats": 3})
-    assert verdict(record).text == "same"
     record.result = msgspec.structs.replace(record.result, scores=(36, 0))
     assert verdict(record).text == f"beat {record.last_beat} differs: the result"
 

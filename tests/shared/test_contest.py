@@ -18,6 +18,8 @@ recordings = "records"
 robot = "robots/own.toml"
 [limits]
 legs_max = 6
+[health]
+silent_s = 2
 [court.main]
 arena = "othello"
 listen = ["0.0.0.0", "tcp/127.0.0.1:7450"]
@@ -58,6 +60,7 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
     assert contest.recordings == file.parent / "records"
     assert contest.robot == str(file.parent / "robots/own.toml")
     assert contest.limits == {"legs_max": 6.0}
+    assert contest.health == contests.HealthLimits(silent_s=2.0)
     assert contest.courts["main"].arena == "othello"
     assert contest.courts["main"].listen == ("tcp/0.0.0.0:7447", "tcp/127.0.0.1:7450")
     assert contest.courts["main"].settings == {"match": {"duration_s": 60.0}}
@@ -80,7 +83,7 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
         ('"0.0.0.0"', '"http://x"', r"court.main.*'http://x' is not an address"),
         ('listen = ["0.0.0.0", "tcp/127.0.0.1:7450"]', "listen = []", r"court.main.listen"),
         ("[court.main", "[court.Main", r"court.Main.*'Main'"),
-        ("[contest]", "[contst]", r"unknown field `contst`.*contest, limits, court"),
+        ("[contest]", "[contst]", r"unknown field `contst`.*contest, limits, health, court"),
         ('arena = "othello"', 'arena = "a\\u0000/b"', "is no path"),
         ('robot = "robots/own.toml"', 'robot = "~nobody-here/b"', "is no path"),
         ('recordings = "records"', 'recordings = "a\\u0000b"', r"contest\.recordings"),
@@ -88,6 +91,9 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
         ("legs_max = 6", "legs_max = " + "[" * 2000, "too deep"),
         ("duration_s = 60.0", "duration_s = 0x" + "f" * 40, "many digits"),
         ('name = "Spring"', "name = Spring", r"can't be read.*line 3"),
+        ("silent_s = 2", "faults = -1", r"health.faults.*Expected `int` >= 0"),
+        ("silent_s = 2", "silent_s = nan", r"health.silent_s"),
+        ("silent_s = 2", "silent = 1", r"unknown field `silent`.*silent_s"),
         (GOOD, "[contest]\n", r"missing required field `court`"),
         (GOOD, "court = 1\n", r"\[court\]: Expected `object`, got `int`"),
         (GOOD, "[court]\nmain = 1\n", r"\[court.main\]: Expected `object`, got `int`"),

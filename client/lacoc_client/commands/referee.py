@@ -325,6 +325,10 @@ def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:
     )
     speed = f"{health.real_time_factor:.2f} of real time, {health.slow_beats} slow beats"
     screen.show(f"The court runs at {speed}, the latest by {health.worst_late_ms:.0f} ms.")
+    if health.record_trouble:
+        screen.warn(health.record_trouble)
+    if health.verdict is not None and health.verdict.advice:
+        screen.show(Text(f"Replay advised: {'; '.join(health.verdict.advice)}.", "bold yellow"))
     for why, count in health.dropped.items():
         screen.show(f"  dropped {count}: {why}")
     seats = Table("seat", "team", "score", "ready", "key", "link", "refused")

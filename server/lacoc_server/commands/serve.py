@@ -105,7 +105,7 @@ def serve_command(
     desk = DecisionDesk([hash_token(entry.referee.token)])
     addresses = (endpoint(listen),) if listen else entry.listen
     with CourtNetwork(keys, addresses, inbox, desk) as network:
-        settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed)
+        settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)
         running = Court(settings, network, screen.print_json if json else _say, left)
         _open_doors(name, entry, running.match_id, network.locators, made_here=made_here, json=json)
         stop = _stop_on_signal()

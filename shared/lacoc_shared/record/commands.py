@@ -14,6 +14,7 @@ from rich.text import Text
 
 from lacoc_shared import keep, screen
 from lacoc_shared.cli import lazy_group
+from lacoc_shared.messages import HealthVerdict
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import export as exports
 from lacoc_shared.record.foxglove import foxglove
@@ -144,7 +145,29 @@ def _summary(record: Record) -> dict[str, Any]:
         "complete": not record.cut,
         "cut": record.cut,
         "result": msgspec.to_builtins(record.result),
+        "health": msgspec.to_builtins(record.health),
     }
+
+
+def _held(health: HealthVerdict | None) -> str:
+    """How well the match was held, in words."""
+    if health is None:
+        return "headless, or not played: nothing was measured"
+    words = [
+        f"{health.real_time_factor:.3f} of real time",
+        f"{health.slow_beats} of {health.played_beats} beats slow",
+        f"the latest by {health.worst_late_ms:.0f} ms",
+        f"{health.faults} stops of physics",
+        f"{health.resumptions} resumptions",
+    ]
+    for seat in health.seats:
+        refused = ", ".join(f"{count} {why}" for why, count in seat.refused.items())
+        words.append(
+            f"{seat.id}: {seat.arrived} of {seat.expected} repeats, {seat.silences} silences of "
+            f"{seat.silent_s:.1f} s, refused {refused or 'nothing'}"
+        )
+    advised = f"Replay advised: {'; '.join(health.advice)}" if health.advice else "Well held"
+    return f"{advised} ({'; '.join(words)})"
 
 
 def _lines(record: Record, found: dict[str, Any]) -> list[tuple[str, str]]:
@@ -168,6 +191,7 @@ def _lines(record: Record, found: dict[str, Any]) -> list[tuple[str, str]]:
             ", ".join(f"{seat}: {team or 'nobody'}" for seat, team in found["teams"].items()),
         ),
         ("Result", ended),
+        ("Held", _held(record.health)),
         ("Length", f"{(record.last_beat + 1) * BEAT_S:.2f} s in {record.last_beat + 1} beats"),
         ("Holds", ", ".join(f"{found[name]} {name}" for name in counts)),
         ("Written by", versions),

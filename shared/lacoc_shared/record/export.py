@@ -59,14 +59,15 @@ def events_csv(record: Record) -> bytes:
 
 
 def result_json(record: Record) -> bytes:
-    """The result as JSON.
+    """The result as JSON, with how well the match was held as `health`; null: headless.
 
     Raises:
         UserError: if the match has none.
     """
     if record.result is None:
         raise UserError(f"Match {record.header.match_id} has no result: it was never finished.")
-    return msgspec.json.format(msgspec.json.encode(record.result), indent=2) + b"\n"
+    found = msgspec.structs.asdict(record.result) | {"health": record.health}
+    return msgspec.json.format(msgspec.json.encode(found), indent=2) + b"\n"
 
 
 def seat_index(record: Record, seat: str) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from lacoc_shared.inputs import Input
-from lacoc_shared.messages import Event, Scene, Sheet
+from lacoc_shared.messages import Event, HealthVerdict, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.schema import Header, Result, Touch
@@ -36,6 +36,8 @@ class Record:
     scenes: list[tuple[int, Scene]] = field(default_factory=list)
     result: Result | None = None
     """The newest; None while the match has not ended."""
+    health: HealthVerdict | None = None
+    """The newest; None: it was not played in real time, or not yet."""
     last_beat: int = -1
     """The last beat of which anything is known; -1: none."""
     cut: str = ""
@@ -99,6 +101,9 @@ class Record:
                 return
             case "/lacoc/result":
                 self.result = message
+                return
+            case "/lacoc/health":
+                self.health = message
                 return
             case "/lacoc/input":
                 self.inputs.setdefault(beat, []).append(message)

@@ -5,7 +5,7 @@ from typing import Any
 import msgspec
 
 from lacoc_shared.inputs import Input
-from lacoc_shared.messages import Event, Frame, Scene, Sheet
+from lacoc_shared.messages import Event, Frame, HealthVerdict, Scene, Sheet
 
 
 class Setup(msgspec.Struct, frozen=True, kw_only=True):
@@ -73,8 +73,6 @@ class Result(msgspec.Struct, frozen=True, kw_only=True):
     """Chained state hash at the last beat, hexadecimal."""
     model: str
     """Hash of the compiled model, hexadecimal."""
-    health: dict[str, Any] = {}
-    """Health verdict: slow beats, worst lateness, real-time factor, refused commands."""
 
 
 FORMAT = 1
@@ -96,6 +94,7 @@ KINDS: dict[str, Any] = {
     "/lacoc/sheet": Sheet,
     "/lacoc/scene": Scene,
     "/lacoc/result": Result,
+    "/lacoc/health": HealthVerdict,
 }
 """The channels of a record by topic, and the message of each in msgpack; None: bytes that only
 the court understands. A channel's number is its place here, from 1."""

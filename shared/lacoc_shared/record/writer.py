@@ -19,7 +19,7 @@ from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import __version__, codec
 from lacoc_shared.inputs import Input
-from lacoc_shared.messages import Event, Scene, Sheet
+from lacoc_shared.messages import Event, HealthVerdict, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header, Result, Touch
@@ -27,7 +27,7 @@ from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header, Result, 
 SYNC_S = 1.0
 """A power cut loses at most what this long has written."""
 
-_HEADER, _INPUT, _EVENT, _FRAME, _TOUCH, _SNAPSHOT, _SHEET, _SCENE, _RESULT = range(
+_HEADER, _INPUT, _EVENT, _FRAME, _TOUCH, _SNAPSHOT, _SHEET, _SCENE, _RESULT, _HEALTH = range(
     1, len(KINDS) + 1
 )
 _message_head = struct.Struct("<BQHIQQ").pack
@@ -131,6 +131,10 @@ class RecordWriter:
     def result(self, result: Result) -> None:
         """Write the result; a later one replaces it."""
         self._write(_RESULT, result.beats, codec.encode(result))
+
+    def health(self, beat: int, verdict: HealthVerdict) -> None:
+        """Write how well the match was held so far; a later one replaces it."""
+        self._write(_HEALTH, beat, codec.encode(verdict))
 
     def close(self) -> None:
         """Write the summary and bring everything to the disk. Closing twice is once."""

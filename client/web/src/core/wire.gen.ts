@@ -145,6 +145,26 @@ export interface SeatHealth {
   refused: Record<string, number>;
 }
 
+export interface LinkVerdict {
+  id: string;
+  silences: number;
+  silent_s: number;
+  expected: number;
+  arrived: number;
+  refused: Record<string, number>;
+}
+
+export interface HealthVerdict {
+  played_beats: number;
+  real_time_factor: number;
+  slow_beats: number;
+  worst_late_ms: number;
+  faults: number;
+  resumptions: number;
+  seats: LinkVerdict[];
+  advice: string[];
+}
+
 export interface Health {
   match: number;
   beat: number;
@@ -154,6 +174,8 @@ export interface Health {
   seats: SeatHealth[];
   dropped: Record<string, number>;
   decisions: Record<string, string>;
+  verdict: HealthVerdict | null;
+  record_trouble: string;
 }
 
 export interface DecisionReply {
@@ -208,7 +230,6 @@ export interface Result {
   beats: number;
   digest: string;
   model: string;
-  health: Record<string, unknown>;
 }
 
 /** `SeatFrame` is an array on the wire: the names of its places. */

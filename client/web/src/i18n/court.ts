@@ -62,6 +62,48 @@ const FRAMES: readonly Pattern[] = [
   ["network", "通信"],
   ["rule", "規則"],
   ["the court was started again", "コートの再起動"],
+  ["Replay advised: {Reasons}.", "再試合を推奨します：{Reasons}。"],
+];
+
+/** How well a match was held (lacoc_server/health.py), and its record (record/writer.py). */
+const HEALTH: readonly Pattern[] = [
+  ["A replay is not advised any more.", "再試合の推奨を取り下げました。"],
+  [
+    "it ran at {#n} of real time, at least {#least} is wanted",
+    "実時間比 {#n}（基準は {#least} 以上）",
+  ],
+  [
+    "{#n} % of the beats were slow, at most {#most} % may be",
+    "処理の遅れが {#n} %（基準は {#most} % 以下）",
+  ],
+  [
+    "a beat began {#n} ms late, at most {#most} ms may be",
+    "最大 {#n} ミリ秒の遅れ（基準は {#most} ミリ秒以下）",
+  ],
+  [
+    "seat {Seat} was silent for {#n} s, at most {#most} s may be",
+    "{Seat}の席の通信が {#n} 秒途絶（基準は {#most} 秒以下）",
+  ],
+  [
+    "{#n} % of the repeats of seat {Seat} arrived, at least {#least} % are wanted",
+    "{Seat}の席からの送信の {#n} % が到着（基準は {#least} % 以上）",
+  ],
+  [
+    "physics stopped {#n} times, at most {#most} may be",
+    "物理計算が {#n} 回停止（基準は {#most} 回以下）",
+  ],
+  [
+    "the court was started again {#n} times, at most {#most} may be",
+    "コートを {#n} 回再起動（基準は {#most} 回以下）",
+  ],
+  [
+    "The record {file} can't be written: {why}. {#n} bytes wait in memory: make room on its disk.",
+    "記録 {file} に書き込めません（{why}）。{#n} バイトがメモリーで待っています。ディスクの空きを増やしてください。",
+  ],
+  [
+    "The disk of the record {file} reports: {why}. A power cut may lose a part of the record: check that disk.",
+    "記録 {file} のディスクのエラー：{why}。停電時に記録の一部が失われるおそれがあります。ディスクを確認してください。",
+  ],
 ];
 
 /** What the match tells: the log (lacoc_server/match.py, contestant.py, the games). */
@@ -551,6 +593,7 @@ const PATTERNS: readonly Pattern[] = [
   // The court names the decision that it refuses first.
   ...DECISION_NAMES.map(([name, word]) => [`${name}: {Sentence}`, `${word}：{Sentence}`] as const),
   ...EVENTS,
+  ...HEALTH,
   ...DECISIONS,
   ...CONTESTANTS,
   ...GATEWAY,

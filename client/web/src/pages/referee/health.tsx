@@ -33,6 +33,8 @@ export function HealthCard({ desk }: { desk: Desk }) {
     <section class="card health" aria-labelledby="health-title">
       <h2 id="health-title">{t("courtHealth.title")}</h2>
       <Verdict name={name} text={t(`courtHealth.${name}`)} />
+      {health?.record_trouble && <p class="refused">{said(health.record_trouble)}</p>}
+      {health?.verdict && <Advice advice={health.verdict.advice} />}
       {health && (
         <dl class="facts">
           <dt>{t("courtHealth.factor")}</dt>
@@ -55,6 +57,21 @@ export function HealthCard({ desk }: { desk: Desk }) {
         </dl>
       )}
     </section>
+  );
+}
+
+/** What the contest's limits say of this match so far; nothing while all is within them. */
+export function Advice({ advice }: { advice: readonly string[] }) {
+  if (!advice.length) return null;
+  return (
+    <div class="missing advice" role="status">
+      <h3>{t("courtHealth.advice")}</h3>
+      <ul>
+        {advice.map((reason) => (
+          <li key={reason}>{said(reason)}</li>
+        ))}
+      </ul>
+    </div>
   );
 }
 

@@ -9,8 +9,10 @@ import { Hint, PhaseWord, SeatMark } from "../../ui/score";
 import { Act } from "./act";
 import { type Desk, nextStep } from "./desk";
 import * as drafts from "./drafts";
+import { Advice } from "./health";
 
 const CLOCK_S = 10;
+const OVER = new Set<number>([Phase.FINISHED, Phase.OFFICIAL]);
 
 /** Take the next step of a phase: at once, or asked about where it is final. */
 export function takeStep(desk: Desk, name: DecisionName): void {
@@ -36,6 +38,7 @@ export function MatchCard({ desk }: { desk: Desk }) {
       </div>
       <BigButton desk={desk} />
       <Missing desk={desk} />
+      <ReplayAdvice desk={desk} />
       <LastAnswer desk={desk} />
       <Groups desk={desk} />
     </section>
@@ -85,6 +88,13 @@ function Missing({ desk }: { desk: Desk }) {
       </ul>
     </div>
   );
+}
+
+/** Beside the result, before it becomes official. */
+function ReplayAdvice({ desk }: { desk: Desk }) {
+  const advice = desk.court.health.value?.verdict?.advice;
+  const over = OVER.has(desk.phase.value);
+  return over && advice ? <Advice advice={advice} /> : null;
 }
 
 function LastAnswer({ desk }: { desk: Desk }) {

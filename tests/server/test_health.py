@@ -1,0 +1,278 @@
+"""How well a match was held: what is measured, what it says, and that it stands in the record."""
+
+import json
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import msgspec
+import pytest
+from stage import LEFT, QUICK, RIGHT, Script, Stage, decide, join, key, setup
+from typer.testing import CliRunner
+
+from lacoc_arenas import arena as arenas
+from lacoc_server.health import MatchHealth, advice
+from lacoc_server.inbox import Door
+from lacoc_server.journal import Journal
+from lacoc_server.match import Match
+from lacoc_server.physics import Fault
+from lacoc_server.replay import Verdict, verify
+from lacoc_server.simulate import player, simulate
+from lacoc_server.world import World
+from lacoc_shared.contest import HealthLimits
+from lacoc_shared.decisions import Declare, Halt, Resume, Start
+from lacoc_shared.inputs import Advice, HeardSeat, Input, ReadySeat, SilentSeat
+from lacoc_shared.messages import HealthVerdict, LinkVerdict
+from lacoc_shared.record.commands import app
+from lacoc_shared.record.export import result_json
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import Phase
+
+GOOD = HealthVerdict(
+    played_beats=1000,
+    real_time_factor=1.0,
+    slow_beats=0,
+    worst_late_ms=3.0,
+    faults=0,
+    resumptions=0,
+    seats=(LinkVerdict(id="left", silences=0, silent_s=0, expected=200, arrived=198, refused={}),),
+    advice=(),
+)
+
+
+@dataclass
+class Held:
+    """A match in PLAYING and what measures it; its wall clock is the test's."""
+
+    stage: Stage = field(default_factory=lambda: Stage("othello", QUICK).to_playing())
+    speed: float = 1.0
+    before: HealthVerdict | None = None
+    now_s: float = 100.0
+    heard: int = 0
+    refused: Counter[str] = field(default_factory=Counter)
+
+    def __post_init__(self) -> None:
+        self.refused["flood"] = 7  # of the match before
+        self.health = MatchHealth(
+            self.stage.match, HealthLimits(), self.doors(), speed=self.speed, before=self.before
+        )
+
+    def doors(self) -> tuple[Door, Door]:
+        return Door(self.heard, self.refused), Door(self.heard, {})
+
+    def beat(self, *inputs: Input, took_s: float = 0.02, late_s: float = 0.0) -> None:
+        self.now_s += took_s
+        self.health.begin(self.now_s, late_s, self.doors())
+        self.health.take(inputs, self.stage.beat(*inputs))
+
+    def seconds(self, count: int, repeats: int = 10) -> None:
+        for beat in range(50 * count):
+            self.heard += repeats * (beat % 50 + 1) // 50 - repeats * (beat % 50) // 50
+            self.beat()
+
+    @property
+    def verdict(self) -> HealthVerdict:
+        return self.health.verdict()
+
+    @property
+    def left(self) -> LinkVerdict:
+        return self.verdict.seats[LEFT]
+
+
+def test_a_match_that_is_held_well() -> None:
+    """Design, "Time": 50 beats a second, none late, all repeats: nothing is advised."""
+    held = Held()
+    held.seconds(4)
+    verdict = held.verdict
+    assert (verdict.real_time_factor, verdict.slow_beats, verdict.faults) == (1.0, 0, 0)
+    assert verdict.played_beats == 199  # the first begins nothing: nobody waited for it
+    assert held.left.expected == 30
+    assert held.left.arrived == 30
+    assert verdict.advice == ()
+
+
+def test_only_the_time_that_is_played_counts() -> None:
+    """A join may cost a beat before the start, and in HALTED nobody waits."""
+    held = Held(Stage("othello", QUICK))
+    held.beat(took_s=3.0, late_s=2.98)
+    held.stage.to_playing()
+    held.beat()
+    held.beat(late_s=0.003)
+    held.stage.decide(Halt())
+    held.beat(took_s=5.0, late_s=4.98)
+    held.stage.decide(Resume())
+    held.beat(took_s=2.0)
+    held.beat()
+    held.beat()
+    verdict = held.verdict
+    assert held.stage.match.phase is Phase.PLAYING
+    assert verdict.real_time_factor == 1.0
+    assert (verdict.slow_beats, verdict.worst_late_ms) == (0, 3.0)
+
+
+@pytest.mark.parametrize("speed", [1.0, 4.0])
+def test_slow_beats_and_the_real_time_factor(speed: float) -> None:
+    """Issue 4: a stall of 0.1 s in each second is 1/1.08 of real time, at any speed."""
+    held = Held(speed=speed)
+    held.beat(took_s=0.02 / speed)
+    for beat in range(250):
+        slow = beat % 50 == 0
+        held.beat(took_s=(0.1 if slow else 0.02) / speed, late_s=0.08 if slow else 0.001)
+    verdict = held.verdict
+    assert verdict.real_time_factor == pytest.approx(1 / 1.08, abs=1e-4)
+    assert (verdict.slow_beats, verdict.worst_late_ms) == (5, 80.0)
+    assert [text.split(",")[0] for text in verdict.advice[:2]] == [
+        "it ran at 0.926 of real time",
+        "2.0 % of the beats were slow",
+    ]
+
+
+def test_repeats_of_a_lossy_link() -> None:
+    """Issue 4, link loss: four of ten repeats are lost; more than ten a second replace none."""
+    held = Held()
+    held.seconds(1)
+    held.seconds(10, repeats=6)
+    assert held.left.arrived / held.left.expected == pytest.approx(0.6, abs=0.05)
+    assert any("repeats of seat left arrived" in text for text in held.verdict.advice)
+    lost = held.left.expected - held.left.arrived
+    held.seconds(10, repeats=60)  # a bot
+    assert held.left.expected - held.left.arrived <= lost + 4
+
+
+def test_repeats_that_come_a_little_early_or_late() -> None:
+    """A second has 9 repeats and the next 11: none was lost."""
+    held = Held()
+    for repeats in (10, 9, 11, 9, 11, 9, 11, 10):
+        held.seconds(1, repeats)
+    assert held.left.expected - held.left.arrived <= 1
+
+
+def test_silences() -> None:
+    """Issue 4: how often and how long a seat was silent while the match was played."""
+    held = Held()
+    for _ in range(2):
+        held.beat(SilentSeat(LEFT))
+        held.seconds(3)
+        held.beat(HeardSeat(LEFT))
+    assert held.left.silences == 2
+    assert held.left.silent_s == pytest.approx(2 * 3.02)
+    assert held.verdict.seats[RIGHT].silences == 0
+    assert "seat left was silent for 6.0 s, at most 5 s may be" in held.verdict.advice
+
+
+def test_refusals_of_this_match() -> None:
+    """What the doors refused since it began, and what the rules refused."""
+    held = Held()
+    held.beat()
+    held.refused.update({"flood": 3, "bad seal": 1})
+    held.beat(key(LEFT, 9))
+    assert held.left.refused == {"flood": 3, "bad seal": 1, "no such key": 1}
+
+
+def test_faults_of_physics() -> None:
+    """Each stop of physics is counted, and one is enough for the advice."""
+    script = Script(faults={3: Fault(LEFT, "a velocity became not a number or too large")})
+    held = Held(Stage("othello", QUICK, script=script).to_playing())
+    held.seconds(1)
+    assert held.verdict.faults == 1
+    assert held.verdict.advice == ("physics stopped 1 times, at most 0 may be",)
+
+
+def test_a_killed_court_goes_on_counting() -> None:
+    """Issue 4: what was measured before the kill counts too."""
+    first = Held()
+    first.beat()
+    first.beat(SilentSeat(LEFT))
+    first.beat(HeardSeat(LEFT), key(RIGHT, 9))
+    first.beat(took_s=0.42, late_s=0.4)
+    first.seconds(2)
+    second = Held(before=first.verdict)
+    assert second.verdict == first.verdict
+    second.seconds(2)
+    after = second.verdict
+    assert after.played_beats == first.verdict.played_beats + 99
+    assert after.worst_late_ms == 400.0
+    assert first.verdict.real_time_factor < after.real_time_factor < 1
+    assert after.seats[LEFT].silences == 1
+    assert after.seats[RIGHT].refused == {"no such key": 1}
+
+
+LINK = GOOD.seats[0]
+
+
+@pytest.mark.parametrize(
+    ("held", "words"),
+    [
+        ({"real_time_factor": 0.97}, "it ran at 0.970 of real time, at least 0.98 is wanted"),
+        ({"slow_beats": 11}, "1.1 % of the beats were slow, at most 1 % may be"),
+        ({"worst_late_ms": 201.0}, "a beat began 201 ms late, at most 200 ms may be"),
+        ({"faults": 1}, "physics stopped 1 times, at most 0 may be"),
+        ({"resumptions": 3}, "the court was started again 3 times, at most 2 may be"),
+        (
+            {"seats": (msgspec.structs.replace(LINK, silent_s=5.02),)},
+            "seat left was silent for 5.0 s, at most 5 s may be",
+        ),
+        (
+            {"seats": (msgspec.structs.replace(LINK, arrived=100),)},
+            "50 % of the repeats of seat left arrived, at least 70 % are wanted",
+        ),
+    ],
+    ids=["factor", "slow", "worst", "faults", "resumptions", "silent", "repeats"],
+)
+def test_each_limit_has_its_words(held: dict[str, object], words: str) -> None:
+    """Issue 4: below a contest's limits the referee is told "replay advised", and why."""
+    verdict = msgspec.structs.replace(GOOD, **held)
+    assert list(advice(GOOD, HealthLimits())) == []
+    assert list(advice(verdict, HealthLimits())) == [words]
+
+
+def test_advice_is_an_event_of_the_match() -> None:
+    """It enters as an input, so that a replay has the same log."""
+    stage = Stage("othello", QUICK).to(Phase.FINISHED)
+    stage.beat(Advice(("a", "b")))
+    stage.beat(Advice(()))
+    assert [event.text for event in stage.events[-2:]] == [
+        "Replay advised: a; b.",
+        "A replay is not advised any more.",
+    ]
+    assert {event.kind for event in stage.events[-2:]} == {"advice"}
+
+
+@pytest.mark.slow
+def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
+    """It stands beside the result, not in it: `replay verify` simulates no wall clock."""
+    journal = Journal(Match(setup("othello", QUICK), World), tmp_path)
+    assert journal.writer is not None
+    journal.health = MatchHealth(journal.match, HealthLimits(), [Door(0, {})] * 2)
+    seated = [(join(LEFT), join(RIGHT)), (ReadySeat(LEFT, True), ReadySeat(RIGHT, True))]
+    played = [(decide(Start()),), *[()] * 120, (decide(Halt()),), (decide(Declare("left")),)]
+    for beat, inputs in enumerate([*seated, *played]):
+        late_s = 0.3 if beat == 60 else 0.0
+        journal.health.begin(0.02 * beat + late_s, late_s, [Door(0, {})] * 2)
+        journal.beat(inputs)
+    journal.close()
+    path = journal.writer.path
+    record = Record.read(path)
+    assert record.result is not None
+    assert record.health is not None
+    assert record.health.worst_late_ms == 300.0
+    *_, verdict = verify(record)
+    assert isinstance(verdict, Verdict)
+    assert verdict.text == "same"
+    said = CliRunner().invoke(app, ["info", str(path)]).output
+    assert "Replay advised: a beat began 300 ms late" in said
+    exported = json.loads(result_json(record))
+    assert exported["health"]["worst_late_ms"] == 300.0
+    assert exported["computed"] == "draw"
+
+
+@pytest.mark.slow
+def test_a_simulated_match_has_none(tmp_path: Path) -> None:
+    """It ran headless: no clock, no link, nothing to be late."""
+    made = setup("othello", {"match": {"duration_s": 0.5}})
+    ground = arenas.load("othello")
+    simulate(made, [player(ground, seat, "straight") for seat in (0, 1)], tmp_path)
+    record = Record.read(tmp_path / "m.mcap")
+    assert record.health is None
+    assert json.loads(result_json(record))["health"] is None
+    assert "headless" in CliRunner().invoke(app, ["info", str(tmp_path / "m.mcap")]).output
