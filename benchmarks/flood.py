@@ -215,8 +215,9 @@ def flooder(words: list[str]) -> dict[str, Any]:
                     seq += 1
                     due += 1
                     digit = seq % 4
-                    mac = command_mac(joined.secret, key, joined.session, seq, 1, digit)
-                    publisher.put(encode(Command(joined.session, seq, 1, digit, mac)))
+                    numbers = (joined.session, seq, 1, digit, 0, 0)
+                    mac = command_mac(joined.secret, key, *numbers)
+                    publisher.put(encode(Command(*numbers, mac)))
                 time.sleep(_SLICE_S)
             controller._seq = seq
             sent, seconds = sent + due, seconds + time.monotonic() - begin_s

@@ -115,7 +115,8 @@ class Controller:
         self._joined: Joined | None = None
         self._health_seen: Health | None = None
         self._seq = 0
-        self._command = b""
+        self._standing = (0, 0, 0)
+        """Sequence number, level and key of the command that stands."""
         self._sent_s = 0.0
         self._pressed: dict[int, _Press] = {}
         self._refused: list[RefusedKey] = []
@@ -167,7 +168,8 @@ class Controller:
         self._seq = max(self._seq, joined.last_seq)
         self._pressed.clear()
         self.hold, self.reason = Hold.HELD, ""
-        self._send(0, 0, 0)
+        self._standing = (0, 0, 0)
+        self._send()
         return joined.notes
 
     def ready(self, ready: bool = True) -> str:
@@ -194,12 +196,13 @@ class Controller:
         self.hold, self._joined = Hold.LEFT, None
         return text
 
-    def press(self, level: int, key: int) -> int:
+    def press(self, level: int, key: int, upon: Frame | None = None) -> int:
         """Send a new command; it stands, and is repeated, until the next.
 
         Args:
             level: a `Level`.
             key: a digit, or `RESTART_KEY`.
+            upon: the frame that it answers; None: the newest.
 
         Returns:
             The command's sequence number.
@@ -212,7 +215,8 @@ class Controller:
         self._pressed[self._seq] = _Press(level, key, time.monotonic())
         if len(self._pressed) > _REMEMBERED:
             del self._pressed[next(iter(self._pressed))]
-        self._send(self._seq, level, key)
+        self._standing = (self._seq, level, key)
+        self._send(upon)
         return self._seq
 
     def poll(self, now_s: float) -> Frame | None:
@@ -233,9 +237,10 @@ class Controller:
         if self.repeating and self.hold in (Hold.HELD, Hold.LOST):
             self._check_hold()
         if self.repeating and self.hold is Hold.HELD and now_s - self._sent_s >= REPEAT_S:
-            self._commands.put(self._command)
+            sent_s = self._sent_s
+            self._send()
             # Frames wake this: what one repeat is late, the next is early.
-            self._sent_s = max(self._sent_s + REPEAT_S, now_s - REPEAT_S / 2)
+            self._sent_s = max(sent_s + REPEAT_S, now_s - REPEAT_S / 2)
         return frame
 
     def wait_frame(self, timeout_s: float) -> Frame | None:
@@ -277,12 +282,14 @@ class Controller:
         request = SeatRequest(session=joined.session, ready=ready, mac=mac)
         return ask(self._session, self._keys, key, request, Done).text
 
-    def _send(self, seq: int, level: int, key: int) -> None:
+    def _send(self, upon: Frame | None = None) -> None:
+        """Send the standing command, with the frame that it answers."""
         assert self._joined is not None
-        session, secret = self._joined.session, self._joined.secret
-        mac = seal.command_mac(secret, self._keys.command(self.seat), session, seq, level, key)
-        self._command = encode(Command(session, seq, level, key, mac))
-        self._commands.put(self._command)
+        frame, key_expression = upon or self.view.frame, self._keys.command(self.seat)
+        seen = (frame.match, frame.beat) if frame is not None else (0, 0)
+        numbers = (self._joined.session, *self._standing, *seen)
+        mac = seal.command_mac(self._joined.secret, key_expression, *numbers)
+        self._commands.put(encode(Command(*numbers, mac)))
         self._sent_s = time.monotonic()
 
     def _compare(self, seat: SeatFrame) -> None:

@@ -200,6 +200,9 @@ class TerminalPlay:
             second.append(f"  {words.standing_key(seat, sheet, controller.index)}", "bold")
         if controller.round_trip_ms is not None:
             second.append(f"  round trip {controller.round_trip_ms:.0f} ms", "dim")
+        health = self._view.health
+        if health is not None and health.input_delay_ms:
+            second.append(f"  equalised: {health.input_delay_ms} ms", "dim")
         if len(sheet.seats) == 1:
             second.append(words.place(frame, sheet, controller.seat))
         first = status_line(frame, sheet)

@@ -56,6 +56,8 @@ robot = "hexapod"          # for a team that brings none: an installed robot or 
 arena = "{arena}"
 listen = ["tcp/0.0.0.0:7447"]          # tcp/127.0.0.1:7447: this machine alone
 # connect = "tcp/192.168.1.20:7447"    # where others reach it, for 'lacoc contest show'
+# input_delay = "equal"                # hold keys until both links have the same delay,
+# input_delay_max_ms = 400             # at most this
 
 {seats}
 [court.{court}.referee]

@@ -105,7 +105,7 @@ class Court:
     def _beat(self, now_s: float) -> None:
         own, self._inputs = self._inputs, []
         match, network = self._journal.match, self._network
-        arrivals: list[Arrival] = network.poll(now_s)
+        arrivals: list[Arrival] = network.poll(now_s, match.setup.match, match.beats + 1)
         beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
         for arrival, outcome in zip(arrivals, beat.outcomes[len(own) :], strict=True):
             if arrival.answer is not None:
@@ -190,6 +190,7 @@ class Court:
             decisions=match.legality(),
             verdict=self._health.verdict(),
             record_trouble=writer.trouble if writer else "",
+            input_delay_ms=self._network.input_delay_ms,
         )
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import msgspec
 
 from lacoc_server.allowance import Allowance
+from lacoc_server.links import Links
 from lacoc_server.sessions import Sessions, Why
 from lacoc_shared import codec, seal
 from lacoc_shared.gait import Level
@@ -19,7 +20,6 @@ from lacoc_shared.inputs import (
     HeardSeat,
     Input,
     JoinSeat,
-    KeySeat,
     LeaveSeat,
     ReadySeat,
     SilentSeat,
@@ -106,6 +106,7 @@ class Inbox:
             raises `FileRefused`.
         last_seqs: for a restarted court, the newest sequence numbers of its record, by seat.
         joined: for a restarted court, the seats that are held.
+        most_delay_ms: links are made equal by a delay of at most this; 0: they are not.
     """
 
     def __init__(
@@ -117,6 +118,7 @@ class Inbox:
         *,
         last_seqs: Mapping[str, int] | None = None,
         joined: Collection[str] = (),
+        most_delay_ms: int = 0,
     ) -> None:
         self._keys = keys
         self._token_hashes = dict(token_hashes)
@@ -125,6 +127,8 @@ class Inbox:
             _Seat(index, name, (last_seqs or {}).get(name, 0), name in joined)
             for index, name in enumerate(seats)
         ]
+        self.links = Links(len(seats), most_delay_ms)
+        """Told of every beat by the network."""
         self._sessions = Sessions()
         self._now_s = 0.0
 
@@ -141,8 +145,8 @@ class Inbox:
             arrived: for each seat the payloads on its key expression, the newest last.
 
         Returns:
-            For each seat: that it fell silent or is heard again, then its newest [x], then its
-            newest digit (rules 3).
+            For each seat: that it fell silent or is heard again, then of the keys that take effect
+            now its newest [x], then its newest digit (rules 3).
         """
         self._now_s = now_s
         inputs: list[Input] = []
@@ -234,6 +238,7 @@ class Inbox:
         self._sessions.end(index, Why.LEFT)
         seat.joined = seat.silent = False
         seat.heard_s = None
+        self.links.drop(index)
 
     def doors(self) -> tuple[Door, ...]:
         """What was let in and refused, for each seat."""
@@ -244,6 +249,7 @@ class Inbox:
         return tuple(self._health(seat, now_s) for seat in self._seats)
 
     def _health(self, seat: _Seat, now_s: float) -> SeatHealth:
+        trip = self.links.trip(seat.index)
         recent = sum(at_s > now_s - _RATE_WINDOW_S for at_s in seat.valid_s)
         return SeatHealth(
             id=seat.name,
@@ -252,12 +258,13 @@ class Inbox:
             heard_ms=None if seat.heard_s is None else (now_s - seat.heard_s) * 1000,
             commands_hz=recent / _RATE_WINDOW_S,
             refused=dict(seat.refused),
+            round_trip_p50_ms=trip and trip.p50_ms,
+            round_trip_p95_ms=trip and trip.p95_ms,
+            late=self.links.late(seat.index),
         )
 
     def _newest(self, seat: _Seat, payloads: Sequence[bytes]) -> list[Input]:
         key_expression = self._keys.command(seat.name)
-        restart: Command | None = None
-        digit: Command | None = None
         for payload in payloads:
             command = self._command(seat, key_expression, payload)
             if isinstance(command, Why):
@@ -266,15 +273,12 @@ class Inbox:
             seat.heard_s = self._now_s
             seat.heard += 1
             seat.valid_s.append(self._now_s)
-            if command.seq <= seat.last_seq:  # its last one again, or no key yet: a sign of life
-                continue
-            seat.last_seq = command.seq
-            if command.key == RESTART_KEY:
-                restart = command
-            else:
-                digit = command
-        newest = (command for command in (restart, digit) if command is not None)
-        return [KeySeat(seat.index, c.seq, c.level, c.key) for c in newest]
+            self.links.heard(seat.index, command)
+            if command.seq > seat.last_seq:  # else only a sign of life
+                seat.last_seq = command.seq
+                self.links.hold(seat.index, command)
+        newest = {key.key == RESTART_KEY: key for key in self.links.release(seat.index)}
+        return [newest[restart] for restart in (True, False) if restart in newest]
 
     def _command(self, seat: _Seat, key_expression: str, payload: bytes) -> Command | Why:
         if len(payload) > COMMAND_MAX_BYTES:
@@ -286,15 +290,18 @@ class Inbox:
         secret = self._sessions.secret(seat.index, command.session)
         if isinstance(secret, Why):
             return secret
-        expected = seal.command_mac(
-            secret, key_expression, command.session, command.seq, command.level, command.key
-        )
-        if not seal.same(command.mac, expected):
+        *numbers, mac = msgspec.structs.astuple(command)
+        expected = seal.command_mac(secret, key_expression, *numbers)
+        if not seal.same(mac, expected):
             return Why.BAD_SEAL
         if command.level not in (Level.POSTURE, Level.LOCOMOTION):
             return Why.OUT_OF_RANGE
         if not (0 <= command.key <= RESTART_KEY and 0 <= command.seq < 2**53):
             return Why.OUT_OF_RANGE
+        if min(command.match, command.seen) < 0:
+            return Why.OUT_OF_RANGE
+        if self.links.is_ahead(command):
+            return Why.AHEAD
         if 0 < command.seq < seat.last_seq:
             return Why.OLD
         return command

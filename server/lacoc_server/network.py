@@ -96,14 +96,17 @@ class CourtNetwork:
     def __exit__(self, *_: object) -> None:
         self._session.close()
 
-    def poll(self, now_s: float) -> list[Arrival]:
+    def poll(self, now_s: float, match: int, beat: int) -> list[Arrival]:
         """Take in what arrived since the last beat.
 
         What is refused at the door is answered at once and is not among the arrivals.
 
         Args:
             now_s: monotonic time.
+            match: number of the match.
+            beat: number of the beat that begins now.
         """
+        self._inbox.links.begin(now_s, match, beat)
         inputs = self._inbox.commands(now_s, [_empty(ring) for ring in self._commands])
         arrivals = [Arrival(one, None) for one in inputs]
         for desk, judge in self._desks:
@@ -140,6 +143,11 @@ class CourtNetwork:
     def doors(self) -> tuple[Door, ...]:
         """What was let in and refused, for each seat."""
         return self._inbox.doors()
+
+    @property
+    def input_delay_ms(self) -> int:
+        """The common delay of all seats' links; 0: none."""
+        return self._inbox.links.delay_ms
 
     @property
     def dropped(self) -> dict[str, int]:

@@ -19,6 +19,7 @@ class Why(StrEnum):
     BAD_SEAL = "bad seal"
     OLD = "old"
     OUT_OF_RANGE = "out of range"
+    AHEAD = "ahead"
     FLOOD = "flood"
     WRONG_TOKEN = "wrong token"
     WRONG_VERSION = "wrong version"

@@ -9,7 +9,7 @@ and what is still None is looked up here.
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
@@ -75,6 +75,15 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     referee: Holder
     settings: dict[str, Any] = {}
     """Entries that replace those of the arena's file."""
+    input_delay: Literal["none", "equal"] = "none"
+    """Whether keys are held until all seats' links have the same delay."""
+    input_delay_max_ms: Annotated[int, msgspec.Meta(ge=20, le=1000)] = 400
+    """That delay is never longer; a link that is slower stays behind."""
+
+    @property
+    def most_delay_ms(self) -> int:
+        """The longest delay that makes links equal; 0: none does."""
+        return self.input_delay_max_ms if self.input_delay == "equal" else 0
 
     def address(self, any_host: str = "127.0.0.1") -> str:
         """Where a client connects.

@@ -48,6 +48,12 @@ class KeySeat(_Input, frozen=True, tag="key"):
     seq: int
     level: int
     key: int
+    seen: int = 0
+    """Beat of the frame upon which it was pressed; 0: none of this match."""
+    held: int = 0
+    """Beats for which the court held it, to make the seats' links equal."""
+    late: int = 0
+    """Beats by which it took effect later than the common delay allows."""
 
 
 class SilentSeat(_Input, frozen=True, tag="silent"):

@@ -79,6 +79,10 @@ class Command(msgspec.Struct, frozen=True, array_like=True):
     level: int
     key: int
     """0-9, or `RESTART_KEY` for [x]."""
+    match: int
+    """Match of the newest frame that the controller had when it sent this; 0: none yet."""
+    seen: int
+    """Beat of that frame: how long the link takes is the court's to count."""
     mac: bytes
     """8 bytes of keyed BLAKE2 over everything above and the seat's key expression."""
 
@@ -295,6 +299,13 @@ class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
     commands_hz: float
     refused: dict[str, int]
     """How often, by reason."""
+    round_trip_p50_ms: float | None = None
+    """From a frame to the beat that has the seat's answer to it, by the court's clock: the median
+    of the last 10 s; None: not known."""
+    round_trip_p95_ms: float | None = None
+    """The longest but 5 %."""
+    late: int = 0
+    """Commands that came too late for the common delay."""
 
 
 class LinkVerdict(msgspec.Struct, frozen=True, kw_only=True):
@@ -352,3 +363,6 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     """How well this match was held; None: it was not played yet."""
     record_trouble: str = ""
     """What is wrong with the disk of the record, a sentence; "" while all is well."""
+    input_delay_ms: int = 0
+    """From a frame to the effect of what was done upon it, the same for all seats; 0: the contest
+    does not make links equal."""

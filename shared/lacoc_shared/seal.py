@@ -52,10 +52,17 @@ def verify_token(token: str, token_hash: str) -> bool:
 
 
 def command_mac(
-    secret: bytes, key_expression: str, session: int, seq: int, level: int, key: int
+    secret: bytes,
+    key_expression: str,
+    session: int,
+    seq: int,
+    level: int,
+    key: int,
+    match: int,
+    seen: int,
 ) -> bytes:
     """The seal of a command."""
-    return _mac(secret, f"{key_expression} {session} {seq} {level} {key}")
+    return _mac(secret, f"{key_expression} {session} {seq} {level} {key} {match} {seen}")
 
 
 def request_mac(secret: bytes, key_expression: str, session: int, ready: bool) -> bytes:

@@ -109,9 +109,9 @@ class _Sessions(Sessions):
 
 def command(seat: int, seq: int, level: int, key: int) -> bytes:
     """A command that its seat has sealed."""
-    session, secret = SESSIONS[seat], SECRETS[seat]
-    mac = seal.command_mac(secret, KEYS.command(SEATS[seat]), session, seq, level, key)
-    return codec.encode(Command(session, seq, level, key, mac))
+    numbers = (SESSIONS[seat], seq, level, key, 0, 0)
+    mac = seal.command_mac(SECRETS[seat], KEYS.command(SEATS[seat]), *numbers)
+    return codec.encode(Command(*numbers, mac))
 
 
 def request(seat: int, what: str, ready: bool) -> bytes:
@@ -194,7 +194,7 @@ class Doors:
         before = self._state()
         self._now_s += 0.1
         self._beats += 1
-        arrivals = self._network.poll(self._now_s)
+        arrivals = self._network.poll(self._now_s, 1, self._match.match.beats + 1)
         by_right = [item for item in arrivals if self._has_right(item)]
         if len(by_right) != len(arrivals):
             raise StateChanged(f"taken in without a right: {arrivals}")
@@ -272,7 +272,7 @@ def command_seeds() -> list[bytes]:
     seeds = [command(0, 1, 1, 2), command(0, 3, 1, RESTART_KEY), command(0, 2, 0, 3)]
     seeds += [command(1, 9, 1, 2), command(0, 0, 1, 2), command(0, 2**60, 1, 2)]
     seeds += [command(0, 7, 1, 2)[:-1] + b"\0", command(0, -5, 1, 2), command(0, 8, 9, 99)]
-    return [*seeds, codec.encode(Command(17, 1, 1, 2, bytes(8)))]
+    return [*seeds, codec.encode(Command(17, 1, 1, 2, 1, 3, bytes(8)))]
 
 
 def request_seeds() -> list[bytes]:

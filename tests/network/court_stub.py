@@ -120,7 +120,7 @@ class CourtStub:
         while not self._stopping.wait(0.005):
             beat += 1
             now_s = time.monotonic()
-            arrivals = self.network.poll(now_s)
+            arrivals = self.network.poll(now_s, 1, beat)
             outcomes = [self._apply(arrival.input, beat) for arrival in arrivals]
             for arrival, outcome in zip(arrivals, outcomes, strict=True):
                 if arrival.answer:

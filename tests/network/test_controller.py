@@ -151,8 +151,9 @@ def test_forged_commands_are_refused_and_counted(
     until(lambda: court.keys())
     joined = right._joined
     assert joined is not None
-    mac = seal.command_mac(joined.secret, KEYS.command("right"), joined.session, 5, 1, 3)
-    forged = encode(Command(joined.session, 5, 1, 3, mac))
+    numbers = (joined.session, 5, 1, 3, 0, 0)
+    mac = seal.command_mac(joined.secret, KEYS.command("right"), *numbers)
+    forged = encode(Command(*numbers, mac))
     door = other_session.publisher(KEYS.command("left"))
     door.put(forged)
     door.put(b"rubbish")

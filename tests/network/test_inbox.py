@@ -10,7 +10,15 @@ from hypothesis import strategies as st
 from lacoc_server.inbox import COMMANDS_HZ, COMMANDS_PER_BEAT, Inbox
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
-from lacoc_shared.inputs import HeardSeat, JoinSeat, KeySeat, LeaveSeat, ReadySeat, SilentSeat
+from lacoc_shared.inputs import (
+    HeardSeat,
+    Input,
+    JoinSeat,
+    KeySeat,
+    LeaveSeat,
+    ReadySeat,
+    SilentSeat,
+)
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import (
     PROTOCOL,
@@ -53,11 +61,18 @@ def take_seat(inbox: Inbox, seat: int = LEFT) -> Joined:
     return inbox.seated(seat)
 
 
-def command(joined: Joined, seq: int, key: int = 2, level: int = 1, seat: int = LEFT) -> bytes:
-    mac = seal.command_mac(
-        joined.secret, KEYS.command(SEATS[seat]), joined.session, seq, level, key
-    )
-    return encode(Command(joined.session, seq, level, key, mac))
+def command(
+    joined: Joined,
+    seq: int,
+    key: int = 2,
+    level: int = 1,
+    seat: int = LEFT,
+    match: int = 0,
+    seen: int = 0,
+) -> bytes:
+    numbers = (joined.session, seq, level, key, match, seen)
+    mac = seal.command_mac(joined.secret, KEYS.command(SEATS[seat]), *numbers)
+    return encode(Command(*numbers, mac))
 
 
 def request(joined: Joined, what: str, ready: bool = True, seat: int = LEFT) -> bytes:
@@ -186,6 +201,8 @@ def altered(payload: bytes, field: str, value: object) -> bytes:
         ("seq", 11, "bad seal"),
         ("level", 0, "bad seal"),
         ("key", 3, "bad seal"),
+        ("match", 1, "bad seal"),
+        ("seen", 1, "bad seal"),
         ("mac", b"12345678", "bad seal"),
         ("mac", b"", "bad seal"),
         ("key", "2", "bad bytes"),
@@ -220,6 +237,48 @@ def test_a_sealed_command_that_makes_no_sense_is_refused(
     inbox.commands(0.1, [[command(joined, 10)], []])
     assert inbox.commands(0.2, [[command(joined, seq, key, level)], []]) == []
     assert refusals(inbox) == {why: 1}
+
+
+def test_a_frame_that_is_not_there_yet_is_refused() -> None:
+    """Nobody has seen it: the command has no effect and is counted."""
+    inbox = make()
+    joined = take_seat(inbox)
+    inbox.links.begin(0.1, 1, 7)
+    early = [command(joined, 1, match=1, seen=7), command(joined, 1, match=2, seen=0)]
+    assert inbox.commands(0.1, [early, []]) == []
+    negative = [command(joined, 1, match=-1), command(joined, 1, match=1, seen=-5)]
+    assert inbox.commands(0.1, [negative, []]) == []
+    assert refusals(inbox) == {"ahead": 2, "out of range": 2}
+    key = KeySeat(LEFT, 1, 1, 2, seen=6)
+    assert inbox.commands(0.1, [[command(joined, 1, match=1, seen=6)], []]) == [key]
+
+
+def test_held_keys_obey_the_rules_of_the_beat_in_which_they_take_effect() -> None:
+    """Rules 3: a seat's newest [x] of that beat, then its newest digit; a repetition is none."""
+    inbox = make(most_delay_ms=400)
+    joined = take_seat(inbox)
+
+    def beat(number: int, *sent: bytes) -> list[Input]:
+        inbox.links.begin(number * 0.02, 1, number)
+        return inbox.commands(number * 0.02, [sent, []])
+
+    for number in range(300):
+        assert beat(number, command(joined, 0, match=1, seen=max(0, number - 10))) == []
+    assert inbox.links.delay_ms == 200
+    seen = 298
+    first = [command(joined, 1, 3, match=1, seen=seen), command(joined, 2, 4, match=1, seen=seen)]
+    assert beat(300, *first) == []
+    again = command(joined, 3, RESTART_KEY, match=1, seen=seen)
+    assert beat(301, again, again) == []
+    for number in range(302, 308):
+        assert beat(number, command(joined, 3, RESTART_KEY, match=1, seen=number - 1)) == []
+    assert beat(308) == [
+        KeySeat(LEFT, 3, 1, RESTART_KEY, seen=seen, held=7),
+        KeySeat(LEFT, 2, 1, 4, seen=seen, held=8),
+    ]
+    assert beat(309) == []
+    health = inbox.health(6.2)[LEFT]
+    assert (health.round_trip_p95_ms, health.late) == (pytest.approx(200), 0)
 
 
 def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
@@ -352,4 +411,4 @@ def test_no_numbers_ever_raise(numbers: tuple[int, int, int], mac: bytes) -> Non
     """Well-formed commands with any numbers and any seal have no effect."""
     inbox = make()
     joined = take_seat(inbox)
-    assert inbox.commands(0.0, [[encode(Command(joined.session, *numbers, mac))], []]) == []
+    assert inbox.commands(0.0, [[encode(Command(joined.session, *numbers, 0, 0, mac))], []]) == []

@@ -33,22 +33,24 @@ def test_a_broken_hash_opens_nothing(stored: str) -> None:
 def test_a_command_seal_is_the_documented_one() -> None:
     """docs/protocol.md: BLAKE2b keyed with the secret, 8 bytes, over text joined by spaces."""
     secret = bytes(range(16))
-    text = b"lacoc/main/seat/left/key 77 3 1 2"
+    text = b"lacoc/main/seat/left/key 77 3 1 2 1 900"
     expected = hashlib.blake2b(text, key=secret, digest_size=8).digest()
-    assert seal.command_mac(secret, "lacoc/main/seat/left/key", 77, 3, 1, 2) == expected
+    assert seal.command_mac(secret, "lacoc/main/seat/left/key", 77, 3, 1, 2, 1, 900) == expected
 
 
 def test_every_part_changes_the_seal() -> None:
     """No two different commands share a seal, also where digits could run together."""
-    base = ("lacoc/main/seat/left/key", 7, 11, 1, 2)
+    base = ("lacoc/main/seat/left/key", 7, 11, 1, 2, 1, 900)
     others = [
-        ("lacoc/main/seat/right/key", 7, 11, 1, 2),
-        ("lacoc/main/seat/left/key", 71, 1, 1, 2),
-        ("lacoc/main/seat/left/key", 7, 1, 11, 2),
-        ("lacoc/main/seat/left/key", 7, 11, 0, 2),
-        ("lacoc/main/seat/left/key", 7, 11, 1, 3),
+        ("lacoc/main/seat/right/key", 7, 11, 1, 2, 1, 900),
+        ("lacoc/main/seat/left/key", 71, 1, 1, 2, 1, 900),
+        ("lacoc/main/seat/left/key", 7, 1, 11, 2, 1, 900),
+        ("lacoc/main/seat/left/key", 7, 11, 0, 2, 1, 900),
+        ("lacoc/main/seat/left/key", 7, 11, 1, 3, 1, 900),
+        ("lacoc/main/seat/left/key", 7, 11, 1, 2, 19, 0),
+        ("lacoc/main/seat/left/key", 7, 11, 1, 2, 1, 901),
     ]
     seals = {seal.command_mac(b"s" * 16, *parts) for parts in [base, *others]}
-    assert len(seals) == 6
+    assert len(seals) == 8
     assert seal.command_mac(b"t" * 16, *base) not in seals
     assert seal.request_mac(b"s" * 16, "k", 7, True) != seal.request_mac(b"s" * 16, "k", 7, False)

@@ -174,6 +174,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.key_stands(2)
     page.sees(".stands", "B 2: posture")
     page.sees(".foot dd[data-trip]:not([data-trip=''])")
+    page.sees(".foot dd[data-link]:not([data-link=''])")
     before = other.frame
     assert before is not None
     other.wait(lambda: other.frame and other.frame.beat > before.beat + 100)

@@ -68,9 +68,23 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
     assert contest.courts["second"].connect == "tcp/court.example.org:7448"
 
 
+def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
+    """Off by default; on, it has a cap."""
+    assert contests.load(file).courts["main"].most_delay_ms == 0
+    equal = 'arena = "othello"\ninput_delay = "equal"'
+    file.write_text(GOOD.replace('arena = "othello"', equal))
+    assert contests.load(file).courts["main"].most_delay_ms == 400
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
+        ('arena = "othello"', 'arena = "othello"\ninput_delay = "fair"', r"court.main.input_delay"),
+        (
+            'arena = "othello"',
+            'arena = "othello"\ninput_delay_max_ms = 5',
+            r"court.main.input_delay_max_ms.*>= 20",
+        ),
         ('arena = "othello"', "arena = 3", r"court.main.arena.*Expected `str`, got `int`"),
         ('arena = "othello"', "", r"\[court.main\].*missing required field `arena`"),
         ("arena =", "aren =", r"unknown field `aren`.*There can be: arena, listen"),

@@ -329,6 +329,8 @@ def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:
         screen.warn(health.record_trouble)
     if health.verdict is not None and health.verdict.advice:
         screen.show(Text(f"Replay advised: {'; '.join(health.verdict.advice)}.", "bold yellow"))
+    if health.input_delay_ms:
+        screen.show(f"Links are equalised: keys take effect after {health.input_delay_ms} ms.")
     for why, count in health.dropped.items():
         screen.show(f"  dropped {count}: {why}")
     seats = Table("seat", "team", "score", "ready", "key", "link", "refused")
@@ -350,4 +352,8 @@ def _link(link: SeatHealth) -> str:
         return "nobody"
     if link.heard_ms is None:
         return "not heard yet"
-    return f"{link.commands_hz:.0f} commands/s, heard {link.heard_ms:.0f} ms ago"
+    heard = f"{link.commands_hz:.0f} commands/s, heard {link.heard_ms:.0f} ms ago"
+    if link.round_trip_p50_ms is None or link.round_trip_p95_ms is None:
+        return heard
+    trip = f"round trip {link.round_trip_p50_ms:.0f} ms, 95 % {link.round_trip_p95_ms:.0f} ms"
+    return f"{heard}; {trip}" + (f", {link.late} late" if link.late else "")

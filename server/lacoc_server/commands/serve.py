@@ -101,6 +101,7 @@ def serve_command(
         admission,
         last_seqs=left.last_seqs if left else None,
         joined=left.token_hashes if left else (),
+        most_delay_ms=entry.most_delay_ms,
     )
     desk = DecisionDesk([hash_token(entry.referee.token)])
     addresses = (endpoint(listen),) if listen else entry.listen

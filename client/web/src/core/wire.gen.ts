@@ -143,6 +143,9 @@ export interface SeatHealth {
   heard_ms: number | null;
   commands_hz: number;
   refused: Record<string, number>;
+  round_trip_p50_ms: number | null;
+  round_trip_p95_ms: number | null;
+  late: number;
 }
 
 export interface LinkVerdict {
@@ -176,6 +179,7 @@ export interface Health {
   decisions: Record<string, string>;
   verdict: HealthVerdict | null;
   record_trouble: string;
+  input_delay_ms: number;
 }
 
 export interface DecisionReply {

@@ -353,6 +353,7 @@ const COUNTED: readonly Pattern[] = [
   ["bad seal", "署名の誤り"],
   ["old", "古いもの"],
   ["out of range", "範囲外の値"],
+  ["ahead", "まだ届いていない画面への応答"],
   ["flood", "送りすぎ"],
   ["wrong token", "トークンの誤り"],
   ["wrong version", "版の違い"],

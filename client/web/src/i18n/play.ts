@@ -243,6 +243,16 @@ export const play = {
     "From your newest key to the picture that shows it",
     "キーを押してから画面に反映されるまで",
   ],
+  "foot.link": ["Link", "通信"],
+  "foot.linkHint": [
+    "The court's own measure: from a frame to your answer to it",
+    "コートが測った、画面を送ってから応答が届くまでの時間",
+  ],
+  "foot.equal": ["equalised: {count} ms", "両者そろえて {count} ms"],
+  "foot.equalHint": [
+    "What you do upon a picture takes effect so much later, for both of you",
+    "画面を見て押したキーが効くまでの時間（両者同じ）",
+  ],
   "foot.frames": ["Frames", "フレーム"],
   "foot.perSecond": ["{count}/s", "{count}/秒"],
   "foot.ms": ["{count} ms", "{count} ms"],

@@ -23,6 +23,8 @@ export function Footer({ court, player, onFiles, onSettings }: Props) {
     return phase >= Phase.COUNTDOWN && phase <= Phase.HALTED && (sheet?.duration_s ?? 0) > 0;
   }).value;
   const trip = player.tripMs.value;
+  const health = court.live.value ? court.health.value : null;
+  const link = health?.seats[index]?.round_trip_p50_ms ?? null;
   const isLinked = player.canSteer.value;
   return (
     <footer class="foot">
@@ -43,6 +45,17 @@ export function Footer({ court, player, onFiles, onSettings }: Props) {
           <dd data-trip={trip ?? ""}>
             {trip === null ? "–" : t("foot.ms", { count: Math.round(trip) })}
           </dd>
+        </div>
+        <div title={t("foot.linkHint")}>
+          <dt>{t("foot.link")}</dt>
+          <dd data-link={link ?? ""}>
+            {link === null ? "–" : t("foot.ms", { count: Math.round(link) })}
+          </dd>
+          {!!health?.input_delay_ms && (
+            <dd class="muted" title={t("foot.equalHint")}>
+              {t("foot.equal", { count: health.input_delay_ms })}
+            </dd>
+          )}
         </div>
         <div>
           <dt>{t("foot.frames")}</dt>

@@ -100,7 +100,8 @@ function LinkFacts({ desk, sheet, index }: Props) {
     [court, sheet, index],
   ).value;
   const flags = desk.flags(index).value;
-  const link = court.live.value ? court.health.value?.seats[index] : undefined;
+  const health = court.live.value ? court.health.value : null;
+  const link = health?.seats[index];
   const refused = Object.entries(link?.refused ?? {});
   return (
     <dl class="facts">
@@ -114,6 +115,17 @@ function LinkFacts({ desk, sheet, index }: Props) {
               : t("seatLink.heard", { ms: Math.round(link.heard_ms) })}
             {" · "}
             {t("seatLink.rate", { hz: Math.round(link.commands_hz) })}
+          </span>
+        )}
+      </dd>
+      <dt>{t("seatLink.trip")}</dt>
+      <dd data-trip>
+        {link?.joined ? tripText(link) : "–"}
+        {!!health?.input_delay_ms && (
+          <span class="muted">
+            {t("seatLink.equal", { ms: health.input_delay_ms })}
+            {" · "}
+            {t("seatLink.late", { count: link?.late ?? 0 })}
           </span>
         )}
       </dd>
@@ -141,6 +153,12 @@ function linkWord(link: SeatHealth | undefined): "good" | "watch" | "bad" | "non
   const verdict = linkVerdict(link);
   if (verdict !== "unknown") return verdict;
   return link ? "none" : "unknown";
+}
+
+function tripText(link: SeatHealth): string {
+  const { round_trip_p50_ms: p50, round_trip_p95_ms: p95 } = link;
+  if (p50 === null || p95 === null) return "–";
+  return t("seatLink.tripMs", { p50: Math.round(p50), p95: Math.round(p95) });
 }
 
 /** What a robot does: "B 2 · posture 1/4"; "" before it stands. */

@@ -1,0 +1,85 @@
+"""`python -m benchmarks.fairness`: two press the same key upon the same frame, one from far away.
+
+A real court, a process; both controllers over Zenoh, the slow one through a proxy that delays
+and jitters both ways. Counted, from the record: in how many pairs both keys took effect in the
+same beat, and whether each that was late says so.
+"""
+
+import argparse
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+from rich.console import Console
+from rich.table import Table
+
+sys.path.append(str(Path(__file__).parents[1] / "tests" / "network"))
+from mirrored_pair import SEATS, Played, play
+
+
+class _Case(NamedTuple):
+    input_delay: str
+    delay_s: float
+    """One way."""
+    jitter_s: float
+    """One way."""
+    most_ms: int = 400
+
+    @property
+    def link(self) -> str:
+        return f"{self.delay_s * 1000:.0f} ± {self.jitter_s * 1000:.0f} ms each way"
+
+
+CASES = (
+    _Case("none", 0.1, 0.025),
+    _Case("equal", 0.1, 0.0),
+    _Case("equal", 0.1, 0.025),
+    _Case("equal", 0.1, 0.05),
+    _Case("equal", 0.2, 0.05, 700),
+)
+
+
+def main() -> None:
+    """Play and print."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.fairness", description=__doc__)
+    parser.add_argument("--seconds", type=float, default=90.0, help="of play, each case")
+    options = parser.parse_args()
+    table = Table(
+        "slow link", "input_delay", "pairs", "same beat", "apart, median and most",
+        "late (fast, slow), all logged", "p50, p95 fast", "p50, p95 slow", "common delay",
+    )  # fmt: skip
+    for case in CASES:
+        with tempfile.TemporaryDirectory() as folder:
+            played = play(Path(folder), *case[:3], most_ms=case.most_ms, seconds=options.seconds)
+        row = _row(case, played)
+        print(" | ".join(row), flush=True)
+        table.add_row(*row)
+    Console(width=200).print(table)
+
+
+def _row(case: _Case, played: Played) -> tuple[str, ...]:
+    pairs, health = played.pairs, played.health
+    apart = [abs(one.beats[1] - one.beats[0]) for one in pairs]
+    same = apart.count(0)
+    late = [sum(one.late[seat] > 0 for one in pairs) for seat in range(len(SEATS))]
+    logged = all(any(one.late) or one.beats[0] == one.beats[1] for one in pairs)
+    trips = [
+        f"{seat.round_trip_p50_ms or 0:.0f}, {seat.round_trip_p95_ms or 0:.0f} ms"
+        for seat in health.seats
+    ]
+    return (
+        case.link,
+        case.input_delay,
+        f"{len(pairs)} and {played.lost} frames lost",
+        f"{100 * same / len(pairs):.1f} %",
+        f"{statistics.median(apart):.0f}, {max(apart)} beats",
+        f"{late[0]}, {late[1]}; {'yes' if logged else 'no'}",
+        *trips,
+        f"{health.input_delay_ms} ms",
+    )
+
+
+if __name__ == "__main__":
+    main()
