@@ -1,7 +1,9 @@
 """The parts of a gateway that need no court."""
 
+import asyncio
 import contextlib
 import re
+import socket
 from pathlib import Path
 from typing import Any, get_args
 
@@ -179,6 +181,26 @@ def test_a_port_that_is_in_use_is_said() -> None:
         address = server.url(opened)
         with pytest.raises(UserError, match="Choose another port"):
             server.listen(address.removeprefix("http://"))
+
+
+def test_small_messages_do_not_wait_for_the_one_before() -> None:
+    """Nagle's algorithm is off: a key's frame came 40 ms late with it."""
+
+    async def asked() -> bool:
+        found: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+
+        def accepted(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            raw = writer.get_extra_info("socket")
+            found.set_result(raw.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+
+        with server.listen("127.0.0.1:0") as opened:
+            async with await asyncio.start_server(accepted, sock=opened):
+                _, writer = await asyncio.open_connection(*opened.getsockname())
+                writer.close()
+                return bool(await found)
+
+    assert asyncio.run(asked())
 
 
 def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:

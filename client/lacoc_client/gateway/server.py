@@ -45,8 +45,11 @@ def listen(where: str) -> socket.socket:
         raise UserError(f"{where!r} is no place to listen at. It looks like 0.0.0.0:8080.")
     host, port = match["host"].strip("[]"), int(match["port"])
     try:
-        family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        opened = socket.socket(family, kind)
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        family, kind, protocol, _, address = found
+        # Only of a socket that says it is TCP asyncio turns Nagle's algorithm off: else a reply
+        # and the frame after it would wait 40 ms for the page's late acknowledgement.
+        opened = socket.socket(family, kind, protocol)
     except OSError as error:
         raise UserError(f"It is not possible to listen at {where}: {error.strerror}.") from None
     try:
