@@ -81,16 +81,21 @@ class Stand:
 
     def pixels(self) -> npt.NDArray[np.uint8]:
         """The page as it looks: (height, width, 3)."""
-        png = base64.b64encode(self.page.screenshot()).decode()
-        width, height, text = self.page.evaluate(_PIXELS, png)
-        flat = np.frombuffer(base64.b64decode(text), np.uint8)
-        return flat.reshape(height, width, 4)[..., :3]
+        return pixels_of(self.page, self.page)
 
     def pixel(self, x_m: float, y_m: float, z_m: float = 0.003) -> npt.NDArray[np.uint8]:
         """The colour at a point of the world."""
         left, top = self.view(f"screen({x_m}, {y_m}, {z_m})")
         picture = self.pixels()[round(top) - 1 : round(top) + 2, round(left) - 1 : round(left) + 2]
         return np.median(picture.reshape(-1, 3), axis=0).astype(np.uint8)
+
+
+def pixels_of(page: Page, reader: Page) -> npt.NDArray[np.uint8]:
+    """A page as it looks: (height, width, 3); `reader` is a page that may fetch data."""
+    png = base64.b64encode(page.screenshot()).decode()
+    width, height, text = reader.evaluate(_PIXELS, png)
+    flat = np.frombuffer(base64.b64decode(text), np.uint8)
+    return flat.reshape(height, width, 4)[..., :3]
 
 
 def share_of(picture: npt.NDArray[np.uint8], colour: str, near: int = 60) -> float:

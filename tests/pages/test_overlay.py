@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from chromium import OpenPage
 from playwright.sync_api import Page, expect
-from show import STALE, WAIT_MS, Show, decide, playing
+from show import STALE, WAIT_MS, Show, decide, playing, violations
 from venue import Venue
 
 from lacoc_shared.seat import Phase
@@ -42,13 +42,15 @@ def alphas(page: Page, blank: Page) -> dict[str, float]:
 
 
 def test_flags_of_the_address(venue: Venue, open_page: OpenPage) -> None:
-    """`cam`, `hud`, `q`, `transparent`, `lang`; no scroll bars, no pointer."""
+    """`cam`, `hud`, `q`, `transparent`, `lang`, `colours`; no scroll bars, no pointer."""
     venue.court()
     venue.web()
     playing(venue)
     blank = open_page()
-    show = Show(open_page(viewport=SMALL), venue.url, "/overlay?q=low&lang=ja")
+    show = Show(open_page(viewport=SMALL), venue.url, "/overlay?q=low&lang=ja&colours=contrast")
     show.sees(".score-bug .phase", "試合中")
+    mark = show.find(".score-bug [data-seat='1'] .seat-mark")
+    expect(mark).to_have_css("background-color", "rgb(255, 230, 0)")
     assert (show.view("camera"), show.view("quality")) == ("auto", "low")
     assert alphas(show.page, blank) == {"corner": 255, "middle": 255, "opaque": 1}
     assert show.page.evaluate("getComputedStyle(document.body).cursor") == "none"
@@ -178,6 +180,22 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
     expect(show.find(".opening .ready")).to_have_count(0, timeout=WAIT_MS)
 
 
+def test_accessible(venue: Venue, open_page: OpenPage) -> None:
+    """Done means 2: axe-core finds no serious violation, with one picture and with two."""
+    pytest.importorskip("axe_core_python")
+    venue.court()
+    venue.web()
+    show = Show(open_page(viewport=SMALL), venue.url, "/overlay?q=low")
+    show.sees(".opening")
+    assert violations(show.page) == []
+    playing(venue)
+    show.misses(".opening")
+    assert violations(show.page) == []
+    split = Show(open_page(viewport=SMALL), venue.url, "/overlay?q=low&split=1")
+    split.sees(".board")
+    assert violations(split.page) == []
+
+
 def test_a_part_that_cannot_be_loaded(venue: Venue, open_page: OpenPage, console: Any) -> None:
     """As after an update of the server: the page takes the new one when there is one."""
     console.expect("ERR_FAILED|Failed to fetch dynamically imported module|Unable to preload")
@@ -199,6 +217,7 @@ def test_the_document_has_every_flag() -> None:
         for name in (
             "pages/overlay.tsx",
             "pages/watch/flags.ts",
+            "core/colours.ts",
             "core/court.ts",
             "i18n/index.ts",
         )

@@ -13,8 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 from contestant import Contestant, Sit, own_page
+from drop import drop
 from page_client import PageClient
-from venue import TOKENS, Venue
+from show import violations
+from venue import TOKENS, Venue, free_port
 
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.codec import encode
@@ -117,6 +119,64 @@ def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: P
     page.sees(".files li:has-text('Robot')", "the contest's")
     page.join(TOKENS["left"])
     page.stands("seated")
+
+
+def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
+    """Issue 3: what misses the frame of the files would make the browser leave the page."""
+    page = opened(venue, sit)
+    page.sees(".entrance .seat")
+    sample = sample_gait_files("hexapod")
+    assert sample.locomotion is not None
+    drop(page.page, {"mine.txt": sample.locomotion.data, "mine.toml": b"name = 'My robot'"})
+    page.sees(".files li:has-text('Robot')", "mine.toml")
+    page.sees(".files li:has-text('Level B')", "mine.txt")
+    page.misses(".files.over")
+    page.find("[aria-label='Take mine.toml away']").click()
+    page.join(TOKENS["left"])
+    page.stands("seated")
+
+    page.page.click("text=Change files")
+    page.sees("dialog .files")
+    drop(page.page, {"other.txt": sample.locomotion.data})
+    page.sees("dialog .files li:has-text('Level B')", "other.txt")
+    drop(page.page, {"huge.txt": bytes(70_000)})
+    page.is_toasted("huge.txt is too large")
+    page.page.click("text=Use these files")
+    page.misses("dialog")
+    page.stands("seated")
+
+
+def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """Issue 3, connect card: by the address, and from a list where there are several."""
+    port = free_port()
+    contest = venue.contest.read_text()
+    side = contest.replace("court.main", "court.side").replace(str(venue.court_port), str(port))
+    venue.contest.write_text(contest + side.replace("othello", "flag-strike"))
+    venue.court("--court", "main")
+    venue.court("--court", "side")
+    venue.web()
+    page = sit(venue.url)
+    page.open(key=venue.key, query="&court=side")
+    page.sees(".seats legend", "Flag-Strike")
+    court = page.page.get_by_label("Court")
+    assert court.input_value() == "side"
+    page.join(TOKENS["left"])
+    page.stands("seated")
+    page.sees(".foot .who", "Court side")
+    page.sees(".score-bug")
+
+    other = sit(venue.url)
+    other.open(key=venue.key)
+    other.sees(".seats legend", "Robot-Othello")  # the first one
+    other.sees(".seats [data-seat='0']", "free")
+    other.page.get_by_label("Court").select_option("side")
+    other.sees(".seats [data-seat='0']", "Ants sits here")
+    other.join(TOKENS["right"], "Bees", "right")
+    other.stands("seated")
+    page.sees(".score-bug", "Bees")
+    other.page.reload()
+    other.stands("seated")
+    other.sees(".foot .who", "Court side")
 
 
 @pytest.fixture
@@ -422,36 +482,26 @@ def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
 
 def test_accessible(venue: Venue, sit: Sit) -> None:
     """Done means 2: axe-core finds no serious violation in the card, the cockpit, the dialogs."""
-    axe = pytest.importorskip("axe_core_python.sync_playwright").Axe()
-
-    def check(where: str) -> None:
-        found = axe.run(page.page)["violations"]
-        grave = [
-            (one["id"], [node["html"][:200] for node in one["nodes"]])
-            for one in found
-            if one["impact"] in ("serious", "critical")
-        ]
-        assert not grave, (where, grave)
-
+    pytest.importorskip("axe_core_python")
     page = opened(venue, sit)
     page.sees(".entrance .seat")
-    check("card")
+    assert violations(page.page) == []
     page.join("not-the-token")
     page.sees("#join-token-error", "token")
-    check("wrong token")
+    assert violations(page.page) == []
     page.join(TOKENS["left"])
     page.stands("seated")
-    check("lobby")
+    assert violations(page.page) == []
     for dialog in ("Settings", "Change files"):
         page.page.click(f"text={dialog}")
         page.sees("dialog")
-        check(dialog)
+        assert violations(page.page) == []
         page.press("Escape")
         page.misses("dialog")
     other = playing(venue, page)
     page.press("2")
     page.key_stands(2)
-    check("playing")
+    assert violations(page.page) == []
     other.close()
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from contestant import Contestant, Sit, own_page
+from show import violations
 
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.gait import PostureTable
@@ -140,3 +141,22 @@ def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
         box = page.find(f'.key[data-key="{digit}"]').bounding_box()
         assert box is not None
         assert box["y"] + box["height"] <= phone["height"]
+
+
+def test_accessible(practise: Practise) -> None:
+    """Done means 2: axe-core finds no serious violation."""
+    pytest.importorskip("axe_core_python")
+    page = practise()
+    page.phase(Phase.PLAYING)
+    page.sees(".lesson")
+    assert violations(page.page) == []
+    for dialog in ("Settings", "Change files"):
+        page.page.click(f"text={dialog}")
+        page.sees("dialog")
+        assert violations(page.page) == []
+        page.press("Escape")
+        page.misses("dialog")
+    page.press("z")
+    page.page.click("text=Save and leave")
+    page.stands("left")
+    assert violations(page.page) == []

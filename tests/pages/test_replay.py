@@ -1,6 +1,5 @@
 """/replay: recordings in the browser, held against what Python reads in them."""
 
-import base64
 from bisect import bisect_right
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -12,6 +11,7 @@ import msgspec
 import numpy as np
 import pytest
 from chromium import OpenPage
+from drop import drop
 from mcap.writer import Writer
 from playwright.sync_api import Page, expect
 from show import WAIT_MS, Show, violations
@@ -120,18 +120,7 @@ class Player(Show):
 
     def drop(self, *paths: Path) -> None:
         """Drop files on the page."""
-        files = [[path.name, base64.b64encode(path.read_bytes()).decode()] for path in paths]
-        data = self.page.evaluate_handle(
-            """(files) => {
-              const data = new DataTransfer();
-              for (const [name, text] of files)
-                data.items.add(new File([Uint8Array.from(atob(text), c => c.charCodeAt(0))], name));
-              return data;
-            }""",
-            files,
-        )
-        for event in ("dragover", "drop"):
-            self.page.dispatch_event("body", event, {"dataTransfer": data})
+        drop(self.page, {path.name: path.read_bytes() for path in paths})
 
 
 def test_what_is_shown_is_what_was_played(

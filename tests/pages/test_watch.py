@@ -3,10 +3,12 @@
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 from chromium import OpenPage
 from playwright.sync_api import expect
 from show import STALE, WAIT_MS, Show, decide, playing, violations
+from stand import pixels_of
 from venue import Venue
 
 from lacoc_shared.seat import Phase
@@ -34,7 +36,7 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
     show.has_scores(19, 17)
     show.sees(".score-bug .team[data-seat='0']", "Ants")
     show.sees(".score-bug .phase", "Playing")
-    show.sees(".hint", "Ants leads")
+    show.sees(".hint", "Ants leads by 2")
     expect(show.find(".panel .log li")).to_have_count(len(referee.events))
     assert show.view("marker(35)") == 1
     assert show.find(".board g[aria-label='c5r5: left']").count() == 1
@@ -49,7 +51,7 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
     show.has_scores(19, 21)
     show.sees(".third.neutral .what", "Referee Kim: +4 for Bees")
     show.sees(".third.neutral .gain", "+4")
-    show.sees(".hint", "Bees leads")
+    show.sees(".hint", "Bees leads by 2")
     expect(show.find(".panel .log li").first).to_contain_text("+4 for Bees")
     show.until(lambda: show.view("drawnBeat") > reply["beat"] + 230, "time stands still")
     show.misses(".third")
@@ -222,6 +224,72 @@ def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
     show.moves()
 
 
+def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> None:
+    """Issue 3, settings: at once in picture, score bug, board and card, and after a reload."""
+    venue.court("--seconds", "1")
+    venue.web()
+    referee = playing(venue)
+    blank = open_page()
+    show = Show(open_page(viewport=LAPTOP), venue.url, "/watch?q=low&cam=top")
+    assert referee.sheet is not None
+    names = [marker.name for marker in referee.sheet.markers]
+    corner = referee.sheet.markers[names.index("c5r0")]  # no robot stands there
+    assert show.view(f"marker({names.index('c5r0')})") == 2
+    arena, contrast = referee.sheet.seats[1].colour, "#ffe600"
+
+    def drawn() -> float:
+        """Green for red in the picture of a disc: 0.69 is orange, 0.90 is yellow."""
+        left, top = map(round, show.view(f"screen({corner.x_m}, {corner.y_m}, 0.01)"))
+        disc = pixels_of(show.page, blank)[top - 9 : top + 10, left - 9 : left + 10]
+        red, green, blue = np.median(disc.reshape(-1, 3), axis=0)
+        assert red > 2 * blue, "no disc of the right seat"
+        return float(green / red)
+
+    def seen(colour: str) -> None:
+        text = f"rgb({', '.join(str(int(colour[at : at + 2], 16)) for at in (1, 3, 5))})"
+        for place in (".score-bug", ".result"):
+            mark = show.find(f"{place} [data-seat='1'] .seat-mark").first
+            expect(mark).to_have_css("background-color", text, timeout=WAIT_MS)
+        robot = show.find(".board g[aria-label^='Bees'] circle")
+        expect(robot).to_have_css("fill", text, timeout=WAIT_MS)
+
+    referee.phase(Phase.FINISHED)
+    show.sees(".result")
+    seen(arena)
+    show.find(".result").get_by_role("button").click()
+    show.until(lambda: drawn() < 0.75, "the disc is not orange")
+    show.page.keyboard.press("s")
+    show.page.get_by_label("Colours").select_option("high contrast")
+    show.page.keyboard.press("Escape")
+    show.misses("dialog")
+    show.until(lambda: drawn() > 0.85, "the disc is not yellow")
+    show.page.reload()
+    show.sees(".result")
+    seen(contrast)
+    show.find(".result").get_by_role("button").click()
+    show.until(lambda: drawn() > 0.85, "the disc is not yellow")
+    assert show.find(".score-bug .seat-mark").nth(1).get_attribute("data-pattern") == "stripes"
+
+
+def test_who_wants_less_motion_gets_it(venue: Venue, open_page: OpenPage) -> None:
+    """The automatic camera stands still, and another one is there at once."""
+    venue.court()
+    venue.web()
+    playing(venue)
+    eyes = {}
+    for motion in ("no-preference", "reduce"):
+        show = Show(open_page(viewport=LAPTOP, reduced_motion=motion), venue.url, "/watch?q=low")
+        show.sees(".foot .cameras")
+        show.moves()
+        before = show.view("eye")
+        beat = show.view("drawnBeat")
+        show.until(lambda: show.view("drawnBeat") > beat + 50, "the picture stands still")  # noqa: B023
+        eyes[motion] = np.subtract(show.view("eye"), before)
+        show.page.close()
+    assert np.abs(eyes["no-preference"]).max() > 1e-4
+    assert np.abs(eyes["reduce"]).max() == 0
+
+
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:
     """Done means 2: axe-core finds no serious violation."""
     pytest.importorskip("axe_core_python")
@@ -238,6 +306,11 @@ def test_accessible(venue: Venue, open_page: OpenPage) -> None:
     show.page.keyboard.press("s")
     show.sees("dialog")
     assert violations(show.page) == []
+    show.page.get_by_label("Colours").select_option("high contrast")
+    assert violations(show.page) == []
+    home = Show(open_page(viewport=LAPTOP), venue.url, "/", drawn=False)
+    home.sees("h1", "LACOC")
+    assert violations(home.page) == []
 
 
 def test_japanese_throughout(venue: Venue, open_page: OpenPage) -> None:

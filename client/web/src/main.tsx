@@ -2,6 +2,7 @@
 
 import { effect } from "@preact/signals";
 import { type ComponentType, render } from "preact";
+import { palette } from "./core/colours";
 import { reloadWhenServed } from "./core/reload";
 import { language } from "./i18n";
 import "./style.css";
@@ -18,6 +19,7 @@ const PAGES: Record<string, () => Promise<{ default: ComponentType }>> = {
 
 effect(() => {
   document.documentElement.lang = language.value;
+  document.documentElement.dataset.palette = palette.value;
 });
 
 addEventListener("vite:preloadError", () => void reloadWhenServed());

@@ -2,6 +2,7 @@
 
 import { computed, type ReadonlySignal, type Signal, signal } from "@preact/signals";
 import { runKey, setting, socketUrl } from "./address";
+import { recoloured } from "./colours";
 import { Connection } from "./connection";
 import { type Moment, Timeline } from "./timeline";
 import {
@@ -43,7 +44,7 @@ const DELAYED: ReadonlySet<Message["kind"]> = new Set(["frame", "event", "sheet"
 /** A court, watched through a gateway. */
 export class Court implements Match {
   readonly welcome = signal<Welcome | null>(null);
-  readonly sheet = signal<Sheet | null>(null);
+  readonly sheet: ReadonlySignal<Sheet | null>;
   readonly scene = signal<Scene | null>(null);
   readonly frame = signal<Frame | null>(null);
   readonly events = signal<readonly Event[]>([]);
@@ -61,6 +62,8 @@ export class Court implements Match {
   readonly outdated = signal(false);
   readonly timeline: Timeline;
   readonly connection: Connection;
+  /** The sheet as the court has it. */
+  private readonly published = signal<Sheet | null>(null);
   private scenes: { hash: Uint8Array; scene: Scene }[] = [];
   private log: number | null = null;
   private arrivedMs = 0;
@@ -76,6 +79,7 @@ export class Court implements Match {
     private readonly hz: number,
     readonly delayMs = 0,
   ) {
+    this.sheet = recoloured(this.published);
     this.timeline = new Timeline();
     this.connection = new Connection(
       socketUrl(),
@@ -134,7 +138,7 @@ export class Court implements Match {
         this.takeEvent(message.body);
         break;
       case "sheet":
-        this.sheet.value = message.body;
+        this.published.value = message.body;
         this.chooseScene();
         break;
       case "scene":
@@ -187,7 +191,7 @@ export class Court implements Match {
 
   /** The scene that the sheet names, once both are here; never another one. */
   private chooseScene(): void {
-    const wanted = this.sheet.value?.scene;
+    const wanted = this.published.value?.scene;
     const found = wanted && this.scenes.find(({ hash }) => sameBytes(hash, wanted));
     this.scene.value = found ? found.scene : null;
   }

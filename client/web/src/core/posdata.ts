@@ -23,6 +23,8 @@ export class PosData {
   private readonly rows: Row[] = [];
   private last: Frame | null = null;
   private tick = 0;
+  /** The clock at the first row: not 0 if what came before was not seen, as before a reload. */
+  sinceTicks = 0;
 
   /**
    * @param seat Index of the seat.
@@ -45,7 +47,8 @@ export class PosData {
     if (!physicsRan(frame, last)) return;
     const pose = this.poseOf(frame);
     if (!pose) return;
-    if (this.rows.length && last) {
+    if (!this.rows.length) this.sinceTicks = frame.clock_ticks;
+    else if (last) {
       // Frames may be lost on the way; while physics runs every beat is a tick.
       this.tick += isPhysics(last.phase) ? frame.beat - last.beat : 1;
     }

@@ -1,6 +1,7 @@
 /** A recorded match at a moment of one's choice: what a court is for the live pages. */
 
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import { recoloured } from "./colours";
 import type { Match } from "./court";
 import type { MatchRecord, PackedFrames, Since } from "./record";
 import type { Moment } from "./timeline";
@@ -31,7 +32,7 @@ export class Recording implements Match {
     this.firstBeat = firstBeatOf(record);
     this.lastBeat = Math.max(this.firstBeat + 1, lastBeatOf(record));
     const whole = computed(() => Math.floor(this.beat.value));
-    this.sheet = computed(() => newest(record.sheets, whole.value));
+    this.sheet = recoloured(computed(() => newest(record.sheets, whole.value)));
     this.scene = computed(() => newest(record.scenes, whole.value));
     const happened = computed(() => countUntil(record.events, whole.value));
     this.events = computed(() => record.events.slice(0, happened.value));

@@ -44,11 +44,11 @@ export function seatState(seat: SeatFrame): string {
   return seat.flags & SeatFlag.SILENT ? t("seat.silent") : "";
 }
 
-/** The seat that is ahead, by points; null if level. */
-export function leader(frame: Frame): number | null {
+/** The seat that is ahead and by how many points; null if level. */
+export function leader(frame: Frame): { index: number; points: number } | null {
   const [left, right] = frame.seats.map((seat) => seat.score);
   if (left === undefined || right === undefined || left === right) return null;
-  return left > right ? 0 : 1;
+  return { index: left > right ? 0 : 1, points: Math.abs(left - right) };
 }
 
 /** What the phase means for those who look on, and what comes next. */
@@ -68,7 +68,8 @@ export function hint(match: Match): string {
     case Phase.PLAYING: {
       if (sheet.seats.length < 2) return "";
       const ahead = leader(frame);
-      return ahead === null ? t("hint.level") : t("hint.leads", { team: team(sheet, ahead) });
+      if (!ahead) return t("hint.level");
+      return t("hint.leads", { team: team(sheet, ahead.index), points: ahead.points });
     }
     case Phase.HALTED:
       return t("hint.halted");

@@ -183,6 +183,10 @@ export const play = {
     "Pos-data.txt, the way of your robot, is saved.",
     "ロボットの軌跡 Pos-data.txt を保存します。",
   ],
+  "leave.dataSince": [
+    "Pos-data.txt, the way of your robot, is saved from {time} on, when this page was loaded. The record of the match has all of it.",
+    "Pos-data.txt には、このページを読み込んだ {time} 以降の軌跡を保存します。試合の記録には最初からすべて残っています。",
+  ],
   "leave.noData": [
     "There is no Pos-data.txt yet: your robot has not stood on the field.",
     "Pos-data.txt はまだありません（ロボットがフィールドに立っていません）。",

@@ -1,6 +1,6 @@
 /** Recordings: from the server's folder or this machine, without any court. */
 
-import { effect, signal } from "@preact/signals";
+import { effect, signal, useComputed } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { setting } from "../core/address";
 import { followColours } from "../core/colours";
@@ -12,6 +12,7 @@ import { BEATS_PER_S, team } from "../core/words";
 import { type MessageName, t } from "../i18n";
 import { View } from "../scene/View";
 import { Board } from "../ui/board";
+import { useDrop } from "../ui/drop";
 import { Icon, IconButton } from "../ui/icons";
 import { Countdown } from "../ui/opening";
 import { ResultCard } from "../ui/result";
@@ -124,7 +125,7 @@ if (setting("file")) followAddress();
 addEventListener("popstate", followAddress);
 
 export default function Replay() {
-  useDrop();
+  useDrop(dragging, openFiles);
   const now = state.value;
   return (
     <>
@@ -243,9 +244,6 @@ function Corner({ player, server }: { player: Player; server: string | null }) {
 }
 
 function Transport({ player }: { player: Player }) {
-  const { recording } = player;
-  const { firstBeat, lastBeat } = recording;
-  const beat = Math.floor(recording.beat.value);
   const playWord = t(player.playing.value ? "replay.pause" : "replay.play");
   return (
     <section class="transport" aria-label={t("replay.transport")}>
@@ -264,10 +262,7 @@ function Transport({ player }: { player: Player }) {
         </button>
         <Step name="ahead" onClick={() => player.step(1)} />
         <Step name="next" onClick={() => player.jump(1)} />
-        <span class="position">
-          <b>{seconds(beat - firstBeat)}</b> / {seconds(lastBeat - firstBeat)}
-          <small class="muted">{t("replay.beat", { beat })}</small>
-        </span>
+        <Position recording={player.recording} />
         <label class="speed">
           <span class="hidden-text">{t("replay.speed")}</span>
           <select
@@ -286,6 +281,18 @@ function Transport({ player }: { player: Player }) {
         </label>
       </div>
     </section>
+  );
+}
+
+/** Apart from its neighbours, as it is drawn anew with each beat. */
+function Position({ recording }: { recording: Recording }) {
+  const { firstBeat, lastBeat } = recording;
+  const beat = useComputed(() => Math.floor(recording.beat.value)).value;
+  return (
+    <span class="position">
+      <b>{seconds(beat - firstBeat)}</b> / {seconds(lastBeat - firstBeat)}
+      <small class="muted">{t("replay.beat", { beat })}</small>
+    </span>
   );
 }
 
@@ -371,31 +378,4 @@ function shortcutsOf(player: Player): Record<string, () => void> {
     KeyF: toggleFullscreen,
     KeyS: openSettings,
   };
-}
-
-/** Files can be dropped anywhere, at any time. */
-function useDrop(): void {
-  useEffect(() => {
-    const over = (event: DragEvent) => {
-      if (!event.dataTransfer?.types.includes("Files")) return;
-      event.preventDefault();
-      dragging.value = true;
-    };
-    const leave = (event: DragEvent) => {
-      if (event.relatedTarget === null) dragging.value = false;
-    };
-    const drop = (event: DragEvent) => {
-      event.preventDefault();
-      dragging.value = false;
-      openFiles([...(event.dataTransfer?.files ?? [])]);
-    };
-    addEventListener("dragover", over);
-    addEventListener("dragleave", leave);
-    addEventListener("drop", drop);
-    return () => {
-      removeEventListener("dragover", over);
-      removeEventListener("dragleave", leave);
-      removeEventListener("drop", drop);
-    };
-  }, []);
 }

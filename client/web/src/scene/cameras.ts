@@ -37,6 +37,9 @@ export type CameraName = (typeof CAMERAS)[number];
 /** Vertical opening of all cameras. */
 export const FOV_RAD = (34 * Math.PI) / 180;
 
+/** Who asks for less motion gets cameras that cut, and an automatic one that stands still. */
+export const isCalm = matchMedia("(prefers-reduced-motion: reduce)");
+
 const SOUTH = -Math.PI / 2;
 const STRAIGHT_DOWN = 1.5706;
 const GLIDE_MS = 900;
@@ -242,11 +245,11 @@ export class Rig {
   /**
    * Go on toward a shot.
    *
-   * @param key Changes when another shot begins: then the camera glides, else it is there.
+   * @param key Changes when another shot begins: then the camera glides to it.
    */
   move(key: string, goal: Shot, nowMs: number, glideMs = GLIDE_MS): Shot {
     if (key !== this.key) {
-      this.from = this.now && { ...this.now };
+      this.from = isCalm.matches ? null : this.now && { ...this.now };
       this.sinceMs = nowMs;
       this.key = key;
       this.byHand = { azimuth: 0, elevation: 0, zoom: 1 };

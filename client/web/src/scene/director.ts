@@ -6,7 +6,7 @@
  */
 
 import { Phase } from "../core/wire";
-import { type Aim, FOV_RAD, fit, type Rig, type Shot } from "./cameras";
+import { type Aim, FOV_RAD, fit, isCalm, type Rig, type Shot } from "./cameras";
 
 /** No shot is shorter, or the eye gets lost. */
 const LEAST_MS = 4200;
@@ -44,6 +44,7 @@ export class Director {
 
   /** What to show now; a new key is a new shot. */
   shoot(aim: Aim, actions: readonly Action[], nowMs: number): { key: string; shot: Shot } {
+    if (isCalm.matches) return { key: "auto", shot: this.rig.aim("arena", aim, nowMs) };
     this.choose(aim, actions, nowMs);
     const drift = DRIFT_RAD * Math.sin((nowMs / DRIFT_MS) * 2 * Math.PI);
     const shot = this.frame(aim, nowMs);

@@ -1,6 +1,7 @@
-/** Settings that all pages have: language and picture. */
+/** Settings that all pages have: language, picture and colours. */
 
 import type { ComponentChildren } from "preact";
+import { chosenPalette, PALETTE_NAMES, type PaletteName } from "../core/colours";
 import { quality } from "../core/settings";
 import { chosen, LANGUAGES, type Language, t } from "../i18n";
 import { Dialog } from "./dialog";
@@ -42,6 +43,21 @@ export function Settings({ onClose, children }: Props) {
             <option value="auto">{t("settings.auto")}</option>
             <option value="low">{t("settings.low")}</option>
             <option value="high">{t("settings.high")}</option>
+          </select>
+        </label>
+        <label class="field">
+          <span>{t("settings.colours")}</span>
+          <select
+            value={chosenPalette.value}
+            onChange={(event) => {
+              chosenPalette.value = event.currentTarget.value as PaletteName;
+            }}
+          >
+            {PALETTE_NAMES.map((name) => (
+              <option key={name} value={name}>
+                {t(`settings.colours.${name}`)}
+              </option>
+            ))}
           </select>
         </label>
         {children}

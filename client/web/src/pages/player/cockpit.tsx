@@ -9,6 +9,7 @@ import { type Pressed, RESTART_KEY } from "../../core/keys";
 import { Player, type Word } from "../../core/player";
 import { PosData } from "../../core/posdata";
 import { Level, Phase, readFrame } from "../../core/wire";
+import { logClock } from "../../core/words";
 import { type MessageName, said, t } from "../../i18n";
 import { LinkBanner } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
@@ -230,6 +231,7 @@ interface DialogProps {
 function Leave({ court, player, alone, onClose }: DialogProps) {
   const phase = court.frame.peek()?.phase ?? Phase.LOBBY;
   const hasData = Boolean(player.data?.length);
+  const since = player.data?.sinceTicks ?? 0;
   const inMatch = phase > Phase.READY && phase < Phase.OFFICIAL;
   const leave = async () => {
     saveData(player);
@@ -239,7 +241,11 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
   return (
     <Dialog title={t("leave.title")} onClose={onClose}>
       <p>{t(alone ? "leave.practice" : inMatch ? "leave.match" : "leave.lobby")}</p>
-      <p class="muted">{t(hasData ? "leave.data" : "leave.noData")}</p>
+      <p class="muted">
+        {since
+          ? t("leave.dataSince", { time: logClock(since) })
+          : t(hasData ? "leave.data" : "leave.noData")}
+      </p>
       <div class="row end">
         <button class="button" type="button" onClick={onClose}>
           {t("common.cancel")}

@@ -5,6 +5,7 @@ import { useId } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { choose, chosenNames, forget, MOST_BYTES, SLOTS, type Slot } from "../../core/files";
 import { t } from "../../i18n";
+import { useDrop } from "../../ui/drop";
 import { toast } from "../../ui/toasts";
 
 export function FilePicker({ court, alone }: { court: Court; alone: boolean }) {
@@ -26,23 +27,9 @@ export function FilePicker({ court, alone }: { court: Court; alone: boolean }) {
       else await choose(file);
     }
   };
+  useDrop(isOver, (files) => void take(files));
   return (
-    // biome-ignore lint/a11y/noStaticElementInteractions: dropping is the mouse's way; the button is everybody's
-    <div
-      class={`files${isOver.value ? " over" : ""}`}
-      onDragOver={(event) => {
-        event.preventDefault();
-        isOver.value = true;
-      }}
-      onDragLeave={() => {
-        isOver.value = false;
-      }}
-      onDrop={(event) => {
-        event.preventDefault();
-        isOver.value = false;
-        void take(event.dataTransfer?.files ?? []);
-      }}
-    >
+    <div class={`files${isOver.value ? " over" : ""}`}>
       <p class="drop">
         {t("files.drop")}{" "}
         <label class="link" for={input}>

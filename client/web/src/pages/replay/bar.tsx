@@ -14,39 +14,17 @@ const HEIGHT = 100;
 export function SeekBar({ player }: { player: Player }) {
   const { recording } = player;
   const { firstBeat, lastBeat } = recording;
-  const hovered = useSignal<Event | null>(null);
+  // What does not move is made once, not with each picture.
+  const happened = useMemo(() => <Happened player={player} />, [player]);
   const span = lastBeat - firstBeat;
-  const part = (beat: number) => Math.min(1, Math.max(0, (beat - firstBeat) / span));
   const beat = Math.floor(recording.beat.value);
   const position = t("replay.position", {
     time: seconds(beat - firstBeat),
     total: seconds(span),
   });
   return (
-    <div class="seek" style={`--at: ${part(recording.beat.value)}`}>
-      <Lead recording={recording} />
-      <div class="done" />
-      <div class="marks" aria-hidden="true">
-        {player.marks.map((event) => (
-          <button
-            key={event.number}
-            type="button"
-            tabIndex={-1}
-            class="mark"
-            data-kind={event.kind}
-            data-beat={event.beat}
-            {...(event.seat >= 0 && { "data-seat": event.seat })}
-            style={`left: ${100 * part(event.beat)}%`}
-            onMouseEnter={() => {
-              hovered.value = event;
-            }}
-            onMouseLeave={() => {
-              hovered.value = null;
-            }}
-            onClick={() => player.show(event)}
-          />
-        ))}
-      </div>
+    <div class="seek" style={`--at: ${partOf(recording, recording.beat.value)}`}>
+      {happened}
       <input
         type="range"
         min={firstBeat}
@@ -64,19 +42,46 @@ export function SeekBar({ player }: { player: Player }) {
           player.skip(by);
         }}
       />
-      {hovered.value && <Label recording={recording} event={hovered.value} at={part} />}
     </div>
   );
 }
 
-interface LabelProps {
-  recording: Recording;
-  event: Event;
-  at: (beat: number) => number;
+/** What happened where, and who was ahead. */
+function Happened({ player }: { player: Player }) {
+  const { recording } = player;
+  const hovered = useSignal<Event | null>(null);
+  return (
+    <>
+      <Lead recording={recording} />
+      <div class="done" />
+      <div class="marks" aria-hidden="true">
+        {player.marks.map((event) => (
+          <button
+            key={event.number}
+            type="button"
+            tabIndex={-1}
+            class="mark"
+            data-kind={event.kind}
+            data-beat={event.beat}
+            {...(event.seat >= 0 && { "data-seat": event.seat })}
+            style={`left: ${100 * partOf(recording, event.beat)}%`}
+            onMouseEnter={() => {
+              hovered.value = event;
+            }}
+            onMouseLeave={() => {
+              hovered.value = null;
+            }}
+            onClick={() => player.show(event)}
+          />
+        ))}
+      </div>
+      {hovered.value && <Label recording={recording} event={hovered.value} />}
+    </>
+  );
 }
 
-function Label({ recording, event, at }: LabelProps) {
-  const place = at(event.beat);
+function Label({ recording, event }: { recording: Recording; event: Event }) {
+  const place = partOf(recording, event.beat);
   const side = place < 0.15 ? "start" : place > 0.85 ? "end" : "middle";
   return (
     <span class={`mark-label ${side}`} style={`left: ${100 * place}%`}>
@@ -124,6 +129,11 @@ function Lead({ recording }: { recording: Recording }) {
       ))}
     </svg>
   );
+}
+
+/** Where in the recording a beat is, from 0 to 1. */
+function partOf({ firstBeat, lastBeat }: Recording, beat: number): number {
+  return Math.min(1, Math.max(0, (beat - firstBeat) / (lastBeat - firstBeat)));
 }
 
 /** A length of beats, "1:05". */

@@ -1,0 +1,35 @@
+/** Files dropped on the page: anywhere, as a browser would leave the page for what misses a frame. */
+
+import type { Signal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+
+/**
+ * Take what is dropped while this component is there.
+ *
+ * @param dragging Kept on whether files are over the page.
+ */
+export function useDrop(dragging: Signal<boolean>, take: (files: readonly File[]) => void): void {
+  useEffect(() => {
+    const over = (event: DragEvent) => {
+      if (!event.dataTransfer?.types.includes("Files")) return;
+      event.preventDefault();
+      dragging.value = true;
+    };
+    const leave = (event: DragEvent) => {
+      if (event.relatedTarget === null) dragging.value = false;
+    };
+    const drop = (event: DragEvent) => {
+      event.preventDefault();
+      dragging.value = false;
+      take([...(event.dataTransfer?.files ?? [])]);
+    };
+    addEventListener("dragover", over);
+    addEventListener("dragleave", leave);
+    addEventListener("drop", drop);
+    return () => {
+      removeEventListener("dragover", over);
+      removeEventListener("dragleave", leave);
+      removeEventListener("drop", drop);
+    };
+  }, []);
+}
