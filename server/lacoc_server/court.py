@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from lacoc_arenas.arena import Arena
+from lacoc_server.court_log import CourtLog
 from lacoc_server.health import MatchHealth
 from lacoc_server.journal import Journal
 from lacoc_server.match import Match
+from lacoc_server.metrics import CourtMetrics
 from lacoc_server.network import Arrival, CourtNetwork
 from lacoc_server.pace import Pace
 from lacoc_server.recovery import Unfinished
@@ -23,7 +25,7 @@ from lacoc_server.world import World
 from lacoc_shared.contest import HealthLimits
 from lacoc_shared.decisions import Next, Official
 from lacoc_shared.inputs import Advice, Decide, Input
-from lacoc_shared.messages import Event, Health, HealthVerdict
+from lacoc_shared.messages import Health, HealthVerdict
 from lacoc_shared.record.pack import pack_in_background
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
@@ -54,7 +56,6 @@ class Court:
     Args:
         settings: what to play.
         network: how others reach it; opened by the caller.
-        say: told every event, for the organiser's screen.
         left: a match that an earlier court left behind, to go on with.
     """
 
@@ -62,12 +63,13 @@ class Court:
         self,
         settings: CourtSettings,
         network: CourtNetwork,
-        say: Callable[[Event], None],
         left: Unfinished | None = None,
     ) -> None:
         self._settings = settings
         self._network = network
-        self._say = say
+        self._log = CourtLog(settings.name)
+        self.metrics = CourtMetrics(settings.name)
+        """Its numbers, for who watches courts."""
         self._scene = b""
         self._packing: list[Any] = []
         self._pace = Pace(time.monotonic(), settings.speed, _offset_s(settings.name))
@@ -97,6 +99,7 @@ class Court:
                 pace.begin(now_s)
                 self._health.begin(now_s, pace.late_s, self._network.doors())
                 self._beat(now_s)
+                self.metrics.beat(time.monotonic() - now_s)
         finally:
             self._close()
             for packing in self._packing:
@@ -113,14 +116,14 @@ class Court:
         network.publish_frame(frame)
         for event in beat.events:
             network.publish_event(event)
-            self._say(event)
+            self._log.event(self.match_id, event)
         if match.physics.scene_hash != self._scene:
             self._scene = match.physics.scene_hash
             network.publish_scene(match.physics.scene)
         if beat.sheet_changed:
             network.publish_sheet(match.sheet())
         if match.beats % HEALTH_BEATS == 0:
-            network.publish_health(self._say_health(now_s))
+            self._say_health(now_s)
         self._inputs = self._follow()
 
     def _follow(self) -> list[Input]:
@@ -177,9 +180,9 @@ class Court:
             packing = pack_in_background(self._settings.recordings, self.match_id)
             self._packing.append(packing)
 
-    def _say_health(self, now_s: float) -> Health:
+    def _say_health(self, now_s: float) -> None:
         pace, match, writer = self._pace, self._journal.match, self._journal.writer
-        return Health(
+        health = Health(
             match=match.setup.match,
             beat=match.beats,
             real_time_factor=pace.real_time_factor,
@@ -192,6 +195,9 @@ class Court:
             record_trouble=writer.trouble if writer else "",
             input_delay_ms=self._network.input_delay_ms,
         )
+        self._network.publish_health(health)
+        self._log.health(self.match_id, health)
+        self.metrics.health(self.match_id, health, self._network.doors())
 
 
 def _offset_s(name: str) -> float:

@@ -185,6 +185,7 @@ class Match:
             version=__version__,
             court=self.setup.court,
             match=self.setup.match,
+            match_id=self.setup.match_id,
             arena=self.arena.name,
             title=self.arena.title,
             duration_s=self.rules.duration_s,

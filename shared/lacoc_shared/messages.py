@@ -228,6 +228,8 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     """Version of the court's software."""
     court: str
     match: int
+    match_id: str = ""
+    """Names the match's record, and its lines in logs."""
     arena: str
     title: str
     duration_s: float
@@ -360,7 +362,7 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     decisions: dict[str, str]
     """Every decision: "" if it is legal now, else why not."""
     verdict: HealthVerdict | None = None
-    """How well this match was held; None: it was not played yet."""
+    """How well this match was held; None: that is not measured."""
     record_trouble: str = ""
     """What is wrong with the disk of the record, a sentence; "" while all is well."""
     input_delay_ms: int = 0

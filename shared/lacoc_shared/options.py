@@ -53,4 +53,13 @@ Token = Annotated[
         "can't read it.",
     ),
 ]
+Metrics = Annotated[
+    str | None,
+    typer.Option(
+        "--metrics",
+        envvar="LACOC_METRICS",
+        metavar="HOST:PORT",
+        help="Answer Prometheus there, such as 127.0.0.1:9100; without it nothing listens.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]

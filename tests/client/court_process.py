@@ -32,7 +32,7 @@ class CourtProcess:
                 env=environment(),
             )
         assert self.process.stdout is not None
-        opened = json.loads(self.process.stdout.readline())
+        self.opened = opened = json.loads(self.process.stdout.readline())
         self.address: str = opened["locators"][0]
         self.tokens: dict[str, str] = opened["tokens"]
         self.referee: str = opened["referee"]

@@ -19,7 +19,7 @@ from lacoc_client.gateway import home, server, wire
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.page import Allowance
 from lacoc_client.gateway.site import PATHS
-from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.gateway.viewer import Frames, Viewer
 from lacoc_shared.codec import BadMessage
 from lacoc_shared.contest import throwaway
 from lacoc_shared.messages import Event
@@ -125,6 +125,7 @@ def test_a_viewer_has_one_slot() -> None:
     assert socket.written == [b"event", b"19"]
     socket.drained()
     assert socket.written == [b"event", b"19"]
+    assert viewer.frames == Frames(sent=1, dropped=19)
 
 
 @pytest.mark.parametrize(

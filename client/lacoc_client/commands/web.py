@@ -1,5 +1,6 @@
 """`lacoc web`: the pages of a contest's courts, for everybody at the venue."""
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
 
@@ -9,8 +10,9 @@ from lacoc_client.gateway import server
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import VIEWERS_MOST, Home, lasting_key, new_key
 from lacoc_shared import contest as contests
-from lacoc_shared import options, screen
+from lacoc_shared import log, options, screen
 from lacoc_shared.contest import Contest
+from lacoc_shared.metrics import Exporter
 from lacoc_shared.mistakes import UserError
 
 app = typer.Typer()
@@ -61,6 +63,7 @@ def web_command(
     browser: Annotated[
         bool, typer.Option("--open/--no-open", help="Open /watch in the browser.")
     ] = False,
+    metrics: options.Metrics = None,
     json: options.Json = False,
 ) -> None:
     """Serve the pages: spectators, broadcast, contestants, referee, replays.
@@ -69,11 +72,13 @@ def web_command(
     key, and the seat's or the referee's token. It waits for a court that is not there yet.
     """
     plan = None if contest is None else contests.load(contest)
+    exporter = Exporter(metrics) if metrics else None
     home = Home(
         courts=_courts(plan, court, connect),
         recordings=recordings or (plan.recordings if plan else Path("recordings")),
         names=frozenset(host or ()),
         viewers_most=viewers,
+        exporter=exporter,
         key=_key(plan, key),
     )
     port = server.listen(listen)
@@ -83,14 +88,19 @@ def web_command(
         built = PageFiles().built
         shown = browser and built and server.open_browser(f"{address}/watch")
         if json:
-            opened = {"kind": "open", "url": address, "key": home.key}
-            screen.print_json(opened | {"built": built, "shown": shown})
+            opened = {"kind": "open", "url": address, "key": home.key, "built": built}
+            opened |= {"shown": shown, "metrics": None if exporter is None else exporter.url}
+            screen.print_json(opened)
         else:
             _tell(home, address)
+            if exporter is not None:
+                screen.note(f"Metrics at {exporter.url}")
         if not built:
             screen.warn(NOT_BUILT)
+        log.start(json)
 
-    server.run(home, port, ready)
+    with exporter or nullcontext():
+        server.run(home, port, ready)
 
 
 def _courts(plan: Contest | None, court: str | None, connect: str | None) -> dict[str, str]:

@@ -11,8 +11,9 @@ from lacoc_client.asking import fetch, no_answer
 from lacoc_client.event_log import EventLog
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.threads import Threads
-from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.gateway.viewer import Frames, Viewer
 from lacoc_client.gateway.wire import Kind
+from lacoc_shared import log
 from lacoc_shared.codec import BadMessage, decode, scene_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event
@@ -48,6 +49,7 @@ class _Frame(msgspec.Struct, array_like=True):
 class _Sheet(msgspec.Struct):
     protocol: int
     scene: bytes
+    match_id: str = ""
 
 
 class CourtFeed:
@@ -69,6 +71,11 @@ class CourtFeed:
         self._keys = Keys(court)
         self._threads = threads
         self._viewers: dict[Viewer, None] = {}
+        self._gone = Frames()
+        """What the pages got that have gone."""
+        self.match_id = ""
+        """The match that is on, as its record is named."""
+        self._say = log.get(court=court)
         self._log: EventLog[bytes] = EventLog()
         self._frame: bytes | None = None
         self._sheet: bytes | None = None
@@ -103,6 +110,22 @@ class CourtFeed:
         """How many pages watch."""
         return len(self._viewers)
 
+    @property
+    def connected(self) -> bool:
+        """Whether the court sends frames."""
+        return self._connected
+
+    def frames(self) -> Frames:
+        """What became of the frames of all pages; may be asked from any thread."""
+        all_frames = [self._gone, *(viewer.frames for viewer in list(self._viewers))]
+        return Frames(
+            sum(frames.sent for frames in all_frames), sum(frames.dropped for frames in all_frames)
+        )
+
+    def log(self, text: str, kind: str, **particulars: object) -> None:
+        """Log something of this court."""
+        self._say.info(text, kind=kind, match_id=self.match_id, **particulars)
+
     def add(self, viewer: Viewer) -> None:
         """Let a page watch; it gets all there is at once."""
         viewer.send(self._link())
@@ -111,7 +134,10 @@ class CourtFeed:
 
     def remove(self, viewer: Viewer) -> None:
         """Let a page go."""
-        self._viewers.pop(viewer, None)
+        if viewer in self._viewers:
+            del self._viewers[viewer]
+            self._gone.sent += viewer.frames.sent
+            self._gone.dropped += viewer.frames.dropped
 
     def _send_all(self, viewer: Viewer) -> None:
         for framed in (self._sheet, self._scene, *self._log, self._health):
@@ -139,6 +165,8 @@ class CourtFeed:
             now_s = time.monotonic()
             silent = now_s - self._frame_s >= SILENT_AFTER_S
             was, self._connected = self._connected, self._connected and not silent
+            if was and silent:
+                self.log(f"Court {self.court} is silent.", "link", connected=False)
             if not self._connected and (was or now_s - said_s >= _SAY_S):
                 said_s = now_s
                 self._send(self._link())
@@ -151,6 +179,7 @@ class CourtFeed:
         if self._wrong_version:
             return
         self._connected, self._why = True, ""
+        self.log(f"Court {self.court} sends frames.", "link", connected=True)
         self._send(self._link())
         for viewer in self._viewers:
             self._send_all(viewer)
@@ -253,7 +282,7 @@ class CourtFeed:
         self._wrong_version = ""
         if sheet.protocol != PROTOCOL:
             self._other_version(sheet.protocol)
-        self._sheet_scene = sheet.scene
+        self._sheet_scene, self.match_id = sheet.scene, sheet.match_id
         framed = wire.message(Kind.SHEET, payload)
         if framed != self._sheet:
             self._sheet = framed

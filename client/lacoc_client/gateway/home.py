@@ -8,6 +8,7 @@ from typing import Literal
 
 from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.contest import Access, Contest
+from lacoc_shared.metrics import Exporter
 
 Kind = Literal["venue", "player", "practice"]
 
@@ -45,6 +46,8 @@ class Home:
     names: frozenset[str] = frozenset()
     """Names by which browsers may call this machine, besides its own."""
     viewers_most: int = VIEWERS_MOST
+    exporter: Exporter | None = None
+    """Where its numbers are shown."""
     key: str = field(default_factory=new_key)
     """Lets a page act; without it a page only watches."""
 

@@ -64,6 +64,8 @@ class Courts:
         self.home = home
         self.threads = threads
         self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
+        self.sent_away = 0
+        """Pages that were too many."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
         """A court's feed, listening; without a name that of the first court.
@@ -82,9 +84,14 @@ class Courts:
         return self._feeds[name]
 
     @property
+    def feeds(self) -> list[CourtFeed]:
+        """The feeds of all courts that were asked for; may be asked from any thread."""
+        return [feed for feed, _ in list(self._feeds.values())]
+
+    @property
     def viewers(self) -> int:
         """How many pages watch."""
-        return sum(feed.viewers for feed, _ in self._feeds.values())
+        return sum(feed.viewers for feed in self.feeds)
 
     async def close(self) -> None:
         """Close all connections."""
@@ -107,8 +114,11 @@ class Page:
         self._feed: CourtFeed | None = None
         self._referees: Referees | None = None
         self._seat: SeatThread | None = None
+        self._hold = ("", "")
+        """The seat and how it is held, as it was told last."""
         self._asks = Allowance(_ASKS_HZ, _ASKS_BURST)
         self._tokens = Allowance(_TOKENS_HZ, _TOKENS_BURST)
+        self._told = Allowance(_TOKENS_HZ, _TOKENS_BURST)
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def serve(self) -> None:
@@ -142,7 +152,7 @@ class Page:
         try:
             return await self._answer(asked)
         except (UserError, FileRefused) as error:
-            self._viewer.send(wire.refusal(asked.id, error))
+            self._refuse(asked.id, error)
             return True
 
     async def _answer(self, asked: wire.Asked) -> bool:
@@ -181,6 +191,7 @@ class Page:
                 f"This gateway shows the match to {home.viewers_most} pages already: "
                 "try again later, or watch the stream if there is one."
             )
+            self._courts.sent_away += 1
             link = {"court": "", "connected": False, "silent_s": 0.0, "text": why, "log": 0}
             viewer.send(wire.map_message(Kind.LINK, link))
             viewer.send(wire.refusal(asked.id, why))
@@ -248,11 +259,19 @@ class Page:
         viewer.at_least(MOST_HZ)
 
         def tell(seat: dict[str, Any]) -> None:
-            _in_loop(loop, lambda: viewer.send(wire.map_message(Kind.SEAT, seat)))
+            _in_loop(loop, lambda: self._tell_seat(seat))
 
         self._seat = SeatThread(
             access, name, files, viewer.unheard_s, tell, self._answerer(asked.id)
         )
+
+    def _tell_seat(self, seat: dict[str, Any]) -> None:
+        self._viewer.send(wire.map_message(Kind.SEAT, seat))
+        hold = (seat["seat"], seat["hold"])
+        if self._feed is not None and hold != self._hold:
+            self._hold = hold
+            because = f" ({seat['reason']})" if seat["reason"] else ""
+            self._log(f"Seat {hold[0]}: {hold[1]}{because}.", "seat", seat=hold[0], hold=hold[1])
 
     def _entry(self, asked: wire.JoinAsk, feed: CourtFeed) -> tuple[Access, str, SeatFiles]:
         """The way to the seat and what it brings; what the page left open is prefilled."""
@@ -292,6 +311,7 @@ class Page:
         await self._courts.threads.run(client.enter)
         if referees is self._referees:  # it may have gone to another court meanwhile
             referees.enter(self._viewer, client, by)
+            self._log(f"{by} sits down as a referee.", "referee", by=by)
         return {}
 
     async def _decide(self, asked: wire.DecideAsk, referees: Referees) -> Any:
@@ -310,7 +330,7 @@ class Page:
             try:
                 self._viewer.send(wire.reply(to, await work))
             except (UserError, FileRefused) as error:
-                self._viewer.send(wire.refusal(to, error))
+                self._refuse(to, error)
             except Exception:  # a bug, but no page waits for ever
                 self._viewer.send(wire.refusal(to, wire.FAULT))
                 raise
@@ -324,10 +344,25 @@ class Page:
         loop, viewer = asyncio.get_running_loop(), self._viewer
 
         def answer(value: Any, error: Exception | None) -> None:
-            framed = wire.reply(to, value) if error is None else wire.refusal(to, error)
-            _in_loop(loop, lambda: viewer.send(framed))
+            if error is None:
+                _in_loop(loop, lambda: viewer.send(wire.reply(to, value)))
+            else:
+                _in_loop(loop, lambda: self._refuse(to, error))
 
         return answer
+
+    def _refuse(self, to: int, error: Exception) -> None:
+        self._viewer.send(wire.refusal(to, error))
+        # The sentences name no token; a page that asks for more of them is heard less often.
+        if self._feed is not None and not self._told.spent:
+            self._told.take()
+            self._log(f"Refused: {error}", "refused")
+
+    def _log(self, text: str, kind: str, **particulars: object) -> None:
+        """Log something about this page."""
+        assert self._feed is not None
+        client = self._websocket.client
+        self._feed.log(text, kind, page=client and f"{client.host}:{client.port}", **particulars)
 
     def _leave_court(self) -> None:
         if self._seat is not None:
@@ -337,7 +372,10 @@ class Page:
             self._referees.leave(self._viewer)
         if self._feed is not None:
             self._feed.remove(self._viewer)
+            if self._hold[0]:
+                self._log(f"The page of seat {self._hold[0]} has gone.", "seat", seat=self._hold[0])
         self._feed = self._referees = None
+        self._hold = ("", "")
 
     def _gone(self) -> None:
         self._leave_court()

@@ -14,6 +14,7 @@ from starlette.websockets import WebSocket
 from lacoc_client.gateway.files import NOT_BUILT, PageFile, PageFiles, recording, recordings_in
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.home import Home
+from lacoc_client.gateway.metrics import GatewayMetrics
 from lacoc_client.gateway.page import Courts, Page
 from lacoc_client.gateway.threads import Threads
 
@@ -33,6 +34,8 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
     """
     threads = Threads()
     courts = Courts(home, threads)
+    if home.exporter is not None:
+        home.exporter.registry.register(GatewayMetrics(courts))
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:

@@ -1,6 +1,7 @@
 """One page: how often it gets a frame, and what may act through it."""
 
 import time
+from dataclasses import dataclass
 
 from lacoc_client.gateway.page_socket import PageSocket
 
@@ -9,6 +10,15 @@ USUAL_HZ = 25.0
 """For who watches."""
 
 _EARLY_S = 0.01  # half a beat: frames come with some jitter
+
+
+@dataclass
+class Frames:
+    """What became of the frames that were due."""
+
+    sent: int = 0
+    dropped: int = 0
+    """The page was too slow for them and got a newer one."""
 
 
 class Viewer:
@@ -26,6 +36,7 @@ class Viewer:
         self._slot: bytes | None = None
         self._interval_s = 1 / USUAL_HZ
         self._next_s = 0.0
+        self.frames = Frames()
         self.can_act = False
         """Whether it showed the key of this run."""
         socket.drained = self._send_slot
@@ -47,9 +58,10 @@ class Viewer:
             return
         following_s = next_s + self._interval_s
         self._next_s = following_s if following_s > now_s else now_s + self._interval_s
+        self.frames.dropped += self._slot is not None
         if self._socket.keeps_up:
             self._slot = None
-            self._socket.write(framed)
+            self._write(framed)
         else:
             self._slot = framed
 
@@ -73,4 +85,8 @@ class Viewer:
     def _send_slot(self) -> None:
         framed, self._slot = self._slot, None
         if framed is not None:
-            self._socket.write(framed)
+            self._write(framed)
+
+    def _write(self, framed: bytes) -> None:
+        self.frames.sent += 1
+        self._socket.write(framed)

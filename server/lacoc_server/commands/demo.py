@@ -15,6 +15,7 @@ from typing import IO, Annotated, Any
 import typer
 
 from lacoc_shared import screen
+from lacoc_shared.log import match_clock
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 
@@ -145,17 +146,14 @@ def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bo
             if any(process.poll() for process in needed):
                 raise UserError("A bot or the referee gave up; what it says is above.")
             continue
+        if "number" not in event:  # of the court, not of the match
+            continue
         if event["kind"] == "result":
             result = event["text"]
         if not quiet:
-            screen.show(f"{_clock(event['clock_ticks'])}  {event['text']}")
+            screen.show(f"{match_clock(event['clock_ticks'])}  {event['text']}")
         if event["kind"] == "phase" and event["data"]["after"] in ("OFFICIAL", "VOID"):
             return result
-
-
-def _clock(ticks: int) -> str:
-    seconds = max(0, ticks) / 50
-    return f"{int(seconds // 60)}:{seconds % 60:04.1f}"
 
 
 @contextmanager

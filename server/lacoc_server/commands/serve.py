@@ -1,6 +1,7 @@
 """`lacoc serve`: a court."""
 
 import signal
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,14 +18,14 @@ from lacoc_server.inbox import Inbox
 from lacoc_server.network import CourtNetwork
 from lacoc_server.recovery import unfinished
 from lacoc_shared import contest as contests
-from lacoc_shared import options, screen
+from lacoc_shared import log, options, screen
 from lacoc_shared.address import endpoint
 from lacoc_shared.contest import Contest
 from lacoc_shared.keyspace import Keys
-from lacoc_shared.messages import Event, SentFile
+from lacoc_shared.messages import SentFile
+from lacoc_shared.metrics import Exporter
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seal import hash_token
-from lacoc_shared.seat import BEAT_S
 
 app = typer.Typer()
 
@@ -67,6 +68,7 @@ def serve_command(
         bool,
         typer.Option("--fresh", help="Open a new match, even if an unfinished one was left here."),
     ] = False,
+    metrics: options.Metrics = None,
     json: options.Json = False,
 ) -> None:
     """Run a court: it steps the robots, keeps the clock, scores and records.
@@ -105,11 +107,24 @@ def serve_command(
     )
     desk = DecisionDesk([hash_token(entry.referee.token)])
     addresses = (endpoint(listen),) if listen else entry.listen
-    with CourtNetwork(keys, addresses, inbox, desk) as network:
+    with ExitStack() as opened:
+        exporter = opened.enter_context(Exporter(metrics)) if metrics else None
+        network = opened.enter_context(CourtNetwork(keys, addresses, inbox, desk))
         settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)
-        running = Court(settings, network, screen.print_json if json else _say, left)
-        _open_doors(name, entry, running.match_id, network.locators, made_here=made_here, json=json)
+        running = Court(settings, network, left)
+        if exporter is not None:
+            exporter.registry.register(running.metrics)
+        _open_doors(
+            name,
+            entry,
+            running.match_id,
+            network.locators,
+            metrics=None if exporter is None else exporter.url,
+            made_here=made_here,
+            json=json,
+        )
         stop = _stop_on_signal()
+        log.start(json)
         running.run(lambda: bool(stop))
 
 
@@ -149,29 +164,27 @@ def _open_doors(
     match_id: str,
     locators: tuple[str, ...],
     *,
+    metrics: str | None,
     made_here: bool,
     json: bool,
 ) -> None:
     if json:
         opened: dict[str, Any] = {"kind": "open", "court": name, "match_id": match_id}
-        opened["locators"] = locators
+        opened |= {"locators": locators, "metrics": metrics}
         if made_here:
             opened["tokens"] = {seat: holder.token for seat, holder in entry.seat.items()}
             opened["referee"] = entry.referee.token
         screen.print_json(opened)
         return
     screen.show(f"Court {name} opens match {match_id} at {', '.join(locators)}.")
+    if metrics is not None:
+        screen.note(f"Metrics at {metrics}")
     if made_here:
         open_court = contests.Court(
             arena=entry.arena, listen=locators, seat=entry.seat, referee=entry.referee
         )
         for who, line in contests.join_lines(name, open_court).items():
             screen.show(f"  {who}: {line}")
-
-
-def _say(event: Event) -> None:
-    used_s = max(0.0, event.clock_ticks * BEAT_S)
-    screen.show(f"{int(used_s // 60)}:{used_s % 60:04.1f}  {event.text}")
 
 
 def _stop_on_signal() -> list[int]:

@@ -99,6 +99,7 @@ export interface Sheet {
   version: string;
   court: string;
   match: number;
+  match_id: string;
   arena: string;
   title: string;
   duration_s: number;

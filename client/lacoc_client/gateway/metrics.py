@@ -1,0 +1,49 @@
+"""A gateway's numbers for Prometheus: who watches, and what they get."""
+
+from collections.abc import Iterator
+
+from prometheus_client import Metric
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
+from prometheus_client.registry import Collector
+
+from lacoc_client.gateway.page import Courts
+
+
+class GatewayMetrics(Collector):
+    """What a scrape of a gateway shows; it reads plain numbers of the event loop's.
+
+    Args:
+        courts: the courts of the gateway.
+    """
+
+    def __init__(self, courts: Courts) -> None:
+        self._courts = courts
+
+    def collect(self) -> Iterator[Metric]:
+        """All families; called by a scrape, on its own thread."""
+        labels = ["court"]
+        connected = GaugeMetricFamily(
+            "lacoc_gateway_connected", "1 while the court sends frames.", labels=labels
+        )
+        viewers = GaugeMetricFamily(
+            "lacoc_gateway_viewers", "Pages that watch the court.", labels=labels
+        )
+        sent = CounterMetricFamily(
+            "lacoc_gateway_frames_sent", "Frames given to pages.", labels=labels
+        )
+        dropped = CounterMetricFamily(
+            "lacoc_gateway_frames_dropped",
+            "Frames that a page was too slow for; it got a newer one.",
+            labels=labels,
+        )
+        for feed in self._courts.feeds:
+            court = [feed.court]
+            connected.add_metric(court, feed.connected)
+            viewers.add_metric(court, feed.viewers)
+            frames = feed.frames()
+            sent.add_metric(court, frames.sent)
+            dropped.add_metric(court, frames.dropped)
+        yield from (connected, viewers, sent, dropped)
+        full = CounterMetricFamily("lacoc_gateway_sent_away", "Pages that were too many.")
+        full.add_metric([], self._courts.sent_away)
+        yield full

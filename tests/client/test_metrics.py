@@ -1,0 +1,94 @@
+"""`lacoc serve --metrics` and its log: a real court, a real scrape."""
+
+import json
+import socket
+import time
+import urllib.request
+from collections.abc import Callable
+
+import pytest
+from court_process import OpenCourt
+from prometheus_client.parser import text_string_to_metric_families
+
+from lacoc_client.controller import Controller
+from lacoc_shared import cli
+from lacoc_shared.gait import Level
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.session import open_client
+
+pytestmark = pytest.mark.slow
+
+WAIT_S = 30.0
+
+
+def scrape(url: str) -> dict[tuple[str, ...], float]:
+    """Every sample by its name and the values of its labels."""
+    with urllib.request.urlopen(url, timeout=10) as reply:
+        text = reply.read().decode()
+    return {
+        (sample.name, *sample.labels.values()): sample.value
+        for family in text_string_to_metric_families(text)
+        for sample in family.samples
+    }
+
+
+def until(true: Callable[[], bool]) -> None:
+    end_s = time.monotonic() + WAIT_S
+    while not true():
+        assert time.monotonic() < end_s, "it did not come true"
+
+
+def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
+    """Beats, commands and refusals are counted as they come; the log tells the same."""
+    court = open_court("--metrics", "127.0.0.1:0")
+    url, match_id = court.opened["metrics"], court.opened["match_id"]
+    until(lambda: ("lacoc_match_info", "main", match_id) in scrape(url))
+    first = scrape(url)
+    with open_client([court.address]) as session:
+        wrong = Controller(session, "main", "left", "not the token", "Ants")
+        with pytest.raises(UserError, match="does not open"):
+            wrong.join()
+        left = Controller(session, "main", "left", court.tokens["left"], "Ants")
+        left.join()
+        left.press(Level.LOCOMOTION, 2)
+        end_s = time.monotonic() + 1.5
+        while time.monotonic() < end_s:
+            left.wait_frame(0.05)
+    second = scrape(url)
+    beats = ("lacoc_beat_duration_seconds_count", "main")
+    assert second[beats] > first[beats]
+    assert second["lacoc_beat_duration_seconds_bucket", "main", "+Inf"] == second[beats]
+    assert second["lacoc_beat_duration_seconds_sum", "main"] > 0
+    assert second["lacoc_commands_total", "main", "left"] > 5
+    assert second["lacoc_commands_total", "main", "right"] == 0
+    assert second["lacoc_refused_total", "main", "left", "wrong token"] == 1
+    assert second["lacoc_seat_joined", "main", "left"] == 1
+    assert second["lacoc_real_time_factor", "main"] > 0
+    assert second["lacoc_slow_beats_total", "main"] >= 0
+    assert second["lacoc_replay_advised", "main"] == 0
+    court.process.terminate()
+    out, _ = court.process.communicate(timeout=WAIT_S)
+    lines = [json.loads(line) for line in out.splitlines()]
+    assert all({"timestamp", "level", "court", "kind", "text"} <= line.keys() for line in lines)
+    assert {line["match_id"] for line in lines} == {match_id}
+    told = {line["text"] for line in lines}
+    assert "Seat left: 1 refused, wrong token." in told
+    assert "Ants takes the left seat with Hexapod." in told
+    assert not any(token in out for token in (*court.tokens.values(), court.referee))
+
+
+def test_nothing_listens_unasked(open_court: OpenCourt) -> None:
+    """Off by default."""
+    assert open_court().opened["metrics"] is None
+
+
+def test_a_port_that_is_taken(capsys: pytest.CaptureFixture[str]) -> None:
+    """One sentence and exit code 2; nothing of the court is opened."""
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        where = f"127.0.0.1:{taken.getsockname()[1]}"
+        assert cli.main(["serve", "--listen", "tcp/127.0.0.1:0", "--metrics", where]) == 2
+    assert f"Metrics can't be served at {where}" in capsys.readouterr().err
+    assert cli.main(["serve", "--metrics", "here"]) == 2
+    assert "looks like 127.0.0.1:9100" in capsys.readouterr().err

@@ -1,0 +1,84 @@
+"""What a court says in its log beside the events of its match."""
+
+import logging
+from collections.abc import Iterator
+
+import msgspec
+import pytest
+import structlog
+from structlog.testing import capture_logs
+
+from lacoc_server.court_log import CourtLog
+from lacoc_shared.messages import Event, Health, SeatHealth
+
+LEFT = SeatHealth(id="left", joined=True, heard_ms=9.0, commands_hz=10.0, refused={"flood": 2})
+HEALTH = Health(
+    match=1,
+    beat=25,
+    real_time_factor=1.0,
+    slow_beats=0,
+    worst_late_ms=2.0,
+    seats=(LEFT,),
+    dropped={},
+    decisions={},
+)
+
+
+@pytest.fixture(autouse=True)
+def loud() -> Iterator[None]:
+    """The log, as `start` switches it on."""
+    before = structlog.get_config()
+    structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.INFO))
+    yield
+    structlog.configure(**before)
+
+
+def test_an_event_is_a_line_with_all_it_has() -> None:
+    """Issue 4: one line an event, a match id everywhere; trouble stands out."""
+    flip = Event(number=7, match=1, beat=99, clock_ticks=12, kind="flip", text="A flip.", seat=0)
+    with capture_logs() as lines:
+        log = CourtLog("main")
+        log.event("m-1", flip)
+        log.event("m-1", msgspec.structs.replace(flip, kind="silent"))
+    assert lines[0] == {
+        "event": "A flip.",
+        "log_level": "info",
+        "court": "main",
+        "match_id": "m-1",
+        **{name: getattr(flip, name) for name in flip.__struct_fields__ if name != "text"},
+    }
+    assert lines[1]["log_level"] == "warning"
+
+
+def test_what_went_wrong_is_said_once() -> None:
+    """New refusals, slow beats and the disk, as they change; not twice a second for ever."""
+    flooded = msgspec.structs.replace(LEFT, refused={"flood": 5, "bad seal": 1})
+    worse = msgspec.structs.replace(
+        HEALTH,
+        seats=(flooded,),
+        dropped={"wrong token": 1},
+        slow_beats=3,
+        worst_late_ms=61.0,
+        record_trouble="The record can't be written.",
+    )
+    with capture_logs() as lines:
+        log = CourtLog("main")
+        for health in (
+            HEALTH,
+            HEALTH,
+            worse,
+            worse,
+            msgspec.structs.replace(worse, record_trouble=""),
+        ):
+            log.health("m-1", health)
+    assert [line["event"] for line in lines] == [
+        "Seat left: 2 refused, flood.",
+        "Seat left: 3 refused, flood.",
+        "Seat left: 1 refused, bad seal.",
+        "Referee's desk: 1 refused, wrong token.",
+        "Slow beats: 3, 3 in all; the latest by 61 ms.",
+        "The record can't be written.",
+        "The record is written again.",
+    ]
+    assert {line["match_id"] for line in lines} == {"m-1"}
+    assert {line["log_level"] for line in lines} == {"warning"}

@@ -1,0 +1,82 @@
+"""The log of what runs for long: its lines, its silence elsewhere, and that it never waits."""
+
+import json
+import subprocess
+import sys
+from datetime import datetime
+
+import pytest
+
+SAY = """
+from lacoc_shared import log
+log.get().info("before")
+log.start({json})
+say = log.get(court="main")
+say.info("Ants flip c2r3.", kind="flip", match_id="m-1", clock_ticks=615, data={{"points": (1, 2)}})
+say.warning("3 slow beats.", kind="slow", match_id="m-1")
+say.debug("not this")
+"""
+
+
+def said(code: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stderr == ""
+    return done.stdout
+
+
+def test_lines_for_a_program() -> None:
+    """One object a line, with when, how serious, which court and match; nothing before `start`."""
+    first, second = map(json.loads, said(SAY.format(json=True)).splitlines())
+    assert datetime.fromisoformat(first.pop("timestamp")).tzinfo is not None
+    assert first == {
+        "text": "Ants flip c2r3.",
+        "kind": "flip",
+        "level": "info",
+        "court": "main",
+        "match_id": "m-1",
+        "clock_ticks": 615,
+        "data": {"points": [1, 2]},
+    }
+    assert (second["level"], second["kind"]) == ("warning", "slow")
+
+
+def test_lines_for_a_person() -> None:
+    """Wall time, match, match clock, what happened; a pipe gets no colours."""
+    first, second = said(SAY.format(json=False)).splitlines()
+    assert first[8:] == " m-1 0:12.3  Ants flip c2r3."
+    assert second[8:] == " m-1  3 slow beats."
+
+
+NOBODY_READS = """
+import sys
+from lacoc_shared import log
+log.start(True)
+for number in range(30_000):
+    log.get().info("x" * 100, number=number)
+print("done", file=sys.stderr, flush=True)
+sys.stdin.readline()
+"""
+
+
+@pytest.mark.slow
+def test_a_pipe_that_nobody_reads_holds_nothing() -> None:
+    """A beat logs and goes on; when somebody reads again, what was lost is said."""
+    with subprocess.Popen(
+        [sys.executable, "-c", NOBODY_READS],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert process.stderr.readline() == "done\n"
+        numbers = [json.loads(process.stdout.readline())["number"] for _ in range(5000)]
+        process.stdin.write("\n")
+        process.stdin.close()
+        rest = process.stdout.read().splitlines()
+    assert numbers == [*range(5000)]
+    assert 5000 <= len(rest) < 25_000
