@@ -64,6 +64,11 @@ class CourtMetrics(Collector):
                 "The latest start of a beat since the court was started.",
                 health.worst_late_ms / 1000,
             ),
+            (
+                "input_delay_seconds",
+                "Delay that makes the seats' links equal.",
+                health.input_delay_ms / 1000,
+            ),
             ("record_trouble", "1 while the record's disk fails.", bool(health.record_trouble)),
             (
                 "replay_advised",
@@ -104,14 +109,26 @@ class CourtMetrics(Collector):
             "lacoc_seat_heard_seconds", "Since a held seat's last valid command.", labels=names
         )
         joined = GaugeMetricFamily("lacoc_seat_joined", "1 if the seat is held.", labels=names)
+        trip = GaugeMetricFamily(
+            "lacoc_seat_round_trip_seconds",
+            "From a frame to the beat with the seat's answer to it, of the last 10 s.",
+            labels=[*names, "quantile"],
+        )
+        late = CounterMetricFamily(
+            "lacoc_late_commands", "Commands too late for the common delay.", labels=names
+        )
         for seat, door in zip(health.seats, doors, strict=True):
             where = [self._court, seat.id]
             commands.add_metric(where, door.heard)
             joined.add_metric(where, seat.joined)
             if seat.heard_ms is not None:
                 heard.add_metric(where, seat.heard_ms / 1000)
+            late.add_metric(where, seat.late)
+            for quantile, ms in (("0.5", seat.round_trip_p50_ms), ("0.95", seat.round_trip_p95_ms)):
+                if ms is not None:
+                    trip.add_metric([*where, quantile], ms / 1000)
             for why, count in seat.refused.items():
                 refused.add_metric([*where, why], count)
         for why, count in health.dropped.items():
             refused.add_metric([self._court, "", why], count)
-        yield from (commands, refused, heard, joined)
+        yield from (commands, refused, heard, joined, trip, late)
