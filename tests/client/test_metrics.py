@@ -22,7 +22,7 @@ WAIT_S = 30.0
 
 
 def scrape(url: str) -> dict[tuple[str, ...], float]:
-    """Every sample by its name and the values of its labels."""
+    """Every sample by its name and the values of its labels, by their names."""
     with urllib.request.urlopen(url, timeout=10) as reply:
         text = reply.read().decode()
     return {
@@ -51,7 +51,7 @@ def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
         left = Controller(session, "main", "left", court.tokens["left"], "Ants")
         left.join()
         left.press(Level.LOCOMOTION, 2)
-        trip = ("lacoc_seat_round_trip_seconds", "main", "left", "0.95")
+        trip = ("lacoc_seat_round_trip_seconds", "main", "0.95", "left")
         until(lambda: left.wait_frame(0.5) is not None and trip in scrape(url))
         second = scrape(url)
     beats = ("lacoc_beat_duration_seconds_count", "main")
