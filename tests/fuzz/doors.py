@@ -107,9 +107,9 @@ class _Sessions(Sessions):
         return SESSIONS[seat], SECRETS[seat]
 
 
-def command(seat: int, seq: int, level: int, key: int) -> bytes:
+def command(seat: int, seq: int, level: int, key: int, match: int = 0, seen: int = 0) -> bytes:
     """A command that its seat has sealed."""
-    numbers = (SESSIONS[seat], seq, level, key, 0, 0)
+    numbers = (SESSIONS[seat], seq, level, key, match, seen)
     mac = seal.command_mac(SECRETS[seat], KEYS.command(SEATS[seat]), *numbers)
     return codec.encode(Command(*numbers, mac))
 
@@ -223,12 +223,13 @@ class Doors:
         for seat in (0, 1):
             key = KEYS.command(SEATS[seat])
             last = max(self._inbox._seats[seat].last_seq, _FIRST_OWN)
+            seen = max(0, self._match.match.beats - seat)
             if self._beats % 10 == 5 * seat:
                 last += 1
-                item = KeySeat(seat, last, 1, last % 4)
+                item = KeySeat(seat, last, 1, last % 4, seen)
                 new.add(item)
             # The newest wins: after all that the batch has for the seat.
-            self._session.queues[key].waiting.append(command(seat, last, 1, last % 4))
+            self._session.queues[key].waiting.append(command(seat, last, 1, last % 4, 1, seen))
         return new
 
     def _state(self) -> tuple[object, ...]:
@@ -272,6 +273,8 @@ def command_seeds() -> list[bytes]:
     seeds = [command(0, 1, 1, 2), command(0, 3, 1, RESTART_KEY), command(0, 2, 0, 3)]
     seeds += [command(1, 9, 1, 2), command(0, 0, 1, 2), command(0, 2**60, 1, 2)]
     seeds += [command(0, 7, 1, 2)[:-1] + b"\0", command(0, -5, 1, 2), command(0, 8, 9, 99)]
+    seeds += [command(0, 0, 1, 2, 1, seen) for seen in (-1, 1, 10**6)]
+    seeds += [command(0, 0, 1, 2, match, 3) for match in (-1, 2**63)]
     return [*seeds, codec.encode(Command(17, 1, 1, 2, 1, 3, bytes(8)))]
 
 

@@ -66,9 +66,10 @@ def write_packets() -> None:
     scene = msgspec.structs.replace(scene, bodies=scene.bodies[:4])
     health = Health(
         match=1, beat=9, real_time_factor=1.0, slow_beats=0, worst_late_ms=0.5,
-        dropped={"flood": 3},
+        dropped={"flood": 3}, input_delay_ms=240,
         seats=(SeatHealth(id="left", joined=True, session=7, heard_ms=3.5, commands_hz=10.0,
-                          refused={"old": 1}),),
+                          refused={"old": 1}, round_trip_p50_ms=21.5, round_trip_p95_ms=40.0,
+                          late=2),),
         decisions=stage.match.legality(),
     )  # fmt: skip
     mistake = Mistake(file="a.txt", found="x", expected="an angle", row=1, column=2, leg="R,F")

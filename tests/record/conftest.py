@@ -169,7 +169,7 @@ def write_match(
             phase = Phase.READY if beat < 10 else Phase.PLAYING
             if beat % 10 == 3:
                 writer.input(beat, KeySeat(0, beat + 1, 1, 2))
-                writer.input(beat, KeySeat(1, beat + 1, 1, 3))
+                writer.input(beat, KeySeat(1, beat + 1, 1, 3, held=beat % 7, late=beat // 20))
                 writer.event(
                     Event(
                         number=beat,

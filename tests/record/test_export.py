@@ -263,6 +263,9 @@ def test_info(tmp_path: Path, write_match: WriteMatch) -> None:
     assert found["teams"] == {"left": "Ants", "right": "Bees, Inc"}
     assert (found["frames"], found["inputs"], found["events"], found["snapshots"]) == (40, 10, 4, 2)
     assert (found["complete"], found["cut"], found["result"]["scores"]) == (True, "", [20, 16])
+    assert found["keys"]["left"] == {"count": 4, "held_most_beats": 0, "late": 0}
+    assert found["keys"]["right"] == {"count": 4, "held_most_beats": 6, "late": 2}
+    assert "right: 4, held for 6 beats at most, 2 late" in words.stdout
 
 
 def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:

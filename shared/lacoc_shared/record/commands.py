@@ -14,6 +14,7 @@ from rich.text import Text
 
 from lacoc_shared import keep, screen
 from lacoc_shared.cli import lazy_group
+from lacoc_shared.inputs import KeySeat
 from lacoc_shared.messages import HealthVerdict
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import export as exports
@@ -140,12 +141,26 @@ def _summary(record: Record) -> dict[str, Any]:
         "last_beat": record.last_beat,
         "frames": len(record.frames),
         "inputs": sum(map(len, record.inputs.values())),
+        "keys": {
+            seat.id: _keys(record, index) for index, seat in enumerate(sheet.seats if sheet else ())
+        },
         "events": len(record.events),
         "snapshots": len(record.snapshots),
         "complete": not record.cut,
         "cut": record.cut,
         "result": msgspec.to_builtins(record.result),
         "health": msgspec.to_builtins(record.health),
+    }
+
+
+def _keys(record: Record, seat: int) -> dict[str, int]:
+    """How many keys of a seat came in, and what its link made of them."""
+    inputs = (item for items in record.inputs.values() for item in items)
+    keys = [item for item in inputs if isinstance(item, KeySeat) and item.seat == seat]
+    return {
+        "count": len(keys),
+        "held_most_beats": max((key.held for key in keys), default=0),
+        "late": sum(key.late > 0 for key in keys),
     }
 
 
@@ -192,6 +207,14 @@ def _lines(record: Record, found: dict[str, Any]) -> list[tuple[str, str]]:
         ),
         ("Result", ended),
         ("Held", _held(record.health)),
+        (
+            "Keys",
+            "; ".join(
+                f"{seat}: {keys['count']}, held for {keys['held_most_beats']} beats at most, "
+                f"{keys['late']} late"
+                for seat, keys in found["keys"].items()
+            ),
+        ),
         ("Length", f"{(record.last_beat + 1) * BEAT_S:.2f} s in {record.last_beat + 1} beats"),
         ("Holds", ", ".join(f"{found[name]} {name}" for name in counts)),
         ("Written by", versions),

@@ -1,0 +1,40 @@
+"""Two who press upon the same frame, one of them far away, at a real court with a real network."""
+
+from pathlib import Path
+
+import pytest
+from mirrored_pair import play
+
+FAR = (0.1, 0.025)
+"""Delay and jitter of the slow link, one way [s]: 200 ± 50 ms there and back."""
+
+
+@pytest.mark.slow
+def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) -> None:
+    """Whatever comes too late for that says by how much (benchmarks.fairness has the figures)."""
+    played = play(tmp_path, "equal", *FAR, warm_s=6, seconds=10)
+    fast, slow = played.health.seats
+    assert fast.round_trip_p50_ms is not None
+    assert slow.round_trip_p50_ms is not None
+    assert fast.round_trip_p50_ms < 200 <= slow.round_trip_p50_ms
+    assert 200 <= played.health.input_delay_ms <= 400
+    pairs = played.pairs
+    assert len(pairs) > 10
+    same = [pair for pair in pairs if pair.beats[0] == pair.beats[1]]
+    assert len(same) > 0.7 * len(pairs)
+    for seen, beats, late in pairs:
+        assert beats[0] - late[0] == beats[1] - late[1] > seen
+    assert sum(map(any, (pair.late for pair in pairs))) <= fast.late + slow.late
+
+
+@pytest.mark.slow
+def test_without_the_setting_the_near_one_is_first(tmp_path: Path) -> None:
+    """Nothing is held and nothing is late; the court shows both links all the same."""
+    played = play(tmp_path, "none", *FAR, warm_s=3, seconds=4)
+    fast, slow = played.health.seats
+    assert played.health.input_delay_ms == 0
+    assert slow.round_trip_p50_ms is not None
+    assert slow.round_trip_p50_ms >= 200
+    assert played.pairs
+    assert all(pair.beats[0] < pair.beats[1] and pair.late == (0, 0) for pair in played.pairs)
+    assert (fast.late, slow.late) == (0, 0)
