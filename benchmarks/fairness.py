@@ -75,7 +75,7 @@ def _row(case: _Case, played: Played) -> tuple[str, ...]:
         f"{len(pairs)} and {played.lost} frames lost",
         f"{100 * same / len(pairs):.1f} %",
         f"{statistics.median(apart):.0f}, {max(apart)} beats",
-        f"{late[0]}, {late[1]}; {'yes' if logged else 'no'}",
+        f"{late[0]}, {late[1]}; {'yes' if logged else 'no'}" if health.input_delay_ms else "-",
         *trips,
         f"{health.input_delay_ms} ms",
     )

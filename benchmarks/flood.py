@@ -65,8 +65,8 @@ class _Watched(CourtNetwork):
         super().__init__(*arguments)
         self.phase = Phase.CREATED
 
-    def publish_frame(self, frame: bytes) -> None:
-        super().publish_frame(frame)
+    def publish_frame(self, frame: bytes, now_s: float) -> None:
+        super().publish_frame(frame, now_s)
         if self.phase is not Phase.PLAYING:
             self.phase = Phase(decode(frame, Frame).phase)
 

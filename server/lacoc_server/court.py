@@ -113,7 +113,7 @@ class Court:
         for arrival, outcome in zip(arrivals, beat.outcomes[len(own) :], strict=True):
             if arrival.answer is not None:
                 arrival.answer(outcome)
-        network.publish_frame(frame)
+        network.publish_frame(frame, time.monotonic())
         for event in beat.events:
             network.publish_event(event)
             self._log.event(self.match_id, event)

@@ -258,8 +258,8 @@ class Inbox:
             heard_ms=None if seat.heard_s is None else (now_s - seat.heard_s) * 1000,
             commands_hz=recent / _RATE_WINDOW_S,
             refused=dict(seat.refused),
-            round_trip_p50_ms=trip and trip.p50_ms,
-            round_trip_p95_ms=trip and trip.p95_ms,
+            round_trip_p50_ms=trip and trip.p50_s * 1000,
+            round_trip_p95_ms=trip and trip.p95_s * 1000,
             late=self.links.late(seat.index),
         )
 

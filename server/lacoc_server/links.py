@@ -1,10 +1,10 @@
 """The links of a court's seats: how long each takes, and the delay that makes them equal.
 
-Pure: beats and their times come in. A command names the frame that its sender had newest, and
-the court knows itself when it made that frame: so a round trip is counted by the court's clock
-alone. Where a contest equalises its links, what was done upon the frame of beat b takes effect at
-beat b + D, for every seat: commands that are there earlier are held until then, commands that come
-later take effect at once and are counted (docs/decisions/0010-equal-links.md).
+Pure: times of the court's clock come in. A command names the frame that its sender had newest,
+and the court knows when it sent that frame: so no client's clock is asked for a round trip. Where
+a contest equalises its links, what was done upon a frame takes effect so long after it was sent,
+for every seat: commands that are there earlier are held until then, commands that come later take
+effect at once and are counted (docs/decisions/0010-equal-links.md).
 """
 
 import math
@@ -24,32 +24,44 @@ CHANGE_BEATS = 3 * BEATS_PER_S
 """The common delay changes at most so often."""
 LOWER_BEATS = 2
 """It is only lowered by so much or more: a delay that wavers is worse than a long one."""
-TRUST_BEATS = 2
+TRUST_S = 2 * BEAT_S
 """A command is believed to have been under way for its seat's p95 and so much more, at most."""
 
 
 class Trip(NamedTuple):
-    """How long a seat's commands take: from a frame to the beat that has the answer to it."""
+    """How long a seat takes: from a frame to the beat that has the answer to it."""
 
-    p50_ms: float
-    p95_ms: float
-    p95_beats: int
+    p50_s: float
+    p95_s: float
 
 
-class _Sample(NamedTuple):
+class _Frame(NamedTuple):
+    sent_s: float
+    delay_s: float
+    """From then until what was done upon it takes effect; 0: at once."""
+
+    @property
+    def due_s(self) -> float:
+        # A beat that begins a little early is still the one that was meant.
+        return self.sent_s + self.delay_s - BEAT_S / 2
+
+
+class _Held(NamedTuple):
+    due_s: float
     tick: int
-    beats: int
-    ms: float
+    command: Command
+    upon: _Frame | None
 
 
 @dataclass
 class _Link:
-    samples: deque[_Sample] = field(default_factory=deque)
+    samples: deque[tuple[int, float]] = field(default_factory=deque)
+    """Round trips [s], each with its tick."""
     newest: tuple[int, int] = (0, 0)
     """Match and beat of the newest frame that a command named."""
     trip: Trip | None = None
-    held: deque[tuple[int, KeySeat]] = field(default_factory=deque)
-    """Each with the tick in which it takes effect; in the order of their arrival."""
+    held: deque[_Held] = field(default_factory=deque)
+    """In the order of their arrival, and of their effect."""
     late: int = 0
 
 
@@ -64,29 +76,28 @@ class Links:
     def __init__(self, seats: int, most_ms: int = 0) -> None:
         self._links = [_Link() for _ in range(seats)]
         self._most_beats = round(most_ms / 1000 / BEAT_S)
+        self._delay_beats = 0
         self._match, self._beat = 1, 0
         self._tick = 0
         """Counts beats over all matches."""
-        self._begun_s: deque[float] = deque(maxlen=WINDOW_BEATS)
-        self._delays = deque([(0, 0)], maxlen=WINDOW_BEATS // CHANGE_BEATS + 2)
-        """The common delay by the tick of the first frame that it holds for: those who saw the
-        same frame have the same delay, also while it changes."""
+        self._begun_s: deque[float] = deque([0.0], maxlen=WINDOW_BEATS)
+        self._frames: deque[_Frame] = deque(maxlen=WINDOW_BEATS)
 
     @property
     def delay_ms(self) -> int:
         """The common delay; 0: none."""
-        return round(self._delays[-1][1] * BEAT_S * 1000)
+        return round(self._delay_beats * BEAT_S * 1000)
 
     def trip(self, seat: int) -> Trip | None:
-        """How long a seat's commands took lately; None: not known."""
+        """How long a seat took lately; None: not known."""
         return self._links[seat].trip
 
     def late(self, seat: int) -> int:
-        """How many of a seat's commands came too late for the common delay."""
+        """How many of a seat's keys came too late for the common delay."""
         return self._links[seat].late
 
     def begin(self, now_s: float, match: int, beat: int) -> None:
-        """A beat of a match begins; frames of earlier ones may have been seen."""
+        """A beat of a match begins."""
         self._match, self._beat = match, beat
         self._tick += 1
         self._begun_s.append(now_s)
@@ -96,6 +107,10 @@ class Links:
         if self._tick % CHANGE_BEATS == 0:
             self._agree()
 
+    def sent(self, now_s: float) -> None:
+        """The beat's frame goes out; those who see the same frame have the same delay."""
+        self._frames.append(self._frame(now_s))
+
     def is_ahead(self, command: Command) -> bool:
         """Whether it names a frame that was not there yet."""
         return (command.match, command.seen) > (self._match, self._beat - 1)
@@ -103,64 +118,76 @@ class Links:
     def heard(self, seat: int, command: Command) -> None:
         """Take a round trip; one that names no newer frame than the last says nothing new."""
         link, seen = self._links[seat], (command.match, command.seen)
-        if command.match != self._match or seen <= link.newest:
-            return
-        link.newest = seen
-        beats = self._beat - command.seen
-        begun_s = self._begun_s[-1 - min(beats, len(self._begun_s) - 1)]
-        link.samples.append(_Sample(self._tick, beats, (self._begun_s[-1] - begun_s) * 1000))
+        frame = self._seen(command)
+        if frame is not None and seen > link.newest:
+            link.newest = seen
+            link.samples.append((self._tick, self._begun_s[-1] - frame.sent_s))
 
     def hold(self, seat: int, command: Command) -> None:
         """Take a new key; `release` gives it back when it takes effect."""
-        link, tick = self._links[seat], self._tick
-        is_of_match = command.match == self._match
-        seen = tick - (self._beat - command.seen if is_of_match else 0)
+        link, now_s = self._links[seat], self._begun_s[-1]
+        frame = self._seen(command)
+        upon = frame or (self._frames[-1] if self._frames else _Frame(now_s, 0.0))
         # Who names an older frame than it had would be held for less: its own p95 bounds that.
-        believed = max(seen, tick - TRUST_BEATS - (link.trip.p95_beats if link.trip else 0))
-        delay = self._delay(believed)
-        last = link.held[-1][0] if link.held else 0
-        due = max(tick, believed + delay, last)
-        late = max(0, due - seen - delay) if delay else 0
-        link.late += late > 0
-        key = KeySeat(
-            seat,
-            command.seq,
-            command.level,
-            command.key,
-            seen=command.seen if is_of_match else 0,
-            held=due - tick,
-            late=late,
-        )
-        link.held.append((due, key))
+        believed_s = TRUST_S + (link.trip.p95_s if link.trip else 0.0)
+        if upon.sent_s < now_s - believed_s:
+            upon = self._frame(now_s - believed_s)
+        last_s = link.held[-1].due_s if link.held else 0.0
+        link.held.append(_Held(max(upon.due_s, last_s), self._tick, command, frame))
 
     def release(self, seat: int) -> list[KeySeat]:
         """The keys that take effect in this beat, in their order."""
-        held, released = self._links[seat].held, []
-        while held and held[0][0] <= self._tick:
-            released.append(held.popleft()[1])
+        link, released = self._links[seat], []
+        while link.held and link.held[0].due_s <= self._begun_s[-1]:
+            _, tick, command, frame = link.held.popleft()
+            late = self._late(frame)
+            link.late += late > 0
+            released.append(
+                KeySeat(
+                    seat,
+                    command.seq,
+                    command.level,
+                    command.key,
+                    seen=command.seen if frame else 0,
+                    held=self._tick - tick,
+                    late=late,
+                )
+            )
         return released
 
     def drop(self, seat: int) -> None:
         """Forget what is held for a seat that was left."""
         self._links[seat].held.clear()
 
+    def _frame(self, sent_s: float) -> _Frame:
+        return _Frame(sent_s, self._delay_beats * BEAT_S)
+
+    def _seen(self, command: Command) -> _Frame | None:
+        """The frame that a command names, or the oldest that is known; None: none of this match."""
+        if command.match != self._match or not self._frames:
+            return None
+        return self._frames[-min(self._beat - command.seen, len(self._frames))]
+
+    def _late(self, frame: _Frame | None) -> int:
+        """How many beats ago what was done upon a frame should have taken effect."""
+        if frame is None or not frame.delay_s:
+            return 0
+        return max(0, sum(begun_s >= frame.due_s for begun_s in self._begun_s) - 1)
+
     def _measure(self, link: _Link) -> None:
         samples = link.samples
-        while samples and samples[0].tick <= self._tick - WINDOW_BEATS:
+        while samples and samples[0][0] <= self._tick - WINDOW_BEATS:
             samples.popleft()
         if not samples:
             link.trip = None
             return
-        ms, beats = sorted(one.ms for one in samples), sorted(one.beats for one in samples)
-        p95 = math.ceil(0.95 * len(samples)) - 1
-        link.trip = Trip(ms[(len(ms) - 1) // 2], ms[p95], beats[p95])
+        trips_s = sorted(trip_s for _, trip_s in samples)
+        p50, p95 = (math.ceil(part * len(trips_s)) - 1 for part in (0.5, 0.95))
+        link.trip = Trip(trips_s[p50], trips_s[p95])
 
     def _agree(self) -> None:
-        longest = max((link.trip.p95_beats for link in self._links if link.trip), default=0)
-        wanted, delay = min(longest, self._most_beats), self._delays[-1][1]
-        if wanted > delay or wanted <= delay - LOWER_BEATS:
-            self._delays.append((self._tick, wanted))
-
-    def _delay(self, tick: int) -> int:
-        oldest = self._delays[0][1]
-        return next((beats for since, beats in reversed(self._delays) if since <= tick), oldest)
+        """Let the common delay be the longest p95, in whole beats."""
+        longest_s = max((link.trip.p95_s for link in self._links if link.trip), default=0.0)
+        wanted = min(math.ceil(longest_s / BEAT_S), self._most_beats)
+        if not self._delay_beats - LOWER_BEATS < wanted <= self._delay_beats:
+            self._delay_beats = wanted

@@ -115,8 +115,14 @@ class CourtNetwork:
         _serve(self._scene_desk, self._scene_bytes)
         return arrivals
 
-    def publish_frame(self, frame: bytes) -> None:
-        """Send an encoded frame; a slow receiver misses it."""
+    def publish_frame(self, frame: bytes, now_s: float) -> None:
+        """Send an encoded frame; a slow receiver misses it.
+
+        Args:
+            frame: that of the beat.
+            now_s: monotonic time: answers to it are counted from here.
+        """
+        self._inbox.links.sent(now_s)
         self._frame.put(frame)
 
     def publish_event(self, event: Event) -> None:

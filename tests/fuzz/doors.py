@@ -91,6 +91,7 @@ class _Session:
 
     desk = ring
 
+    def put(self, _: bytes) -> None: ...
     def announce(self, _: str) -> None: ...
     def close(self) -> None: ...
 
@@ -206,6 +207,7 @@ class Doors:
         twin = self._twin.beat(*(arrival.input for arrival in by_right))
         if codec.encode(beat.frame) != codec.encode(twin.frame):
             raise StateChanged("the match is another than its twin")
+        self._network.publish_frame(codec.encode(beat.frame), self._now_s)
         for arrival, outcome in zip(arrivals, beat.outcomes, strict=True):
             if arrival.answer is not None:
                 self.accepted += 1

@@ -134,7 +134,7 @@ class CourtStub:
         scene = scene_hash(encode(self.scene))
         seats = tuple(self._seats.values())
         frame = Frame(1, beat, Phase.PLAYING, 0, 0, seats, b"", b"", scene, bytes(8))
-        self.network.publish_frame(encode(frame))
+        self.network.publish_frame(encode(frame), now_s)
         if beat % 10 == 0:
             health = Health(
                 match=1,
