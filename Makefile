@@ -12,7 +12,7 @@ PAGES_FROM := $(shell find client/web/src client/web/public -type f) \
 	$(addprefix client/web/,index.html package-lock.json vite.config.ts)
 NPM := PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix client/web --loglevel=error
 
-.PHONY: help demo test format lint type walls check build bench fuzz wheel-smoke web clean
+.PHONY: help demo test format lint type walls check build bench fuzz mutants wheel-smoke web clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list.
@@ -61,6 +61,9 @@ bench: .venv/.test ## Measure the court against bare physics and bare Zenoh.
 fuzz: .venv/.test ## Feed a million hostile packets and 100,000 hostile files to all that reads them.
 	$(BIN)/python tests/fuzz $(ARGS)
 
+mutants: .venv/.mutation ## Change the code of rules, match, drive and codec bit by bit: do tests notice?
+	$(BIN)/python tests/mutation $(ARGS)
+
 clean: ## Remove everything that was made.
 	rm -rf .venv build dist client/web/node_modules client/lacoc_client/pages .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -83,6 +86,6 @@ $(PAGES): $(PAGES_FROM) | .venv/.server
 	$(NPM) ci --no-audit --no-fund
 	touch $@
 
-.venv/.test .venv/.lint .venv/.build: .venv/.%: .venv/.server
+.venv/.test .venv/.lint .venv/.build .venv/.mutation: .venv/.%: .venv/.server
 	$(PIP) install --group $*
 	touch $@

@@ -84,7 +84,7 @@ class Drive:
         posture, ticks = state.posture, state.ticks
         if self._by_time:
             posture = self._index(ticks * BEAT_US // self._hold_us, len(sequence))
-        elif ticks >= self._rest_ticks and len(sequence) > 1:
+        elif ticks >= self._rest_ticks:
             following = self._index(posture + 1, len(sequence))
             if following != posture:
                 posture, ticks = following, 0

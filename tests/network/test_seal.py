@@ -1,5 +1,6 @@
 """Tokens and seals."""
 
+import base64
 import hashlib
 
 import pytest
@@ -24,6 +25,32 @@ def test_a_hash_knows_its_token_only() -> None:
     assert "secret" not in one
 
 
+def test_a_token_has_128_bits() -> None:
+    """Base32 in small letters, without padding: it comes back as 16 bytes."""
+    token = seal.new_token()
+    assert len(base64.b32decode(token.upper() + "======")) == 16
+
+
+def test_a_session_has_a_number_of_32_bits_and_a_secret_of_16_bytes() -> None:
+    """docs/protocol.md, Joined: a session's number is at least 1; its secret is a BLAKE2b key."""
+    numbers = {seal.new_session() for _ in range(100)}
+    secrets = {seal.new_secret() for _ in range(100)}
+    assert len(numbers) == len(secrets) == 100
+    assert all(1 <= number < 2**32 for number in numbers)
+    assert max(numbers) > 2**24
+    assert {len(secret) for secret in secrets} == {16}
+
+
+def test_a_kept_hash_opens_its_seat_in_later_versions_too() -> None:
+    """A contest's files and records hold hashes: "salt$hash", BLAKE2b with 32 bytes."""
+    salt = bytes(range(16))
+    digest = hashlib.blake2b(b"secret", salt=salt, digest_size=32, person=b"lacoc token")
+    assert seal.verify_token("secret", f"{salt.hex()}${digest.hexdigest()}")
+    kept_salt, _, kept = seal.hash_token("secret").partition("$")
+    assert (len(bytes.fromhex(kept_salt)), len(bytes.fromhex(kept))) == (16, 32)
+    assert seal.verify_token("\udcff", seal.hash_token("\udcff")), "whatever a shell hands over"
+
+
 @pytest.mark.parametrize("stored", ["", "$", "zz$zz", "00", "00" * 17 + "$00", "é$é"])
 def test_a_broken_hash_opens_nothing(stored: str) -> None:
     """A damaged settings file locks a seat; it does not open it."""
@@ -36,6 +63,15 @@ def test_a_command_seal_is_the_documented_one() -> None:
     text = b"lacoc/main/seat/left/key 77 3 1 2 1 900"
     expected = hashlib.blake2b(text, key=secret, digest_size=8).digest()
     assert seal.command_mac(secret, "lacoc/main/seat/left/key", 77, 3, 1, 2, 1, 900) == expected
+    assert seal.same(expected, bytes(expected))
+    assert not seal.same(expected, expected[::-1])
+
+
+@pytest.mark.parametrize("ready", [False, True])
+def test_a_request_seal_is_the_documented_one(ready: bool) -> None:
+    """docs/protocol.md: the text of a request ends with its 1 or 0."""
+    expected = hashlib.blake2b(b"lacoc/a 77 %d" % ready, key=b"k" * 16, digest_size=8).digest()
+    assert seal.request_mac(b"k" * 16, "lacoc/a", 77, ready) == expected
 
 
 def test_every_part_changes_the_seal() -> None:

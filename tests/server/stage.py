@@ -1,5 +1,6 @@
 """A match under test: whom it seats, how it gets from phase to phase, and a physics by script."""
 
+import functools
 import hashlib
 import struct
 from collections.abc import Mapping, Sequence
@@ -9,7 +10,7 @@ from typing import Any
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
-from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.library import GaitFiles, find_robot, sample_gait_files
 from lacoc_server.entry import Entry, weigh_in
 from lacoc_server.match import Beat, Match, Outcome
 from lacoc_server.physics import Fault, MakePhysics
@@ -42,14 +43,19 @@ def join(
     seat: int, team: str | None = None, robot: str = "hexapod", robot_file: bytes | None = None
 ) -> JoinSeat:
     """A team with a sample robot and its gait, or with a robot file of its own."""
-    name, data = find_robot(robot)
+    (name, data), gait = _files(robot)
     return JoinSeat(
         seat,
         team or ("Ants", "Bees")[seat],
         SentFile(name, robot_file or data),
-        *sample_gait_files(robot),
+        *gait,
         token_hash="",
     )
+
+
+@functools.cache
+def _files(robot: str) -> tuple[tuple[str, bytes], GaitFiles]:
+    return find_robot(robot), sample_gait_files(robot)
 
 
 def entry(robot: str = "hexapod") -> Entry:

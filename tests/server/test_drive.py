@@ -80,6 +80,9 @@ def test_all_joints_move_at_once_and_wait_for_the_last() -> None:
         Gait(None, LocomotionTable(((posture(0, 0),), (posture(2.4, -7.2), posture(0, 0))))),
         posture(0, 0),
         ANG_MIN,
+        "reached",
+        0,
+        True,
     )
     states = ticks(it, it.press(it.begin(B), B, 1), 4)
     assert [s.posture for s in states] == [0, 0, 0, 1]
@@ -193,6 +196,12 @@ def test_begin_is_the_start_posture_with_key_0() -> None:
     state = it.begin(B)
     assert (state.level, state.digit, state.angles) == (B, 0, posture(12.0))
     assert ticks(it, state, 5)[-1].angles == posture(24.0)
+
+
+def test_key_0_begins_with_its_first_posture_for_a_whole_hold() -> None:
+    """Rules 3, "time": key 0 at the start is a command like any other, from tick 1 on."""
+    it = drive((24.0, -24.0), (0.0,), advance="time", hold_s=0.04)
+    assert targets(it, it.begin(B), 6) == [0, 0, 1, 1, 0, 0]
 
 
 def test_which_keys_do_something() -> None:

@@ -1,0 +1,321 @@
+"""The log of a match and its answers, word for word (docs/protocol.md, Event).
+
+People read them, the record keeps them, and the pages' Japanese is made of them.
+"""
+
+from typing import Any
+
+import pytest
+from stage import FORWARD, LEFT, QUICK, RIGHT, Script, Stage, X, decide, join, key
+
+from lacoc_server.physics import Fault
+from lacoc_shared import __version__
+from lacoc_shared import decisions as d
+from lacoc_shared.gait import Level
+from lacoc_shared.inputs import HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat
+from lacoc_shared.messages import PROTOCOL, DecisionReply, Done, Event, Refusal
+from lacoc_shared.record.schema import Result
+from lacoc_shared.seat import NOBODY, Phase
+
+P = Phase
+FLIP = {2: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}}
+"""From the middle of one's own disc c2r2 to the other's c3r2."""
+Said = tuple[str, int, str, dict[str, Any]]
+"""kind, seat, text, data"""
+
+
+def said(events: tuple[Event, ...]) -> list[Said]:
+    return [(event.kind, event.seat, event.text, event.data) for event in events]
+
+
+def phase(before: str, then: str, **data: str) -> Said:
+    return "phase", NOBODY, f"{then}.", {"before": before, "after": then, **data}
+
+
+def word(name: str, text: str, reason: str = "", **arguments: Any) -> Said:
+    text = f"Referee Kubota: {text}" + f" Reason: {reason}" * bool(reason)
+    arguments = {"type": name, **arguments}
+    data = {"decision": name, "by": "Kubota", "reason": reason, "arguments": arguments}
+    return "decision", NOBODY, text, data
+
+
+HEXAPODS, WITH_A_QUADRUPED = "3d16d9075b90decf", "280170d9694dcef7"
+"""Names that the scripted physics gives its models."""
+STORY: tuple[tuple[tuple[Input, ...], list[Said]], ...] = (
+    (
+        (join(LEFT), join(RIGHT, robot="quadruped")),
+        [
+            phase("CREATED", "LOBBY"),
+            ("join", LEFT, "Ants takes the left seat with Hexapod.", {}),
+            ("join", RIGHT, "Bees takes the right seat with Quadruped.", {}),
+        ],
+    ),
+    (
+        (ReadySeat(LEFT, True), ReadySeat(RIGHT, True)),
+        [
+            ("ready", LEFT, "Ants is ready.", {"ready": True}),
+            ("ready", RIGHT, "Bees is ready.", {"ready": True}),
+            phase("LOBBY", "READY", model=WITH_A_QUADRUPED),
+        ],
+    ),
+    (
+        (ReadySeat(LEFT, False),),
+        [
+            ("ready", LEFT, "Ants is not ready after all.", {"ready": False}),
+            phase("READY", "LOBBY"),
+        ],
+    ),
+    ((LeaveSeat(RIGHT),), [("leave", RIGHT, "Bees leaves the right seat.", {})]),
+    (
+        (join(RIGHT), decide(d.Ready("right"), ""), ReadySeat(LEFT, True)),
+        [
+            ("join", RIGHT, "Bees takes the right seat with Hexapod.", {}),
+            ("ready", LEFT, "Ants is ready.", {"ready": True}),
+            word("ready", "ready for Bees.", seat="right"),
+            ("ready", RIGHT, "Bees is ready.", {"ready": True}),
+            phase("LOBBY", "READY", model=HEXAPODS),
+        ],
+    ),
+    (
+        (decide(d.Start(), ""),),
+        [word("start", "play begins in 0.04 s."), phase("READY", "COUNTDOWN")],
+    ),
+    ((), []),
+    ((), [phase("COUNTDOWN", "PLAYING")]),
+    ((), []),
+    ((), [("flip", LEFT, "Ants flips c3r2.", {"marker": "c3r2", "also": (), "points": 1})]),
+    ((SilentSeat(LEFT),), [("silent", LEFT, "Ants is not heard any more: it stands.", {})]),
+    (
+        (HeardSeat(LEFT),),
+        [
+            ("heard", LEFT, "Ants is heard again.", {}),
+            ("fault", RIGHT, "Physics stopped: it broke.", {"words": "it broke"}),
+            phase("PLAYING", "HALTED"),
+        ],
+    ),
+    (
+        (decide(d.Resume(), ""),),
+        [word("resume", "play goes on in 0.04 s."), phase("HALTED", "COUNTDOWN")],
+    ),
+    ((), []),
+    ((), [phase("COUNTDOWN", "PLAYING")]),
+    ((key(RIGHT, X),), [("restart", RIGHT, "Bees goes back to the start.", {})]),
+    ((LeaveSeat(RIGHT),), [("leave", RIGHT, "Bees has left; the seat stays theirs.", {})]),
+    ((join(RIGHT),), [("join", RIGHT, "Bees is back.", {})]),
+    (
+        (decide(d.Restart("left"), "stuck"),),
+        [word("restart", "Ants goes back to the start.", "stuck", seat="left")],
+    ),
+    (
+        (decide(d.Freeze("left", 2.5), "late"),),
+        [word("freeze", "Ants is frozen for 2.5 s.", "late", seat="left", seconds=2.5)],
+    ),
+    (
+        (decide(d.Unfreeze("left"), ""),),
+        [word("unfreeze", "Ants may move again.", seat="left")],
+    ),
+    (
+        (decide(d.Clock(-1.5), "a pause"),),
+        [word("clock", "the clock moves by -1.5 s.", "a pause", seconds=-1.5)],
+    ),
+    ((decide(d.Halt(), ""),), [word("halt", "halted."), phase("PLAYING", "HALTED")]),
+    (
+        (decide(d.Adjust("right", 2), "fair"),),
+        [word("adjust", "+2 for Bees.", "fair", seat="right", points=2)],
+    ),
+    (
+        (decide(d.Set("c0r0", "neutral"), "torn"),),
+        [word("set", "c0r0 is set to neutral.", "torn", marker="c0r0", state="neutral")],
+    ),
+    (
+        (decide(d.Declare("right"), "agreed"),),
+        [
+            word("declare", "Bees is declared the winner.", "agreed", winner="right"),
+            (
+                "phase",
+                NOBODY,
+                "FINISHED: ended by the referee.",
+                {"before": "HALTED", "after": "FINISHED"},
+            ),
+            (
+                "result",
+                NOBODY,
+                "By the rules: Bees wins, 18 : 19.",
+                {"winner": "right", "scores": (18, 19)},
+            ),
+        ],
+    ),
+    (
+        (decide(d.Declare("draw"), "agreed"),),
+        [word("declare", "the match is declared a draw.", "agreed", winner="draw")],
+    ),
+    (
+        (decide(d.Official(), ""),),
+        [word("official", "the result is official: draw."), phase("FINISHED", "OFFICIAL")],
+    ),
+    ((decide(d.Next(), ""),), [word("next", "the next match opens.")]),
+)
+
+
+def test_the_log_of_a_match() -> None:
+    """docs/protocol.md, Event: each event with its kind, seat, sentence and particulars."""
+    script = Script(poses=dict(FLIP), faults={5: Fault(RIGHT, "it broke")})
+    stage = Stage(overrides={"match": {"countdown_s": 0.04}}, script=script)
+    for inputs, expected in STORY:
+        events = stage.beat(*inputs).events
+        assert said(events) == expected
+        assert {event.beat for event in events} <= {stage.frame.beat}
+        if stage.phase is P.COUNTDOWN and not stage.match.ticks:
+            stage.physics.begin()
+    assert [event.number for event in stage.events] == list(range(1, len(stage.events) + 1))
+    assert {event.match for event in stage.events} == {1}
+    flip = next(event for event in stage.events if event.kind == "flip")
+    assert (flip.clock_ticks, flip.beat) == (3, 9)
+
+
+def test_what_a_fault_in_ready_leaves_in_the_log() -> None:
+    """Rules 4, design "Failure policy": both have to say ready again."""
+    stage = Stage(script=Script(faults={3: Fault(NOBODY, "it broke")})).to_ready()
+    stage.until(P.LOBBY)
+    told = [event for beat in stage.beats[2:] for event in beat.events]
+    assert said(tuple(told)) == [
+        ("fault", NOBODY, "Physics stopped: it broke.", {"words": "it broke"}),
+        phase("READY", "LOBBY"),
+    ]
+
+
+def test_what_an_abort_and_a_draw_leave_in_the_log() -> None:
+    """Rules 4, `abort`: the match is void; workshop 5-1 rule 7: equal is a draw."""
+    stage = Stage(overrides=QUICK).to(P.FINISHED)
+    assert said(stage.beats[-1].events)[-1] == (
+        "result",
+        NOBODY,
+        "By the rules: a draw, 18 : 18.",
+        {"winner": "draw", "scores": (18, 18)},
+    )
+    beat = stage.beat(decide(d.Abort(), "rain"))
+    assert said(beat.events) == [
+        word("abort", "the match is void.", "rain"),
+        phase("FINISHED", "VOID"),
+    ]
+
+
+def test_what_a_take_back_leaves_in_the_log() -> None:
+    """Rules 4, take-back: the decision with what vanished, then what appeared, judged again."""
+    script = Script(poses={5: {LEFT: (-0.8, -0.8)}, 6: {LEFT: (0.0, 0.0)}, 7: {LEFT: (-0.8, -0.8)}})
+    stage = Stage("flag-strike", QUICK, script=script).to_playing()
+    stage.run(8)
+    stage.decide(d.Halt())
+    (number,) = stage.numbers("capture")
+    beat = stage.beat(decide(d.TakeBack(number), "a mistake"))
+    changes = (f"event {number} vanishes: capture corner0", "appears: capture corner0")
+    name, nobody, text, data = word(
+        "take-back", f"event {number} is taken back.", "a mistake", event=number, dry_run=False
+    )
+    assert said(beat.events) == [
+        (name, nobody, text, {**data, "changes": changes, "scores": (5, 0)}),
+        (
+            "capture",
+            LEFT,
+            "Judged again: Ants takes corner0 for 5 points.",
+            {"marker": "corner0", "also": (), "points": 5},
+        ),
+    ]
+    (reply,) = beat.outcomes
+    assert reply == DecisionReply(
+        beat=beat.frame.beat,
+        event=number + 3,  # after the halt and its phase
+        text=f"event {number} is taken back.",
+        scores=(5, 0),
+        changes=changes,
+    )
+
+
+@pytest.mark.parametrize(
+    ("at", "item", "answer"),
+    [
+        (P.LOBBY, join(LEFT), Done()),
+        (P.LOBBY, ReadySeat(LEFT, True), Done()),
+        (P.LOBBY, LeaveSeat(LEFT), Done()),
+        (P.PLAYING, join(LEFT), Done()),
+        (
+            P.PLAYING,
+            join(LEFT, robot="quadruped"),
+            Done(
+                "The match is on with the files that it began with; the next takes your new ones."
+            ),
+        ),
+        (P.PLAYING, ReadySeat(LEFT, True), Refusal("The match is on (PLAYING).")),
+        (P.PLAYING, LeaveSeat(LEFT), Done("The seat stays yours.")),
+        (P.PLAYING, SilentSeat(LEFT), Done()),
+        (P.PLAYING, HeardSeat(LEFT), Done()),
+        (P.PLAYING, key(LEFT, FORWARD), Done()),
+        (P.HALTED, key(LEFT, FORWARD), Refusal("NOT_PLAYING")),
+    ],
+)
+def test_answers(at: Phase, item: Input, answer: Done | Refusal) -> None:
+    """Rules 4: what is refused says why."""
+    assert Stage(overrides=QUICK).to(at).send(item) == answer
+
+
+def test_answers_about_empty_seats() -> None:
+    """Rules 4: seats are taken in LOBBY; who comes later plays in the next match."""
+    stage = Stage(overrides=QUICK)
+    nobody = Refusal("Nobody has joined the right seat.")
+    assert stage.send(ReadySeat(RIGHT, True)) == nobody
+    wrong = stage.send(join(RIGHT, robot_file=b"name = 3"))
+    assert isinstance(wrong, Refusal)
+    assert (wrong.reason, len(wrong.mistakes) > 1) == ("Your files have mistakes.", True)
+    assert stage.match.seats[RIGHT].team == "right"
+    stage.decide(d.Abort())
+    assert stage.send(join(RIGHT)) == Done("This match is over: you play in the next.")
+
+
+def test_a_result_says_all() -> None:
+    """Rules 4: what is computed, with scores, clock, reason and what proves it."""
+    stage = Stage(overrides=QUICK, script=Script(poses=dict(FLIP))).to(P.PLAYING)
+    assert stage.match.result().computed == ""
+    stage.decide(d.Clock(3600.0))
+    expected = Result(
+        match_id="m",
+        court="main",
+        match=1,
+        arena="othello",
+        teams=("Ants", "Bees"),
+        scores=(19, 17),
+        computed="left",
+        official="",
+        reason="time is up",
+        clock_s=3600.08,
+        beats=len(stage.beats),
+        digest=stage.physics.digest.hex(),
+        model=HEXAPODS,
+    )
+    assert stage.beats[-1].result == expected
+    assert stage.beat().result is None, "only in a beat that changed it"
+
+
+def test_a_sheet_says_what_frames_leave_out() -> None:
+    """docs/protocol.md, Sheet: everything about a match that does not change in play."""
+    stage = Stage("flag-strike", QUICK)
+    empty = stage.beat(join(LEFT))
+    assert empty.sheet_changed
+    assert not stage.beat().sheet_changed
+    sheet = stage.match.sheet()
+    assert (sheet.protocol, sheet.version) == (PROTOCOL, __version__)
+    assert (sheet.court, sheet.match, sheet.arena) == ("main", 1, "flag-strike")
+    assert (sheet.title, sheet.duration_s, sheet.levels) == ("Flag-Strike", 180.0, (1,))
+    assert sheet.settings == stage.match.arena.settings
+    assert sheet.markers == stage.match.game.markers
+    assert sheet.scene == stage.physics.scene_hash
+    taken, free = sheet.seats
+    entry = stage.match.seats[LEFT].entry
+    assert entry is not None
+    assert (taken.id, taken.team, taken.robot) == ("left", "Ants", "Hexapod")
+    assert taken.legs == entry.robot.labels
+    assert taken.keys == (entry.gait.keys(Level.POSTURE), entry.gait.keys(Level.LOCOMOTION))
+    assert entry.gait.locomotion is not None
+    assert taken.postures == tuple(map(len, entry.gait.locomotion.sequences))
+    assert (free.id, free.team, free.robot, free.legs) == ("right", "", "", ())
+    seats = stage.match.arena.seats
+    assert [(s.colour, s.pattern) for s in (taken, free)] == [(s.colour, s.pattern) for s in seats]

@@ -1,0 +1,89 @@
+"""Messages to bytes and back, and what is refused on the way (docs/protocol.md)."""
+
+import hashlib
+
+import msgpack
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_shared.codec import (
+    BadMessage,
+    decode,
+    encode,
+    pack_states,
+    scene_hash,
+    unpack_states,
+)
+from lacoc_shared.messages import Command, Refusal
+from lacoc_shared.mistakes import Mistake
+
+
+def test_a_payload_is_msgpack_for_anybody() -> None:
+    """docs/protocol.md: every payload is one msgpack value, a map by field name."""
+    refusal = Refusal("no", (Mistake(file="a.txt", found="x", expected="a number", row=1),))
+    data = encode(refusal)
+    assert msgpack.unpackb(data)["reason"] == "no"
+    assert msgpack.unpackb(data)["mistakes"][0]["row"] == 1
+    assert decode(data, Refusal) == refusal
+    assert decode(data, Refusal) == refusal, "also the second of its kind"
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"", "truncated"),
+        (b"\xc1", "malformed"),
+        (encode({"reason": "no"})[:-1], "truncated"),
+        (encode({"reason": "no"}) + b"\x00", "trailing"),
+        (encode({"reason": 3}), "Expected `str`, got `int`"),
+        (encode({}), "missing required field `reason`"),
+        (encode(["no", []]), "Expected `object`"),
+        (b"\x81\xa6reason\xa2\xff\xff", "utf-8"),
+        (b"\x81\xa1x" + b"\x91" * 50_000 + b"\xc0", "recursion"),
+    ],
+    ids=["empty", "no msgpack", "cut", "more", "type", "field", "shape", "no UTF-8", "deep"],
+)
+def test_what_is_not_the_message_is_refused(data: bytes, words: str) -> None:
+    """One error, which says what was found, whatever the bytes are."""
+    with pytest.raises(BadMessage, match=f"(?i){words}"):
+        decode(data, Refusal)
+
+
+def test_kinds_are_not_mistaken_for_one_another() -> None:
+    """Bytes are read as the message that they must be here, not as one read before."""
+    data = encode(Refusal("no"))
+    assert decode(data, Refusal) == Refusal("no")
+    with pytest.raises(BadMessage):
+        decode(data, Command)
+
+
+def test_a_longer_payload_is_refused_unread() -> None:
+    """docs/protocol.md: at most 64 KiB, or as many bytes as a channel takes, and not one more."""
+    data = encode("x" * 100)
+    assert decode(data, str, len(data)) == "x" * 100
+    with pytest.raises(BadMessage, match=f"^{len(data)} bytes, at most {len(data) - 1} are read$"):
+        decode(data, str, len(data) - 1)
+    longest = b"\xc5\xff\xfd" + bytes(65_533)  # 64 KiB with its head
+    assert decode(longest, bytes) == bytes(65_533)
+    with pytest.raises(BadMessage, match=r"^65537 bytes, at most 65536 are read$"):
+        decode(longest + b"\x00", bytes)
+
+
+def test_a_scene_is_named_by_8_bytes_of_its_hash() -> None:
+    """docs/protocol.md: frames and sheets name a scene by BLAKE2b, 8 bytes, of what was sent."""
+    assert scene_hash(b"scene") == hashlib.blake2b(b"scene", digest_size=8).digest()
+    assert scene_hash(b"scene") != scene_hash(b"scenf")
+
+
+def test_states_are_two_bits_the_first_lowest() -> None:
+    """docs/protocol.md, `markers`: the first in the lowest bits of the first byte."""
+    assert pack_states((1, 2, 3, 0, 2)) == bytes([0b00_11_10_01, 0b10])
+    assert unpack_states(bytes([0b00_11_10_01, 0b10]), 5) == (1, 2, 3, 0, 2)
+    assert [len(pack_states((0,) * count)) for count in (0, 1, 4, 5, 8, 36)] == [0, 1, 1, 2, 2, 9]
+
+
+@given(st.lists(st.integers(0, 3), max_size=40).map(tuple))
+def test_states_come_back_as_they_went(states: tuple[int, ...]) -> None:
+    """No marker's state depends on how many there are."""
+    assert unpack_states(pack_states(states), len(states)) == states
