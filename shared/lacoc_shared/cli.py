@@ -34,7 +34,7 @@ Panels = Mapping[str, tuple[str, ...]]
 _PANELS: Panels = {
     "Play": ("demo", "practice", "play", "watch"),
     "Prepare your robot": ("gait", "robot"),
-    "Run a contest": ("contest", "serve", "web", "referee"),
+    "Run a contest": ("contest", "serve", "web", "referee", "doctor"),
     "Study and develop": ("replay", "simulate", "bot"),
 }
 _OTHERS = "Commands of other packages"

@@ -1,0 +1,102 @@
+"""`lacoc doctor`: is this machine ready, and is the court in reach?"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.table import Table
+from rich.text import Text
+
+from lacoc_client import doctor
+from lacoc_client.commands import entrance
+from lacoc_client.doctor import Finding, Status
+from lacoc_client.doctor_link import link
+from lacoc_shared import contest as contests
+from lacoc_shared import options, screen
+from lacoc_shared.contest import Contest
+from lacoc_shared.mistakes import UserError
+
+app = typer.Typer()
+
+NOT_READY = 1
+"""Exit code: there is a problem."""
+
+_STYLES = {Status.OK: "green", Status.NOTE: "yellow", Status.PROBLEM: "bold red"}
+_WEB = "0.0.0.0:8080"
+_HOST_PORT = re.compile(r"(?:\w+/)?(?P<host>\[[^\]]+\]|[^:/]+):(?P<port>\d{1,5})")
+
+
+@app.command(name="doctor")
+def doctor_command(
+    contest: options.ContestFile = None,
+    court: options.CourtName = None,
+    connect: options.Connect = None,
+    recordings: Annotated[
+        Path | None,
+        typer.Option(
+            envvar="LACOC_RECORDINGS",
+            metavar="FOLDER",
+            help="Folder of the records; by default the contest's, or 'recordings'.",
+        ),
+    ] = None,
+    web: Annotated[
+        str | None,
+        typer.Option(
+            envvar="LACOC_WEB_LISTEN",
+            metavar="HOST:PORT",
+            help=f"Where 'lacoc web' shall serve; by default {_WEB} is looked at.",
+        ),
+    ] = None,
+    seconds: Annotated[
+        float, typer.Option(help="How long clock and frames are watched.", min=0.2, max=600)
+    ] = 3.0,
+    json: options.Json = False,
+) -> None:
+    """Look whether this machine is ready: packages, ports, graphics, clock, disk.
+
+    With --connect or --contest also the link to a court: is it there, how long does a request
+    take, how many frames arrive. Every finding is ok, a note or a problem, with what to do.
+    The exit code is 0 unless there is a problem.
+    """
+    plan = None if contest is None else contests.load(contest)
+    folder = recordings or (plan.recordings if plan else Path("recordings"))
+    findings = list(_look(plan, web, folder, seconds))
+    if contest is not None or connect is not None:
+        findings += link(entrance.spectator(contest, court, connect), seconds)
+    if json:
+        screen.print_json(findings)
+    else:
+        screen.show(_table(findings))
+    if any(finding.status is Status.PROBLEM for finding in findings):
+        raise typer.Exit(NOT_READY)
+
+
+def _look(plan: Contest | None, web: str | None, folder: Path, seconds: float) -> Iterator[Finding]:
+    yield from doctor.packages()
+    courts = plan.courts.values() if plan else ()
+    listened = [address for court in courts for address in court.listen] or [contests.LOOPBACK]
+    for address in listened:
+        yield doctor.court_port(*_host_port(address), needed=plan is not None)
+    yield doctor.web_port(*_host_port(web or _WEB), needed=web is not None)
+    yield doctor.graphics()
+    yield doctor.clock(seconds)
+    yield doctor.disk(folder)
+
+
+def _host_port(address: str) -> tuple[str, int]:
+    match = _HOST_PORT.match(address)
+    if match is None or int(match["port"]) > 65_535:
+        raise UserError(f"{address!r} is no place to listen at. It looks like 0.0.0.0:8080.")
+    return match["host"].strip("[]"), int(match["port"])
+
+
+def _table(findings: list[Finding]) -> Table:
+    table = Table("", "what", "found, and what to do")
+    for finding in findings:
+        what = Text(finding.found)
+        if finding.todo:
+            what.append(f"\n{finding.todo}", "dim" if finding.status is Status.OK else "bold")
+        table.add_row(Text(finding.status, _STYLES[finding.status]), finding.about, what)
+    return table

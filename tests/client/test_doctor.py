@@ -1,0 +1,168 @@
+"""`lacoc doctor`: a real machine, real ports, a real court; and each with something wrong."""
+
+import json
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from court_process import OpenCourt, environment
+
+from lacoc_client import doctor
+from lacoc_client.doctor import Status
+from lacoc_shared import cli
+
+
+@pytest.fixture
+def taken() -> Iterator[int]:
+    """A port at which something listens that is no court and no gateway."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.listen()
+        yield listener.getsockname()[1]
+
+
+def free() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def look(
+    capsys: pytest.CaptureFixture[str], folder: Path, *words: str
+) -> dict[str, dict[str, Any]]:
+    """What it finds, by what it is about; the exit code says whether there is a problem."""
+    always = ("--json", "--seconds", "0.4", "--recordings", str(folder))
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["doctor", *always, *words])
+    findings = json.loads(capsys.readouterr().out)
+    assert ended.value.code == any(finding["status"] == "problem" for finding in findings)
+    assert all(finding["todo"] for finding in findings if finding["status"] != "ok")
+    return {finding["about"]: finding for finding in findings}
+
+
+def contest(folder: Path, port: int) -> str:
+    path = folder / "contest.toml"
+    path.write_text(
+        f'[court.main]\narena = "othello"\nlisten = ["tcp/127.0.0.1:{port}"]\n'
+        'referee.token = "the token of the referee"\n'
+    )
+    return str(path)
+
+
+def test_this_machine(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """All that it looks at, without any court."""
+    found = look(capsys, tmp_path / "records", "--web", f"127.0.0.1:{free()}")
+    assert {"python", "lacoc", "packages", "graphics", "clock", "disk"} <= found.keys()
+    assert found["python"]["status"] == found["packages"]["status"] == "ok"
+    assert "eclipse-zenoh 1.10" in found["packages"]["found"]
+    assert found["clock"]["found"].startswith("20 beats of 20 ms")
+    assert "MiB free" in found["disk"]["found"]
+    assert [*tmp_path.iterdir()] == []  # what it wrote is gone, and no folder was made
+
+
+def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """A table with what to do."""
+    with pytest.raises(SystemExit):
+        cli.main(["doctor", "--seconds", "0.2", "--recordings", str(tmp_path)])
+    out = capsys.readouterr().out
+    assert "what to do" in out
+    assert "chrome://gpu" in out
+
+
+def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
+    """What a Python finds that has other packages installed before this one's."""
+    for name, text in metadata.items():
+        (folder / f"{name}.dist-info").mkdir()
+        (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
+    code = (
+        "from lacoc_client import doctor; import json; "
+        "print(json.dumps([[f.about, f.status, f.found, f.todo] for f in doctor.packages()]))"
+    )
+    path = os.pathsep.join([str(folder), *sys.path])
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env=environment(PYTHONPATH=path),
+        capture_output=True,
+        check=True,
+        text=True,
+    )
+    found: list[list[str]] = json.loads(done.stdout)
+    return found
+
+
+def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
+    """Named with what is wanted and the command that mends it."""
+    found = packages_beside(tmp_path, {"mcap-0.1": "Name: mcap\nVersion: 0.1"})
+    wrong = [finding for finding in found if finding[1] == Status.PROBLEM]
+    assert [finding[0] for finding in wrong] == ["mcap"]
+    assert "0.1 is installed, wanted is" in wrong[0][2]
+    assert wrong[0][3].startswith('pip install "mcap')
+
+
+def test_packages_that_are_not_there(tmp_path: Path) -> None:
+    """Without the server's the machine can play; without others it can't; Python is looked at."""
+    needs = 'Requires-Dist: no-such-thing>=2\nRequires-Dist: no-engine>=3; extra == "server"'
+    metadata = f"Name: lacoc\nVersion: 9\nRequires-Python: >=3.99\n{needs}"
+    found = packages_beside(tmp_path, {"lacoc-9": metadata})
+    by_name = {finding[0]: finding[1:] for finding in found}
+    assert by_name["python"][0] == Status.PROBLEM
+    assert by_name["no-such-thing"] == [
+        Status.PROBLEM,
+        "not installed",
+        'pip install "no-such-thing>=2"',
+    ]
+    assert by_name["no-engine"][0] == Status.NOTE
+    assert "hold no match" in by_name["no-engine"][1]
+
+
+def test_ports_that_are_taken(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, taken: int
+) -> None:
+    """A problem where they were asked for, a note where they are only the usual ones."""
+    file = contest(tmp_path, taken)
+    found = look(capsys, tmp_path, "--contest", file, "--web", f"127.0.0.1:{taken}")
+    assert found[f"port {taken}"]["status"] == "problem"
+    assert "lacoc web" in found[f"port {taken}"]["todo"]
+    assert found["court main"]["status"] == "problem"
+    assert doctor.court_port("127.0.0.1", taken, needed=False).status is Status.NOTE
+    assert doctor.court_port("127.0.0.1", taken, needed=True).status is Status.PROBLEM
+    assert doctor.court_port("192.0.2.7", free(), needed=True).status is Status.PROBLEM
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="a folder in which nobody can write")
+def test_a_disk_that_takes_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    """A match would have no record: a problem, with the way out."""
+    found = look(capsys, Path("/proc/records"))["disk"]
+    assert found["status"] == "problem"
+    assert "--recordings" in found["todo"]
+
+
+def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """One sentence with the address, no traceback."""
+    found = look(capsys, tmp_path, "--connect", f"tcp/127.0.0.1:{free()}")
+    assert found["court main"]["status"] == "problem"
+    assert "Nobody listens at" in found["court main"]["found"]
+
+
+@pytest.mark.slow
+def test_the_link_to_a_court(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, open_court: OpenCourt
+) -> None:
+    """A real court: version, round trip, frames; and its port is known as a court's."""
+    court = open_court()
+    found = look(capsys, tmp_path, "--connect", court.address, "--seconds", "1")
+    assert found["court main"]["status"] == "ok"
+    assert found["round trip"]["found"].startswith("50 requests, ")
+    assert " a second in LOBBY, " in found["frames"]["found"]
+    assert found["frames"]["status"] != "problem"
+    port = int(court.address.rpartition(":")[2])
+    here = doctor.court_port("127.0.0.1", port, needed=True)
+    assert (here.status, here.found) == (Status.OK, "court main runs here")
+    other = look(capsys, tmp_path, "--connect", court.address, "--court", "other")
+    assert "there is main" in other["court other"]["found"]
