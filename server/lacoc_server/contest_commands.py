@@ -30,6 +30,7 @@ _FileToRead = Annotated[
 _TEMPLATE = """\
 # A contest of LACOC. Check it with 'lacoc contest check', start its court with
 # 'lacoc serve --contest {file}', and hand each person their line of 'lacoc contest show'.
+# 'lacoc contest keys' encrypts it and makes an invitation for each person.
 # Whoever has a token is let in with it: keep this file to yourself.
 
 [contest]
@@ -54,8 +55,8 @@ robot = "hexapod"          # for a team that brings none: an installed robot or 
 # One table like this for each court; each listens at a port of its own.
 [court.{court}]
 arena = "{arena}"
-listen = ["tcp/0.0.0.0:7447"]          # tcp/127.0.0.1:7447: this machine alone
-# connect = "tcp/192.168.1.20:7447"    # where others reach it, for 'lacoc contest show'
+listen = ["0.0.0.0:7447"]          # 127.0.0.1:7447: this machine alone
+# connect = "192.168.1.20:7447"    # where others reach it, for 'show' and 'keys'
 # input_delay = "equal"                # hold keys until both links have the same delay,
 # input_delay_max_ms = 400             # at most this
 
@@ -110,6 +111,49 @@ def check(file: _FileToRead = _DEFAULT) -> None:
 
 
 @app.command()
+def keys(
+    file: _FileToRead = _DEFAULT,
+    host: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="HOST",
+            help="Name or number by which others reach the courts' machine; may be given again.",
+        ),
+    ] = None,
+    renew: Annotated[
+        bool,
+        typer.Option(
+            "--renew",
+            help="Replace all keys: everybody needs a new invitation. The old are kept with a "
+            "number.",
+        ),
+    ] = False,
+) -> None:
+    """Encrypt a contest: make its keys, and an invitation for each person.
+
+    They go to the folder 'keys' beside the contest file, which gets an entry that says so. From
+    then on its courts listen with TLS, and each person can do no more than their invitation says.
+
+    Run again, it adds what is new (a court, a token, a host); invitations that were handed out
+    stay valid. Courts that run take the new keys when they are started again.
+    """
+    from lacoc_server.contest_keys import make_keys  # needs what the base install leaves out
+
+    made = make_keys(file, host or (), renew)
+    if made.kept is not None:
+        screen.note(f"The old keys are in {made.kept}; their invitations are no longer valid.")
+    elif made.handed_out_hold:
+        screen.note("The contest had keys: invitations that were handed out stay valid.")
+    screen.show(f"Keys of {', '.join(made.hosts)}, valid until {made.ends}: {made.folder.path}")
+    for access in made.invitations:
+        screen.show(f"  {made.folder.invitation(access.user)}")
+    screen.note(
+        "Hand each person their invitation, and nothing else of that folder. Next: "
+        f"lacoc serve --contest {file}"
+    )
+
+
+@app.command()
 def show(
     file: _FileToRead = _DEFAULT,
     court: options.CourtName = None,
@@ -125,7 +169,10 @@ def show(
     """Print the command line for each contestant, the referee and spectators."""
     contest = contests.load(file)
     names = [contest.court(court)[0]] if court else list(contest.courts)
-    lines = {name: contests.join_lines(name, contest.courts[name], host) for name in names}
+    if contest.keys:
+        lines = {n: contests.invitation_lines(contests.everybody(contest, n)) for n in names}
+    else:
+        lines = {name: contests.join_lines(name, contest.courts[name], host) for name in names}
     if json:
         screen.print_json(lines)
         return
@@ -133,6 +180,8 @@ def show(
         for person, line in by_person.items():
             screen.show(Text(f"# court {name}, {person}", style="dim"))
             screen.stdout.print(line, markup=False, soft_wrap=True)  # to be copied whole
+    if contest.keys:
+        screen.note(f"The invitations are in {contest.keys.invitations}.")
     if any("/HOST:" in line for by_person in lines.values() for line in by_person.values()):
         screen.note("HOST is the court's machine: give --host, or 'connect' in the contest file.")
 

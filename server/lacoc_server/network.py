@@ -11,6 +11,7 @@ from typing import NamedTuple, Self
 
 from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.inbox import COMMANDS_PER_BEAT, Door, Inbox
+from lacoc_shared.access_rules import Protection
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
 from lacoc_shared.keyspace import ENTER, Keys
@@ -57,17 +58,23 @@ class CourtNetwork:
         listen: addresses to listen on; port 0 takes a free one.
         inbox: judges what comes for the seats.
         decision_desk: judges what comes from referees.
+        protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
 
     Raises:
         UserError: if an address can't be listened on.
     """
 
     def __init__(
-        self, keys: Keys, listen: Sequence[str], inbox: Inbox, decision_desk: DecisionDesk
+        self,
+        keys: Keys,
+        listen: Sequence[str],
+        inbox: Inbox,
+        decision_desk: DecisionDesk,
+        protection: Protection | None = None,
     ) -> None:
         self._inbox = inbox
         self._decision_desk = decision_desk
-        self._session = session = open_court(listen)
+        self._session = session = open_court(listen, protection)
         self._frame = session.publisher(keys.frame)
         self._event = session.history_publisher(keys.event, _EVENTS_KEPT)
         self._sheet = session.history_publisher(keys.sheet, 1)

@@ -7,6 +7,7 @@ with a plain socket, after the failure, and said in words that help (network.md 
 import errno
 import re
 import socket
+import ssl
 from collections.abc import Sequence
 
 from lacoc_shared.mistakes import UserError
@@ -22,14 +23,18 @@ _ADDRESS = re.compile(
 _PROBE_S = 2.0
 
 
-def endpoint(text: str) -> str:
+def endpoint(text: str, protocol: str = "tcp") -> str:
     """Complete an address: "192.168.1.5" becomes "tcp/192.168.1.5:7447".
+
+    Args:
+        text: what a person wrote.
+        protocol: "tls" for a court with keys.
 
     Raises:
         UserError: if it is no address.
     """
     match = _ADDRESS.fullmatch(text.strip())
-    protocol = match["protocol"] or "tcp" if match else ""
+    protocol = match["protocol"] or protocol if match else ""
     port = int(match["port"] or DEFAULT_PORT) if match else 0
     if match is None or protocol not in _PROTOCOLS or port > 65_535:
         raise UserError(
@@ -37,6 +42,31 @@ def endpoint(text: str) -> str:
             "or tcp/127.0.0.1:7447."
         )
     return f"{protocol}/{match['host']}:{port}"
+
+
+def host(one: str) -> str:
+    """The host of a complete address."""
+    return _split(one)[0]
+
+
+def check_protocols(endpoints: Sequence[str], *, keys: bool) -> None:
+    """See that complete addresses are encrypted where there are keys, and plain elsewhere.
+
+    Raises:
+        UserError: if one is not.
+    """
+    for one in endpoints:
+        protocol, _, place = one.partition("/")
+        if keys and protocol != "tls":
+            raise UserError(
+                f"The contest has keys, and {one} is a plain address: write tls/{place}, or "
+                "leave the protocol out."
+            )
+        if protocol == "tls" and not keys:
+            raise UserError(
+                f"{one} needs keys. An organiser makes them with 'lacoc contest keys' and names "
+                "the contest file; everybody else gets an invitation: --invitation FILE."
+            )
 
 
 def check_names(endpoints: Sequence[str]) -> None:
@@ -53,9 +83,14 @@ def check_names(endpoints: Sequence[str]) -> None:
         )
 
 
-def why_not_connected(endpoints: Sequence[str]) -> str:
-    """Say why none of these addresses could be connected, one sentence each."""
-    return "\n".join(_why_not_connected(one) for one in endpoints)
+def why_not_connected(endpoints: Sequence[str], ca: str = "") -> str:
+    """Say why none of these addresses could be connected, one sentence each.
+
+    Args:
+        endpoints: complete addresses.
+        ca: certificate of the authority that vouches for the court (PEM); "" without keys.
+    """
+    return "\n".join(_why_not_connected(one, ca) for one in endpoints)
 
 
 def why_not_listening(endpoints: Sequence[str], error: Exception) -> str:
@@ -81,10 +116,10 @@ def _resolves(host: str, port: int) -> bool:
         return False
 
 
-def _why_not_connected(one: str) -> str:
+def _why_not_connected(one: str, ca: str) -> str:
     try:
-        with socket.create_connection(_split(one), timeout=_PROBE_S):
-            pass
+        with socket.create_connection(_split(one), timeout=_PROBE_S) as probe:
+            return _why_not_let_in(one, probe, ca)
     except ConnectionRefusedError:
         return f"Nobody listens at {one}. Is the court running, and is this its port?"
     except socket.gaierror:
@@ -92,10 +127,71 @@ def _why_not_connected(one: str) -> str:
     except OSError as error:
         reason = "no answer" if isinstance(error, TimeoutError) else error.strerror or str(error)
         return f"{one} can't be reached ({reason}). Check the address, the network and firewalls."
+
+
+def _why_not_let_in(one: str, probe: socket.socket, ca: str) -> str:
+    """Say why a court that answers did not take a client in.
+
+    Args:
+        one: its complete address.
+        probe: a plain connection to it.
+        ca: as in `why_not_connected`.
+    """
+    host = _split(one)[0]
+    try:
+        context = ssl.create_default_context(cadata=ca) if ca else _trusting_all()
+    except ssl.SSLError:
+        return "The certificate in the invitation is damaged: ask the organiser for it again."
+    try:
+        with context.wrap_socket(probe, server_hostname=host):
+            pass
+    except ssl.SSLCertVerificationError as error:
+        sentence = _CERTIFICATE_SENTENCES.get(error.verify_code, _OTHER_CERTIFICATE)
+        return sentence.format(at=one, host=host, reason=error.verify_message)
+    except OSError:  # it speaks no TLS
+        return (_NO_KEYS if ca else _NO_COURT).format(at=one)
+    if not ca:
+        return (
+            f"The court at {one} has keys: enter with the invitation that the organiser has for "
+            "you (--invitation FILE), or with the contest file."
+        )
     return (
-        f"Something answers at {one}, but it does not let this program in. Is it a court, "
-        "and of the same version?"
+        f"The court at {one} is the right one, but it does not take this token. Ask the organiser "
+        "for the invitation that is valid now; a court that is full or of another version refuses "
+        "in the same way."
     )
+
+
+def _trusting_all() -> ssl.SSLContext:
+    """For a look whether there are keys at all."""
+    context = ssl.create_default_context()
+    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+    return context
+
+
+_NO_COURT = (
+    "Something answers at {at}, but it does not let this program in. Is it a court, and of the "
+    "same version?"
+)
+_NO_KEYS = (
+    "What answers at {at} has no keys, and your invitation is for a court that has. Is it the "
+    "right port, and was the court started with its contest file?"
+)
+_OTHER_CERTIFICATE = (
+    "What answers at {at} can't prove that it is the court of your invitation ({reason}). Do not "
+    "go on; ask the organiser whether the address is right and the invitation the newest."
+)
+_WRONG_NAME = (
+    "The certificate of the court at {at} is not made for the name {host}. Use the name in your "
+    "invitation; an organiser adds one with 'lacoc contest keys --host {host}'."
+)
+_CERTIFICATE_SENTENCES = {  # OpenSSL's X509_V_ERR_..., which Python has no names for
+    9: "The certificate of the court at {at} is not valid yet: is this machine's clock right?",
+    10: "The certificate of the court at {at} has expired, or this machine's clock is wrong. "
+    "An organiser makes new keys with 'lacoc contest keys --renew'.",
+    62: _WRONG_NAME,
+    64: _WRONG_NAME,
+}
 
 
 def _why_not_listening(one: str) -> str:

@@ -38,7 +38,8 @@ _PANELS: Panels = {
     "Study and develop": ("replay", "simulate", "bot"),
 }
 _OTHERS = "Commands of other packages"
-_EXTRAS = {"mujoco": "server"}  # what the base install leaves out -> the extra that has it
+_EXTRAS = {"mujoco": "server", "cryptography": "server"}
+"""What the base install leaves out -> the extra that has it."""
 _COMPLETION = {"install_completion", "show_completion"}  # options of the outermost command alone
 
 

@@ -13,7 +13,10 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
-from lacoc_shared.address import endpoint
+from lacoc_shared.access import Access
+from lacoc_shared.address import check_protocols, endpoint
+from lacoc_shared.address import host as address_host
+from lacoc_shared.key_folder import KeyFolder
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seal import new_token
@@ -23,10 +26,12 @@ T = TypeVar("T")
 
 MAIN = "main"
 """Name of the court where nobody names one."""
-LOOPBACK = "tcp/127.0.0.1:7447"
+LOOPBACK = "127.0.0.1:7447"
 """Where a court listens, and where a client looks for it, if nobody says otherwise."""
 
-_ANY_HOST = ("0.0.0.0", "[::]")  # "every address of this machine": to listen at, not to call
+_ANY_HOST = ("0.0.0.0", "::")  # "every address of this machine": to listen at, not to call
+
+_OTHERS = ("referee", "gateway", "spectators")  # with the seats, all who come to a court
 
 Token = Annotated[str, msgspec.Meta(min_length=12, max_length=64)]
 
@@ -85,6 +90,12 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """The longest delay that makes links equal; 0: none does."""
         return self.input_delay_max_ms if self.input_delay == "equal" else 0
 
+    @property
+    def host(self) -> str:
+        """Where others reach it; "" if it listens at every address and nothing says which."""
+        found = address_host(self.connect or self.listen[0])
+        return "" if found in _ANY_HOST else found
+
     def address(self, any_host: str = "127.0.0.1") -> str:
         """Where a client connects.
 
@@ -92,9 +103,10 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             any_host: the host to name where the court listens at every address of its machine.
         """
         address = self.connect or self.listen[0]
-        for host in _ANY_HOST:
-            address = address.replace(f"/{host}:", f"/{any_host}:")
-        return address
+        if self.host:
+            return address
+        protocol, port = address.partition("/")[0], address.rpartition(":")[2]
+        return f"{protocol}/{any_host}:{port}"
 
 
 class Contest(msgspec.Struct, frozen=True, kw_only=True):
@@ -109,7 +121,14 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """Limits for robots that differ from the defaults of rules 1, by name."""
     health: HealthLimits = HealthLimits()
     """When a replay is advised."""
+    keys: KeyFolder | None = None
+    """What its courts encrypt and let in with; None: by tokens alone, and nothing is encrypted."""
     courts: dict[str, Court]
+
+    @property
+    def protocol(self) -> str:
+        """Of an address that names none."""
+        return "tls" if self.keys else "tcp"
 
     def court(self, name: str | None = None) -> tuple[str, Court]:
         """Find a court with its name; without a name the only one.
@@ -127,17 +146,6 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
         return name, self.courts[name]
 
 
-class Access(msgspec.Struct, frozen=True, kw_only=True):
-    """Where a client goes, and what proves who it is."""
-
-    court: str
-    connect: str
-    seat: str = ""
-    """The seat it holds; "" for a referee or a spectator."""
-    token: str = ""
-    """"" for a spectator."""
-
-
 def load(path: Path) -> Contest:
     """Read a contest file; the paths in it start from its own folder.
 
@@ -145,12 +153,25 @@ def load(path: Path) -> Contest:
         UserError: if it can't be read, or at the first wrong entry; the message names it.
     """
     try:
-        table = read_toml(path.read_bytes())
-    except (OSError, BadToml) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise UserError(
-            f"The contest file {path} can't be read: {reason}. 'lacoc contest init' writes one."
-        ) from None
+        return loads(path.read_bytes(), path)
+    except OSError as error:
+        raise _cannot_read(path, error.strerror) from None
+
+
+def loads(data: bytes, path: Path) -> Contest:
+    """Read what stands in a contest file, or will.
+
+    Args:
+        data: its bytes.
+        path: where it is.
+
+    Raises:
+        UserError: at the first wrong entry.
+    """
+    try:
+        table = read_toml(data)
+    except BadToml as error:
+        raise _cannot_read(path, error) from None
     try:
         return _contest(table, path.resolve().parent)
     except _Wrong as wrong:
@@ -163,7 +184,7 @@ def throwaway(
     """Make a contest of one court with fresh tokens, for a court started without a file."""
     court = Court(
         arena=arena,
-        listen=listen,
+        listen=tuple(map(endpoint, listen)),
         seat={seat: Holder(token=new_token()) for seat in seats},
         referee=Holder(token=new_token()),
     )
@@ -183,7 +204,9 @@ def spectator_access(contest: Contest | None, court: str | None, connect: str | 
     """
     name, entry = _court_of(contest, court)
     address = connect or (entry.address() if entry else LOOPBACK)
-    return Access(court=name, connect=endpoint(address))
+    keys = contest.keys if contest else None
+    address = endpoint(address, contest.protocol if contest else "tcp")
+    return Access(court=name, connect=address, ca=keys.read(keys.ca) if keys else "")
 
 
 def seat_access(
@@ -216,7 +239,7 @@ def seat_access(
     token = token or (seats[seat].token if seat in seats else None)
     if token is None:
         raise UserError(_no_token(f"seat {seat!r}"))
-    return msgspec.structs.replace(access, seat=seat, token=token)
+    return access.of_seat(seat, token)
 
 
 def referee_access(
@@ -232,7 +255,34 @@ def referee_access(
     token = token or (entry.referee.token if entry else None)
     if token is None:
         raise UserError(_no_token("the referee"))
-    return msgspec.structs.replace(access, token=token)
+    return access.of_referee(token)
+
+
+def gateway_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
+    """Find the way to a court for a gateway; arguments and errors as for a spectator."""
+    access = spectator_access(contest, court, connect)
+    keys = contest.keys if contest else None
+    return access.of_gateway(keys.read(keys.gateway_token).strip()) if keys else access
+
+
+def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict[str, Access]:
+    """Find the way of each person to a court with keys: the seats, the referee, others.
+
+    Args:
+        contest: a contest with keys.
+        court: the court's name.
+        any_host: the host to name where the court listens at every address of its machine.
+
+    Raises:
+        UserError: if its keys can't be read.
+    """
+    entry = contest.courts[court]
+    address = entry.address(any_host)
+    watching = spectator_access(contest, court, address)
+    seats = {seat: watching.of_seat(seat, holder.token) for seat, holder in entry.seat.items()}
+    referee = watching.of_referee(entry.referee.token)
+    others = (referee, gateway_access(contest, court, address), watching)
+    return seats | dict(zip(_OTHERS, others, strict=True))
 
 
 def join_lines(name: str, court: Court, any_host: str = "HOST") -> dict[str, str]:
@@ -255,14 +305,33 @@ def join_lines(name: str, court: Court, any_host: str = "HOST") -> dict[str, str
     }
 
 
+def invitation_lines(everybody: dict[str, Access]) -> dict[str, str]:
+    """Write the command line for each person who has an invitation beside them.
+
+    Args:
+        everybody: the way of each, by the person.
+    """
+    commands = {"seat": "play", "referee": "referee status", "gateway": "web"}
+    return {
+        who: f"lacoc {commands.get(access.role, 'watch')} --invitation {access.user}.toml"
+        for who, access in everybody.items()
+    }
+
+
 def _court_of(contest: Contest | None, court: str | None) -> tuple[str, Court | None]:
     return (court or MAIN, None) if contest is None else contest.court(court)
 
 
 def _no_token(whose: str) -> str:
     return (
-        f"The token of {whose} is missing. Give --token or set LACOC_TOKEN; "
+        f"The token of {whose} is missing. Give --invitation, --token or set LACOC_TOKEN; "
         "the organiser has it ('lacoc contest show' prints it)."
+    )
+
+
+def _cannot_read(path: Path, reason: object) -> UserError:
+    return UserError(
+        f"The contest file {path} can't be read: {reason}. 'lacoc contest init' writes one."
     )
 
 
@@ -277,6 +346,7 @@ class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     name: str = "Contest"
     recordings: _PathText = "recordings"
     robot: str = "hexapod"
+    keys: _PathText | None = None
 
 
 class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -289,17 +359,22 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 def _contest(table: dict[str, Any], folder: Path) -> Contest:
     file = _convert(table, _File, "")
     general = _convert(file.contest, _General, "contest")
+    keys = None if general.keys is None else KeyFolder(folder / general.keys)
     return Contest(
         name=general.name,
         recordings=folder / general.recordings,
         robot=_beside(folder, general.robot),
         limits={name: _limit(name, value) for name, value in file.limits.items()},
         health=_convert(file.health, HealthLimits, "health"),
-        courts={name: _court(name, entry, folder) for name, entry in file.court.items()},
+        keys=keys,
+        courts={
+            name: _court(name, entry, folder, keys is not None)
+            for name, entry in file.court.items()
+        },
     )
 
 
-def _court(name: str, table: Any, folder: Path) -> Court:
+def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
     where = f"court.{name}"
     entries = _convert(table, dict[str, Any], where)
     seats = _convert(entries.get("seat", {}), dict[str, Any], f"{where}.seat")
@@ -308,13 +383,19 @@ def _court(name: str, table: Any, folder: Path) -> Court:
     tokens = [court.referee.token, *(holder.token for holder in holders.values())]
     if len(set(tokens)) < len(tokens):
         raise _Wrong(f"[{where}]: two places have the same token; each needs its own.")
+    if taken := set(holders) & set(_OTHERS):
+        raise _Wrong(f"[{where}.seat]: a seat can't be called {taken.pop()!r}.")
+    protocol = "tls" if keys else "tcp"
     try:
         Keys(name)
+        listen = tuple(endpoint(one, protocol) for one in court.listen)
+        connect = court.connect and endpoint(court.connect, protocol)
+        check_protocols([*listen, connect] if connect else listen, keys=keys)
         return msgspec.structs.replace(
             court,
             arena=_beside(folder, court.arena),
-            listen=tuple(map(endpoint, court.listen)),
-            connect=court.connect and endpoint(court.connect),
+            listen=listen,
+            connect=connect,
             seat=holders,
         )
     except UserError as error:

@@ -5,9 +5,13 @@ clients, unlimited messages, blocking sends, peers that go round the access rule
 This is the one place where they are set right.
 """
 
+import base64
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
+from lacoc_shared.access import Credentials
+from lacoc_shared.access_rules import Protection, access_control
 from lacoc_shared.keyspace import COMMAND_MAX_BYTES, DECISION_MAX_BYTES, JOIN_MAX_BYTES
 
 Config = dict[str, Any]
@@ -24,18 +28,22 @@ _CLIENT_MAX_BYTES = 1 << 20  # a scene is far above what a court needs to take i
 _LEASE_MS = 3000
 
 
-def court_config(listen: Sequence[str]) -> Config:
+def court_config(
+    listen: Sequence[str], protection: Protection | None = None, users: Path | None = None
+) -> Config:
     """The configuration of a court's own session.
 
     Args:
         listen: complete addresses.
+        protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
+        users: file of the users' passwords, which Zenoh reads when it opens.
     """
     return {
         **_common("router"),
         "listen": {"endpoints": list(listen)},
         # Read by the court itself, to learn the port it got; the access rules deny it to others.
         "adminspace": {"enabled": True, "permissions": {"read": True, "write": False}},
-        "access_control": _access(),
+        "access_control": access_control(protection),
         "low_pass_filter": [
             _limit("commands", "lacoc/*/seat/*/key", COMMAND_MAX_BYTES),
             _limit("ready", "lacoc/*/seat/*/ready", COMMAND_MAX_BYTES),
@@ -43,7 +51,8 @@ def court_config(listen: Sequence[str]) -> Config:
             _limit("decisions", "lacoc/*/referee/*", DECISION_MAX_BYTES),
             _limit("joins", "lacoc/*/seat/*/join", JOIN_MAX_BYTES),
         ],
-        "transport": _transport(JOIN_MAX_BYTES + _HEADERS_BYTES)
+        "transport": _transport(JOIN_MAX_BYTES + _HEADERS_BYTES, _court_tls(protection))
+        | _court_users(users)
         | {
             # Connections that never say anything must not keep others waiting.
             "unicast": {"max_sessions": 800, "accept_pending": 1000, "accept_timeout": 3000}
@@ -51,12 +60,15 @@ def court_config(listen: Sequence[str]) -> Config:
     }
 
 
-def client_config(connect: Sequence[str], timeout_s: float) -> Config:
+def client_config(
+    connect: Sequence[str], timeout_s: float, credentials: Credentials | None = None
+) -> Config:
     """The configuration of everyone who is not a court.
 
     Args:
         connect: complete addresses; the first that answers is taken.
         timeout_s: how long the first connection may take; later ones are tried for ever.
+        credentials: for a court with keys.
     """
     return {
         **_common("client"),
@@ -66,7 +78,8 @@ def client_config(connect: Sequence[str], timeout_s: float) -> Config:
             # A court that comes back is found within half a second.
             "retry": {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 1.5},
         },
-        "transport": _transport(_CLIENT_MAX_BYTES),
+        "transport": _transport(_CLIENT_MAX_BYTES, _client_tls(credentials))
+        | _client_user(credentials),
     }
 
 
@@ -78,7 +91,31 @@ def _common(mode: str) -> Config:
     }
 
 
-def _transport(max_message_bytes: int) -> Config:
+def _court_tls(protection: Protection | None) -> Config:
+    if protection is None:
+        return {}
+    certificate, key = str(protection.certificate), str(protection.private_key)
+    return {"tls": {"listen_certificate": certificate, "listen_private_key": key}}
+
+
+def _court_users(users: Path | None) -> Config:
+    return {} if users is None else {"auth": {"usrpwd": {"dictionary_file": str(users)}}}
+
+
+def _client_tls(credentials: Credentials | None) -> Config:
+    if credentials is None:
+        return {}
+    ca = base64.b64encode(credentials.ca.encode()).decode()
+    return {"tls": {"root_ca_certificate_base64": ca}}
+
+
+def _client_user(credentials: Credentials | None) -> Config:
+    if credentials is None:
+        return {}
+    return {"auth": {"usrpwd": {"user": credentials.user, "password": credentials.password}}}
+
+
+def _transport(max_message_bytes: int, tls: Config) -> Config:
     return {
         # Shared memory ends at 351 clients and leaves litter behind killed ones.
         "shared_memory": {"enabled": False},
@@ -90,6 +127,7 @@ def _transport(max_message_bytes: int) -> Config:
                 "queue": {"congestion_control": {"block": {"wait_before_close": 200_000}}},
             },
             "rx": {"max_message_size": max_message_bytes},
+            **tls,
         },
     }
 
@@ -101,53 +139,4 @@ def _limit(name: str, key_expression: str, max_bytes: int) -> Config:
         "messages": ["put", "delete", "query"],
         "key_exprs": [key_expression],
         "size_limit": max_bytes,
-    }
-
-
-def _access() -> Config:
-    """Access rules: all that is not allowed is denied, so nobody but the court sends frames."""
-    # A wildcard does not cover the @ of a history: it is named.
-    histories = ["lacoc/*/event/@adv/**", "lacoc/*/sheet/@adv/**"]
-    rules = {
-        "court-to-all": _rule(
-            "egress",
-            ["lacoc/**", *histories],
-            [
-                *("put", "delete", "reply", "query", "declare_subscriber", "declare_queryable"),
-                *("liveliness_token", "liveliness_query", "declare_liveliness_subscriber"),
-            ],
-        ),
-        "watch": _rule(
-            "ingress",
-            [*(f"lacoc/*/{what}" for what in ("frame", "event", "sheet", "health")), *histories],
-            ["declare_subscriber"],
-        ),
-        "fetch": _rule(
-            "ingress",
-            [*(f"lacoc/*/{what}" for what in ("sheet", "scene", "event/**")), *histories],
-            ["query"],
-        ),
-        "presence": _rule(
-            "ingress",
-            ["lacoc/*/live/**", *histories],
-            ["liveliness_query", "declare_liveliness_subscriber"],
-        ),
-        "command": _rule("ingress", ["lacoc/*/seat/*/key"], ["put"]),
-        "request": _rule("ingress", ["lacoc/*/seat/*/*", "lacoc/*/referee/*"], ["query"]),
-    }
-    return {
-        "enabled": True,
-        "default_permission": "deny",
-        "rules": [{"id": name, **rule} for name, rule in rules.items()],
-        "subjects": [{"id": "anyone"}],
-        "policies": [{"rules": list(rules), "subjects": ["anyone"]}],
-    }
-
-
-def _rule(flow: str, key_expressions: list[str], messages: list[str]) -> Config:
-    return {
-        "permission": "allow",
-        "flows": [flow],
-        "key_exprs": key_expressions,
-        "messages": messages,
     }

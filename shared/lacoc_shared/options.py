@@ -19,6 +19,15 @@ ContestFile = Annotated[
         help="Contest file: says what is left open here (see 'lacoc contest').",
     ),
 ]
+Invitation = Annotated[
+    Path | None,
+    typer.Option(
+        "--invitation",
+        envvar="LACOC_INVITATION",
+        metavar="FILE",
+        help="Your invitation, from the organiser: it says court, address, seat and token.",
+    ),
+]
 CourtName = Annotated[
     str | None,
     typer.Option(

@@ -14,6 +14,7 @@ MAC_BYTES = 8
 SECRET_BYTES = 16
 _SALT_BYTES = 16
 _HASH_BYTES = 32
+_PASSWORD_BYTES = 20
 
 
 def new_token() -> str:
@@ -49,6 +50,15 @@ def verify_token(token: str, token_hash: str) -> bool:
         return hmac.compare_digest(_hash(token, bytes.fromhex(salt)), bytes.fromhex(digest))
     except ValueError:
         return False
+
+
+def password(user: str, token: str) -> str:
+    """The password of a user of the network, made from the token: 40 hexadecimal digits.
+
+    It says nothing of the token, and that of another user says nothing of it.
+    """
+    data = f"{user} {token}".encode("utf-8", "surrogatepass")
+    return hashlib.blake2b(data, digest_size=_PASSWORD_BYTES, person=b"lacoc password").hexdigest()
 
 
 def command_mac(

@@ -9,10 +9,13 @@ project imports zenoh.
 import atexit
 import json
 import os
+import tempfile
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import zenoh
@@ -20,6 +23,8 @@ import zenoh.ext
 from zenoh.handlers import Callback, RingChannel
 
 from lacoc_shared import address, network_config
+from lacoc_shared.access import Credentials
+from lacoc_shared.access_rules import Protection
 from lacoc_shared.mistakes import UserError
 
 
@@ -251,24 +256,30 @@ class Session:
         return tuple(found)
 
 
-def open_court(listen: Sequence[str]) -> Session:
+def open_court(listen: Sequence[str], protection: Protection | None = None) -> Session:
     """Open a court's session: the router that everyone else connects to.
 
     Args:
         listen: addresses to listen on; port 0 takes a free one (see `Session.locators`).
+        protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
 
     Raises:
         UserError: if one of them can't be listened on; the message says why.
     """
     os.environ.setdefault("ZENOH_RUNTIME", network_config.RUNTIME_POOLS)
-    endpoints = [address.endpoint(one) for one in listen]
+    endpoints = [address.endpoint(one, "tls" if protection else "tcp") for one in listen]
+    address.check_protocols(endpoints, keys=protection is not None)
     try:
-        return Session(_open(network_config.court_config(endpoints)), endpoints)
+        with _user_file(protection) as users:
+            config = network_config.court_config(endpoints, protection, users)
+            return Session(_open(config), endpoints)
     except zenoh.ZError as error:
         raise UserError(address.why_not_listening(endpoints, error)) from None
 
 
-def open_client(connect: Sequence[str], timeout_s: float = 2.0) -> Session:
+def open_client(
+    connect: Sequence[str], timeout_s: float = 2.0, credentials: Credentials | None = None
+) -> Session:
     """Open the session of a controller, referee, spectator or gateway.
 
     It stays open when the court goes away, and connects again by itself.
@@ -276,16 +287,34 @@ def open_client(connect: Sequence[str], timeout_s: float = 2.0) -> Session:
     Args:
         connect: addresses of a court; the first that answers is taken.
         timeout_s: how long to try.
+        credentials: for a court with keys.
 
     Raises:
         UserError: if there is no connection; the message says why.
     """
-    endpoints = [address.endpoint(one) for one in connect]
+    endpoints = [address.endpoint(one, "tls" if credentials else "tcp") for one in connect]
+    address.check_protocols(endpoints, keys=credentials is not None)
     address.check_names(endpoints)
     try:
-        return Session(_open(network_config.client_config(endpoints, timeout_s)), endpoints)
+        config = network_config.client_config(endpoints, timeout_s, credentials)
+        return Session(_open(config), endpoints)
     except zenoh.ZError:
-        raise UserError(address.why_not_connected(endpoints)) from None
+        ca = credentials.ca if credentials else ""
+        raise UserError(address.why_not_connected(endpoints, ca)) from None
+
+
+@contextmanager
+def _user_file(protection: Protection | None) -> Iterator[Path | None]:
+    """The passwords as a file, for as long as Zenoh needs to read it."""
+    if protection is None:
+        yield None
+        return
+    with tempfile.TemporaryDirectory(prefix="lacoc-") as folder:  # its owner's alone
+        users = Path(folder, "users")
+        lines = [f"{user}:{password}\n" for user, password in protection.passwords.items()]
+        with open(users, "x", opener=lambda name, flags: os.open(name, flags, 0o600)) as file:
+            file.writelines(lines)
+        yield users
 
 
 def _open(config: dict[str, Any]) -> zenoh.Session:

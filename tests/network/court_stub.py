@@ -11,6 +11,7 @@ from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.inbox import Inbox
 from lacoc_server.network import CourtNetwork, Outcome
 from lacoc_shared import seal
+from lacoc_shared.access_rules import Protection
 from lacoc_shared.codec import encode, scene_hash
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat
 from lacoc_shared.keyspace import Keys
@@ -37,7 +38,7 @@ KEYS = Keys("main")
 SEATS = ("left", "right")
 TOKENS = {"left": "token of left", "right": "token of right"}
 HASHES = {seat: seal.hash_token(token) for seat, token in TOKENS.items()}
-WHISTLE = "whistle"
+WHISTLE = "the referee's whistle"
 WRONG = SentFile("mine.txt", b"wrong")
 
 
@@ -72,10 +73,16 @@ class CourtStub:
     Digit 9 and a team called "Nobody" are refused by its match.
     """
 
-    def __init__(self, listen: str = "127.0.0.1:0", **restored: Any) -> None:
+    def __init__(
+        self,
+        listen: str = "127.0.0.1:0",
+        protection: Protection | None = None,
+        **restored: Any,
+    ) -> None:
         token_hashes = restored.pop("token_hashes", HASHES)
         inbox = Inbox(KEYS, SEATS, token_hashes, check_files, **restored)
-        self.network = CourtNetwork(KEYS, [listen], inbox, DecisionDesk([seal.hash_token(WHISTLE)]))
+        desk = DecisionDesk([seal.hash_token(WHISTLE)])
+        self.network = CourtNetwork(KEYS, [listen], inbox, desk, protection)
         self.inputs: list[Input] = []
         self.scene = make_scene("empty")
         self.silent = False

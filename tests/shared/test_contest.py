@@ -171,7 +171,7 @@ def test_access_without_a_file(file: Path) -> None:
     access = contests.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
 
     assert access == contests.Access(
-        court="main", connect="tcp/10.0.0.7:7447", seat="left", token="t" * 20
+        court="main", connect="tcp/10.0.0.7:7447", role="seat", seat="left", token="t" * 20
     )
     assert contests.spectator_access(None, None, None).connect == "tcp/127.0.0.1:7447"
     with pytest.raises(UserError, match=r"seat 'left'.*--token.*LACOC_TOKEN"):

@@ -34,6 +34,7 @@ def bot_command(
             "'ghost:RECORD.mcap:left', which presses the keys of a recorded match again."
         ),
     ],
+    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -67,9 +68,12 @@ def bot_command(
     It ends with Ctrl-C, or when the court is gone for two minutes. A bot is a Python file with a
     function bot(sheet, seat) that returns a function from a frame to a key.
     """
-    access = entrance.seat(contest, court, connect, seat, token)
+    access = entrance.seat(invitation, contest, court, connect, seat, token)
     files, own_team = _brings(name, robot, gait or [])
-    with open_client([access.connect]) as session, stop_signals() as stopping:
+    with (
+        open_client([access.connect], credentials=access.credentials) as session,
+        stop_signals() as stopping,
+    ):
         controller = Controller(
             session,
             access.court,

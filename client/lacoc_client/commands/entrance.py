@@ -2,13 +2,14 @@
 
 from pathlib import Path
 
-import msgspec
-
 from lacoc_shared import contest as contests
-from lacoc_shared.contest import Access, Contest
+from lacoc_shared.access import Access, Role, read_invitation
+from lacoc_shared.contest import Contest
+from lacoc_shared.mistakes import UserError
 
 
 def seat(
+    invitation: Path | None,
     contest: Path | None,
     court: str | None,
     connect: str | None,
@@ -18,12 +19,15 @@ def seat(
     """Find the way to a seat; see `contest.seat_access`.
 
     Raises:
-        UserError: if the contest file is wrong, or something is missing.
+        UserError: if the contest file or the invitation is wrong, or something is missing.
     """
+    if invitation is not None:
+        return _invited(invitation, "seat", contest, court, connect, seat, token)
     return contests.seat_access(_load(contest), court, connect, seat, token)
 
 
 def perhaps_seat(
+    invitation: Path | None,
     contest: Path | None,
     court: str | None,
     connect: str | None,
@@ -33,8 +37,10 @@ def perhaps_seat(
     """Find the way to a court, and to a seat as far as it is known: a page asks for the rest.
 
     Raises:
-        UserError: if the contest file is wrong.
+        UserError: if the contest file or the invitation is wrong.
     """
+    if invitation is not None:
+        return _invited(invitation, "seat", contest, court, connect, seat, token)
     plan = _load(contest)
     access = contests.spectator_access(plan, court, connect)
     seats = plan.court(court)[1].seat if plan else {}
@@ -42,27 +48,63 @@ def perhaps_seat(
         seat = next(iter(seats))
     if token is None and seat in seats:
         token = seats[seat].token
-    return msgspec.structs.replace(access, seat=seat or "", token=token or "")
+    return access.of_seat(seat or "", token or "")
 
 
 def referee(
-    contest: Path | None, court: str | None, connect: str | None, token: str | None
+    invitation: Path | None,
+    contest: Path | None,
+    court: str | None,
+    connect: str | None,
+    token: str | None,
 ) -> Access:
     """Find the way to a court for its referee; see `contest.referee_access`.
 
     Raises:
-        UserError: if the contest file is wrong, or something is missing.
+        UserError: if the contest file or the invitation is wrong, or something is missing.
     """
+    if invitation is not None:
+        return _invited(invitation, "referee", contest, court, connect, token)
     return contests.referee_access(_load(contest), court, connect, token)
 
 
-def spectator(contest: Path | None, court: str | None, connect: str | None) -> Access:
-    """Find the way to a court for somebody who only watches; see `contest.spectator_access`.
+def spectator(
+    invitation: Path | None, contest: Path | None, court: str | None, connect: str | None
+) -> Access:
+    """Find the way to a court for somebody who only watches; any invitation will do.
 
     Raises:
-        UserError: if the contest file is wrong.
+        UserError: if the contest file or the invitation is wrong.
     """
+    if invitation is not None:
+        return _invited(invitation, None, contest, court, connect).watching()
     return contests.spectator_access(_load(contest), court, connect)
+
+
+def gateway(
+    invitation: Path | None, contest: Contest | None, court: str | None, connect: str | None
+) -> Access:
+    """Find the way to a court for a gateway; with somebody else's invitation it watches.
+
+    Raises:
+        UserError: if the invitation or the contest's keys can't be read.
+    """
+    if invitation is not None:
+        access = _invited(invitation, None, contest, court, connect)
+        return access if access.role == "gateway" else access.watching()
+    return contests.gateway_access(contest, court, connect)
+
+
+def _invited(path: Path, role: Role | None, *others: object) -> Access:
+    if any(other is not None for other in others):
+        raise UserError(
+            "An invitation says court, address, seat and token: leave --contest, --court, "
+            "--connect, --seat and --token out, and their LACOC_ variables."
+        )
+    access = read_invitation(path)
+    if role is not None and access.role != role:
+        raise UserError(f"{path} is an invitation for the {access.role}, not for a {role}.")
+    return access
 
 
 def _load(path: Path | None) -> Contest | None:

@@ -16,7 +16,7 @@ from lacoc_client.stopping import stop_signals
 from lacoc_client.terminal_keys import open_keys
 from lacoc_client.terminal_play import TerminalPlay, keys_table
 from lacoc_shared import options, screen
-from lacoc_shared.contest import Access
+from lacoc_shared.access import Access
 from lacoc_shared.gait import Level
 from lacoc_shared.session import open_client
 
@@ -48,6 +48,7 @@ _SHEET_S = 2.0
 
 @app.command(name="play")
 def play_command(
+    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -77,11 +78,11 @@ def play_command(
     After the last one its key stands until the match is over.
     """
     if terminal:
-        access = entrance.seat(contest, court, connect, seat, token)
+        access = entrance.seat(invitation, contest, court, connect, seat, token)
         files = choose_files(robot, gait or [])
         play(access, name or f"Team {access.seat}", files, ready=ready)
         return
-    access = entrance.perhaps_seat(contest, court, connect, seat, token)
+    access = entrance.perhaps_seat(invitation, contest, court, connect, seat, token)
     prefill = Prefill(access.seat, access.token, name, choose_files(robot, gait or []))
     home = player_home(access, prefill, "player", None)
     pages.show_page(home, f"/play#key={home.key}", browser)
@@ -116,7 +117,7 @@ def play(
         FileRefused: if the court finds mistakes in the files.
         UserError: if the court refuses, does not answer, or the seat is lost.
     """
-    with open_client([access.connect]) as session:
+    with open_client([access.connect], credentials=access.credentials) as session:
         controller = Controller(
             session, access.court, access.seat, access.token, team, **files._asdict()
         )

@@ -18,7 +18,7 @@ from lacoc_client.commands import pages
 from lacoc_client.commands.play import Gaits, Robot, TeamName, choose_files, play
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles
-from lacoc_shared.contest import Access
+from lacoc_shared.access import Access
 from lacoc_shared.mistakes import UserError
 
 app = typer.Typer()
@@ -95,7 +95,8 @@ def _court(folder: Path, recordings: Path) -> Iterator[Access]:
     try:
         opened = _opened(court, said, complained)
         ((seat, token),) = opened["tokens"].items()
-        yield Access(court=opened["court"], connect=opened["locators"][0], seat=seat, token=token)
+        access = Access(court=opened["court"], connect=opened["locators"][0])
+        yield access.of_seat(seat, token)
     finally:
         court.terminate()
         try:

@@ -24,7 +24,7 @@ from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_client.stopping import stop_signals
 from lacoc_shared import options, screen
-from lacoc_shared.contest import Access
+from lacoc_shared.access import Access
 from lacoc_shared.decisions import DECISIONS, Decision
 from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
 from lacoc_shared.mistakes import UserError
@@ -90,6 +90,7 @@ _COMMON: dict[str, tuple[Any, Any]] = {
         ],
         None,
     ),
+    "invitation": (options.Invitation, None),
     "contest": (options.ContestFile, None),
     "court": (options.CourtName, None),
     "connect": (options.Connect, None),
@@ -143,6 +144,7 @@ for _name, _kind in DECISIONS.items():
 
 @app.command(rich_help_panel="Look")
 def status(
+    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -150,7 +152,8 @@ def status(
     json: options.Json = False,
 ) -> None:
     """Show phase, clock, score, links, and which decisions are legal."""
-    with open_client([(access := entrance.spectator(contest, court, connect)).connect]) as session:
+    access = entrance.spectator(invitation, contest, court, connect)
+    with open_client([access.connect], credentials=access.credentials) as session:
         view = Spectator(session, access.court)
         frame, health = _look(view)
         if json:
@@ -162,6 +165,7 @@ def status(
 
 @app.command(rich_help_panel="Look")
 def log(
+    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -172,8 +176,8 @@ def log(
     json: options.Json = False,
 ) -> None:
     """List the events of the match with their numbers; --json: one object a line."""
-    access = entrance.spectator(contest, court, connect)
-    with open_client([access.connect]) as session:
+    access = entrance.spectator(invitation, contest, court, connect)
+    with open_client([access.connect], credentials=access.credentials) as session:
         view = Spectator(session, access.court)
         events = _history(view)
         if json:
@@ -205,7 +209,7 @@ def _decide(
     **where: Any,
 ) -> None:
     access = entrance.referee(**where)
-    with open_client([access.connect]) as session:
+    with open_client([access.connect], credentials=access.credentials) as session:
         referee = RefereeClient(session, access.court, access.token)
         if wait is None:
             reply = referee.decide(decision, reason, by or _default_name())

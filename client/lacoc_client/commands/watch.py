@@ -32,6 +32,7 @@ _ENDED = (Phase.OFFICIAL, Phase.VOID)
 
 @app.command(name="watch")
 def watch_command(
+    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -60,11 +61,14 @@ def watch_command(
     A page opens in your browser. In the terminal and with --json it ends when the result is
     official or the match is void. Anybody may watch; it needs no token.
     """
-    access = entrance.spectator(contest, court, connect)
+    access = entrance.spectator(invitation, contest, court, connect)
     if not (terminal or board or json):
-        pages.show_page(Home({access.court: access.connect}, "player"), "/watch", browser)
+        pages.show_page(Home({access.court: access}, "player"), "/watch", browser)
         return
-    with open_client([access.connect]) as session, stop_signals() as stopping:
+    with (
+        open_client([access.connect], credentials=access.credentials) as session,
+        stop_signals() as stopping,
+    ):
         view = Spectator(session, access.court)
         end = _End(view, forever, stopping)
         if json:

@@ -6,11 +6,13 @@ from typing import Annotated
 
 import typer
 
+from lacoc_client.commands import entrance
 from lacoc_client.gateway import server
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import VIEWERS_MOST, Home, lasting_key, new_key
 from lacoc_shared import contest as contests
 from lacoc_shared import log, options, screen
+from lacoc_shared.access import Access
 from lacoc_shared.contest import Contest
 from lacoc_shared.metrics import Exporter
 from lacoc_shared.mistakes import UserError
@@ -22,6 +24,7 @@ _KEY_LEAST = 12
 
 @app.command(name="web")
 def web_command(
+    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -74,7 +77,7 @@ def web_command(
     plan = None if contest is None else contests.load(contest)
     exporter = Exporter(metrics) if metrics else None
     home = Home(
-        courts=_courts(plan, court, connect),
+        courts=_courts(invitation, plan, court, connect),
         recordings=recordings or (plan.recordings if plan else Path("recordings")),
         names=frozenset(host or ()),
         viewers_most=viewers,
@@ -103,12 +106,14 @@ def web_command(
         server.run(home, port, ready)
 
 
-def _courts(plan: Contest | None, court: str | None, connect: str | None) -> dict[str, str]:
-    """The address of each court: one that was named, or all of the contest."""
+def _courts(
+    invitation: Path | None, plan: Contest | None, court: str | None, connect: str | None
+) -> dict[str, Access]:
+    """The way to each court: one that was named, or all of the contest."""
     if plan is None or court is not None or connect is not None or len(plan.courts) == 1:
-        access = contests.spectator_access(plan, court, connect)
-        return {access.court: access.connect}
-    return {name: contests.spectator_access(plan, name, None).connect for name in plan.courts}
+        access = entrance.gateway(invitation, plan, court, connect)
+        return {access.court: access}
+    return {name: entrance.gateway(invitation, plan, name, None) for name in plan.courts}
 
 
 def _key(plan: Contest | None, key: str | None) -> str:

@@ -14,6 +14,7 @@ from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import Frames, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared import log
+from lacoc_shared.access import Access
 from lacoc_shared.codec import BadMessage, decode, scene_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event
@@ -58,14 +59,13 @@ class CourtFeed:
     It may be made before there is a court, and outlives any number of its restarts.
 
     Args:
-        court: the court's name.
-        connect: its address.
+        access: the way to the court, for somebody who watches.
         threads: where it asks the court.
     """
 
-    def __init__(self, court: str, connect: str, threads: Threads) -> None:
-        self.court = court
-        self.connect = connect
+    def __init__(self, access: Access, threads: Threads) -> None:
+        self.access = access
+        self.court = court = access.court
         self.session: Session | None = None
         """The connection; None until there was one."""
         self._keys = Keys(court)
@@ -153,7 +153,9 @@ class CourtFeed:
     async def _run(self) -> None:
         while self.session is None:
             try:
-                self.session = await self._threads.run(lambda: open_client([self.connect]))
+                self.session = await self._threads.run(
+                    lambda: open_client([self.access.connect], credentials=self.access.credentials)
+                )
                 self._subscribe(self.session)
             except UserError as error:
                 self._why = str(error)
@@ -189,7 +191,7 @@ class CourtFeed:
         text = ""
         if not self._connected:
             text = self._wrong_version or self._why
-            text = text or f"Waiting for court {self.court!r} at {self.connect}."
+            text = text or f"Waiting for court {self.court!r} at {self.access.connect}."
         return wire.map_message(
             Kind.LINK,
             {

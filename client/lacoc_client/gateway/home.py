@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Literal
 
 from lacoc_client.seat_files import SeatFiles
-from lacoc_shared.contest import Access, Contest
+from lacoc_shared.access import Access
+from lacoc_shared.contest import Contest
 from lacoc_shared.metrics import Exporter
 
 Kind = Literal["venue", "player", "practice"]
@@ -37,8 +38,8 @@ class Prefill:
 class Home:
     """A gateway's settings."""
 
-    courts: dict[str, str]
-    """Address of each court by its name; the first is shown where a page names none."""
+    courts: dict[str, Access]
+    """The way to each court by its name; the first is shown where a page names none."""
     kind: Kind = "venue"
     prefill: Prefill | None = None
     recordings: Path | None = None
@@ -64,4 +65,4 @@ def lasting_key(contest: Contest) -> str:
 
 def player_home(access: Access, prefill: Prefill, kind: Kind, recordings: Path | None) -> Home:
     """The gateway of one person at one court."""
-    return Home({access.court: access.connect}, kind, prefill, recordings)
+    return Home({access.court: access.watching()}, kind, prefill, recordings)

@@ -11,7 +11,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.feed import CourtFeed
 from lacoc_client.gateway.home import Home
-from lacoc_client.gateway.referees import Referees
+from lacoc_client.gateway.referees import Referees, as_referee
 from lacoc_client.gateway.seat import SeatThread
 from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import MOST_HZ, USUAL_HZ, Viewer
@@ -19,8 +19,8 @@ from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
 from lacoc_client.seat_files import SeatFiles
 from lacoc_shared import __version__
+from lacoc_shared.access import Access
 from lacoc_shared.codec import BadMessage
-from lacoc_shared.contest import Access
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import FileRefused, UserError
 
@@ -78,7 +78,7 @@ class Courts:
         if name not in courts:
             raise UserError(f"There is no court {name!r} here; there is {', '.join(courts)}.")
         if name not in self._feeds:
-            feed = CourtFeed(name, courts[name], self.threads)
+            feed = CourtFeed(courts[name], self.threads)
             self._feeds[name] = (feed, Referees())
             feed.start()
         return self._feeds[name]
@@ -285,8 +285,7 @@ class Page:
             token, name = token or prefill.token, name or prefill.name
         if not token:
             raise UserError("The token is missing: the organiser has it.")
-        access = Access(court=feed.court, connect=feed.connect, seat=asked.seat, token=token)
-        return access, name or f"Team {asked.seat}", files
+        return feed.access.of_seat(asked.seat, token), name or f"Team {asked.seat}", files
 
     def _steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk) -> None:
         self._acting()
@@ -307,17 +306,19 @@ class Page:
             raise UserError("Say who you are: it stands in the record.")
         if feed.session is None:
             raise UserError(f"Court {feed.court!r} is not there yet.")
-        client = RefereeClient(feed.session, feed.court, asked.token)
-        await self._courts.threads.run(client.enter)
+        access = feed.access.of_referee(asked.token)
+        await self._courts.threads.run(lambda: as_referee(access, RefereeClient.enter))
         if referees is self._referees:  # it may have gone to another court meanwhile
-            referees.enter(self._viewer, client, by)
+            referees.enter(self._viewer, access, by)
             self._log(f"{by} sits down as a referee.", "referee", by=by)
         return {}
 
     async def _decide(self, asked: wire.DecideAsk, referees: Referees) -> Any:
-        client, by = referees.acting(self._viewer)
+        access, by = referees.acting(self._viewer)
         return await self._courts.threads.run(
-            lambda: client.decide(asked.decision, asked.reason, by)
+            lambda: as_referee(
+                access, lambda client: client.decide(asked.decision, asked.reason, by)
+            )
         )
 
     def _start(self, to: int, work: Coroutine[Any, Any, Any]) -> None:

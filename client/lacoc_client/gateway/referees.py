@@ -1,22 +1,42 @@
 """Who acts as referee at a court through this gateway: one page, the others watch."""
 
+from collections.abc import Callable
+from typing import TypeVar
+
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
+from lacoc_shared.access import Access
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.session import open_client
+
+T = TypeVar("T")
+
+
+def as_referee(access: Access, do: Callable[[RefereeClient], T]) -> T:
+    """Ask a court something with a referee's own credentials.
+
+    The connection is made for this alone: a decision is rare, and so no gateway keeps a
+    connection that can decide.
+
+    Raises:
+        UserError: if the court refuses, or does not let it in.
+    """
+    with open_client([access.connect], credentials=access.credentials) as session:
+        return do(RefereeClient(session, access.court, access.token))
 
 
 class Referees:
     """The pages that have entered with a referee's token; used from the event loop only."""
 
     def __init__(self) -> None:
-        self._entered: dict[Viewer, tuple[RefereeClient, str]] = {}
+        self._entered: dict[Viewer, tuple[Access, str]] = {}
         self._acting: Viewer | None = None
 
-    def enter(self, viewer: Viewer, client: RefereeClient, by: str) -> None:
+    def enter(self, viewer: Viewer, access: Access, by: str) -> None:
         """A page has shown a token; it acts if nobody does."""
-        self._entered[viewer] = (client, by)
+        self._entered[viewer] = (access, by)
         self._act(self._acting or viewer)
 
     def take_over(self, viewer: Viewer) -> None:
@@ -29,7 +49,7 @@ class Referees:
             raise UserError("Enter with the referee's token first.")
         self._act(viewer)
 
-    def acting(self, viewer: Viewer) -> tuple[RefereeClient, str]:
+    def acting(self, viewer: Viewer) -> tuple[Access, str]:
         """What a page decides with, and in whose name.
 
         Raises:

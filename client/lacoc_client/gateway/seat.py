@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from lacoc_client.controller import REPEAT_S, Controller, Hold
 from lacoc_client.gateway.wire import FAULT
 from lacoc_client.seat_files import SeatFiles, as_text
-from lacoc_shared.contest import Access
+from lacoc_shared.access import Access
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.session import open_client
 
@@ -84,7 +84,7 @@ class SeatThread:
     def _run(self, joined: Answer) -> None:
         access = self._access
         try:
-            with open_client([access.connect]) as session:
+            with open_client([access.connect], credentials=access.credentials) as session:
                 controller = Controller(
                     session,
                     access.court,

@@ -16,6 +16,7 @@ from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.entry import Admission
 from lacoc_server.inbox import Inbox
 from lacoc_server.network import CourtNetwork
+from lacoc_server.protection import protection
 from lacoc_server.recovery import unfinished
 from lacoc_shared import contest as contests
 from lacoc_shared import log, options, screen
@@ -106,10 +107,11 @@ def serve_command(
         most_delay_ms=entry.most_delay_ms,
     )
     desk = DecisionDesk([hash_token(entry.referee.token)])
-    addresses = (endpoint(listen),) if listen else entry.listen
+    addresses = (endpoint(listen, plan.protocol),) if listen else entry.listen
+    guard = protection(plan, name)
     with ExitStack() as opened:
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
-        network = opened.enter_context(CourtNetwork(keys, addresses, inbox, desk))
+        network = opened.enter_context(CourtNetwork(keys, addresses, inbox, desk, guard))
         settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)
         running = Court(settings, network, left)
         if exporter is not None:

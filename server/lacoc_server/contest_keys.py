@@ -1,0 +1,160 @@
+"""Makes a contest's keys and invitations beside its contest file."""
+
+import itertools
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from lacoc_server.certificates import Authority, Pair, hosts_of, utc_now
+from lacoc_shared import address
+from lacoc_shared import contest as contests
+from lacoc_shared.access import Access, invitation_text
+from lacoc_shared.contest import Contest
+from lacoc_shared.key_folder import KeyFolder
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seal import new_token
+from lacoc_shared.toml_text import BadToml, read_toml
+
+_ALWAYS = ("localhost", "127.0.0.1", "::1")
+_TABLE = "[contest]"
+_ENTRY = "keys = \"keys\"  # folder, beside this file, of what 'lacoc contest keys' made"
+
+
+class Made(NamedTuple):
+    """What was made."""
+
+    folder: KeyFolder
+    invitations: list[Access]
+    hosts: list[str]
+    """What the courts' certificate is made for."""
+    ends: str
+    """Last day of all certificates (ISO 8601)."""
+    handed_out_hold: bool
+    """Whether there were keys before, and invitations of then are still valid."""
+    kept: Path | None
+    """Where the keys before these are now, if they were replaced."""
+
+
+def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
+    """Make keys, or add to them what is new; write the entry into the contest file.
+
+    The authority is made once: invitations that were handed out stay valid. The courts'
+    certificate and the invitations are written again, from what the contest file says now.
+
+    Args:
+        file: the contest file.
+        hosts: names and numbers of the courts' machine; the first stands in the invitations
+            where the file says none.
+        renew: replace all keys, and keep those before.
+
+    Raises:
+        UserError: if file or keys can't be read or written.
+    """
+    hosts = [address.host(address.endpoint(host)) for host in hosts]
+    data, contest = _with_entry(file)
+    folder = contest.keys
+    assert folder is not None
+    for name, court in contest.courts.items():
+        if not hosts and not court.host:
+            raise UserError(
+                f"Where do others reach court {name!r}? Give its machine's name or number, such as "
+                f"--host 192.168.1.20, or write 'connect' under [court.{name}]."
+            )
+    try:
+        kept = _set_aside(folder.path) if renew else None
+        there = folder.ca.exists()
+        authority = _authority(folder)
+        known = [court.host for court in contest.courts.values()]
+        before = hosts_of(folder.certificate.read_bytes()) if folder.certificate.exists() else []
+        names = list(dict.fromkeys([*_ALWAYS, *before, *filter(None, known), *hosts]))
+        certificate, private_key = authority.issue(names, utc_now())
+        _write(folder.private_key, private_key)
+        _write(folder.certificate, certificate)
+        if not folder.gateway_token.exists():
+            _write(folder.gateway_token, f"{new_token()}\n".encode())
+        invitations = [
+            access
+            for name in contest.courts
+            for access in contests.everybody(contest, name, *hosts[:1]).values()
+        ]
+        for access in invitations:
+            text = invitation_text(access, contest.name)
+            _write(folder.invitation(access.user), text.encode())
+        if data != file.read_bytes():
+            _write(file, data)
+    except OSError as error:
+        raise UserError(f"Cannot write {error.filename}: {error.strerror}.") from None
+    ends = authority.ends.date().isoformat()
+    return Made(folder, invitations, names, ends, there, kept)
+
+
+def _with_entry(file: Path) -> tuple[bytes, Contest]:
+    """The contest file as it will be, with the entry that says where its keys are."""
+    try:
+        data = file.read_bytes()
+        table = read_toml(data).get("contest", {})
+    except (OSError, BadToml):
+        contests.load(file)  # says what is wrong
+        raise
+    if "keys" not in table:
+        data = _insert_entry(data, file, must_have_table=bool(table))
+    return data, contests.loads(data, file)
+
+
+def _insert_entry(data: bytes, file: Path, *, must_have_table: bool) -> bytes:
+    lines = data.decode("utf-8-sig").splitlines(keepends=True)
+    heads = [row for row, line in enumerate(lines) if "".join(line.split()).startswith(_TABLE)]
+    if must_have_table and not heads:
+        raise UserError(f'Write  {_TABLE[1:-1]}.keys = "keys"  into {file}, and try again.')
+    # Without such a table it becomes the last one: what stands before belongs to others.
+    where = heads[0] + 1 if heads else len(lines)
+    lines[where:where] = [f"{_ENTRY}\n"] if heads else [f"\n{_TABLE}\n{_ENTRY}\n"]
+    return "".join(lines).encode()
+
+
+def _authority(folder: KeyFolder) -> Authority:
+    """The contest's authority; a new one if there is none.
+
+    Raises:
+        UserError: if there is one that can't issue anything.
+    """
+    if not folder.ca.exists():
+        authority = Authority.new(utc_now())
+        certificate, private_key = authority.pair()
+        _write(folder.ca_key, private_key)
+        _write(folder.ca, certificate)
+        return authority
+    try:
+        authority = Authority.load(Pair(folder.ca.read_bytes(), folder.ca_key.read_bytes()))
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise UserError(
+            f"{folder.ca} and {folder.ca_key} can't be used ({reason}). Put them back, or make "
+            "all anew with --renew: then everybody needs a new invitation."
+        ) from None
+    if authority.ends < utc_now():
+        raise UserError(
+            f"The keys in {folder.path} were valid until {authority.ends.date()}. Make new ones "
+            "with --renew: then everybody needs a new invitation."
+        )
+    return authority
+
+
+def _set_aside(path: Path) -> Path | None:
+    """Give a folder the first free number; None if there is none."""
+    if not path.exists():
+        return None
+    numbered = (path.with_name(f"{path.name}.{number}") for number in itertools.count(1))
+    kept = next(one for one in numbered if not one.exists())
+    return path.rename(kept)
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Write a file that is its owner's alone from its first byte on, whole or not at all."""
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    new = path.with_name(f"{path.name}.new")
+    new.unlink(missing_ok=True)
+    with open(new, "xb", opener=lambda name, flags: os.open(name, flags, 0o600)) as file:
+        file.write(data)
+    new.replace(path)

@@ -1,0 +1,62 @@
+"""The folder of a contest's keys: what `lacoc contest keys` makes beside the contest file."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from lacoc_shared.mistakes import UserError
+
+
+@dataclass(frozen=True)
+class KeyFolder:
+    """Names the files of a contest's keys, and reads them."""
+
+    path: Path
+
+    @property
+    def ca(self) -> Path:
+        """Certificate of the contest's own authority; public."""
+        return self.path / "ca.pem"
+
+    @property
+    def ca_key(self) -> Path:
+        """Its private key: only new certificates need it, no court does."""
+        return self.path / "ca.key"
+
+    @property
+    def certificate(self) -> Path:
+        """The courts' certificate."""
+        return self.path / "court.pem"
+
+    @property
+    def private_key(self) -> Path:
+        """The courts' private key."""
+        return self.path / "court.key"
+
+    @property
+    def gateway_token(self) -> Path:
+        """What the gateways of the contest share with its courts."""
+        return self.path / "gateway.token"
+
+    @property
+    def invitations(self) -> Path:
+        """Folder of the files that are handed out."""
+        return self.path / "invitations"
+
+    def invitation(self, user: str) -> Path:
+        """The invitation of a user, such as "main.left"."""
+        return self.invitations / f"{user}.toml"
+
+    def read(self, path: Path) -> str:
+        """Read one of the files.
+
+        Raises:
+            UserError: if it can't be read.
+        """
+        try:
+            return path.read_text(encoding="ascii")
+        except (OSError, UnicodeDecodeError) as error:
+            reason = error.strerror if isinstance(error, OSError) else "it is no text"
+            raise UserError(
+                f"The contest's key {path} can't be read: {reason}. 'lacoc contest keys' makes "
+                "the folder; it belongs beside the contest file."
+            ) from None

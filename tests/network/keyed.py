@@ -1,0 +1,43 @@
+"""A contest with keys, and a court for tests that is protected with them."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import msgspec
+from court_stub import TOKENS, WHISTLE, CourtStub
+
+from lacoc_server.contest_keys import make_keys
+from lacoc_server.protection import protection
+from lacoc_shared import contest as contests
+from lacoc_shared.access import Access
+from lacoc_shared.session import Session, open_client
+
+
+def keyed_file(folder: Path, where: str = "127.0.0.1:0", name: str = "contest") -> Path:
+    """A contest file with keys, of one court with the tokens of the court for tests."""
+    file = folder / f"{name}.toml"
+    seats = "".join(f'[court.main.seat.{s}]\ntoken = "{t}"\n' for s, t in TOKENS.items())
+    file.write_text(
+        f'[contest]\nkeys = "{name}-keys"\n[court.main]\narena = "othello"\n'
+        f'listen = ["{where}"]\n{seats}[court.main.referee]\ntoken = "{WHISTLE}"\n'
+    )
+    make_keys(file, (), renew=False)
+    return file
+
+
+class KeyedCourt(CourtStub):
+    """A court for tests with keys; `people` has the way of each person, at its own port."""
+
+    def __init__(self, file: Path) -> None:
+        contest = contests.load(file)
+        super().__init__("127.0.0.1:0", protection(contest, "main"))
+        everybody = contests.everybody(contest, "main")
+        self.people: Mapping[str, Access] = {
+            who: msgspec.structs.replace(access, connect=self.address)
+            for who, access in everybody.items()
+        }
+
+    def enter(self, who: str) -> Session:
+        """Open a person's own session."""
+        access = self.people[who]
+        return open_client([access.connect], credentials=access.credentials)

@@ -1,0 +1,165 @@
+"""Why a court with keys was not entered, each case in words that say what to do."""
+
+import os
+import re
+import socket
+import tempfile
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from datetime import timedelta
+from pathlib import Path
+
+import msgspec
+import pytest
+from court_stub import CourtStub
+from keyed import KeyedCourt, keyed_file
+
+from lacoc_server.certificates import LIFE, Authority, utc_now
+from lacoc_shared import contest as contests
+from lacoc_shared.access import Access
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.session import open_client, open_court
+
+SHORT_S = 0.3
+
+
+@pytest.fixture(scope="module")
+def keyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[KeyedCourt]:
+    with KeyedCourt(keyed_file(tmp_path_factory.mktemp("keyed"))) as court:
+        yield court
+
+
+def refused(access: Access) -> str:
+    """Why a way to a court is closed."""
+    with pytest.raises(UserError) as caught:
+        open_client([access.connect], SHORT_S, access.credentials)
+    return str(caught.value)
+
+
+def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
+    """By number and by name: the certificate is made for both."""
+    port = keyed.address.rpartition(":")[2]
+    for host in ("127.0.0.1", "localhost"):
+        access = msgspec.structs.replace(keyed.people["left"], connect=f"tls/{host}:{port}")
+        with open_client([access.connect], credentials=access.credentials) as session:
+            assert session.ask("lacoc/main/sheet")
+
+
+def test_keys_of_another_contest(keyed: KeyedCourt, tmp_path: Path) -> None:
+    """A court that the invitation's authority does not vouch for may be a false one."""
+    other = contests.load(keyed_file(tmp_path))
+    access = contests.everybody(other, "main")["left"]
+    why = refused(msgspec.structs.replace(access, connect=keyed.address))
+    assert re.search(r"can't prove that it is the court.*Do not go on", why)
+
+
+def test_a_name_that_is_not_in_the_certificate(keyed: KeyedCourt) -> None:
+    """Says the name and how an organiser adds it."""
+    with _tunnel("127.0.0.2", int(keyed.address.rpartition(":")[2])) as port:
+        there = msgspec.structs.replace(keyed.people["left"], connect=f"tls/127.0.0.2:{port}")
+        assert "not made for the name 127.0.0.2" in refused(there)
+        assert "lacoc contest keys --host 127.0.0.2" in refused(there)
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (-LIFE - timedelta(days=2), r"has expired.*contest keys --renew"),
+        (timedelta(days=3), r"not valid yet.*clock"),
+    ],
+)
+def test_a_certificate_out_of_its_time(tmp_path: Path, made: timedelta, said: str) -> None:
+    """Expired or not yet valid, which may also be the clock of either machine."""
+    file = keyed_file(tmp_path)
+    folder = contests.load(file).keys
+    assert folder is not None
+    authority = Authority.new(utc_now() + made)
+    pair = authority.issue(["127.0.0.1"], utc_now() + made)
+    folder.ca.write_bytes(authority.pair().certificate)
+    folder.certificate.write_bytes(pair.certificate)
+    folder.private_key.write_bytes(pair.private_key)
+    with KeyedCourt(file) as court:
+        assert re.search(said, refused(court.people["left"]))
+
+
+def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
+    """TLS to a plain port, plain to a TLS port, and what can be seen before any connection."""
+    left = keyed.people["left"]
+    with CourtStub() as plain:
+        there = plain.address.replace("tcp/", "tls/")
+        assert "has no keys" in refused(msgspec.structs.replace(left, connect=there))
+        assert "tls/127" in refused(msgspec.structs.replace(left, connect=plain.address))
+    bare = Access(court="main", connect=keyed.address.replace("tls/", "tcp/"))
+    assert re.search(r"has keys.*--invitation", refused(bare))
+    assert "--invitation" in refused(Access(court="main", connect=keyed.address))
+
+
+def test_a_damaged_certificate_and_nobody_there(keyed: KeyedCourt) -> None:
+    """The rest of what can be wrong with an invitation."""
+    left = keyed.people["left"]
+    damaged = left.ca.replace("BEGIN CERT", "BEGIN SERT")
+    assert "damaged" in refused(msgspec.structs.replace(left, ca=damaged))
+    assert "Nobody listens" in refused(msgspec.structs.replace(left, connect="tls/127.0.0.1:1"))
+
+
+def test_a_court_needs_keys_for_tls_and_tls_for_keys(keyed: KeyedCourt, tmp_path: Path) -> None:
+    """A court never opens with less protection than somebody meant it to have."""
+    with pytest.raises(UserError, match="lacoc contest keys"):
+        open_court(["tls/127.0.0.1:0"])
+    contest = keyed_file(tmp_path)
+    contest.write_text(contest.read_text().replace('"127.0.0.1:0"', '"tcp/127.0.0.1:0"'))
+    with pytest.raises(UserError, match=r"has keys.*write tls/127"):
+        contests.load(contest)
+
+
+def test_passwords_are_on_disk_only_while_a_court_opens(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In a folder and file of their owner's alone; gone when the court is open."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "t"))
+    (tmp_path / "t").mkdir()
+    seen: list[tuple[str, int]] = []
+    write = os.open
+
+    def noted(path: str, flags: int, mode: int = 0o777, **more: int) -> int:
+        seen.append((str(path), mode))
+        return write(path, flags, mode, **more)
+
+    file = keyed_file(tmp_path)
+    monkeypatch.setattr(os, "open", noted)
+    with KeyedCourt(file) as court, court.enter("left"):
+        pass
+    assert [mode for path, mode in seen if path.endswith("users")] == [0o600]
+    assert list((tmp_path / "t").iterdir()) == []
+
+
+@contextmanager
+def _tunnel(host: str, to_port: int) -> Iterator[int]:
+    """Another address of the same court."""
+    with ExitStack() as stack:
+        door = stack.enter_context(socket.create_server((host, 0)))
+        open_sockets: list[socket.socket] = []
+
+        def carry(one: socket.socket, other: socket.socket) -> None:
+            try:
+                while data := one.recv(65_536):
+                    other.sendall(data)
+            except OSError:
+                pass
+
+        def accept() -> None:
+            try:
+                while True:
+                    came, _ = door.accept()
+                    gone = socket.create_connection(("127.0.0.1", to_port))
+                    open_sockets.extend((came, gone))
+                    for pair in ((came, gone), (gone, came)):
+                        threading.Thread(target=carry, args=pair, daemon=True).start()
+            except OSError:
+                return
+
+        threading.Thread(target=accept, daemon=True).start()
+        yield door.getsockname()[1]
+        for one in open_sockets:
+            one.close()

@@ -1,0 +1,180 @@
+"""`lacoc contest keys`: what it makes, to whom it belongs, and that it destroys nothing."""
+
+import ssl
+import stat
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from lacoc_server.contest_commands import app
+from lacoc_shared import contest as contests
+from lacoc_shared.access import read_invitation
+from lacoc_shared.mistakes import UserError
+
+
+def run(*args: str) -> str:
+    result = CliRunner().invoke(app, args)
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result.output
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "contest.toml"
+    run("init", str(path))
+    return path
+
+
+def certificate(path: Path) -> dict[str, Any]:
+    """What Python's own TLS makes of a certificate."""
+    return ssl._ssl._test_decode_cert(str(path))  # type: ignore[attr-defined, no-any-return]
+
+
+def test_one_command_encrypts_a_contest(file: Path) -> None:
+    """A contest file as `init` writes it, and the command, are all there is to do."""
+    run("keys", str(file), "--host", "192.168.1.20", "--host", "court.example.org")
+
+    contest = contests.load(file)
+    assert contest.courts["main"].listen == ("tls/0.0.0.0:7447",)
+    assert "is right" in run("check", str(file))
+    keys = contest.keys
+    assert keys is not None
+    names = certificate(keys.certificate)["subjectAltName"]
+    assert set(names) >= {("DNS", "localhost"), ("IP Address", "127.0.0.1")}
+    assert set(names) >= {("DNS", "court.example.org"), ("IP Address", "192.168.1.20")}
+    left = read_invitation(keys.invitation("main.left"))
+    assert left.connect == "tls/192.168.1.20:7447"
+    assert left.token == contest.courts["main"].seat["left"].token
+    assert left.ca == keys.ca.read_text()
+
+
+def test_all_of_it_is_its_owners_alone(file: Path) -> None:
+    """Private keys and invitations have mode 0600, folders 0700; the contest file stays 0600."""
+    run("keys", str(file), "--host", "x.example")
+    found = [file, *(file.parent / "keys").rglob("*")]
+    modes = {path.name: stat.S_IMODE(path.stat().st_mode) for path in found}
+    assert {modes.pop("invitations")} == {0o700}
+    assert set(modes.values()) == {0o600}
+    assert len(modes) == 1 + 5 + 5  # the contest file; CA, court, gateway; five invitations
+
+
+def test_an_invitation_holds_nothing_of_others(file: Path) -> None:
+    """No other token, and no private key."""
+    run("keys", str(file), "--host", "x.example")
+    contest = contests.load(file)
+    people = contests.everybody(contest, "main")
+    assert contest.keys is not None
+    for who, access in people.items():
+        text = contest.keys.invitation(access.user).read_text()
+        others = {one.token for name, one in people.items() if name != who and one.token}
+        assert not any(token in text for token in others)
+        assert "PRIVATE" not in text
+    private = [contest.keys.ca_key, contest.keys.private_key]
+    assert all("PRIVATE KEY" in path.read_text() for path in private)
+
+
+def test_twice_keeps_what_was_handed_out(file: Path) -> None:
+    """The authority and the gateway's token stay; hosts are added; it is said."""
+    run("keys", str(file), "--host", "one.example")
+    before = contests.load(file)
+    assert before.keys is not None
+    invitation = before.keys.invitation("main.left").read_text()
+    text = file.read_text()
+    said = run("keys", str(file), "--host", "one.example", "--host", "two.example")
+
+    assert "stay valid" in said
+    assert before.keys.invitation("main.left").read_text() == invitation
+    assert file.read_text() == text
+    names = {name for _, name in certificate(before.keys.certificate)["subjectAltName"]}
+    assert names >= {"one.example", "two.example"}
+
+
+def test_renew_keeps_the_old_with_a_number(file: Path) -> None:
+    """Everything is new, nothing is gone."""
+    keys = file.parent / "keys"
+    run("keys", str(file), "--host", "one.example")
+    first = (keys / "ca.pem").read_bytes()
+    assert "keys.1" in run("keys", str(file), "--host", "one.example", "--renew").replace("\n", "")
+    run("keys", str(file), "--host", "one.example", "--renew")
+
+    assert (file.parent / "keys.1" / "ca.pem").read_bytes() == first
+    assert (
+        len({(file.parent / n / "ca.pem").read_bytes() for n in ("keys", "keys.1", "keys.2")}) == 3
+    )
+
+
+def test_the_entry_goes_into_any_contest_file(tmp_path: Path) -> None:
+    """With or without a table [contest], with Windows' line ends; its comments stay."""
+    for number, head in enumerate(
+        (
+            '[contest]\r\nname = "A"\r\n',
+            "# my contest\n",
+            "[ contest ] # here\n",
+            'contest.name = "A"\n',
+        )
+    ):
+        file = tmp_path / f"{number}" / "contest.toml"
+        file.parent.mkdir()
+        seats = "".join(f'seat.{s}.token = "{s}-token-of-main"\n' for s in ("left", "right"))
+        court = f'[court.main]\narena = "othello"\nreferee.token = "{"r" * 26}"\n{seats}'
+        file.write_bytes(f"{head}{court}".encode())
+        if head.startswith("contest."):
+            with pytest.raises(UserError, match=r'contest\.keys = "keys"'):
+                run("keys", str(file))
+            continue
+        run("keys", str(file))
+        assert contests.load(file).keys is not None
+        assert head.splitlines()[0] in file.read_text()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"0.0.0.0:7447"', '"tcp/0.0.0.0:7447"', r"write tls/0.0.0.0:7447"),
+        ("arena =", "aren =", "There can be: arena"),
+        ("[contest]", "[contest", "can't be read"),
+    ],
+)
+def test_a_wrong_file_is_said_and_left(file: Path, old: str, new: str, said: str) -> None:
+    """Nothing is made for a contest that can't be served, and its file stays as it is."""
+    file.write_text(file.read_text().replace(old, new, 1))
+    text = file.read_text()
+    with pytest.raises(UserError, match=said):
+        run("keys", str(file), "--host", "x.example")
+    assert file.read_text() == text
+    assert not (file.parent / "keys").exists()
+
+
+def test_what_lacks_is_asked_for(file: Path) -> None:
+    """Where the court can be reached, if nothing says it; a key that was moved away."""
+    with pytest.raises(UserError, match="--host"):
+        run("keys", str(file))
+    with pytest.raises(UserError, match="not an address"):
+        run("keys", str(file), "--host", "no host")
+    run("keys", str(file), "--host", "x.example")
+    (file.parent / "keys" / "ca.key").unlink()
+    with pytest.raises(UserError, match=r"ca.key.*--renew"):
+        run("keys", str(file), "--host", "x.example")
+    (file.parent / "keys").rename(file.parent / "elsewhere")
+    with pytest.raises(UserError, match="lacoc contest keys"):
+        contests.seat_access(contests.load(file), None, None, "left", None)
+
+
+def test_show_names_the_invitations(file: Path) -> None:
+    """The short line, without a token in it."""
+    run("keys", str(file), "--host", "x.example")
+    shown = run("show", str(file))
+    assert "lacoc play --invitation main.left.toml" in shown
+    assert "lacoc web --invitation main.gateway.toml" in shown
+    assert contests.load(file).courts["main"].seat["left"].token not in shown
+
+
+@pytest.mark.parametrize("seat", ["referee", "gateway", "spectators"])
+def test_a_seat_is_not_called_like_somebody_else(file: Path, seat: str) -> None:
+    """Its user would be somebody else's."""
+    file.write_text(file.read_text().replace("main.seat.left", f"main.seat.{seat}"))
+    with pytest.raises(UserError, match="can't be called"):
+        contests.load(file)
