@@ -7,7 +7,7 @@ from lacoc_client.asking import fetch
 from lacoc_client.doctor import Finding, Status
 from lacoc_client.spectator import Spectator
 from lacoc_shared import __version__
-from lacoc_shared.contest import Access
+from lacoc_shared.access import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
 from lacoc_shared.session import Session, open_client
@@ -28,7 +28,7 @@ def link(access: Access, seconds: float) -> Iterator[Finding]:
     """
     about = f"court {access.court}"
     try:
-        with open_client([access.connect]) as session:
+        with open_client([access.connect], credentials=access.credentials) as session:
             view = Spectator(session, access.court)
             yield _version(about, access, view)
             yield _round_trip(session, view)

@@ -82,8 +82,9 @@ def test_a_seat_is_steered_by_nobody_else(
     controller.join()
     joined = controller._joined
     assert joined is not None
-    mac = command_mac(joined.secret, KEYS.command("left"), joined.session, 7, 1, 2)
-    forged = encode(Command(joined.session, 7, 1, 2, mac))
+    numbers = (joined.session, 7, 1, 2, 0, 0)
+    mac = command_mac(joined.secret, KEYS.command("left"), *numbers)
+    forged = encode(Command(*numbers, mac))
 
     sessions[who].publisher(KEYS.command("left")).put(forged)
     with pytest.raises(UserError, match="does not answer"):

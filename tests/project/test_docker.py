@@ -63,7 +63,7 @@ def test_the_services_hang_together() -> None:
     assert SERVICES["web"]["ports"] == [f"{WEB_PORT}:{WEB_PORT}"]
     assert SERVICES["web"]["command"][-1].endswith(f":{WEB_PORT}")
     connects = {service["environment"].get("LACOC_CONNECT") for service in SERVICES.values()}
-    assert connects == {None, f"tcp/court:{PORT}"}
+    assert connects == {None, f"court:{PORT}"}
     assert (ROOT / "docker" / SERVICES["court"]["build"]["context"]).resolve() == ROOT
     assert order()[:2] == ["contest", "court"]
 
@@ -75,7 +75,7 @@ def test_the_composition_plays(tmp_path: Path) -> None:
 
     def here(text: str) -> str:
         """What a container sees, as this machine has it."""
-        text = text.replace("/contest/", f"{tmp_path}/").replace("tcp/court:", "tcp/127.0.0.1:")
+        text = text.replace("/contest/", f"{tmp_path}/").replace("court:", "127.0.0.1:")
         return text.replace(PORT, port).replace(WEB_PORT, web_port)
 
     with ExitStack() as running:

@@ -30,6 +30,7 @@ _HOST_PORT = re.compile(r"(?:\w+/)?(?P<host>\[[^\]]+\]|[^:/]+):(?P<port>\d{1,5})
 
 @app.command(name="doctor")
 def doctor_command(
+    invitation: options.Invitation = None,
     contest: options.ContestFile = None,
     court: options.CourtName = None,
     connect: options.Connect = None,
@@ -56,15 +57,15 @@ def doctor_command(
 ) -> None:
     """Look whether this machine is ready: packages, ports, graphics, clock, disk.
 
-    With --connect or --contest also the link to a court: is it there, how long does a request
+    With --invitation, --connect or --contest also the link to a court: is it there, how long does a request
     take, how many frames arrive. Every finding is ok, a note or a problem, with what to do.
     The exit code is 0 unless there is a problem.
     """
     plan = None if contest is None else contests.load(contest)
     folder = recordings or (plan.recordings if plan else Path("recordings"))
     findings = list(_look(plan, web, folder, seconds))
-    if contest is not None or connect is not None:
-        findings += link(entrance.spectator(contest, court, connect), seconds)
+    if any(given is not None for given in (invitation, contest, connect)):
+        findings += link(entrance.spectator(invitation, contest, court, connect), seconds)
     if json:
         screen.print_json(findings)
     else:
