@@ -62,6 +62,7 @@ class Played(NamedTuple):
     """Frames upon which only one of both pressed: the other's never came."""
     health: Health
     """The court's last."""
+    record: Record
 
 
 class _Player(threading.Thread):
@@ -156,7 +157,7 @@ def _played(record: Record, health: Health, end: int) -> Played:
         Pair(seen, (fast[seen][0], slow[seen][0]), (fast[seen][1], slow[seen][1]))
         for seen in sorted(fast.keys() & slow.keys())
     ]
-    return Played(pairs, len(fast.keys() ^ slow.keys()), health)
+    return Played(pairs, len(fast.keys() ^ slow.keys()), health, record)
 
 
 def _until(true: Callable[[], object], timeout_s: float = _WAIT_S) -> None:

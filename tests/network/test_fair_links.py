@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 from mirrored_pair import play
 
+from lacoc_server.replay import Verdict, verify
+
 FAR = (0.1, 0.025)
 """Delay and jitter of the slow link, one way [s]: 200 ± 50 ms there and back."""
 
@@ -25,6 +27,9 @@ def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) 
     for seen, beats, late in pairs:
         assert beats[0] - late[0] == beats[1] - late[1] > seen
     assert sum(map(any, (pair.late for pair in pairs))) <= fast.late + slow.late
+    *_, verdict = verify(played.record)
+    assert isinstance(verdict, Verdict)
+    assert verdict.text == "same"
 
 
 @pytest.mark.slow

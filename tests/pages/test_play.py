@@ -191,6 +191,15 @@ def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
         yield address
 
 
+def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
+    """Issue 4: the own link as the court measures it, and the delay that both have."""
+    equal = 'arena = "othello"\ninput_delay = "equal"'
+    venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
+    page = seated(venue, sit)
+    page.sees(".foot dd[data-link]:not([data-link=''])", "ms")
+    page.sees(".foot", "equalised")
+
+
 def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: Sit) -> None:
     """Issue 3: `lacoc play` fills the card in, and the page never learns the token."""
     url, key = own

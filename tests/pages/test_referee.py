@@ -396,6 +396,20 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     log_has(page, "Ants goes back to the start. Reason: stuck")
 
 
+def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: Referee) -> None:
+    """Issue 4: each seat's round trip as the court measures it, and the common delay."""
+    equal = 'arena = "othello"\ninput_delay = "equal"'
+    venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
+    venue.court()
+    venue.web()
+    page = at_the_desk(referee())
+    venue.contestant("left", "Ants")
+    left, right = (page.locator(f".seat[data-seat='{index}'] dd[data-trip]") for index in (0, 1))
+    expect(left).to_contain_text(re.compile(r"\d+ ms, 95 % within \d+ ms"))
+    expect(left).to_contain_text(re.compile(r"both equalised to \d+ ms · 0 late"))
+    expect(right).to_contain_text("–")
+
+
 def test_the_log_is_filtered(court: Venue, referee: Referee) -> None:
     """Decisions, the game, and links: each by itself."""
     page = at_the_desk(referee())
