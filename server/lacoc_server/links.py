@@ -80,7 +80,7 @@ class Links:
         self._match, self._beat = 1, 0
         self._tick = 0
         """Counts beats over all matches."""
-        self._begun_s: deque[float] = deque([0.0], maxlen=WINDOW_BEATS)
+        self._begun_s: deque[float] = deque([0.0, 0.0], maxlen=2)
         self._frames: deque[_Frame] = deque(maxlen=WINDOW_BEATS)
 
     @property
@@ -170,9 +170,9 @@ class Links:
 
     def _late(self, frame: _Frame | None) -> int:
         """How many beats ago what was done upon a frame should have taken effect."""
-        if frame is None or not frame.delay_s:
+        if frame is None or not frame.delay_s or frame.due_s > self._begun_s[-2]:
             return 0
-        return max(0, sum(begun_s >= frame.due_s for begun_s in self._begun_s) - 1)
+        return max(1, int((self._begun_s[-1] - frame.due_s) / BEAT_S))
 
     def _measure(self, link: _Link) -> None:
         samples = link.samples

@@ -53,7 +53,7 @@ class KeySeat(_Input, frozen=True, tag="key"):
     held: int = 0
     """Beats for which the court held it, to make the seats' links equal."""
     late: int = 0
-    """Beats by which it took effect later than the common delay allows."""
+    """Beats (20 ms each) by which it took effect later than the common delay allows."""
 
 
 class SilentSeat(_Input, frozen=True, tag="silent"):
