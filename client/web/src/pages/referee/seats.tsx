@@ -119,16 +119,16 @@ function LinkFacts({ desk, sheet, index }: Props) {
         )}
       </dd>
       <dt>{t("seatLink.trip")}</dt>
-      <dd data-trip>
-        {link?.joined ? tripText(link) : "–"}
-        {!!health?.input_delay_ms && (
-          <span class="muted">
-            {t("seatLink.equal", { ms: health.input_delay_ms })}
-            {" · "}
-            {t("seatLink.late", { count: link?.late ?? 0 })}
-          </span>
-        )}
-      </dd>
+      <dd data-trip>{link?.joined ? tripText(link) : "–"}</dd>
+      {!!health?.input_delay_ms && (
+        <>
+          <dt>{t("seatLink.equal")}</dt>
+          <dd data-equal>
+            {t("seatLink.ms", { ms: health.input_delay_ms })}
+            <span class="muted">{t("seatLink.late", { count: link?.late ?? 0 })}</span>
+          </dd>
+        </>
+      )}
       <dt>{t("seatLink.key")}</dt>
       <dd>{key || "–"}</dd>
       <dt>{t("seatLink.ready")}</dt>
