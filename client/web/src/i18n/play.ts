@@ -188,8 +188,8 @@ export const play = {
     "Pos-data.txt には、このページを読み込んだ {time} 以降の軌跡を保存します。試合の記録には最初からすべて残っています。",
   ],
   "leave.noData": [
-    "There is no Pos-data.txt yet: your robot has not stood on the field.",
-    "Pos-data.txt はまだありません（ロボットがフィールドに立っていません）。",
+    "There is no Pos-data.txt: this page has not seen your robot on the field.",
+    "Pos-data.txt はありません（このページはまだフィールド上のロボットを記録していません）。",
   ],
   "leave.go": ["Save and leave", "保存して退出"],
   "leave.goNoData": ["Leave", "退出"],

@@ -1,7 +1,6 @@
 /** The three-dimensional picture: builds a scene's shapes once, then only moves them. */
 
 import {
-  AdditiveBlending,
   type BufferGeometry,
   Color,
   DirectionalLight,
@@ -29,35 +28,11 @@ import { FOV_RAD, type ViewAxes } from "./cameras";
 import { MarkerMotion } from "./markers";
 import { floor, pairOf } from "./materials";
 import type { Model } from "./model";
-import {
-  afflicted,
-  evening,
-  isSame,
-  markerColour,
-  mix,
-  PATTERNS,
-  patternOf,
-  type Rgb,
-  rgb,
-  teamGeoms,
-} from "./palette";
+import { afflicted, evening, type Rgb, rgb } from "./palette";
+import { EYE, type Piece, piecesOf } from "./pieces";
+import { Pulses } from "./pulses";
 import type { Fineness } from "./quality";
-import { batchKey, Layer, type Shape, shapeOf } from "./shapes";
-
-/** One shape of the scene. */
-interface Piece {
-  body: number;
-  shape: Shape;
-  /** In the body's frame, stretched. */
-  local: Matrix4;
-  colour: Rgb;
-  pattern: number;
-  period_m: number;
-  marker: number;
-  state: number;
-  /** Goes when its marker begins to fall. */
-  stays?: boolean;
-}
+import { batchKey, Layer } from "./shapes";
 
 /** What is pointed at: a ring is drawn round it. */
 export interface Ring {
@@ -68,17 +43,6 @@ export interface Ring {
 
 const GROUND: Rgb = [0.055, 0.072, 0.1];
 const DARK = [0.066, 0.09, 0.13] as const;
-const JOINT: Rgb = [0.13, 0.15, 0.18];
-const EYE: Rgb = [0.96, 0.98, 1];
-const PLATE_PART = 0.62;
-const ROBOT_PERIOD_M = 0.03;
-const DISC_PERIOD_M = 0.048;
-const CLOTH_PERIOD_M = 0.026;
-const CLOTH_EDGE_M = 0.005;
-const FOOT_M = 0.032;
-const FOOT_TOP_M = 0.0012;
-const PULSE_MS = 900;
-const MOST_PULSES = 24;
 const SHADOW_MAP = 2048;
 
 export class Stage {
@@ -96,7 +60,7 @@ export class Stage {
   private markersDrawn = false;
   private readonly sun: DirectionalLight;
   private readonly ring: Mesh;
-  private readonly pulses: { mesh: Mesh; sinceMs: number; radius: number }[] = [];
+  private readonly pulses: Pulses;
   private readonly blobs: Mesh[] = [];
   private readonly matrix = new Matrix4();
   private readonly pose = new Matrix4();
@@ -130,6 +94,7 @@ export class Stage {
     this.renderer.shadowMap.type = PCFShadowMap;
     this.sun = this.light();
     this.ring = this.mark(new RingGeometry(0.92, 1, this.fine ? 64 : 32), [1, 1, 1], 0.9);
+    this.pulses = new Pulses((geometry) => this.mark(geometry, [1, 1, 1], 1));
     if (!transparent && this.fine) this.ground();
   }
 
@@ -189,7 +154,7 @@ export class Stage {
   setModel(model: Model): void {
     this.clearModel();
     this.model = model;
-    const { scene, sheet, fk } = model;
+    const { scene, sheet } = model;
     this.motion = new MarkerMotion(scene, sheet.markers);
     const { fine } = this;
     const field = pairOf(fine, { roughness: 0.75, metalness: 0.05 });
@@ -200,119 +165,18 @@ export class Stage {
       markers: new Layer(this.world, markers, fine, 1),
       robots: new Layer(this.world, robots, fine, 0),
     };
-    const still: Piece[] = [];
-    const teams = teamGeoms(scene, sheet);
-    scene.geoms.forEach((geom, index) => {
-      if (geom.type === "plane") {
-        this.plane(geom);
-        return;
-      }
-      const robot = fk.seats[geom.body]! >= 0;
-      const shape = shapeOf(geom, robot);
-      if (!shape) return;
-      const piece = this.piece(geom, shape, teams[index]!);
-      if (geom.marker >= 0) this.markerPieces.push(piece);
-      else if (robot) this.robotPieces.push(piece);
-      else still.push(piece);
-    });
-    this.robotPieces.push(...this.details(model));
-    this.markerPieces.push(...this.feet());
+    for (const geom of scene.geoms) if (geom.type === "plane") this.plane(geom);
+    const { still, markers: markerPieces, robots: robotPieces } = piecesOf(model, this.motion);
+    this.markerPieces = markerPieces;
+    this.robotPieces = robotPieces;
     reserve(this.layers.still, still);
-    reserve(this.layers.markers, this.markerPieces);
-    reserve(this.layers.robots, this.robotPieces);
+    reserve(this.layers.markers, markerPieces);
+    reserve(this.layers.robots, robotPieces);
     for (const piece of still) this.put(this.layers.still, piece, this.poseOf(piece.body));
     this.layers.still.done();
     for (const seat of sheet.seats.keys()) this.blob(seat);
     this.aimSun(model);
     this.markersDrawn = false;
-  }
-
-  private piece(geom: SceneGeom, shape: Shape, team: number): Piece {
-    const { sheet, fk } = this.model!;
-    const own = geom.rgba.slice(0, 3) as unknown as Rgb;
-    const seat = sheet.seats[team];
-    const tall = geom.marker >= 0 && this.motion!.isTall(geom.marker);
-    let colour = evening(own);
-    let pattern: number = PATTERNS.plain;
-    let period_m = DISC_PERIOD_M;
-    if (seat) {
-      colour = rgb(seat.colour);
-      pattern = patternOf(seat.pattern);
-      period_m = geom.marker < 0 ? ROBOT_PERIOD_M : tall ? CLOTH_PERIOD_M : DISC_PERIOD_M;
-      // Legs are too thin for a pattern: the body has it.
-      if (geom.marker < 0 && geom.type !== "box") pattern = PATTERNS.plain;
-    } else if (geom.marker >= 0) {
-      const pole = tall && isSame(this.model!.scene, geom);
-      colour = pole ? evening(own) : markerColour(geom.state, own, tall);
-      if (tall && !pole && geom.type === "box" && geom.state === 0) {
-        pattern = PATTERNS.edge;
-        period_m = CLOTH_EDGE_M;
-      }
-    } else if (fk.seats[geom.body]! >= 0) colour = own;
-    const local = new Matrix4().compose(
-      new Vector3(...geom.pos),
-      new Quaternion(geom.quat[1], geom.quat[2], geom.quat[3], geom.quat[0]),
-      new Vector3(...shape.scale),
-    );
-    return {
-      body: geom.body,
-      shape,
-      local,
-      colour,
-      pattern,
-      period_m,
-      marker: geom.marker,
-      state: geom.state,
-    };
-  }
-
-  /** What makes a robot of boxes and rods look like one: a lid, eyes in front, dark joints. */
-  private details({ scene }: Model): Piece[] {
-    const found: Piece[] = [];
-    const add = (body: number, type: string, size: Size, pos: Size, colour: Rgb) => {
-      const shape = shapeOf({ type, size }, true)!;
-      const local = new Matrix4().makeTranslation(...pos);
-      local.scale(new Vector3(...shape.scale));
-      const plain = { pattern: 0, period_m: 1, marker: -1, state: -1 };
-      found.push({ body, shape, local, colour, ...plain });
-    };
-    scene.bodies.forEach((body, index) => {
-      const mine = scene.geoms.filter((geom) => geom.body === index);
-      const box = mine.find((geom) => geom.type === "box");
-      if (body.seat >= 0 && box) {
-        const [x, y, z] = box.size;
-        const low = Math.min(x, y);
-        add(
-          index,
-          "box",
-          [PLATE_PART * x, PLATE_PART * y, 0.004],
-          [0, -0.06 * y, z + 0.001],
-          JOINT,
-        );
-        for (const side of [-1, 1]) {
-          add(index, "sphere", [0.2 * low, 0, 0], [side * 0.46 * x, y - 0.002, 0.3 * z], JOINT);
-          add(index, "sphere", [0.14 * low, 0, 0], [side * 0.46 * x, y + 0.004, 0.34 * z], EYE);
-        }
-      }
-      const rod = mine.find((geom) => geom.type === "capsule");
-      if (body.joint >= 0 && rod) {
-        add(index, "sphere", [1.14 * rod.size[0], 0, 0], [0, 0, 0], JOINT);
-      }
-    });
-    return found;
-  }
-
-  /** Round the foot of what stands a spot in its colour: seen from above it is a line otherwise. */
-  private feet(): Piece[] {
-    return this.markerPieces
-      .filter(({ pattern }) => pattern === PATTERNS.edge)
-      .map((cloth) => {
-        const { x_m, y_m } = this.model!.sheet.markers[cloth.marker]!;
-        const shape = shapeOf({ type: "cylinder", size: [FOOT_M, FOOT_TOP_M, 0] }, false)!;
-        const local = new Matrix4().makeTranslation(x_m, y_m, FOOT_TOP_M);
-        local.scale(new Vector3(...shape.scale));
-        return { ...cloth, shape, local, pattern: PATTERNS.plain, stays: true };
-      });
   }
 
   private plane(geom: SceneGeom): void {
@@ -390,10 +254,15 @@ export class Stage {
     if (model && motion && layers) {
       changed = motion.follow(model.states, nowMs, animate);
       if (motion.stale || !this.markersDrawn) this.drawMarkers(nowMs);
-      if (animate) for (const marker of changed) this.pulse(marker, nowMs);
+      if (animate) {
+        for (const marker of changed) {
+          const seat = model.sheet.seats[(model.states[marker] ?? 0) - 1];
+          if (seat) this.pulses.begin(model.sheet.markers[marker]!, rgb(seat.colour), nowMs);
+        }
+      }
       this.drawRobots(layers.robots, model);
     }
-    this.drawPulses(nowMs);
+    this.pulses.draw(nowMs);
     this.ring.visible = ring !== null;
     if (ring) {
       this.ring.position.set(ring.x, ring.y, 0.005);
@@ -451,46 +320,6 @@ export class Stage {
     return this.pose.compose(place, turn, ones);
   }
 
-  /** A ring of light in the colour of who took a marker. */
-  private pulse(marker: number, nowMs: number): void {
-    const { sheet, states } = this.model!;
-    const info = sheet.markers[marker]!;
-    const seat = sheet.seats[(states[marker] ?? 0) - 1];
-    if (!seat) return;
-    let free = this.pulses.find(({ mesh }) => !mesh.visible);
-    if (!free) {
-      if (this.pulses.length >= MOST_PULSES) return;
-      free = {
-        mesh: this.mark(new RingGeometry(0.86, 1, 40), [1, 1, 1], 1),
-        sinceMs: 0,
-        radius: 0,
-      };
-      (free.mesh.material as MeshBasicMaterial).blending = AdditiveBlending;
-      this.pulses.push(free);
-    }
-    const tint = mix(rgb(seat.colour), [1, 1, 1], 0.35);
-    (free.mesh.material as MeshBasicMaterial).color.setRGB(
-      tint[0],
-      tint[1],
-      tint[2],
-      SRGBColorSpace,
-    );
-    free.mesh.position.set(info.x_m, info.y_m, 0.006);
-    free.mesh.visible = true;
-    free.sinceMs = nowMs;
-    free.radius = Math.max(0.06, info.radius_m);
-  }
-
-  private drawPulses(nowMs: number): void {
-    for (const { mesh, sinceMs, radius } of this.pulses) {
-      const part = (nowMs - sinceMs) / PULSE_MS;
-      mesh.visible = mesh.visible && part >= 0 && part < 1;
-      if (!mesh.visible) continue;
-      mesh.scale.setScalar(radius * (0.9 + 0.75 * (1 - (1 - part) ** 3)));
-      (mesh.material as MeshBasicMaterial).opacity = 0.75 * (1 - part) ** 1.5;
-    }
-  }
-
   private clearModel(): void {
     if (this.layers) for (const layer of Object.values(this.layers)) layer.dispose();
     this.layers = null;
@@ -504,7 +333,7 @@ export class Stage {
       (mesh.material as Material).dispose();
     }
     this.blobs.length = 0;
-    for (const { mesh } of this.pulses) mesh.visible = false;
+    this.pulses.end();
   }
 
   dispose(): void {
@@ -516,8 +345,6 @@ export class Stage {
     this.renderer.dispose();
   }
 }
-
-type Size = [number, number, number];
 
 const identity = new Matrix4();
 const ones = new Vector3(1, 1, 1);
