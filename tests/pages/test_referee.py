@@ -124,6 +124,26 @@ def to_playing(page: Page, venue: Venue) -> None:
     phase(page, 4)
 
 
+def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
+    """Beyond the contest's limits: the reasons beside the result, in the log, in both languages."""
+    wanted = "[health]\nreal_time_factor = 2.0\n"  # no court can
+    venue.contest.write_text(wanted + venue.contest.read_text())
+    venue.court("--seconds", "2")
+    venue.web()
+    page, other = at_the_desk(referee()), referee(query="?lang=ja")
+    to_playing(page, venue)
+    phase(page, 6)
+    advice = page.locator(".match .advice")
+    expect(advice).to_contain_text("of real time, at least 2 is wanted")
+    log_has(page, "Replay advised: it ran at ")
+    expect(other.locator(".match .advice h3")).to_have_text("再試合を推奨")
+    expect(other.locator(".match .advice li").first).to_contain_text("実時間比")
+    big(page).click()  # advice only: the result is the referee's word
+    confirm(page)
+    phase(page, 7)
+    expect(advice).to_be_visible()
+
+
 def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> None:
     """Interface 8: a whole match and each decision through the page, each in the log."""
     page = at_the_desk(referee())

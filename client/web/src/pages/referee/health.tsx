@@ -64,7 +64,7 @@ export function HealthCard({ desk }: { desk: Desk }) {
 export function Advice({ advice }: { advice: readonly string[] }) {
   if (!advice.length) return null;
   return (
-    <div class="missing advice" role="status">
+    <div class="advice" role="status">
       <h3>{t("courtHealth.advice")}</h3>
       <ul>
         {advice.map((reason) => (
