@@ -147,7 +147,7 @@ class Doors:
 
     def _open(self) -> None:
         self._session = _Session()
-        real, court_network.open_court = court_network.open_court, lambda _: self._session  # type: ignore[assignment,return-value]
+        real, court_network.open_court = court_network.open_court, lambda *_: self._session  # type: ignore[assignment,return-value]
         try:
             self._inbox = Inbox(KEYS, SEATS, self._hashes, self._admission)
             self._inbox._sessions = _Sessions()
