@@ -58,8 +58,8 @@ def doctor_command(
     """Look whether this machine is ready: packages, ports, graphics, clock, disk.
 
     With --invitation, --connect or --contest also the link to a court: is it there, how long does
-    a request take, how many frames arrive. Every finding is ok, a note or a problem, with what to do.
-    The exit code is 0 unless there is a problem.
+    a request take, how many frames arrive. Every finding is ok, a note or a problem, with what to
+    do. The exit code is 0 unless there is a problem.
     """
     plan = None if contest is None else contests.load(contest)
     folder = recordings or (plan.recordings if plan else Path("recordings"))
