@@ -37,7 +37,9 @@ class Process:
                 cwd=folder,
             )
         assert self.process.stdout is not None
-        self.opened = json.loads(self.process.stdout.readline())
+        self.said = self.process.stdout.readline()
+        """What it has said; all of it once it is closed."""
+        self.opened = json.loads(self.said)
 
     def kill(self) -> None:
         """End it as a power cut does."""
@@ -48,10 +50,12 @@ class Process:
         os.kill(self.process.pid, number)
 
     def close(self) -> None:
+        assert self.process.stdout is not None
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGCONT)
             self.process.terminate()
-        self.process.communicate(timeout=30)
+        if not self.process.stdout.closed:
+            self.said += self.process.communicate(timeout=30)[0]
 
 
 class Venue:

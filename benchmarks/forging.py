@@ -1,0 +1,402 @@
+"""`python -m benchmarks.forging`: hostile clients against a real court; how much is accepted?
+
+In each of three configurations an honest contestant plays in each seat while others send, through
+real Zenoh sessions, the other seat's commands, decisions without being the referee, commands as a
+spectator, commands that were heard before, and altered ones; at the end everybody publishes frames,
+events, a sheet and health. Accepted is what the court's record has and no honest contestant or
+referee sent, a decision that was answered, and what another spectator received. The same code with
+the right credentials is the control: all of it must be accepted.
+"""
+
+import argparse
+import json
+import random
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+
+from lacoc_client.controller import Controller
+from lacoc_client.referee import RefereeClient
+from lacoc_client.spectator import Spectator
+from lacoc_server.contest_keys import make_keys
+from lacoc_shared import cli, network_config, seal
+from lacoc_shared import contest as contests
+from lacoc_shared.access import Access
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.decisions import Adjust, Start
+from lacoc_shared.inputs import Decide, KeySeat
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import Command, DecisionRequest
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seal import MAC_BYTES, SECRET_BYTES, command_mac, new_token
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import NoReply, Refused, Session, open_client
+
+KEYS = Keys("main")
+SEATS = ("left", "right")
+REFEREE = "benchmark"
+CONTROLS = 50
+"""How often the right credentials are tried with the code of the attacks."""
+_PRESS_S = 0.25
+_SLICE_S = 0.02
+_WAIT_S = 60.0
+_HEARD = 40  # commands, of about four seconds
+_DECIDERS = 4  # so many requests are answered in a beat
+
+
+class Way(NamedTuple):
+    """A configuration."""
+
+    name: str
+    without: str
+    """What is switched off in the court's process: "", "rules" or "seals"."""
+    a_slice: int
+    """Commands on a seat in 20 ms: where they reach its inbox, few enough that it looks at all."""
+
+
+WAYS = (
+    Way("all protection", "", 30),
+    Way("transport's rules off", "rules", 3),
+    Way("tokens and seals off", "seals", 30),
+)
+
+
+def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
+    """Try everything in one configuration.
+
+    Args:
+        way: the configuration.
+        attempts: of each kind.
+        folder: an empty one.
+
+    Returns:
+        Accepted attempts by kind, what the court counted, and how the honest and the controls
+        fared.
+    """
+    people = _contest(folder, keys=way.without != "rules")
+    with ExitStack() as stack:
+        court = _serve(folder, way.without)
+        stack.callback(_stop, court)
+
+        def enter(who: str) -> Session:
+            access = people[who]
+            return stack.enter_context(
+                open_client([access.connect], _WAIT_S, credentials=access.credentials)
+            )
+
+        sessions = {who: enter(who) for who in people}
+        honest = [_Honest(enter(seat), people[seat]) for seat in SEATS]
+        referee = RefereeClient(sessions["referee"], "main", people["referee"].token)
+        view = Spectator(sessions["spectators"], "main")
+        _until(lambda: view.poll() and view.frame and view.frame.phase == Phase.READY)
+        referee.decide(Start(), "", REFEREE)
+        _until(lambda: view.poll() and view.frame and view.frame.phase == Phase.PLAYING)
+        for one in honest:
+            one.start()
+        stack.callback(lambda: [one.stop() for one in honest])
+        _until(lambda: all(len(one.sent) == _HEARD for one in honest))
+        answered, forged = _attack(way, attempts, sessions, honest, people)
+        _until(lambda: view.poll() and view.health)
+        health = view.health
+        for one in honest:
+            one.stop()
+        received = _publish(attempts, sessions, enter("spectators"))
+        controls = _controls(sessions, honest, people)
+    record = _record(folder)
+    inputs = [one for ones in record.inputs.values() for one in ones]
+    keys = [(i.seat, i.seq, i.key) for i in inputs if isinstance(i, KeySeat)]
+    applied = set(keys)
+    pressed = {(index, *key) for index, one in enumerate(honest) for key in one.pressed}
+    decided = [one for one in inputs if isinstance(one, Decide)]
+    accepted = {kind: len(commands & applied) for kind, commands in forged.items()}
+    accepted["a replayed command"] = len(keys) - len(applied)  # it would be there twice
+    accepted["a decision by a contestant"] = answered
+    return {
+        "way": way.name,
+        "attempts": attempts,
+        "accepted": accepted,
+        "decisions in the record": len(decided) - 1 - CONTROLS,
+        "forged frames, events, sheets, health received": received,
+        "honest keys applied": f"{len(pressed & applied)} of {len(pressed)}",
+        "controls accepted": f"{len(controls & applied)} of {CONTROLS} commands",
+        "refused by the court": {
+            "commands": dict(sum((Counter(s.refused) for s in health.seats), Counter())),
+            "decisions": dict(health.dropped),
+        }
+        if health
+        else {},
+        "right": pressed <= applied
+        and controls <= applied
+        and len(decided) == 1 + CONTROLS
+        and not any(accepted.values())
+        and (received == 0) == (way.without != "rules"),
+    }
+
+
+class _Honest:
+    """A contestant who presses another key four times a second, on a thread of their own."""
+
+    def __init__(self, session: Session, access: Access) -> None:
+        self.controller = Controller(session, "main", access.seat, access.token, access.seat)
+        self.controller.join()
+        self.controller.ready()
+        joined = self.controller._joined
+        assert joined is not None
+        self.session, self.secret = joined.session, joined.secret
+        self.pressed: list[tuple[int, int]] = []
+        """Sequence number and key."""
+        self.sent: deque[bytes] = deque(maxlen=_HEARD)
+        """What somebody who listens on the line could have heard."""
+        self._door, self.controller._commands = self.controller._commands, self  # type: ignore[assignment]
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._play)
+
+    def put(self, payload: bytes) -> None:
+        """Send what the controller sends, and remember it."""
+        self.sent.append(payload)
+        self._door.put(payload)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Let the last key come through, and end."""
+        self._stopping.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def _play(self) -> None:
+        controller, chance = self.controller, random.Random(1)
+        while not self._stopping.is_set():
+            key = chance.randrange(4)
+            self.pressed.append((controller.press(1, key), key))
+            end_s = time.monotonic() + _PRESS_S
+            while time.monotonic() < end_s:
+                controller.wait_frame(0.02)
+        _until(lambda: controller.wait_frame(0.05) and self._done())
+
+    def _done(self) -> bool:
+        frame = self.controller.view.frame
+        assert frame is not None
+        seat = frame.seats[self.controller.index]
+        return max(seat.applied_seq, seat.refused_seq) >= self.pressed[-1][0]
+
+
+Forged = dict[str, set[tuple[int, int, int]]]
+"""By kind of attack: seat, sequence number and key of commands that nobody may see applied."""
+
+
+def _attack(
+    way: Way,
+    attempts: int,
+    sessions: dict[str, Session],
+    honest: list[_Honest],
+    people: dict[str, Access],
+) -> tuple[int, Forged]:
+    """Send everything; returns how many decisions were answered, and the forged commands."""
+    answered: list[int] = []
+    tokens = [people[seat].token for seat in SEATS]
+    deciders = [
+        threading.Thread(
+            target=lambda number=number: answered.append(
+                sum(
+                    _decide(sessions[SEATS[number % 2]], tokens[try_ % 2])
+                    for try_ in range(number, attempts, _DECIDERS)
+                )
+            )
+        )
+        for number in range(_DECIDERS)
+    ]
+    for thread in deciders:
+        thread.start()
+    forged = _send_commands(way, attempts, sessions, honest)
+    for thread in deciders:
+        thread.join()
+    return sum(answered), forged
+
+
+def _send_commands(
+    way: Way, attempts: int, sessions: dict[str, Session], honest: list[_Honest]
+) -> Forged:
+    chance = random.Random(2)
+    kinds: dict[str, tuple[Callable[[int, int], bytes], str | None]] = {
+        # Their own seal, with their own session and with that of the seat, which health shows.
+        "another seat's command": (
+            lambda seat, seq: forge(
+                KEYS.command(SEATS[seat]),
+                honest[chance.choice((seat, 1 - seat))].session,
+                seq,
+                honest[1 - seat].secret,
+            ),
+            None,
+        ),
+        "a spectator's publish": (
+            lambda seat, seq: forge(
+                KEYS.command(SEATS[seat]), honest[seat].session, seq, chance.randbytes(SECRET_BYTES)
+            ),
+            "spectators",
+        ),
+        "a replayed command": (
+            lambda seat, _: honest[seat].sent[chance.randrange(_HEARD // 2)],
+            None,
+        ),
+        "an altered command": (lambda seat, seq: _alter(honest[seat].sent[-1], seq, chance), None),
+    }
+    forged: Forged = {kind: set() for kind in kinds}
+    doors = {
+        (who, seat): sessions[who].publisher(KEYS.command(seat))
+        for who in (*SEATS, "spectators")
+        for seat in SEATS
+    }
+    sent = 0
+    while sent < attempts:
+        for _ in range(max(1, way.a_slice // len(kinds))):
+            for number, (kind, (make, who)) in enumerate(kinds.items()):
+                seat = (sent + number) % 2
+                payload = make(seat, 10**6 + len(kinds) * sent + number)
+                command = decode(payload, Command)
+                if kind != "a replayed command":  # those are the honest ones' own numbers
+                    forged[kind].add((seat, command.seq, command.key))
+                doors[who or SEATS[1 - seat], SEATS[seat]].put(payload)
+            sent += 1
+        time.sleep(_SLICE_S)
+    return forged
+
+
+def forge(key_expression: str, session: int, seq: int, secret: bytes) -> bytes:
+    """A command, sealed with a secret."""
+    numbers = (session, seq, 1, seq % 4, 0, 0)
+    return encode(Command(*numbers, command_mac(secret, key_expression, *numbers)))
+
+
+def _alter(heard: bytes, seq: int, chance: random.Random) -> bytes:
+    """A command that was heard, with another number and key, or with another seal as well."""
+    command = decode(heard, Command)
+    mac = command.mac if chance.random() < 0.5 else chance.randbytes(MAC_BYTES)
+    return encode(msgspec.structs.replace(command, seq=seq, key=chance.randrange(10), mac=mac))
+
+
+def _decide(session: Session, token: str) -> int:
+    """Ask for a decision; 1 if it was made."""
+    request = DecisionRequest(token=token, by=REFEREE, reason="x", decision=Adjust("left", 1))
+    try:
+        session.ask(KEYS.decision("adjust"), encode(request), timeout_s=_WAIT_S)
+    except (NoReply, Refused):
+        return 0
+    return 1
+
+
+def _publish(attempts: int, sessions: dict[str, Session], spectator: Session) -> int:
+    """Publish as the court; returns how much of it another spectator received."""
+    expressions = (KEYS.frame, KEYS.event, KEYS.sheet, KEYS.health)
+    boxes = [spectator.mailbox(key, 100_000) for key in expressions]
+    doors = [sessions[who].publisher(key) for who in sessions for key in expressions]
+    for number in range(attempts):
+        for door in doors[number % len(sessions) :: len(sessions)]:
+            door.put(b"forged")
+        if number % 50 == 0:
+            time.sleep(0.01)
+    for session in (*sessions.values(), spectator):
+        session.ask(KEYS.scene)  # comes back when all before it was dealt with
+    time.sleep(0.2)
+    return sum(mail.payload == b"forged" for box in boxes for mail in _mails(box.take))
+
+
+def _mails(take: Callable[[], Any]) -> Iterator[Any]:
+    return iter(take, None)
+
+
+def _controls(
+    sessions: dict[str, Session], honest: list[_Honest], people: dict[str, Access]
+) -> set[tuple[int, int, int]]:
+    """The same commands and decisions, from those who may; returns the commands."""
+    door = sessions["left"].publisher(KEYS.command("left"))
+    first = honest[0].pressed[-1][0] + 1
+    for seq in range(first, first + CONTROLS):
+        door.put(forge(KEYS.command("left"), honest[0].session, seq, honest[0].secret))
+        _decide(sessions["referee"], people["referee"].token)  # answered in a later beat
+    return {(0, seq, seq % 4) for seq in range(first, first + CONTROLS)}
+
+
+def _contest(folder: Path, *, keys: bool) -> dict[str, Access]:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    file = folder / "contest.toml"
+    seats = "".join(f'seat.{seat}.token = "{new_token()}"\n' for seat in SEATS)
+    file.write_text(
+        f'[court.main]\narena = "othello"\nlisten = ["127.0.0.1:{port}"]\n'
+        f'{seats}referee.token = "{new_token()}"\n'
+        "settings.match.countdown_s = 0.1\nsettings.match.duration_s = 3600.0\n"
+    )
+    if keys:
+        make_keys(file, (), renew=False)
+    return contests.everybody(contests.load(file), "main")
+
+
+def _serve(folder: Path, without: str) -> subprocess.Popen[str]:
+    words = [sys.executable, "-m", "benchmarks.forging", "--serve", str(folder)]
+    court = subprocess.Popen([*words, "--without", without], stdout=subprocess.PIPE, text=True)
+    assert court.stdout is not None
+    court.stdout.readline()
+    threading.Thread(target=court.stdout.read, daemon=True).start()
+    return court
+
+
+def _stop(court: subprocess.Popen[str]) -> None:
+    court.terminate()
+    court.wait(_WAIT_S)
+
+
+def _record(folder: Path) -> Record:
+    return Record.read(next((folder / "recordings").glob("*.mcap")))
+
+
+def _until(condition: Callable[[], object]) -> None:
+    end_s = time.monotonic() + _WAIT_S
+    while not condition():
+        if time.monotonic() > end_s:
+            sys.exit("what should have happened did not")
+        time.sleep(0.005)
+
+
+def _court(folder: Path, without: str) -> None:
+    """Be the court, with something switched off."""
+    if without == "rules":
+        network_config.access_control = lambda _: {"enabled": False}
+    if without == "seals":
+        seal.same = lambda *_: True
+        seal.verify_token = lambda *_: True
+    sys.exit(cli.main(["serve", "--json", "--contest", str(folder / "contest.toml")]))
+
+
+def main() -> None:
+    """Try and print; or be the court."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.forging", description=__doc__)
+    parser.add_argument("--attempts", type=int, default=10_000, help="of each kind")
+    parser.add_argument("--serve", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--without", default="", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.serve:
+        _court(options.serve, options.without)
+    right = True
+    for way in WAYS:
+        with tempfile.TemporaryDirectory() as folder:
+            found = forging(way, options.attempts, Path(folder))
+        print(json.dumps(found, indent=1), flush=True)
+        right &= found["right"]
+    sys.exit(not right)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,176 @@
+"""Secrets stay where they belong: a match with known ones is searched for them."""
+
+import subprocess
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from court_process import LACOC, environment
+from mcap.reader import make_reader
+from page_client import PageClient, Refused
+from venue import REFEREE, TOKENS, Venue
+
+from lacoc_client.controller import Controller
+from lacoc_client.gateway.wire import Kind
+from lacoc_server.contest_keys import make_keys
+from lacoc_shared import contest as contests
+from lacoc_shared.access import invitation_text
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import Session, open_client
+
+KEYS = Keys("main")
+SETTINGS = "settings.match.countdown_s = 0.1\n"
+
+
+class HearingPage(PageClient):
+    """A page that keeps every byte it was sent."""
+
+    heard: bytes = b""
+
+    def _take(self, kind: Kind, payload: bytes) -> None:
+        self.heard += payload
+        super()._take(kind, payload)
+
+
+class KeyedVenue(Venue):
+    """A venue whose contest has keys."""
+
+    def __init__(self, folder: Path, stack: ExitStack) -> None:
+        super().__init__(folder, stack)
+        text = self.contest.read_text().replace("tcp/", "")
+        self.contest.write_text(text.replace("[court.main.seat", f"{SETTINGS}[court.main.seat", 1))
+        make_keys(self.contest, (), renew=False)
+        self.people = contests.everybody(contests.load(self.contest), "main")
+        self.pages: list[HearingPage] = []
+
+    def page(self, key: str | None = None, **options: object) -> HearingPage:
+        page = HearingPage(self.url, key, **options)
+        self._stack.callback(page.close)
+        self.pages.append(page)
+        return page
+
+    def session(self, who: str) -> Session:
+        access = self.people[who]
+        return self._stack.enter_context(
+            open_client([access.connect], credentials=access.credentials)
+        )
+
+    def start(self, *words: str) -> "subprocess.Popen[bytes]":
+        """A command that ends with the test."""
+        process = subprocess.Popen(
+            [*LACOC, *words],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            env=environment(),
+            cwd=self.folder,
+        )
+        self._stack.callback(process.kill)
+        return process
+
+    def invitation(self, who: str) -> str:
+        return f"--invitation=keys/invitations/main.{who}.toml"
+
+    def secrets(self) -> dict[str, bytes]:
+        """Everything that nobody may see, by what it is; the spectators' password is public."""
+        found: dict[str, bytes] = {}
+        for who, access in self.people.items():
+            if access.token and access.credentials is not None:
+                found[f"token of {who}"] = access.token.encode()
+                found[f"password of {who}"] = access.credentials.password.encode()
+        keys = contests.load(self.contest).keys
+        assert keys is not None
+        for path in (keys.ca_key, keys.private_key):
+            found[path.name] = path.read_bytes().splitlines()[1]
+        return found
+
+
+@pytest.fixture
+def keyed(tmp_path: Path) -> Iterator[KeyedVenue]:
+    with ExitStack() as stack:
+        yield KeyedVenue(tmp_path, stack)
+
+
+def titles(where: Path) -> bytes:
+    """What everybody on this machine can read of the processes that run in a folder."""
+    found = b""
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            if (process / "cwd").readlink() == where:
+                found += (process / "cmdline").read_bytes()
+        except OSError:  # it has ended
+            continue
+    return found
+
+
+def in_record(path: Path) -> bytes:
+    """Everything that stands in a record, unpacked."""
+    with path.open("rb") as file:
+        return b"".join(message.data for _, _, message in make_reader(file).iter_messages())
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="reads /proc")
+def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
+    """A short match by bot, page and referee, with a wrong token tried at each door.
+
+    Searched are all that the court publishes, all that pages get, what every process says, logs and
+    titles, and the record.
+    """
+    court, web = keyed.court(), keyed.web()
+    watching = keyed.session("spectators")
+    boxes = {
+        what: watching.mailbox(f"{KEYS.root}/{what}", 100_000)
+        for what in ("frame", "event", "sheet", "health")
+    }
+    bot = keyed.start("bot", "straight", keyed.invitation("left"))
+    wrong = keyed.folder / "wrong.toml"
+    wrong.write_text(invitation_text(keyed.people["referee"].of_referee("no" + REFEREE), "x"))
+    refused = keyed.start("referee", "start", f"--invitation={wrong}")
+    page = keyed.page(keyed.key)
+    for ask in ({"do": "join", "seat": "right", "name": "x"}, {"do": "enter", "by": "x"}):
+        with pytest.raises(Refused, match="does not take this token"):
+            page.ask(**ask, token=f"no{TOKENS['right']}")
+    contestant = keyed.contestant("right", "Right")
+    referee = keyed.referee()
+    contestant.phase(Phase.READY)
+    referee.ask("decide", decision={"type": "start"}, reason="")
+    contestant.phase(Phase.PLAYING)
+    contestant.ask("key", level=1, key=2)
+    contestant.wait(lambda: contestant.own().applied_seq)
+
+    own = Controller(keyed.session("right"), "main", "right", TOKENS["right"], "Right")
+    own.join()  # takes the seat from the page: so a session's secret is known here
+    assert own._joined is not None
+    secrets = keyed.secrets() | {"a session's secret": own._joined.secret}
+    watch = keyed.start("watch", "--json", "--hz=5", keyed.invitation("spectators"))
+    seen = {"titles": titles(keyed.folder)}
+    for decision in ("halt", "declare left --reason end", "official"):
+        by_hand = keyed.start("referee", *decision.split(), keyed.invitation("referee"))
+        seen[decision] = by_hand.communicate(timeout=60)[0]
+        assert by_hand.returncode == 0, seen[decision]
+    seen["watch"] = watch.communicate(timeout=60)[0]
+    seen["refused"] = refused.communicate(timeout=60)[0]
+    for what, box in boxes.items():
+        seen[what] = b"".join(mail.payload for mail in iter(box.take, None))
+    seen["scene"] = watching.ask(KEYS.scene)
+    seen["pages"] = b"".join(one.heard for one in keyed.pages)
+    bot.terminate()
+    seen["bot"] = bot.communicate(timeout=60)[0]
+    court.close()
+    web.close()
+    seen |= {"court": court.said.encode(), "web": web.said.encode()}
+    (record,) = (keyed.folder / "recordings").glob("*.mcap")
+    seen["record"] = in_record(record)
+    seen |= {path.name: path.read_bytes() for path in keyed.folder.glob("*.log")}
+
+    said = {where: what for where, what in seen.items() if where not in ("court.log", "web.log")}
+    assert all(said.values()), [where for where, what in said.items() if not what]
+    assert b"Right" in seen["record"]
+    assert b"not take this token" in seen["refused"]
+    leaks = [(w, s) for w, what in seen.items() for s, word in secrets.items() if word in what]
+    assert leaks == []
+    control = keyed.contest.read_bytes() + (keyed.folder / "keys/ca.key").read_bytes()
+    assert sum(word in control for word in secrets.values()) == 4  # the search does find them

@@ -1,0 +1,28 @@
+"""A short run of `benchmarks.forging`: nothing that is forged is accepted, all that is right is."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.slow
+def test_nothing_forged_is_accepted() -> None:
+    """With all protection, with tokens and seals alone, and with the transport's rules alone."""
+    command = [sys.executable, "-m", "benchmarks.forging", "--attempts", "200"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=240)
+    decoder, found, text = json.JSONDecoder(), [], done.stdout.strip()
+    while text:
+        one, end = decoder.raw_decode(text)
+        found.append(one)
+        text = text[end:].strip()
+
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert [one["right"] for one in found] == [True] * 3
+    assert {sum(one["accepted"].values()) for one in found} == {0}
+    refused = found[1]["refused by the court"]["commands"]
+    assert {"bad seal", "old", "not your seat"} <= set(refused)  # they did arrive there
