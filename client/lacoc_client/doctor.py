@@ -23,6 +23,7 @@ import msgspec
 from packaging.requirements import Requirement
 
 from lacoc_shared import __version__
+from lacoc_shared.access import Credentials
 from lacoc_shared.keyspace import EVERY_COURT
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
@@ -98,20 +99,23 @@ def _package(needed: Requirement, *, optional: bool) -> Finding:
     return Finding(about, Status.PROBLEM, what, f'pip install "{wanted}"')
 
 
-def court_port(host: str, port: int, *, needed: bool) -> Finding:
+def court_port(
+    host: str, port: int, *, needed: bool, credentials: Credentials | None = None
+) -> Finding:
     """Whether a court can listen there, or does already.
 
     Args:
         host: address of this machine to listen at.
         port: the port.
         needed: it stands in the contest file; otherwise a taken port is only a note.
+        credentials: to ask a court that has keys.
     """
     about = f"port {port}"
     why = _why_taken(host, port)
     if not why:
         return Finding(about, Status.OK, f"free at {host}, for a court")
     try:
-        with open_client([f"tcp/127.0.0.1:{port}"], _ASK_S) as session:
+        with open_client([f"127.0.0.1:{port}"], _ASK_S, credentials) as session:
             courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     except UserError:
         courts = []

@@ -11,9 +11,11 @@ from typing import Any
 
 import pytest
 from court_process import OpenCourt, environment
+from keyed import KeyedCourt, keyed_file
 
 from lacoc_client import doctor
 from lacoc_client.doctor import Status
+from lacoc_client.doctor_link import link
 from lacoc_shared import cli
 
 
@@ -166,3 +168,14 @@ def test_the_link_to_a_court(
     assert (here.status, here.found) == (Status.OK, "court main runs here")
     other = look(capsys, tmp_path, "--connect", court.address, "--court", "other")
     assert "there is main" in other["court other"]["found"]
+
+
+def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> None:
+    """A port that a court with keys has is no problem to the organiser who has its keys."""
+    with KeyedCourt(keyed_file(tmp_path)) as court:
+        port = int(court.address.rpartition(":")[2])
+        credentials = court.people["spectators"].credentials
+        found = doctor.court_port("127.0.0.1", port, needed=True, credentials=credentials)
+        assert (found.status, found.found) == (Status.OK, "court main runs here")
+        findings = list(link(court.people["left"].watching(), 0.5))
+    assert "Test at tls/" in findings[0].found

@@ -76,10 +76,13 @@ def doctor_command(
 
 def _look(plan: Contest | None, web: str | None, folder: Path, seconds: float) -> Iterator[Finding]:
     yield from doctor.packages()
-    courts = plan.courts.values() if plan else ()
-    listened = [address for court in courts for address in court.listen] or [contests.LOOPBACK]
-    for address in listened:
-        yield doctor.court_port(*_host_port(address), needed=plan is not None)
+    if plan is None:
+        yield doctor.court_port(*_host_port(contests.LOOPBACK), needed=False)
+    for name, court in plan.courts.items() if plan else ():
+        credentials = contests.spectator_access(plan, name, None).credentials
+        for address in court.listen:
+            where = _host_port(address)
+            yield doctor.court_port(*where, needed=True, credentials=credentials)
     yield doctor.web_port(*_host_port(web or _WEB), needed=web is not None)
     yield doctor.graphics()
     yield doctor.clock(seconds)
