@@ -100,6 +100,12 @@ PARTS = {
     "start_cells names a cell twice",
     "not a message",
     "seat 7",
+    "7 sits down as a referee.",
+    "Court 7 is silent.",
+    "Court 7 sends frames.",
+    "Refused: 7",
+    "Seat 7: 77.",
+    "The page of seat 7 has gone.",
 }
 NAMES = re.compile(
     r"Ants|Bees|Kim|Hexapod|planner|c\dr\d|corner\d|flag\d+|LocoTra-data|Loco-data|Num of Posture|"
