@@ -29,7 +29,7 @@ from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_server.contest_keys import make_keys
-from lacoc_shared import cli, network_config, seal
+from lacoc_shared import cli, entrances, network_config, seal
 from lacoc_shared import contest as contests
 from lacoc_shared.access import Access
 from lacoc_shared.codec import decode, encode
@@ -341,7 +341,7 @@ def _contest(folder: Path, *, keys: bool) -> dict[str, Access]:
     )
     if keys:
         make_keys(file, (), renew=False)
-    return contests.everybody(contests.load(file), "main")
+    return entrances.everybody(contests.load(file), "main")
 
 
 def _serve(folder: Path, without: str) -> subprocess.Popen[str]:

@@ -10,7 +10,7 @@ from rich.text import Text
 from lacoc_arenas import arena as arenas
 from lacoc_robots.limits import Limits
 from lacoc_shared import contest as contests
-from lacoc_shared import options, screen
+from lacoc_shared import entrances, options, screen
 from lacoc_shared.contest import Court
 from lacoc_shared.keep import save
 from lacoc_shared.keyspace import Keys
@@ -170,9 +170,9 @@ def show(
     contest = contests.load(file)
     names = [contest.court(court)[0]] if court else list(contest.courts)
     if contest.keys:
-        lines = {n: contests.invitation_lines(contests.everybody(contest, n)) for n in names}
+        lines = {n: entrances.invitation_lines(entrances.everybody(contest, n)) for n in names}
     else:
-        lines = {name: contests.join_lines(name, contest.courts[name], host) for name in names}
+        lines = {name: entrances.join_lines(name, contest.courts[name], host) for name in names}
     if json:
         screen.print_json(lines)
         return

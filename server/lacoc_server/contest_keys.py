@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lacoc_server.certificates import Authority, Pair, hosts_of, utc_now
-from lacoc_shared import address
+from lacoc_shared import address, entrances
 from lacoc_shared import contest as contests
 from lacoc_shared.access import Access, invitation_text
 from lacoc_shared.contest import Contest
@@ -76,7 +76,7 @@ def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
         invitations = [
             access
             for name in contest.courts
-            for access in contests.everybody(contest, name, *hosts[:1]).values()
+            for access in entrances.everybody(contest, name, *hosts[:1]).values()
         ]
         for access in invitations:
             text = invitation_text(access, contest.name)

@@ -1,6 +1,6 @@
 """What a court of a contest with keys protects itself with."""
 
-from lacoc_shared import contest as contests
+from lacoc_shared import entrances
 from lacoc_shared.access_rules import Protection
 from lacoc_shared.contest import Contest
 
@@ -16,7 +16,7 @@ def protection(contest: Contest, court: str) -> Protection | None:
         return None
     for path in (keys.certificate, keys.private_key):
         keys.read(path)  # says what to do, which Zenoh does not
-    everybody = contests.everybody(contest, court)
+    everybody = entrances.everybody(contest, court)
     credentials = [access.credentials for access in everybody.values()]
     return Protection(
         court=court,

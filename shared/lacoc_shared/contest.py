@@ -3,7 +3,7 @@
 An organiser writes it once ('lacoc contest init'); a court is started from it, and a
 client that has it needs no address and no token. Every setting can also be said on the
 command line or in the environment, and goes before the file then: `options` has both,
-and what is still None is looked up here.
+and what is still None is looked up by `entrances`.
 """
 
 import math
@@ -13,7 +13,6 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
-from lacoc_shared.access import Access
 from lacoc_shared.address import check_protocols, endpoint
 from lacoc_shared.address import host as address_host
 from lacoc_shared.key_folder import KeyFolder
@@ -31,7 +30,8 @@ LOOPBACK = "127.0.0.1:7447"
 
 _ANY_HOST = ("0.0.0.0", "::")  # "every address of this machine": to listen at, not to call
 
-_OTHERS = ("referee", "gateway", "spectators")  # with the seats, all who come to a court
+OTHERS = ("referee", "gateway", "spectators")
+"""With the seats, all who come to a court."""
 
 Token = Annotated[str, msgspec.Meta(min_length=12, max_length=64)]
 
@@ -191,144 +191,6 @@ def throwaway(
     return Contest(name="throw-away", courts={MAIN: court})
 
 
-def spectator_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
-    """Find the way to a court for somebody who only watches.
-
-    Args:
-        contest: the contest file, if there is one: it says what the others leave open.
-        court: the court's name, or None.
-        connect: the court's address, or None.
-
-    Raises:
-        UserError: if the contest has no such court, or the address is none.
-    """
-    name, entry = _court_of(contest, court)
-    address = connect or (entry.address() if entry else LOOPBACK)
-    keys = contest.keys if contest else None
-    address = endpoint(address, contest.protocol if contest else "tcp")
-    return Access(court=name, connect=address, ca=keys.read(keys.ca) if keys else "")
-
-
-def seat_access(
-    contest: Contest | None,
-    court: str | None,
-    connect: str | None,
-    seat: str | None,
-    token: str | None,
-) -> Access:
-    """Find the way to a seat, for its contestant or a bot.
-
-    Args:
-        contest: the contest file, if there is one: it says what the others leave open.
-        court: the court's name, or None.
-        connect: the court's address, or None.
-        seat: the seat's name, or None: the only seat of the contest's court.
-        token: the seat's token, or None.
-
-    Raises:
-        UserError: if seat or token are neither given nor in the contest file.
-    """
-    access = spectator_access(contest, court, connect)
-    _, entry = _court_of(contest, court)
-    seats = entry.seat if entry else {}
-    if seat is None and len(seats) == 1:
-        seat = next(iter(seats))
-    if seat is None:
-        names = ", ".join(seats) or "left, right"
-        raise UserError(f"Which seat? Give --seat with the name of one: {names}.")
-    token = token or (seats[seat].token if seat in seats else None)
-    if token is None:
-        raise UserError(_no_token(f"seat {seat!r}"))
-    return access.of_seat(seat, token)
-
-
-def referee_access(
-    contest: Contest | None, court: str | None, connect: str | None, token: str | None
-) -> Access:
-    """Find the way to a court for its referee; arguments as for a seat.
-
-    Raises:
-        UserError: if the token is neither given nor in the contest file.
-    """
-    access = spectator_access(contest, court, connect)
-    _, entry = _court_of(contest, court)
-    token = token or (entry.referee.token if entry else None)
-    if token is None:
-        raise UserError(_no_token("the referee"))
-    return access.of_referee(token)
-
-
-def gateway_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
-    """Find the way to a court for a gateway; arguments and errors as for a spectator."""
-    access = spectator_access(contest, court, connect)
-    keys = contest.keys if contest else None
-    return access.of_gateway(keys.read(keys.gateway_token).strip()) if keys else access
-
-
-def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict[str, Access]:
-    """Find the way of each person to a court with keys: the seats, the referee, others.
-
-    Args:
-        contest: a contest with keys.
-        court: the court's name.
-        any_host: the host to name where the court listens at every address of its machine.
-
-    Raises:
-        UserError: if its keys can't be read.
-    """
-    entry = contest.courts[court]
-    address = entry.address(any_host)
-    watching = spectator_access(contest, court, address)
-    seats = {seat: watching.of_seat(seat, holder.token) for seat, holder in entry.seat.items()}
-    referee = watching.of_referee(entry.referee.token)
-    others = (referee, gateway_access(contest, court, address), watching)
-    return seats | dict(zip(_OTHERS, others, strict=True))
-
-
-def join_lines(name: str, court: Court, any_host: str = "HOST") -> dict[str, str]:
-    """Write the command line for each person at a court: the seats, the referee, spectators.
-
-    Args:
-        name: the court's name.
-        court: its entry.
-        any_host: the host to name where the court listens at every address of its machine.
-    """
-    where = f"--court {name} --connect {court.address(any_host)}"
-    seats = {
-        seat: f"lacoc play {where} --seat {seat} --token {holder.token}"
-        for seat, holder in court.seat.items()
-    }
-    return {
-        **seats,
-        "referee": f"lacoc referee status {where} --token {court.referee.token}",
-        "spectators": f"lacoc watch {where}",
-    }
-
-
-def invitation_lines(everybody: dict[str, Access]) -> dict[str, str]:
-    """Write the command line for each person who has an invitation beside them.
-
-    Args:
-        everybody: the way of each, by the person.
-    """
-    commands = {"seat": "play", "referee": "referee status", "gateway": "web"}
-    return {
-        who: f"lacoc {commands.get(access.role, 'watch')} --invitation {access.user}.toml"
-        for who, access in everybody.items()
-    }
-
-
-def _court_of(contest: Contest | None, court: str | None) -> tuple[str, Court | None]:
-    return (court or MAIN, None) if contest is None else contest.court(court)
-
-
-def _no_token(whose: str) -> str:
-    return (
-        f"The token of {whose} is missing. Give --invitation, --token or set LACOC_TOKEN; "
-        "the organiser has it ('lacoc contest show' prints it)."
-    )
-
-
 def _cannot_read(path: Path, reason: object) -> UserError:
     return UserError(
         f"The contest file {path} can't be read: {reason}. 'lacoc contest init' writes one."
@@ -383,7 +245,7 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
     tokens = [court.referee.token, *(holder.token for holder in holders.values())]
     if len(set(tokens)) < len(tokens):
         raise _Wrong(f"[{where}]: two places have the same token; each needs its own.")
-    if taken := set(holders) & set(_OTHERS):
+    if taken := set(holders) & set(OTHERS):
         raise _Wrong(f"[{where}.seat]: a seat can't be called {taken.pop()!r}.")
     protocol = "tls" if keys else "tcp"
     try:

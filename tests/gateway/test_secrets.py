@@ -15,6 +15,7 @@ from lacoc_client.controller import Controller
 from lacoc_client.gateway.wire import Kind
 from lacoc_server.contest_keys import make_keys
 from lacoc_shared import contest as contests
+from lacoc_shared import entrances
 from lacoc_shared.access import invitation_text
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.seat import Phase
@@ -42,7 +43,7 @@ class KeyedVenue(Venue):
         text = self.contest.read_text().replace("tcp/", "")
         self.contest.write_text(text.replace("[court.main.seat", f"{SETTINGS}[court.main.seat", 1))
         make_keys(self.contest, (), renew=False)
-        self.people = contests.everybody(contests.load(self.contest), "main")
+        self.people = entrances.everybody(contests.load(self.contest), "main")
         self.pages: list[HearingPage] = []
 
     def page(self, key: str | None = None, **options: object) -> HearingPage:

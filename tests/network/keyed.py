@@ -9,6 +9,7 @@ from court_stub import TOKENS, WHISTLE, CourtStub
 from lacoc_server.contest_keys import make_keys
 from lacoc_server.protection import protection
 from lacoc_shared import contest as contests
+from lacoc_shared import entrances
 from lacoc_shared.access import Access
 from lacoc_shared.session import Session, open_client
 
@@ -31,7 +32,7 @@ class KeyedCourt(CourtStub):
     def __init__(self, file: Path) -> None:
         contest = contests.load(file)
         super().__init__("127.0.0.1:0", protection(contest, "main"))
-        everybody = contests.everybody(contest, "main")
+        everybody = entrances.everybody(contest, "main")
         self.people: Mapping[str, Access] = {
             who: msgspec.structs.replace(access, connect=self.address)
             for who, access in everybody.items()

@@ -17,6 +17,7 @@ from keyed import KeyedCourt, keyed_file
 
 from lacoc_server.certificates import LIFE, Authority, utc_now
 from lacoc_shared import contest as contests
+from lacoc_shared import entrances
 from lacoc_shared.access import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.session import open_client, open_court
@@ -49,7 +50,7 @@ def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
 def test_keys_of_another_contest(keyed: KeyedCourt, tmp_path: Path) -> None:
     """A court that the invitation's authority does not vouch for may be a false one."""
     other = contests.load(keyed_file(tmp_path))
-    access = contests.everybody(other, "main")["left"]
+    access = entrances.everybody(other, "main")["left"]
     why = refused(msgspec.structs.replace(access, connect=keyed.address))
     assert re.search(r"can't prove that it is the court.*Do not go on", why)
 

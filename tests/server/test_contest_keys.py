@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from lacoc_server.contest_commands import app
 from lacoc_shared import contest as contests
+from lacoc_shared import entrances
 from lacoc_shared.access import read_invitation
 from lacoc_shared.mistakes import UserError
 
@@ -65,7 +66,7 @@ def test_an_invitation_holds_nothing_of_others(file: Path) -> None:
     """No other token, and no private key."""
     run("keys", str(file), "--host", "x.example")
     contest = contests.load(file)
-    people = contests.everybody(contest, "main")
+    people = entrances.everybody(contest, "main")
     assert contest.keys is not None
     for who, access in people.items():
         text = contest.keys.invitation(access.user).read_text()
@@ -160,7 +161,7 @@ def test_what_lacks_is_asked_for(file: Path) -> None:
         run("keys", str(file), "--host", "x.example")
     (file.parent / "keys").rename(file.parent / "elsewhere")
     with pytest.raises(UserError, match="lacoc contest keys"):
-        contests.seat_access(contests.load(file), None, None, "left", None)
+        entrances.seat_access(contests.load(file), None, None, "left", None)
 
 
 def test_show_names_the_invitations(file: Path) -> None:

@@ -8,7 +8,8 @@ import typer
 from typer.testing import CliRunner
 
 from lacoc_shared import contest as contests
-from lacoc_shared import options
+from lacoc_shared import entrances, options
+from lacoc_shared.access import Access
 from lacoc_shared.mistakes import UserError
 
 GOOD = """
@@ -168,20 +169,20 @@ def test_the_only_court_needs_no_name(file: Path) -> None:
 
 def test_access_without_a_file(file: Path) -> None:
     """Without a contest file everything comes from the options; a missing token is said."""
-    access = contests.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
+    access = entrances.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
 
-    assert access == contests.Access(
+    assert access == Access(
         court="main", connect="tcp/10.0.0.7:7447", role="seat", seat="left", token="t" * 20
     )
-    assert contests.spectator_access(None, None, None).connect == "tcp/127.0.0.1:7447"
+    assert entrances.spectator_access(None, None, None).connect == "tcp/127.0.0.1:7447"
     with pytest.raises(UserError, match=r"seat 'left'.*--token.*LACOC_TOKEN"):
-        contests.seat_access(None, None, None, "left", None)
+        entrances.seat_access(None, None, None, "left", None)
     with pytest.raises(UserError, match="--seat"):
-        contests.seat_access(None, None, None, None, "t" * 20)
+        entrances.seat_access(None, None, None, None, "t" * 20)
     with pytest.raises(UserError, match="referee"):
-        contests.referee_access(None, None, None, None)
+        entrances.referee_access(None, None, None, None)
     with pytest.raises(UserError, match="not an address"):
-        contests.spectator_access(None, None, "http://x")
+        entrances.spectator_access(None, None, "http://x")
 
 
 def test_access_from_a_file(file: Path) -> None:
@@ -189,15 +190,15 @@ def test_access_from_a_file(file: Path) -> None:
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 
-    left = contests.seat_access(contest, "main", None, "left", None)
+    left = entrances.seat_access(contest, "main", None, "left", None)
     assert (left.connect, left.token) == ("tcp/127.0.0.1:7447", "left-token-of-main")
-    runner = contests.seat_access(contest, "second", None, None, None)
+    runner = entrances.seat_access(contest, "second", None, None, None)
     assert (runner.connect, runner.seat) == ("tcp/court.example.org:7448", "runner")
-    given = contests.seat_access(contest, "main", "10.0.0.7", "left", "another-token-here")
+    given = entrances.seat_access(contest, "main", "10.0.0.7", "left", "another-token-here")
     assert (given.connect, given.token) == ("tcp/10.0.0.7:7447", "another-token-here")
-    assert contests.referee_access(contest, "main", None, None).token == "referee-token-of-main"
+    assert entrances.referee_access(contest, "main", None, None).token == "referee-token-of-main"
     with pytest.raises(UserError, match="middle"):
-        contests.seat_access(contest, "main", None, "middle", None)
+        entrances.seat_access(contest, "main", None, "middle", None)
 
 
 def test_join_lines_name_the_host(file: Path) -> None:
@@ -205,8 +206,8 @@ def test_join_lines_name_the_host(file: Path) -> None:
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 
-    main = contests.join_lines("main", contest.courts["main"])
-    second = contests.join_lines("second", contest.courts["second"])
+    main = entrances.join_lines("main", contest.courts["main"])
+    second = entrances.join_lines("second", contest.courts["second"])
 
     assert main["left"] == (
         "lacoc play --court main --connect tcp/HOST:7447 --seat left --token left-token-of-main"
@@ -240,7 +241,7 @@ def test_precedence(
         no_file: Annotated[bool, typer.Option("--no-file")] = False,
     ) -> None:
         found = contests.load(contest) if contest and not no_file else None
-        print(contests.spectator_access(found, None, connect).connect)
+        print(entrances.spectator_access(found, None, connect).connect)
 
     result = CliRunner().invoke(app, line, env={"LACOC_CONTEST": str(file), **environment})
 

@@ -14,7 +14,7 @@ from lacoc_client.commands import entrance
 from lacoc_client.doctor import Finding, Status
 from lacoc_client.doctor_link import link
 from lacoc_shared import contest as contests
-from lacoc_shared import options, screen
+from lacoc_shared import entrances, options, screen
 from lacoc_shared.contest import Contest
 from lacoc_shared.mistakes import UserError
 
@@ -79,7 +79,7 @@ def _look(plan: Contest | None, web: str | None, folder: Path, seconds: float) -
     if plan is None:
         yield doctor.court_port(*_host_port(contests.LOOPBACK), needed=False)
     for name, court in plan.courts.items() if plan else ():
-        credentials = contests.spectator_access(plan, name, None).credentials
+        credentials = entrances.spectator_access(plan, name, None).credentials
         for address in court.listen:
             where = _host_port(address)
             yield doctor.court_port(*where, needed=True, credentials=credentials)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from lacoc_shared import contest as contests
+from lacoc_shared import entrances
 from lacoc_shared.access import Access, Role, read_invitation
 from lacoc_shared.contest import Contest
 from lacoc_shared.mistakes import UserError
@@ -16,14 +17,14 @@ def seat(
     seat: str | None,
     token: str | None,
 ) -> Access:
-    """Find the way to a seat; see `contest.seat_access`.
+    """Find the way to a seat; see `entrances.seat_access`.
 
     Raises:
         UserError: if the contest file or the invitation is wrong, or something is missing.
     """
     if invitation is not None:
         return _invited(invitation, "seat", contest, court, connect, seat, token)
-    return contests.seat_access(_load(contest), court, connect, seat, token)
+    return entrances.seat_access(_load(contest), court, connect, seat, token)
 
 
 def perhaps_seat(
@@ -42,7 +43,7 @@ def perhaps_seat(
     if invitation is not None:
         return _invited(invitation, "seat", contest, court, connect, seat, token)
     plan = _load(contest)
-    access = contests.spectator_access(plan, court, connect)
+    access = entrances.spectator_access(plan, court, connect)
     seats = plan.court(court)[1].seat if plan else {}
     if seat is None and len(seats) == 1:
         seat = next(iter(seats))
@@ -58,14 +59,14 @@ def referee(
     connect: str | None,
     token: str | None,
 ) -> Access:
-    """Find the way to a court for its referee; see `contest.referee_access`.
+    """Find the way to a court for its referee; see `entrances.referee_access`.
 
     Raises:
         UserError: if the contest file or the invitation is wrong, or something is missing.
     """
     if invitation is not None:
         return _invited(invitation, "referee", contest, court, connect, token)
-    return contests.referee_access(_load(contest), court, connect, token)
+    return entrances.referee_access(_load(contest), court, connect, token)
 
 
 def spectator(
@@ -78,7 +79,7 @@ def spectator(
     """
     if invitation is not None:
         return _invited(invitation, None, contest, court, connect).watching()
-    return contests.spectator_access(_load(contest), court, connect)
+    return entrances.spectator_access(_load(contest), court, connect)
 
 
 def gateway(
@@ -92,7 +93,7 @@ def gateway(
     if invitation is not None:
         access = _invited(invitation, None, contest, court, connect)
         return access if access.role == "gateway" else access.watching()
-    return contests.gateway_access(contest, court, connect)
+    return entrances.gateway_access(contest, court, connect)
 
 
 def _invited(path: Path, role: Role | None, *others: object) -> Access:

@@ -19,7 +19,7 @@ from lacoc_server.network import CourtNetwork
 from lacoc_server.protection import protection
 from lacoc_server.recovery import unfinished
 from lacoc_shared import contest as contests
-from lacoc_shared import log, options, screen
+from lacoc_shared import entrances, log, options, screen
 from lacoc_shared.address import endpoint
 from lacoc_shared.contest import Contest
 from lacoc_shared.keyspace import Keys
@@ -185,7 +185,7 @@ def _open_doors(
         open_court = contests.Court(
             arena=entry.arena, listen=locators, seat=entry.seat, referee=entry.referee
         )
-        for who, line in contests.join_lines(name, open_court).items():
+        for who, line in entrances.join_lines(name, open_court).items():
             screen.show(f"  {who}: {line}")
 
 
