@@ -20,7 +20,7 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 
 from lacoc_shared import codec
-from lacoc_shared.inputs import KeySeat
+from lacoc_shared.inputs import Input, KeySeat
 from lacoc_shared.messages import Frame, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files, pack
@@ -46,6 +46,12 @@ def packed(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) ->
     return folder / "m.mcap"
 
 
+def test_a_key_of_an_older_record_was_not_held() -> None:
+    """What the court did not write down then has its default."""
+    older = codec.encode(["key", 0, 14, 1, 2])
+    assert codec.decode(older, Input) == KeySeat(0, 14, 1, 2, seen=0, held=0, late=0)  # type: ignore[arg-type]
+
+
 def test_what_is_written_is_read(
     segment: Path, header: MakeHeader, sheet: Sheet, scene: Scene, result: Result, frame: MakeFrame
 ) -> None:
@@ -57,7 +63,7 @@ def test_what_is_written_is_read(
     assert record.result == result
     assert [beat for beat, _ in record.frames] == list(range(40))
     assert codec.decode(record.frames[12][1], Frame) == frame(12)
-    assert record.inputs[13] == [KeySeat(0, 14, 1, 2), KeySeat(1, 14, 1, 3)]
+    assert record.inputs[13] == [KeySeat(0, 14, 1, 2), KeySeat(1, 14, 1, 3, held=6)]
     assert [event.beat for event in record.events] == [3, 13, 23, 33]
     assert record.touches[3] == Touch(((1,), ()), (None, (0.1, 0.2, 0.3)))
     assert record.snapshots == [(5, bytes(range(256)) * 4), (25, bytes(range(256)) * 4)]
