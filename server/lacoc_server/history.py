@@ -25,8 +25,6 @@ class SetMarker:
 class Step:
     """One thing that the rules judged, with what they made of it."""
 
-    ticks: int
-    """Ticks played when it was judged."""
     seen: Observation | SetMarker
     before: Any
     """The game's state before it."""
@@ -63,13 +61,13 @@ class History:
         self._steps: list[Step] = []
         self._step_of: dict[int, int] = {}
 
-    def observe(self, ticks: int, observation: Observation, next_number: int) -> list[GameEvent]:
+    def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
         """Judge one tick; its events get the numbers from `next_number` on."""
         before = self.state
         self.state, events = self._game.step(before, observation, BEAT_S)
         numbers = tuple(range(next_number, next_number + len(events)))
         over = self._game.over(self.state)
-        self._append(Step(ticks, observation, before, events, numbers, over=over))
+        self._append(Step(observation, before, events, numbers, over=over))
         return list(events)
 
     @property
@@ -77,7 +75,7 @@ class History:
         """Why the game is over; "" while it is not."""
         return self._steps[-1].over if self._steps else ""
 
-    def set(self, ticks: int, marker: int, value: int, number: int) -> None:
+    def set(self, marker: int, value: int, number: int) -> None:
         """Set a marker, as the decision with this event number says.
 
         Raises:
@@ -85,7 +83,7 @@ class History:
         """
         before = self.state
         self.state = self._game.set(before, marker, value)
-        step = Step(ticks, SetMarker(marker, value), before, (), (number,), over=self.over)
+        step = Step(SetMarker(marker, value), before, (), (number,), over=self.over)
         self._append(step)
 
     def knows(self, number: int) -> bool:
@@ -131,7 +129,7 @@ class History:
                 for event, old_number in zip(old.events, old.numbers, strict=False)
                 if event not in events
             ]
-            steps.append(Step(old.ticks, seen, state, events, numbers, struck, over))
+            steps.append(Step(seen, state, events, numbers, struck, over))
             state = after
         return Fold(steps, state, over, tuple(vanished), tuple(appeared))
 

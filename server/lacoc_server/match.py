@@ -299,7 +299,7 @@ class Match:
     def _judge(self) -> None:
         self.ticks += 1
         observation, self._touch = self.staging.observe()
-        for event in self.history.observe(self.ticks, observation, self.next_number):
+        for event in self.history.observe(observation, self.next_number):
             self.tell(
                 event.kind,
                 event.text.format(team=self.seats[event.seat].team),

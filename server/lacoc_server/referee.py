@@ -174,7 +174,6 @@ def _set(match: Match, decision: d.Set) -> str:
         raise Illegal(f"{decision.state!r} is no state; there are {_list(MARKER_STATES)}.")
     try:
         match.history.set(
-            match.ticks,
             names.index(decision.marker),
             MARKER_STATES.index(decision.state),
             match.next_number,

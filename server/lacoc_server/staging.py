@@ -36,6 +36,7 @@ class Staging:
         """The robots as `Frame.poses`: exactly the numbers that everybody sees."""
         self._views: tuple[RobotView, ...] = ()
         self._offsets: tuple[int, ...] = ()
+        self._radii_m: tuple[float, ...] = ()
         self._placed: list[Place | None] = []
 
     def build(self, seats: Sequence[Seat]) -> None:
@@ -44,6 +45,7 @@ class Staging:
         self.physics = self.make_physics(self._arena, entries)
         sizes = [4 * (7 + entry.robot.joints) for entry in entries]
         self._offsets = tuple(sum(sizes[:seat]) for seat in range(len(sizes)))
+        self._radii_m = tuple(entry.robot.radius_m for entry in entries)
         self._placed = [None] * len(entries)
         self.look()
 
@@ -91,14 +93,10 @@ class Staging:
         def room_m(place: Place) -> float:
             gaps_m = (
                 math.dist(place[:2], self._views[other.index][:2])
-                - max(MIN_START_DISTANCE_M, _radius_m(seat) + _radius_m(other))
+                - max(MIN_START_DISTANCE_M, self._radii_m[seat.index] + self._radii_m[other.index])
                 for other in others
             )
             return min(gaps_m, default=math.inf)
 
         places = self._arena.game.starts[seat.index]
         return next((place for place in places if room_m(place) >= 0), max(places, key=room_m))
-
-
-def _radius_m(seat: Seat) -> float:
-    return seat.entry.robot.radius_m if seat.entry else 0.0

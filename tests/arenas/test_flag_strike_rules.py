@@ -211,6 +211,10 @@ def test_all_four_end_the_match() -> None:
     assert GAME.winner(state, (20, 22)) == 1
     assert GAME.winner(state, (20, 20)) is None
     assert GAME.over(GAME.set(state, 3, RIGHT)) == ""
+    for corner in range(4):
+        state = GAME.set(state, corner, RIGHT)
+    assert GAME.over(state) == "the right team holds all corners"
+    assert GAME.score(state) == (0, 20)
 
 
 def test_ends_after_all_events_of_the_tick() -> None:
@@ -238,6 +242,8 @@ def test_strike(flag: str, points: int) -> None:
     assert claims(events) == [(0, flag)]
     assert events[0].kind == "strike"
     assert events[0].points == points
+    worth = "1 point" if points == 1 else f"{points} points"
+    assert events[0].text.format(team="Ants") == f"Ants strikes {flag} for {worth}."
     assert GAME.score(after) == (points, 0)
     later, events = tick(after, view(), view(touched=(flag,)))
     assert events == ()
@@ -288,7 +294,8 @@ def test_referee_sets_corners_and_flags() -> None:
     assert tick(down, view(touched=("flag19",)))[1] == ()
     stands = GAME.set(down, INDEX["flag19"], NEUTRAL)
     assert claims(tick(stands, view(touched=("flag19",)))[1]) == [(0, "flag19")]
-    with pytest.raises(ValueError, match="a corner is neutral, left or right"):
+    assert sum(now != was for now, was in zip(down.board, START.board, strict=True)) == 2
+    with pytest.raises(ValueError, match=r"^a corner is neutral, left or right$"):
         GAME.set(START, 0, DOWN)
 
 

@@ -410,6 +410,7 @@ def test_over_when_a_team_has_no_disc_left() -> None:
     after, _ = tick(before, "c1r5")
     assert GAME.over(after) == "the right team has no disc left"
     assert GAME.winner(after, GAME.score(after)) == 0
+    assert GAME.over(state(board("R....."), "c1r5")) == "the left team has no disc left"
 
 
 # 5-1 rule 8, rules 4 "referee"
@@ -422,7 +423,9 @@ def test_referee_sets_a_disc() -> None:
     assert GAME.score(after) == (19, 17)
     assert after.last == before.last
     assert GAME.score(GAME.set(before, INDEX["c5r5"], NEUTRAL)) == (18, 17)
-    with pytest.raises(ValueError, match="a disc is neutral, left or right"):
+    one = GAME.set(State((NEUTRAL,) * 36, before.last), INDEX["c2r5"], LEFT)
+    assert one.cells == board("..L...")
+    with pytest.raises(ValueError, match=r"^a disc is neutral, left or right$"):
         GAME.set(before, 0, DOWN)
 
 
@@ -448,3 +451,7 @@ def test_event_says_what_happened() -> None:
     _, events = tick(state(board("LRRL.."), "c0r5"), "c1r5")
     assert events[0].text.format(team="Ants") == "Ants flips c1r5 and with it c2r5."
     assert events[0].kind == "flip"
+    _, events = tick(state(board("LR...."), "c0r5"), "c1r5")
+    assert events[0].text.format(team="Ants") == "Ants flips c1r5."
+    _, events = tick(state(board("LRRRL."), "c0r5"), "c1r5")
+    assert events[0].text.format(team="Ants") == "Ants flips c1r5 and with it c2r5, c3r5."

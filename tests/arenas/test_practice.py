@@ -25,5 +25,5 @@ def test_nothing_happens() -> None:
     assert GAME.score(state) == (0,)
     assert GAME.over(state) == ""
     assert GAME.winner(state, (3,)) is None
-    with pytest.raises(ValueError, match="no markers"):
+    with pytest.raises(ValueError, match=r"^practice has no markers$"):
         GAME.set(state, 0, 1)

@@ -96,6 +96,7 @@ pytest_add_cli_args = [
 process_isolation = "forkserver"
 forkserver_warmup = "import"
 preload_modules_file = "preload.txt"
+timeout_constant = 8.0 # two minutes at least: a busy machine kills no mutant
 track_dependencies = false
 use_git_change_detection = false
 """

@@ -7,14 +7,23 @@ counts for every test of that module.
 
 import functools
 import importlib.metadata
+import sys
 from collections.abc import Generator
 
 import hypothesis
 import pytest
 from mutmut.state import state
 
+_entry_points = importlib.metadata.entry_points
+
+
+@functools.cache
+def _entries(group: str, path: tuple[str, ...]) -> importlib.metadata.EntryPoints:
+    return _entry_points(group=group)
+
+
 # Most of what a test of a match takes is reading who is installed.
-importlib.metadata.entry_points = functools.cache(importlib.metadata.entry_points)
+importlib.metadata.entry_points = lambda group: _entries(group, tuple(sys.path))
 
 _CALLED = pytest.StashKey[frozenset[str]]()
 

@@ -12,10 +12,10 @@ from lacoc_server.physics import Fault
 from lacoc_shared import __version__
 from lacoc_shared import decisions as d
 from lacoc_shared.gait import Level
-from lacoc_shared.inputs import HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat
-from lacoc_shared.messages import PROTOCOL, DecisionReply, Done, Event, Refusal
+from lacoc_shared.inputs import Advice, HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat
+from lacoc_shared.messages import PROTOCOL, DecisionReply, Done, Event, Frame, Refusal, SeatFrame
 from lacoc_shared.record.schema import Result
-from lacoc_shared.seat import NOBODY, Phase
+from lacoc_shared.seat import NOBODY, No, Phase
 
 P = Phase
 FLIP = {2: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}}
@@ -184,6 +184,19 @@ def test_what_a_fault_in_ready_leaves_in_the_log() -> None:
     ]
 
 
+def test_what_the_court_measured_in_the_log() -> None:
+    """Design, "Health": a replay is advised with its reasons, or not any more."""
+    stage = Stage(overrides=QUICK).to(P.PLAYING)
+    reasons = ("3 slow beats", "a beat 80 ms late")
+    beat = stage.beat(Advice(reasons))
+    assert beat.outcomes == (Done(),)
+    text = "Replay advised: 3 slow beats; a beat 80 ms late."
+    assert said(beat.events) == [("advice", NOBODY, text, {})]
+    assert stage.match.advice == reasons
+    again = said(stage.beat(Advice(())).events)
+    assert again == [("advice", NOBODY, "A replay is not advised any more.", {})]
+
+
 def test_what_an_abort_and_a_draw_leave_in_the_log() -> None:
     """Rules 4, `abort`: the match is void; workshop 5-1 rule 7: equal is a draw."""
     stage = Stage(overrides=QUICK).to(P.FINISHED)
@@ -293,6 +306,34 @@ def test_a_result_says_all() -> None:
     )
     assert stage.beats[-1].result == expected
     assert stage.beat().result is None, "only in a beat that changed it"
+
+
+def test_a_frame_says_all() -> None:
+    """docs/protocol.md, Frame: self-contained, so that a late comer needs only one."""
+    stage = Stage(overrides=QUICK)
+    first = stage.beat()
+    assert first.sheet_changed
+    assert first.frame.seats == (SeatFrame(0, 18, 0, 0, 0, 0, 0, 0, 0, 0),) * 2
+    stage.to(P.PLAYING)
+    stage.beat(key(LEFT, FORWARD, seq=3), key(RIGHT, X, seq=7))
+    pressed = stage.frame.beat
+    stage.beat(SilentSeat(LEFT), key(RIGHT, FORWARD, seq=9), decide(d.Adjust("left", 4)))
+    joined_ready, silent, lock_ticks, level = 1 + 2, 4, 250, 1
+    assert stage.frame == Frame(
+        match=1,
+        beat=len(stage.beats) - 1,
+        phase=4,
+        countdown_beats=0,
+        clock_ticks=stage.match.ticks,
+        seats=(
+            SeatFrame(joined_ready + silent, 22, level, 0, 0, 0, 3, pressed, 0, No.NONE),
+            SeatFrame(joined_ready, 18, level, 0, 0, lock_ticks - 2, 7, pressed, 9, No.RESTARTED),
+        ),
+        markers=bytes([0b10_01_01_01, 0b01_01_10_10, 0b10_10_10_01] * 3),
+        poses=stage.physics.poses(),
+        scene=stage.physics.scene_hash,
+        digest=stage.physics.digest,
+    )
 
 
 def test_a_sheet_says_what_frames_leave_out() -> None:

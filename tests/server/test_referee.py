@@ -151,18 +151,27 @@ BAD_ARGUMENTS: list[tuple[d.Decision, Phase, str]] = [
     (d.Freeze("left", math.inf), P.PLAYING, "inf s?"),
     (d.Unfreeze("left"), P.PLAYING, "Ants is not frozen"),
     (d.Unfreeze("top"), P.HALTED, "no seat"),
-    (d.Adjust("left", 0), P.PLAYING, "not 0"),
+    (
+        d.Adjust("left", 0),
+        P.PLAYING,
+        "adjust: 0 points? Give a number between -1000 and 1000, not 0.",
+    ),
     (d.Adjust("left", 1001), P.PLAYING, "between -1000 and 1000"),
     (d.Adjust("left", -1001), P.FINISHED, "between -1000 and 1000"),
     (d.Adjust("none", 1), P.HALTED, "no seat"),
     (d.Set("c9r9", "left"), P.HALTED, "no 'c9r9' on this board; there are c0r0, "),
     (d.Set("c0r0", "blue"), P.HALTED, "'blue' is no state; there are neutral, left, right, down"),
     (d.Set("c0r0", "down"), P.HALTED, "a disc is neutral, left or right"),
-    (d.Clock(0.0), P.PLAYING, "not 0"),
+    (d.Clock(0.0), P.PLAYING, "clock: 0 s? Give a number between -3600 and 3600, not 0."),
     (d.Clock(math.nan), P.PLAYING, "nan"),
     (d.Clock(3601.0), P.PLAYING, "between -3600 and 3600"),
     (d.Declare("Ants"), P.FINISHED, "'Ants' can't win; there are left, right, draw"),
-    (d.TakeBack(0), P.HALTED, "event 0 can't be taken back"),
+    (
+        d.TakeBack(0),
+        P.HALTED,
+        "take-back: event 0 can't be taken back: give the number of a capture, flip, strike, "
+        "adjust or set that stands.",
+    ),
     (d.TakeBack(1), P.HALTED, "event 1 can't be taken back"),
     (d.TakeBack(-5), P.FINISHED, "can't be taken back"),
     (d.TakeBack(10**9), P.FINISHED, "can't be taken back"),
@@ -264,6 +273,37 @@ def test_unfreeze() -> None:
     done(stage, d.Unfreeze("right"))
     assert not stage.frame.seats[RIGHT].flags & SeatFlag.FROZEN
     assert stage.send(key(RIGHT, FORWARD)) == Done()
+
+
+def test_unfreeze_where_nothing_is_frozen_any_more() -> None:
+    """Rules 4, `unfreeze`: what would change nothing is refused; in tick 0 it works too."""
+    stage = stage_in(P.PLAYING)
+    done(stage, d.Freeze("left", 0.04))
+    assert stage.frame.seats[LEFT].locked_ticks == 1
+    stage.beat()
+    assert refused(stage, d.Unfreeze("left")) == "unfreeze: Ants is not frozen."
+    early = stage_in(P.COUNTDOWN)
+    done(early, d.Halt())
+    done(early, d.Freeze("left", 1.0))
+    done(early, d.Unfreeze("left"))
+    assert not early.frame.seats[LEFT].flags & SeatFlag.FROZEN
+
+
+@pytest.mark.parametrize(
+    "decision",
+    [
+        d.Adjust("left", 1000),
+        d.Adjust("left", -1000),
+        d.Clock(3600.0),
+        d.Clock(-3600.0),
+        d.Clock(0.02),
+        d.Freeze("left", 600.0),
+        d.Freeze("left", 0.02),
+    ],
+)
+def test_the_limits_themselves_are_allowed(decision: d.Decision) -> None:
+    """Rules 4: "between" and "at most" include their ends; a tick is 20 ms."""
+    done(stage_in(P.HALTED), decision)
 
 
 def test_adjust() -> None:

@@ -77,6 +77,7 @@ def test_a_flip_and_what_came_of_it() -> None:
     )
     assert reply.scores == stage.scores == (18, 18)
     assert stage.board["c3r2"] == stage.board["c4r2"] == "right"
+    assert (stage.match.result().reason, stage.match.result().computed) == ("", "")
     logged = next(e for e in stage.beats[-1].events if e.kind == "decision")
     assert logged.number == reply.event
     assert tuple(logged.data["changes"]) == reply.changes
@@ -137,7 +138,8 @@ def test_adjust_and_set() -> None:
     stage = othello(CHAIN)
     adjust, put = stage.decide(d.Adjust("right", 7)), stage.decide(d.Set("c0r0", "right"))
     assert stage.scores == (19, 24)
-    assert take_back(stage, adjust.event).scores == (19, 17)
+    reply = take_back(stage, adjust.event)
+    assert (reply.scores, reply.changes) == ((19, 17), ())
     assert take_back(stage, put.event).scores == (20, 16)
     assert stage.scores == (20, 16)
 
@@ -176,6 +178,7 @@ def test_a_dry_run_changes_nothing_and_tells_the_truth(kind: str) -> None:
     twin.beat()
     assert seen(stage) == seen(twin)
     assert (dry.event, stage.beats[-1].events) == (None, ())
+    assert unexplained.beat == dry.beat + 1 == stage.frame.beat
     wet = take_back(stage, number)
     assert (dry.scores, dry.changes, dry.text) == (wet.scores, wet.changes, wet.text)
     assert stage.scores == wet.scores != twin.scores
@@ -255,6 +258,25 @@ def test_time_is_up_stays_up() -> None:
     assert stage.frame.clock_ticks == 50
 
 
+def test_over_in_the_tick_in_which_time_is_up() -> None:
+    """Rules 4: over counts before time; without the event that made it over, time is up."""
+    short = {"match": {"duration_s": 0.8, "countdown_s": 0.02}}
+    stage = play(Stage("flag-strike", short, script=Script(poses=dict(ALL_FOUR))), 40)
+    assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
+    assert stage.match.ended == "the left team holds all corners"
+    take_back(stage, event(stage, "capture", "corner3").number)
+    assert (stage.phase, stage.match.ended) == (P.FINISHED, "time is up")
+
+
+def test_time_is_never_up_in_a_match_without_end() -> None:
+    """Rules 4: a duration of 0 is no end; what was over goes on without the event."""
+    endless = {"match": {"duration_s": 0.0, "countdown_s": 0.02}}
+    stage = play(Stage("flag-strike", endless, script=Script(poses=dict(ALL_FOUR))), 100)
+    assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
+    take_back(stage, event(stage, "capture", "corner3").number)
+    assert stage.phase is P.HALTED
+
+
 def test_a_declared_end_stays() -> None:
     """Rules 4: the referee's own word is taken back by another word, not by a fold."""
     stage = flag_strike(ALL_FOUR)
@@ -262,6 +284,7 @@ def test_a_declared_end_stays() -> None:
     take_back(stage, event(stage, "capture", "corner3").number)
     assert stage.phase is P.FINISHED
     assert stage.match.declared == "right"
+    assert stage.match.ended == "the left team holds all corners"
 
 
 def test_paths_restarts_clock_and_other_decisions_stay() -> None:
@@ -341,15 +364,15 @@ def test_folding_with_nothing_struck_is_the_match_asplay(arena: str, data: st.Da
     """Rules 4, take-back: the fold is the same judging; what is not struck stays as it was."""
     game = GAMES[arena]
     history = History(game)
-    history.set(0, 0, game.board(game.start())[0], number=1)  # changes nothing
+    history.set(0, game.board(game.start())[0], number=1)  # changes nothing
     number = 2
     judged = data.draw(observations(arena))
     sets = data.draw(st.dictionaries(st.integers(0, len(judged)), st.integers(0, 23), max_size=3))
     for tick, observation in enumerate(judged):
         if tick in sets:
-            history.set(tick, sets[tick], data.draw(st.integers(0, 2)), number)
+            history.set(sets[tick], data.draw(st.integers(0, 2)), number)
             number += 1
-        number += len(history.observe(tick + 1, observation, number))
+        number += len(history.observe(observation, number))
         if history.over:
             break
     fold = history.without(1)
@@ -375,8 +398,8 @@ def test_a_fold_leaves_the_history_alone_and_can_be_repeated(
     """Rules 4, take-back: what dry_run shows is what is done, whatever was played."""
     history = History(GAMES[arena])
     number = 1
-    for tick, observation in enumerate(data.draw(observations(arena)), start=1):
-        number += len(history.observe(tick, observation, number))
+    for observation in data.draw(observations(arena)):
+        number += len(history.observe(observation, number))
         if history.over:
             break
     if number == 1:

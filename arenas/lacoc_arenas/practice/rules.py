@@ -34,7 +34,6 @@ class Practice:
     markers: tuple[MarkerInfo, ...] = ()
 
     def __init__(self, settings: Settings) -> None:
-        self.settings = settings
         self.size_m = settings.size_m
         self.starts = ((Place(*settings.start, math.radians(settings.heading_deg)),),)
 
