@@ -149,6 +149,8 @@ def test_being_put_down_flips_nothing() -> None:
     assert events == ()
     assert after.cells == before.cells
     assert after.last[0] == INDEX["c0r2"]
+    again, _ = GAME.step(after, (view("c0r2", placed="c0r2"), view(GAP)), 0.02)
+    assert again is after, "the same object where nothing changed"
 
 
 def test_walking_off_the_start_in_the_tick_of_being_put_down() -> None:

@@ -90,7 +90,7 @@ only_mutate = {modules}
 pytest_add_cli_args_test_selection = {tests}
 pytest_add_cli_args = [
   "--assert=plain", "-p", "no:cacheprovider", "-p", "no:unraisableexception",
-  "-p", "hypothesispytest", "-p", "imported",
+  "-p", "hypothesispytest", "-p", "mutation_plugin",
 ]
 # Every mutant imports its modules anew: what runs when they are imported is mutated too.
 process_isolation = "forkserver"
@@ -100,7 +100,7 @@ timeout_constant = 8.0 # two minutes at least: a busy machine kills no mutant
 track_dependencies = false
 use_git_change_detection = false
 """
-PRELOAD = ("hypothesis", "imported", "msgspec", "mujoco", "numpy", "pytest", "rich", "zenoh")
+PRELOAD = ("hypothesis", "mutation_plugin", "msgspec", "mujoco", "numpy", "pytest", "rich", "zenoh")
 
 
 def main() -> None:

@@ -191,14 +191,15 @@ def test_both_restart_at_once() -> None:
         assert at(stage.frame, RIGHT)[:2] == pytest.approx((0.6, 0.0))
 
 
-def test_where_no_place_is_free_the_roomiest_is_used() -> None:
+@pytest.mark.parametrize(("other_y_m", "roomiest_y_m"), [(-0.05, 0.1), (0.15, 0.0)])
+def test_where_no_place_is_free_the_roomiest_is_used(other_y_m: float, roomiest_y_m: float) -> None:
     """Rules 4, [x]: with every place taken the robot goes where there is most room."""
     one = {"game": {"starts": [[-0.6, 0.0], [-0.6, 0.1]]}, "match": {"countdown_s": 0.02}}
-    script = Script(poses={1: {RIGHT: (-0.6, -0.05)}})
+    script = Script(poses={1: {RIGHT: (-0.6, other_y_m)}})
     stage = Stage("flag-strike", one, script=script).to_playing()
     stage.run(2)
     stage.beat(key(LEFT, X))
-    assert at(stage.frame, LEFT)[:2] == pytest.approx((-0.6, 0.1))
+    assert at(stage.frame, LEFT)[:2] == pytest.approx((-0.6, roomiest_y_m))
 
 
 def test_being_put_back_claims_nothing() -> None:
@@ -262,6 +263,20 @@ def test_refused_keys(item: KeySeat, why: No) -> None:
     assert (seat.refused_seq, seat.refused_why) == (2, why)
     assert (seat.key, seat.posture, seat.applied_seq) == (was.key, was.posture, was.applied_seq)
     assert stage.frame.poses == twin.frame.poses
+
+
+def test_each_level_has_its_own_keys() -> None:
+    """Rules 2: level A has the keys of Loco-data, level B those of LocoTra-data."""
+    stage = playing(**BOTH_LEVELS)
+    entry = stage.match.seats[LEFT].entry
+    assert entry is not None
+    for seq, digit in enumerate(range(10), start=1):
+        for level in (A, B):
+            there = digit in entry.gait.keys(level)
+            stage.beat(key(LEFT, digit, seq=2 * seq + level, level=level))
+            seat = stage.frame.seats[LEFT]
+            assert ((seat.level, seat.key) == (level, digit)) is there
+    assert entry.gait.keys(A) != entry.gait.keys(B)
 
 
 def test_frames_tell_which_command_was_applied_when() -> None:

@@ -189,24 +189,21 @@ class Othello:
             cell if cell != origin else NO_CELL for cell, origin in zip(here, origins, strict=True)
         ]
         cells = list(state.cells)
-        events: list[tuple[int, GameEvent]] = []
+        events: dict[int, GameEvent] = {}
         contested = entered[0] == entered[1] != NO_CELL and cells[entered[0]] == NEUTRAL
         for seat, cell in enumerate(entered):
             if cell == NO_CELL or contested or (seat, self.markers[cell].name) in struck:
                 continue
             flipped = self.flips(state.cells, seat, origins[seat], cell)
             if flipped:
-                events.append((cell, self._event(seat, flipped)))
+                events[cell] = self._event(seat, flipped)
                 for flip in flipped:
                     cells[flip] = seat + 1
         last = tuple(
             origin if cell == NO_CELL else cell for origin, cell in zip(origins, here, strict=True)
         )
-        after = State(tuple(cells) if events else state.cells, (last[0], last[1]))
-        return (
-            state if after == state else after,
-            tuple(event for _, event in sorted(events, key=lambda pair: pair[0])),
-        )
+        after = State(tuple(cells), (last[0], last[1]))
+        return state if after == state else after, tuple(events[cell] for cell in sorted(events))
 
     def _origin(self, last: int, robot: RobotView) -> int:
         if robot.placed is None:
