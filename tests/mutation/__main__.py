@@ -80,7 +80,7 @@ AREAS = (
 SETTINGS = """\
 [tool.pytest]
 strict = true
-pythonpath = ["src"]
+pythonpath = ["src", "tests/network"]
 addopts = ["--import-mode=importlib", "-m", "not slow"]
 markers = ["slow: not run here"]
 

@@ -344,7 +344,8 @@ def test_a_sheet_says_what_frames_leave_out() -> None:
     assert not stage.beat().sheet_changed
     sheet = stage.match.sheet()
     assert (sheet.protocol, sheet.version) == (PROTOCOL, __version__)
-    assert (sheet.court, sheet.match, sheet.arena) == ("main", 1, "flag-strike")
+    assert (sheet.court, sheet.match, sheet.match_id) == ("main", 1, "m")
+    assert sheet.arena == "flag-strike"
     assert (sheet.title, sheet.duration_s, sheet.levels) == ("Flag-Strike", 180.0, (1,))
     assert sheet.settings == stage.match.arena.settings
     assert sheet.markers == stage.match.game.markers

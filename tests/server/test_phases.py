@@ -120,6 +120,17 @@ def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
     assert stage.phase is P.READY
 
 
+def test_an_empty_seat_is_nothing_but_empty() -> None:
+    """Rules 4: who leaves in LOBBY leaves no ready, silence or name behind."""
+    stage = Stage().to(P.LOBBY)
+    stage.beat(ReadySeat(LEFT, True), SilentSeat(LEFT))
+    assert stage.frame.seats[LEFT].flags == SeatFlag.JOINED | SeatFlag.READY | SeatFlag.SILENT
+    stage.beat(LeaveSeat(LEFT))
+    assert stage.frame.seats[LEFT].flags == 0
+    assert stage.match.sheet().seats[LEFT].team == ""
+    assert stage.match.missing()[0] == "nobody has joined left"
+
+
 def test_joining_again_with_other_files_takes_ready_back() -> None:
     """Rules 4: ready is for the robots that one sees; a new robot has to say it again."""
     stage = Stage().to_ready()
@@ -345,6 +356,18 @@ def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
     stage.beat(LeaveSeat(LEFT))
     assert stage.phase is P.FINISHED
     assert stage.match.ended == "everybody has left"
+
+
+def test_a_match_with_a_referee_goes_on_though_everybody_has_left() -> None:
+    """Rules 4: in a match the seats stay theirs, and the end is the referee's to declare."""
+    stage = Stage().to(P.PLAYING)
+    stage.beat(LeaveSeat(LEFT), LeaveSeat(RIGHT))
+    assert stage.phase is P.PLAYING
+    flags = [seat.flags for seat in stage.frame.seats]
+    assert flags == [SeatFlag.JOINED | SeatFlag.READY | SeatFlag.SILENT] * 2
+    assert [seat.left for seat in stage.match.seats] == [True, True]
+    stage.beat(join(LEFT))
+    assert [seat.left for seat in stage.match.seats] == [False, True]
 
 
 def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
