@@ -177,8 +177,8 @@ class Court:
         """Finish the record of this match; it is packed in a process of its own."""
         self._journal.close()
         if self._settings.recordings is not None:
-            packing = pack_in_background(self._settings.recordings, self.match_id)
-            self._packing.append(packing)
+            self._packing = [one for one in self._packing if one.poll() is None]
+            self._packing.append(pack_in_background(self._settings.recordings, self.match_id))
 
     def _say_health(self, now_s: float) -> None:
         pace, match, writer = self._pace, self._journal.match, self._journal.writer

@@ -15,6 +15,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from datetime import timedelta
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -26,6 +27,9 @@ from lacoc_shared import address, network_config
 from lacoc_shared.access import Credentials
 from lacoc_shared.access_rules import Protection
 from lacoc_shared.mistakes import UserError
+
+_RECOVERY = timedelta(seconds=2)
+"""How often a receiver of a history asks whether the last message was lost; gaps it sees at once."""
 
 
 class NoReply(Exception):
@@ -172,7 +176,7 @@ class Session:
                 key,
                 cache=zenoh.ext.CacheConfig(depth),
                 sample_miss_detection=zenoh.ext.MissDetectionConfig(
-                    heartbeat=0.5, sporadic_heartbeat=None
+                    heartbeat=None, sporadic_heartbeat=None
                 ),
                 publisher_detection=True,
             )
@@ -209,7 +213,12 @@ class Session:
             key,
             Callback(mailbox.deliver, indirect=False),
             history=zenoh.ext.HistoryConfig(max_samples=depth, detect_late_publishers=True),
-            recovery=zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+            # A court would hear of a lost last message sooner by heartbeats, but its router keeps
+            # 5 kB for ever of each session that had subscribed to them and to late publishers.
+            recovery=zenoh.ext.RecoveryConfig(
+                periodic_queries=_RECOVERY,  # type: ignore[arg-type]
+                heartbeat=None,
+            ),
         )
         return mailbox
 

@@ -1,0 +1,113 @@
+"""Both seats of many courts, held by one process as cheaply as the project's controller allows.
+
+The first line on standard input names the courts. All are joined and started; then each line
+is answered with the health of each court and the keys that were pressed and applied there.
+"""
+
+import json
+import random
+import select
+import sys
+import time
+from contextlib import ExitStack
+from typing import Any
+
+from lacoc_client.controller import Controller
+from lacoc_client.referee import RefereeClient
+from lacoc_shared.decisions import Start
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import open_client
+
+KEYS_HZ = 2.0
+"""A new key for each seat; the last one is repeated by the controller meanwhile."""
+_POLL_S = 0.1
+_WAIT_S = 60.0
+
+
+class _Player:
+    """One court with both its seats."""
+
+    def __init__(self, court: dict[str, Any], stack: ExitStack) -> None:
+        self._name, self._referee = court["name"], court["referee"]
+        self._sessions = [
+            stack.enter_context(open_client([court["address"]], _WAIT_S)) for _ in court["tokens"]
+        ]
+        self._controllers = [
+            Controller(session, self._name, seat, token, seat.title())
+            for session, (seat, token) in zip(
+                self._sessions, court["tokens"].items(), strict=True
+            )
+        ]
+        for controller in self._controllers:
+            controller.join(_WAIT_S)
+            controller.ready()
+        self.pressed = 0
+
+    def begin(self) -> None:
+        """Start the match when both are ready."""
+        self._wait(Phase.READY)
+        referee = RefereeClient(self._sessions[0], self._name, self._referee)
+        referee.decide(Start(), "a benchmark", "benchmark")
+
+    def poll(self, chance: random.Random) -> None:
+        """Keep the seats, and press a key now and then."""
+        for controller in self._controllers:
+            controller.poll(time.monotonic())
+            frame = controller.view.frame
+            if frame and frame.phase == Phase.PLAYING and chance.random() < KEYS_HZ * _POLL_S:
+                controller.press(1, chance.randrange(4))
+                self.pressed += 1
+
+    def told(self) -> dict[str, Any]:
+        """What the court said last of itself."""
+        view = self._controllers[0].view
+        assert view.health is not None
+        assert view.frame is not None
+        return {
+            "beat": view.health.beat,
+            "slow_beats": view.health.slow_beats,
+            "worst_late_ms": view.health.worst_late_ms,
+            "phase": view.frame.phase,
+            "pressed": self.pressed,
+            "applied": sum(seat.applied_seq for seat in view.frame.seats),
+        }
+
+    def _wait(self, phase: Phase) -> None:
+        end_s = time.monotonic() + _WAIT_S
+        while time.monotonic() < end_s:
+            for controller in self._controllers:
+                controller.wait_frame(_POLL_S)
+            frame = self._controllers[0].view.frame
+            if frame is not None and frame.phase == phase:
+                return
+        raise TimeoutError(f"{self._name}: {phase.name} did not come")
+
+
+def main() -> None:
+    """Play until the input ends."""
+    courts = json.loads(sys.stdin.readline())
+    chance = random.Random(1)
+    with ExitStack() as stack:
+        players: list[_Player] = []
+        for court in courts:
+            players.append(_Player(court, stack))
+            for player in players:
+                player.poll(chance)
+        for player in players:
+            player.begin()
+            for other in players:
+                other.poll(chance)
+        print(json.dumps({"courts": len(players)}), flush=True)
+        while True:
+            begin_s = time.monotonic()
+            for player in players:
+                player.poll(chance)
+            wait_s = max(0.0, begin_s + _POLL_S - time.monotonic())
+            if select.select([sys.stdin], [], [], wait_s)[0]:
+                if not sys.stdin.readline():
+                    return
+                print(json.dumps([player.told() for player in players]), flush=True)
+
+
+if __name__ == "__main__":
+    main()

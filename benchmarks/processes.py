@@ -1,0 +1,100 @@
+"""What is measured runs as it does at a venue: each part a process of its own."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+LACOC = "lacoc_shared"
+"""The module that is the command `lacoc`."""
+_END_S = 30
+
+
+@contextmanager
+def started(module: str, *words: str, quiet: bool = False) -> Iterator[subprocess.Popen[str]]:
+    """A process that is asked to end when it is no longer needed.
+
+    Args:
+        module: runs as `python -m`.
+        words: its arguments.
+        quiet: throw away what it complains of.
+    """
+    process = subprocess.Popen(
+        [sys.executable, "-m", module, *words],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL if quiet else None,
+        env={name: value for name, value in os.environ.items() if not name.startswith("LACOC_")},
+        text=True,
+    )
+    try:
+        yield process
+    finally:
+        process.terminate()
+        process.communicate(timeout=_END_S)
+
+
+def read_line(process: subprocess.Popen[str]) -> Any:
+    """The next line of JSON that a process says.
+
+    Raises:
+        RuntimeError: if it has ended.
+    """
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    if not line:
+        raise RuntimeError(f"{process.args!r} ended with {process.wait()}")
+    return json.loads(line)
+
+
+def ask(process: subprocess.Popen[str], word: str) -> Any:
+    """Say a word to a process, and wait for what it says to it."""
+    assert process.stdin is not None
+    process.stdin.write(f"{word}\n")
+    process.stdin.flush()
+    return read_line(process)
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A court that is open."""
+
+    process: subprocess.Popen[str]
+    name: str
+    address: str
+    tokens: Mapping[str, str]
+    referee: str
+    match_id: str
+
+
+@contextmanager
+def court(arena: str, folder: Path, *words: str) -> Iterator[Opened]:
+    """`lacoc serve` on a free port.
+
+    Args:
+        arena: the game.
+        folder: where its records go.
+        words: more options.
+    """
+    where = ("--listen", "tcp/127.0.0.1:0", "--recordings", str(folder))
+    with started(LACOC, "serve", "--json", "--fresh", "--arena", arena, *where, *words) as process:
+        said = read_line(process)
+        yield Opened(
+            process,
+            said["court"],
+            said["locators"][0],
+            said["tokens"],
+            said["referee"],
+            said["match_id"],
+        )
+
+
+def used_s(process: subprocess.Popen[str]) -> float:
+    """Processor time of all threads of a process [s], as the kernel counts it (Linux only)."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

@@ -1,0 +1,300 @@
+"""`make soak`: matches end to start for an hour; nothing may grow or be left over.
+
+A real court, two bots, a gateway, spectators and pages that come and go, each kind a process of
+its own; this process referees. Between two matches, when all visitors have gone, each process
+is looked at: its memory, and its threads, files, sockets and children. Every record is
+simulated again (Linux only).
+"""
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import NamedTuple
+
+import psutil
+
+from benchmarks.processes import LACOC, Opened, ask, court, read_line, started
+from lacoc_client.referee import RefereeClient
+from lacoc_client.spectator import Spectator
+from lacoc_shared.decisions import Decision, Next, Official, Start
+from lacoc_shared.record.files import packed_path
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import open_client
+
+MOST_GROWTH = 0.02
+WARM_SHARE = 1 / 6
+"""Ten minutes of an hour: until then a process may grow."""
+_SETTLED_S = 1.0
+"""Between the goodbye of the last visitor and the look."""
+_LEFT_S = 30.0
+"""Threads and sockets of those who have gone end within this."""
+_PACKED_S = 60.0
+_SILENT_S = 60.0
+
+
+class Look(NamedTuple):
+    """What a process holds."""
+
+    at_s: float
+    memory_bytes: int
+    """Its own, shared with nobody: what a leak grows."""
+    threads: int
+    files: int
+    sockets: int
+    children: int
+
+
+@dataclass
+class Figures:
+    """What came of a run."""
+
+    minutes: float
+    matches: int
+    visits: int
+    frames: int
+    turned_away: int
+    """Visitors who got no answer."""
+    same: int
+    """Records that verify."""
+    looks: dict[str, list[Look]]
+    """Of each process, between matches."""
+    warm_s: float
+
+    def growth(self, process: str) -> float:
+        """Growth of a process's memory after it is warm, as a part of what it was then.
+
+        The median of the slopes between all pairs of looks, so that no single one counts much.
+        """
+        looks = [look for look in self.looks[process] if look.at_s >= self.warm_s]
+        slope = statistics.median(
+            (b.memory_bytes - a.memory_bytes) / (b.at_s - a.at_s) for a, b in combinations(looks, 2)
+        )
+        first = statistics.median(look.memory_bytes for look in looks[:3])
+        return slope * (looks[-1].at_s - looks[0].at_s) / first
+
+    def left_over(self, process: str) -> dict[str, int]:
+        """What a process has more at the end than when it was warm."""
+        warm = [look for look in self.looks[process] if look.at_s <= self.warm_s]
+        last = self.looks[process][-1]
+        before = {name: max(getattr(look, name) for look in warm) for name in Look._fields[2:]}
+        more = {name: getattr(last, name) - before[name] for name in before}
+        return {name: count for name, count in more.items() if count > 0}
+
+    @property
+    def held(self) -> bool:
+        """Whether nothing grew, was left over, or differs."""
+        return self.same == self.matches and all(
+            self.growth(process) < MOST_GROWTH and not self.left_over(process)
+            for process in self.looks
+        )
+
+
+def soak(
+    minutes: float,
+    match_s: float,
+    speed: float,
+    warm_minutes: float | None = None,
+    visitors_most: int = 10,
+) -> Figures:
+    """Play until the time is over.
+
+    Args:
+        minutes: how long.
+        match_s: length of a match.
+        speed: 2 plays twice as fast as real time.
+        warm_minutes: from when on nothing may grow; None: a sixth of the time.
+        visitors_most: how many of each kind are there at once.
+    """
+    warm_s = 60 * (minutes * WARM_SHARE if warm_minutes is None else warm_minutes)
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        words = ("--seconds", str(match_s), "--speed", str(speed))
+        opened = stack.enter_context(court("othello", folder, *words))
+        where = ("--connect", opened.address)
+        processes = {"court": opened.process}
+        for seat, bot in (("left", "planner"), ("right", "nearest")):
+            join = ("bot", bot, "--seat", seat, "--token", opened.tokens[seat], *where)
+            processes[f"bot {seat}"] = stack.enter_context(started(LACOC, *join))
+        gateway = stack.enter_context(started(LACOC, "web", "--json", *where))
+        processes["gateway"] = gateway
+        url = read_line(gateway)["url"]
+        most = ("--most", str(visitors_most))
+        visitors = {
+            way: stack.enter_context(started("benchmarks.visitors", way, address, *most))
+            for way, address in (("direct", opened.address), ("pages", url))
+        }
+        processes |= {f"visitors, {way}": process for way, process in visitors.items()}
+        return _Run(opened, processes, visitors, folder).run(60 * minutes, warm_s)
+
+
+class _Run:
+    """The referee, who looks at the processes between matches."""
+
+    def __init__(
+        self,
+        opened: Opened,
+        processes: Mapping[str, subprocess.Popen[str]],
+        visitors: Mapping[str, subprocess.Popen[str]],
+        folder: Path,
+    ) -> None:
+        self._processes = {name: psutil.Process(one.pid) for name, one in processes.items()}
+        self._processes["referee"] = psutil.Process()
+        self._visitors = visitors
+        self._opened = opened
+        self._folder = folder
+        self._looks: dict[str, list[Look]] = {name: [] for name in self._processes}
+        self._matches: list[str] = []
+        self._same = 0
+        self._begin_s = time.monotonic()
+
+    def run(self, seconds: float, warm_s: float) -> Figures:
+        """Referee matches until the time is over."""
+        with open_client([self._opened.address]) as session:
+            self._view = Spectator(session, self._opened.name)
+            self._referee = RefereeClient(session, self._opened.name, self._opened.referee)
+            while True:
+                self._until(Phase.READY)
+                told = [ask(one, "go") for one in self._visitors.values()]
+                time.sleep(_SETTLED_S)
+                ended = self._passed_s >= seconds
+                if ended:
+                    self._let_go()
+                self._look()
+                if ended:
+                    break
+                for one in self._visitors.values():
+                    ask(one, "come")
+                self._matches.append(self._match_id())
+                self._decide(Start())
+                self._until(Phase.FINISHED)
+                self._decide(Official())
+                self._decide(Next())
+                self._verify(self._matches[-1])
+                self._tell()
+        return Figures(
+            minutes=self._passed_s / 60,
+            matches=len(self._matches),
+            **{name: sum(one[name] for one in told) for name in told[0]},
+            same=self._same,
+            looks=self._looks,
+            warm_s=warm_s,
+        )
+
+    @property
+    def _passed_s(self) -> float:
+        return time.monotonic() - self._begin_s
+
+    def _until(self, phase: Phase) -> None:
+        while (frame := self._view.wait_frame(_SILENT_S)) is not None:
+            if frame.phase == phase:
+                return
+        raise TimeoutError(f"The court says nothing; {phase.name} was waited for.")
+
+    def _decide(self, decision: Decision) -> None:
+        self._referee.decide(decision, "a soak", "soak")
+
+    def _match_id(self) -> str:
+        """Names the record that is being written."""
+        *_, newest = sorted(self._folder.glob("*.live.mcap"))
+        return newest.name.partition(".")[0]
+
+    def _verify(self, match_id: str) -> None:
+        """Simulate a match again, while the next one is waited for."""
+        path, end_s = packed_path(self._folder, match_id), time.monotonic() + _PACKED_S
+        while not path.exists() and time.monotonic() < end_s:
+            time.sleep(0.1)
+        words = [sys.executable, "-m", LACOC, "replay", "verify", str(path)]
+        self._same += subprocess.run(words, stdout=subprocess.DEVNULL, check=False).returncode == 0
+        path.unlink(missing_ok=True)
+
+    def _look(self) -> None:
+        at_s = self._passed_s
+        for name, process in self._processes.items():
+            self._looks[name].append(_look(process, at_s))
+
+    def _let_go(self) -> None:
+        """Give what belongs to those who have gone its time to end."""
+        end_s = time.monotonic() + _LEFT_S
+        while time.monotonic() < end_s:
+            self._view.poll()
+            time.sleep(0.1)
+
+    def _tell(self) -> None:
+        held = (f"{name} {_mb(looks[-1])}" for name, looks in self._looks.items())
+        print(
+            f"{self._passed_s / 60:6.1f} min, {self._same} of {len(self._matches)} matches same; "
+            f"{', '.join(held)}",
+            file=sys.stderr,
+            flush=True,
+        )
+
+
+def _look(process: psutil.Process, at_s: float) -> Look:
+    memory = process.memory_full_info().uss
+    with process.oneshot():
+        return Look(
+            at_s,
+            memory,
+            process.num_threads(),
+            process.num_fds(),
+            len(process.net_connections("all")),
+            len(process.children()),
+        )
+
+
+def _mb(look: Look) -> str:
+    return f"{look.memory_bytes / 1e6:.1f} MB/{look.threads}/{look.files}/{look.sockets}"
+
+
+def _print(figures: Figures) -> None:
+    print(
+        f"{figures.minutes:.1f} minutes, {figures.matches} matches, {figures.same} verify; "
+        f"{figures.visits} visits, {figures.turned_away} without an answer, {figures.frames} frames seen"
+    )
+    print("| process | memory when warm | at the end | growth | threads | files | sockets | left |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name, looks in figures.looks.items():
+        warm = next(look for look in looks if look.at_s >= figures.warm_s)
+        last = looks[-1]
+        left = figures.left_over(name) or "nothing"
+        print(
+            f"| {name} | {warm.memory_bytes / 1e6:.1f} MB | {last.memory_bytes / 1e6:.1f} MB "
+            f"| {figures.growth(name):+.2%} | {last.threads} | {last.files} | {last.sockets} "
+            f"| {left} |"
+        )
+
+
+def main() -> None:
+    """Soak and print."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.soak", description=__doc__)
+    parser.add_argument("--minutes", type=float, default=60.0)
+    parser.add_argument("--warm-minutes", type=float, help="by default a sixth of the time")
+    parser.add_argument("--match-seconds", type=float, default=60.0, help="length of a match")
+    parser.add_argument("--speed", type=float, default=1.0, help="2: twice as fast as real time")
+    parser.add_argument("--visitors", type=int, default=10, help="of each kind at once")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write all looks there")
+    options = parser.parse_args()
+    figures = soak(
+        options.minutes,
+        options.match_seconds,
+        options.speed,
+        options.warm_minutes,
+        options.visitors,
+    )
+    _print(figures)
+    if options.json:
+        options.json.write_text(json.dumps(figures.looks))
+    sys.exit(not figures.held)
+
+
+if __name__ == "__main__":
+    main()

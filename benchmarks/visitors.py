@@ -1,0 +1,123 @@
+"""Spectators that come and go, for `benchmarks.soak`.
+
+    python -m benchmarks.visitors (direct ADDRESS | pages URL) --most N
+
+Direct ones are the project's own spectators, each with a session of its own; pages are
+WebSockets through a gateway. Each stays for a random while. A line "go" on standard input
+sends all away, "come" lets them come again; both are answered when it is so.
+"""
+
+import argparse
+import asyncio
+import json
+import random
+import sys
+from collections.abc import Callable, Coroutine
+from typing import Any
+from urllib.parse import urlsplit
+
+from benchmarks.spectators import Page
+from lacoc_client.spectator import Spectator
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.session import open_client
+
+STAY_S = 15.0
+"""On average; some leave at once."""
+_PAUSE_S = 0.5
+_LOOK_S = 0.05
+
+Visit = Callable[[str, "_Door"], Coroutine[Any, Any, int]]
+
+
+class _Door:
+    """Says when to go, and counts."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self.chance = chance
+        self.open = asyncio.Event()
+        self.inside = self.visits = self.frames = 0
+        self.turned_away = 0
+        """Who got no answer: a busy machine."""
+
+    async def stay(self) -> None:
+        """As long as this visitor wants, or until all are sent away."""
+        loop = asyncio.get_running_loop()
+        end_s = loop.time() + self.chance.expovariate(1 / STAY_S)
+        while self.open.is_set() and loop.time() < end_s:
+            await asyncio.sleep(_LOOK_S)
+
+    async def come(self, visit: Visit, address: str) -> None:
+        """Visit, pause, and visit again, for ever."""
+        while True:
+            await self.open.wait()
+            self.inside += 1
+            try:
+                self.frames += await visit(address, self)
+                self.visits += 1
+            except UserError:
+                self.turned_away += 1
+            self.inside -= 1
+            await asyncio.sleep(self.chance.uniform(0, 2 * _PAUSE_S))
+
+
+async def _direct(address: str, door: _Door) -> int:
+    """A session with the court; the frames that its visitor looked at."""
+    frames = 0
+    with await asyncio.to_thread(open_client, [address], 20.0) as session:
+        view = await asyncio.to_thread(Spectator, session, "main")
+        staying = asyncio.ensure_future(door.stay())
+        while not staying.done():
+            frames += view.poll() is not None
+            await asyncio.sleep(_LOOK_S)
+        # Closing waits for Zenoh's threads.
+        await asyncio.to_thread(session.close)
+    return frames
+
+
+async def _page(url: str, door: _Door) -> int:
+    """A page; half of them end without a goodbye."""
+    parts = urlsplit(url)
+    loop = asyncio.get_running_loop()
+    transport, page = await loop.create_connection(
+        lambda: Page(parts.netloc, 25.0), parts.hostname, parts.port
+    )
+    await door.stay()
+    if door.chance.random() < 0.5:
+        transport.abort()
+    else:
+        transport.close()
+    return page.frames
+
+
+async def main() -> None:
+    """Visit until the input ends."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("way", choices=("direct", "pages"))
+    parser.add_argument("address")
+    parser.add_argument("--most", type=int, default=10)
+    options = parser.parse_args()
+    door = _Door(random.Random(options.way))
+    visit = _direct if options.way == "direct" else _page
+    reader = asyncio.StreamReader()
+    await asyncio.get_running_loop().connect_read_pipe(
+        lambda: asyncio.StreamReaderProtocol(reader), sys.stdin
+    )
+    async with asyncio.TaskGroup() as visitors:
+        tasks = [
+            visitors.create_task(door.come(visit, options.address)) for _ in range(options.most)
+        ]
+        while word := (await reader.readline()).strip():
+            if word == b"come":
+                door.open.set()
+            else:
+                door.open.clear()
+                while door.inside:
+                    await asyncio.sleep(_LOOK_S)
+            counts = {name: getattr(door, name) for name in ("visits", "frames", "turned_away")}
+            print(json.dumps(counts), flush=True)
+        for task in tasks:
+            task.cancel()
+
+
+if __name__ == "__main__":
+    asyncio.run(main())
