@@ -11,64 +11,28 @@ import os
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any
 
-from lacoc_arenas import arena as arenas
+from benchmarks.measured import NAME, MeasuredCourt, measured_court
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
-from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_robots.limits import Limits
-from lacoc_server.court import Court, CourtSettings
-from lacoc_server.decision_desk import DecisionDesk
-from lacoc_server.entry import Admission
-from lacoc_server.inbox import Inbox
-from lacoc_server.network import CourtNetwork
-from lacoc_shared.codec import decode, encode
+from lacoc_shared.codec import encode
 from lacoc_shared.decisions import Start
 from lacoc_shared.keyspace import Keys
-from lacoc_shared.messages import Command, Event, Frame, SentFile
-from lacoc_shared.seal import command_mac, hash_token, new_token
+from lacoc_shared.messages import Command
+from lacoc_shared.seal import command_mac
 from lacoc_shared.seat import Phase
 from lacoc_shared.session import open_client
 
 RATE_HZ = 10_000
-COURT = "flood"
 SETTLE_BEATS = 25
 """Left out after each change."""
 _ROUND_BEATS = 150
 _SLICE_S = 0.005
 _LOST_S = 5.0
-
-
-class _Measured(Court):
-    """A court that looks at the clock of its own thread."""
-
-    def __init__(self, *arguments: Any) -> None:
-        super().__init__(*arguments)
-        self.beats_s: list[float] = []
-
-    def _beat(self, now_s: float) -> None:
-        begin_s = time.thread_time()
-        super()._beat(now_s)
-        self.beats_s.append(time.thread_time() - begin_s)
-
-
-class _Watched(CourtNetwork):
-    """A network that knows the phase."""
-
-    def __init__(self, *arguments: Any) -> None:
-        super().__init__(*arguments)
-        self.phase = Phase.CREATED
-
-    def publish_frame(self, frame: bytes, now_s: float) -> None:
-        super().publish_frame(frame, now_s)
-        if self.phase is not Phase.PLAYING:
-            self.phase = Phase(decode(frame, Frame).phase)
 
 
 def flood(rounds: int) -> dict[str, Any]:
@@ -79,31 +43,22 @@ def flood(rounds: int) -> dict[str, Any]:
         became of the other seat's commands.
     """
     cores = sorted(os.sched_getaffinity(0))
-    loaded = arenas.load("othello", {"match": {"duration_s": 3600.0, "countdown_s": 0.02}})
-    tokens = {seat.id: new_token() for seat in loaded.seats}
-    referee = new_token()
-    keys = Keys(COURT)
-    files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
-    admission = Admission(*files, Limits(), loaded.match.open_levels)
-    hashes = {seat: hash_token(token) for seat, token in tokens.items()}
-    inbox = Inbox(keys, list(tokens), hashes, admission)
     with ExitStack() as stack:
         os.sched_setaffinity(0, cores[:1])
         stack.callback(os.sched_setaffinity, 0, cores)
-        folder = stack.enter_context(tempfile.TemporaryDirectory())
-        desk = DecisionDesk([hash_token(referee)])
-        network = stack.enter_context(_Watched(keys, ["tcp/127.0.0.1:0"], inbox, desk))
-        settings = CourtSettings(COURT, loaded, {}, Path(folder))
-        court = _Measured(settings, network, _quiet)
-        address, (left, right) = network.locators[0], tokens
+        opened = stack.enter_context(measured_court())
+        left, right = opened.tokens
+        words = [
+            ("flooder", left, opened.tokens[left]),
+            ("player", right, opened.tokens[right], opened.referee),
+        ]
         others = [
-            _Other("flooder", cores[-1], address, left, tokens[left]),
-            _Other("player", cores[-1], address, right, tokens[right], referee),
+            _Other(role, cores[-1], opened.address, seat, *tokens) for role, seat, *tokens in words
         ]
         for other in others:
             stack.callback(other.stop)
-        plan = _Plan(court, network, others[0], rounds)
-        court.run(plan.ended)
+        plan = _Plan(opened.court, others[0], rounds)
+        opened.court.run(plan.ended)
         pressed, sent = (other.stop() for other in reversed(others))
     quiet, flooded = plan.rounds_s[0::2], plan.rounds_s[1::2]
     ratios = [after / before for before, after in zip(quiet, flooded, strict=True)]
@@ -114,7 +69,7 @@ def flood(rounds: int) -> dict[str, Any]:
         "ratio": statistics.median(ratios),
         "sent": sent["sent"],
         "sent_hz": sent["sent"] / max(1e-9, sent["seconds"]),
-        "refused_left": dict(inbox.health(time.monotonic())[0].refused),
+        "refused_left": dict(opened.inbox.health(time.monotonic())[0].refused),
         "right": pressed,
     }
 
@@ -122,8 +77,8 @@ def flood(rounds: int) -> dict[str, Any]:
 class _Plan:
     """Quiet and flooded rounds by turns, told by the court's own loop."""
 
-    def __init__(self, court: _Measured, network: _Watched, flooder: "_Other", rounds: int) -> None:
-        self._court, self._network, self._flooder = court, network, flooder
+    def __init__(self, court: MeasuredCourt, flooder: "_Other", rounds: int) -> None:
+        self._court, self._flooder = court, flooder
         self._left = 2 * rounds
         self._begin: int | None = None
         self.rounds_s: list[float] = []
@@ -131,9 +86,9 @@ class _Plan:
 
     def ended(self) -> bool:
         """To be asked before every beat."""
-        beats_s = self._court.beats_s
+        beats_s = self._court.cpu_s
         if self._begin is None:
-            if self._network.phase is Phase.PLAYING:
+            if self._court.phase is Phase.PLAYING:
                 self._begin = len(beats_s)
             return False
         if len(beats_s) < self._begin + SETTLE_BEATS + _ROUND_BEATS:
@@ -170,13 +125,10 @@ class _Other:
         return self._said
 
 
-def _quiet(_: Event) -> None: ...
-
-
 def _controller(words: list[str]) -> tuple[Any, Controller]:
     address, seat, token = words[:3]
     session = open_client([address], timeout_s=20.0)
-    controller = Controller(session, COURT, seat, token, seat.title())
+    controller = Controller(session, NAME, seat, token, seat.title())
     controller.join(20.0)
     controller.ready()
     return session, controller
@@ -200,7 +152,7 @@ def flooder(words: list[str]) -> dict[str, Any]:
     session, controller = _controller(words)
     joined = controller._joined
     assert joined is not None
-    key = Keys(COURT).command(words[1])
+    key = Keys(NAME).command(words[1])
     publisher = session.publisher(key)
     newest, sent, seconds, seq = _commands(), 0, 0.0, joined.last_seq
     with session:
@@ -230,7 +182,7 @@ def player(words: list[str]) -> dict[str, Any]:
     newest = _commands()
     with session:
         _wait_for(controller, Phase.READY)
-        RefereeClient(session, COURT, words[3]).decide(Start(), "a benchmark", "benchmark")
+        RefereeClient(session, NAME, words[3]).decide(Start(), "a benchmark", "benchmark")
         _wait_for(controller, Phase.PLAYING)
         pressed, applied, waits_ms = 0, 0, []
         while newest() != "stop":

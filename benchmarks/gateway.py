@@ -8,10 +8,8 @@ more. The processor time of each is the kernel's own count (Linux only).
 
 import argparse
 import json
-import os
 import statistics
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -19,12 +17,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from benchmarks.processes import LACOC, Opened, ask, read_line, started, used_s
+from benchmarks.processes import court as open_court
 from lacoc_client.controller import Controller
 from lacoc_client.spectator import Spectator
 from lacoc_shared.seat import Phase
 from lacoc_shared.session import Session, open_client
 
-_COURT = ("lacoc_shared", "serve", "--json", "--arena", "othello", "--listen", "tcp/127.0.0.1:0")
 _SETTLE_S = 1.0
 
 
@@ -40,31 +39,25 @@ def gateway(
     slowest_hz, median_hz, frame_bytes = [], [], []
     with (
         tempfile.TemporaryDirectory() as folder,
-        _process(*_COURT, "--recordings", folder) as court,
-        _opened(court) as (opened, session),
-        _process(
-            "lacoc_shared",
-            "web",
-            "--json",
-            "--connect",
-            opened["locators"][0],
-            "--viewers",
-            str(pages + 10),
+        open_court("othello", Path(folder)) as court,
+        _standing(court) as session,
+        started(
+            LACOC, "web", "--json", "--connect", court.address, "--viewers", str(pages + 10)
         ) as web,
     ):
-        url = json.loads(_line(web))["url"]
-        view = Spectator(session, opened["court"])
+        url = read_line(web)["url"]
+        view = Spectator(session, court.name)
         for _ in range(rounds):
             time.sleep(_SETTLE_S)
-            alone, idle = _cost(court, web, view, seconds)
+            alone, idle = _cost(court.process, web, view, seconds)
             alone_us.append(alone)
             idle_cpu.append(idle)
-            with _process("benchmarks.spectators", url, str(pages), str(hz)) as crowd:
-                _line(crowd)
+            with started("benchmarks.spectators", url, str(pages), str(hz)) as crowd:
+                read_line(crowd)
                 time.sleep(_SETTLE_S)
-                _count(crowd)
-                watched, busy = _cost(court, web, view, seconds)
-                counted = _count(crowd)
+                ask(crowd, "count")
+                watched, busy = _cost(court.process, web, view, seconds)
+                counted = ask(crowd, "count")
             watched_us.append(watched)
             gateway_cpu.append(busy)
             rates = [frames / counted["seconds"] for frames, _ in counted["counts"]]
@@ -114,27 +107,26 @@ def rows(figures: dict[str, Any]) -> Iterator[tuple[str, ...]]:
 
 
 @contextmanager
-def _opened(court: subprocess.Popen[str]) -> Iterator[tuple[dict[str, Any], Session]]:
-    """The court with a robot in each seat; both stand."""
-    opened = json.loads(_line(court))
-    with open_client(opened["locators"]) as session:
-        for seat, token in opened["tokens"].items():
-            controller = Controller(session, opened["court"], seat, token, seat)
+def _standing(court: Opened) -> Iterator[Session]:
+    """A session with the court, with a robot in each seat; both stand."""
+    with open_client([court.address]) as session:
+        for seat, token in court.tokens.items():
+            controller = Controller(session, court.name, seat, token, seat)
             controller.join()
             controller.ready()
         while (frame := controller.wait_frame(1.0)) is None or frame.phase != Phase.READY:
             pass
-        yield opened, session
+        yield session
 
 
 def _cost(
     court: subprocess.Popen[str], web: subprocess.Popen[str], view: Spectator, seconds: float
 ) -> tuple[float, float]:
     """Microseconds of processor for a beat of the court, and per cent of a core of the gateway."""
-    beat, court_s, web_s, at_s = _beat(view), _used_s(court), _used_s(web), time.monotonic()
+    beat, court_s, web_s, at_s = _beat(view), used_s(court), used_s(web), time.monotonic()
     time.sleep(seconds)
     beats, passed_s = _beat(view) - beat, time.monotonic() - at_s
-    return (_used_s(court) - court_s) / beats * 1e6, (_used_s(web) - web_s) / passed_s * 100
+    return (used_s(court) - court_s) / beats * 1e6, (used_s(web) - web_s) / passed_s * 100
 
 
 def _beat(view: Spectator) -> int:
@@ -142,41 +134,6 @@ def _beat(view: Spectator) -> int:
     while (frame := view.wait_frame(1.0)) is None:
         pass
     return frame.beat
-
-
-def _used_s(process: subprocess.Popen[str]) -> float:
-    """Processor time of all threads of a process."""
-    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def _count(crowd: subprocess.Popen[str]) -> dict[str, Any]:
-    assert crowd.stdin is not None
-    crowd.stdin.write("\n")
-    crowd.stdin.flush()
-    counted: dict[str, Any] = json.loads(_line(crowd))
-    return counted
-
-
-def _line(process: subprocess.Popen[str]) -> str:
-    assert process.stdout is not None
-    return process.stdout.readline()
-
-
-@contextmanager
-def _process(module: str, *words: str) -> Iterator[subprocess.Popen[str]]:
-    process = subprocess.Popen(
-        [sys.executable, "-m", module, *words],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    )
-    try:
-        yield process
-    finally:
-        process.terminate()
-        process.wait(20)
 
 
 def main() -> None:

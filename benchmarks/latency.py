@@ -1,22 +1,17 @@
 """Key to the frame that shows it, over Zenoh on loopback, against a bare Zenoh echo."""
 
-import json
 import random
 import statistics
-import subprocess
-import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import IO, Any
+from pathlib import Path
+from typing import Any
 
 from benchmarks.echo import PING, PONG
+from benchmarks.processes import court, read_line, started
 from lacoc_client.controller import Controller
 from lacoc_shared.seat import BEAT_S, Phase
 from lacoc_shared.session import Mailbox, Publisher, open_client
-
-_COURT = ("lacoc_shared", "serve", "--json", "--arena", "practice", "--listen", "tcp/127.0.0.1:0")
 
 
 def latency(rounds: int) -> dict[str, Any]:
@@ -32,16 +27,15 @@ def latency(rounds: int) -> dict[str, Any]:
     chance = random.Random(1)  # presses must not fall in step with the beats
     with (
         tempfile.TemporaryDirectory() as folder,
-        _process(*_COURT, "--recordings", folder) as court_out,
-        _process("benchmarks.echo") as echo_out,
+        court("practice", Path(folder)) as opened,
+        started("benchmarks.echo") as echo,
     ):
-        opened = json.loads(court_out.readline())
-        (seat, token), *_ = opened["tokens"].items()
+        (seat, token), *_ = opened.tokens.items()
         with (
-            open_client(opened["locators"]) as session,
-            open_client(json.loads(echo_out.readline())["locators"]) as echo_session,
+            open_client([opened.address]) as session,
+            open_client(read_line(echo)["locators"]) as echo_session,
         ):
-            controller = Controller(session, opened["court"], seat, token, "Benchmark")
+            controller = Controller(session, opened.name, seat, token, "Benchmark")
             controller.join()
             controller.ready()
             while (frame := controller.wait_frame(1.0)) is None or frame.phase != Phase.PLAYING:
@@ -83,19 +77,3 @@ def _echo_ms(ping: Publisher, pong: Mailbox) -> float:
     while pong.take() is None:
         pong.wait(1.0)
     return (time.perf_counter() - begin) * 1000
-
-
-@contextmanager
-def _process(module: str, *words: str) -> Iterator[IO[str]]:
-    process = subprocess.Popen(
-        [sys.executable, "-m", module, *words],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stdout is not None
-    try:
-        yield process.stdout
-    finally:
-        process.terminate()
-        process.wait(20)

@@ -34,9 +34,7 @@ class _Player:
         ]
         self._controllers = [
             Controller(session, self._name, seat, token, seat.title())
-            for session, (seat, token) in zip(
-                self._sessions, court["tokens"].items(), strict=True
-            )
+            for session, (seat, token) in zip(self._sessions, court["tokens"].items(), strict=True)
         ]
         for controller in self._controllers:
             controller.join(_WAIT_S)

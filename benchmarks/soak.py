@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import combinations
@@ -258,7 +258,7 @@ def _mb(look: Look) -> str:
 def _print(figures: Figures) -> None:
     print(
         f"{figures.minutes:.1f} minutes, {figures.matches} matches, {figures.same} verify; "
-        f"{figures.visits} visits, {figures.turned_away} without an answer, {figures.frames} frames seen"
+        f"{figures.visits} visits, {figures.turned_away} unanswered, {figures.frames} frames seen"
     )
     print("| process | memory when warm | at the end | growth | threads | files | sockets | left |")
     print("|---|---|---|---|---|---|---|---|")

@@ -23,6 +23,10 @@ RUNTIME_POOLS = (
 """Value of ZENOH_RUNTIME for a court: with the default pools three clients that vanish silently
 hold up everybody's commands for ten seconds."""
 
+MAX_SESSIONS = 1100
+"""Of a court: 1,000 who watch it directly, which it can serve (docs/reliability.md), and room for
+seats, referees and gateways. More pages go through gateways, of which each is one session."""
+
 _HEADERS_BYTES = 2048
 _CLIENT_MAX_BYTES = 1 << 20  # a scene is far above what a court needs to take in
 _LEASE_MS = 3000
@@ -55,7 +59,11 @@ def court_config(
         | _court_users(users)
         | {
             # Connections that never say anything must not keep others waiting.
-            "unicast": {"max_sessions": 800, "accept_pending": 1000, "accept_timeout": 3000}
+            "unicast": {
+                "max_sessions": MAX_SESSIONS,
+                "accept_pending": 1000,
+                "accept_timeout": 3000,
+            }
         },
     }
 

@@ -28,6 +28,8 @@ from lacoc_shared.access import Credentials
 from lacoc_shared.access_rules import Protection
 from lacoc_shared.mistakes import UserError
 
+_OTHER_FILES = 200
+"""That a court's process opens besides one for each session: records, modules, Zenoh's own."""
 _RECOVERY = timedelta(seconds=2)
 """How often a receiver of a history asks whether the last message was lost; gaps it sees at once."""
 
@@ -276,6 +278,7 @@ def open_court(listen: Sequence[str], protection: Protection | None = None) -> S
         UserError: if one of them can't be listened on; the message says why.
     """
     os.environ.setdefault("ZENOH_RUNTIME", network_config.RUNTIME_POOLS)
+    _allow_files(network_config.MAX_SESSIONS + _OTHER_FILES)
     endpoints = [address.endpoint(one, "tls" if protection else "tcp") for one in listen]
     address.check_protocols(endpoints, keys=protection is not None)
     try:
@@ -324,6 +327,18 @@ def _user_file(protection: Protection | None) -> Iterator[Path | None]:
         with open(users, "x", opener=lambda name, flags: os.open(name, flags, 0o600)) as file:
             file.writelines(lines)
         yield users
+
+
+def _allow_files(count: int) -> None:
+    """Let this process open so many files, as far as it may: often the limit is 1024."""
+    try:
+        import resource
+    except ImportError:  # Windows has no such limit
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = count if hard == resource.RLIM_INFINITY else min(count, hard)
+    if soft != resource.RLIM_INFINITY and soft < wanted:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
 
 
 def _open(config: dict[str, Any]) -> zenoh.Session:

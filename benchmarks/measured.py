@@ -1,0 +1,116 @@
+"""A court that looks at its own clock, for `benchmarks.flood` and `benchmarks.watched`.
+
+    python -m benchmarks.measured
+
+opens one, says in a line of JSON where, and answers each line on standard input with the beats
+since the last one.
+"""
+
+import json
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.limits import Limits
+from lacoc_server.court import Court, CourtSettings
+from lacoc_server.decision_desk import DecisionDesk
+from lacoc_server.entry import Admission
+from lacoc_server.inbox import Inbox
+from lacoc_server.network import CourtNetwork
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import SentFile
+from lacoc_shared.seal import hash_token, new_token
+from lacoc_shared.seat import Phase
+
+NAME = "measured"
+
+
+class MeasuredCourt(Court):
+    """Keeps how long each beat took."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self.cpu_s: list[float] = []
+        """Of the court's own thread."""
+        self.wall_s: list[float] = []
+
+    def _beat(self, now_s: float) -> None:
+        begin_s, cpu_s = time.perf_counter(), time.thread_time()
+        super()._beat(now_s)
+        self.cpu_s.append(time.thread_time() - cpu_s)
+        self.wall_s.append(time.perf_counter() - begin_s)
+
+    @property
+    def phase(self) -> Phase:
+        """Of the match that is on."""
+        return self._journal.match.phase
+
+    def told(self) -> dict[str, Any]:
+        """The beats since this was last asked."""
+        told = {
+            "wall_s": self.wall_s,
+            "slow_beats": self._pace.slow_beats,
+            "at_s": time.monotonic(),
+        }
+        self.wall_s, self.cpu_s, self._pace.slow_beats = [], [], 0
+        return told
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A measured court and how to reach it."""
+
+    court: MeasuredCourt
+    inbox: Inbox
+    address: str
+    tokens: dict[str, str]
+    referee: str
+
+
+@contextmanager
+def measured_court() -> Iterator[Measured]:
+    """A court of Robot-Othello that plays for an hour, with its record; the caller runs it."""
+    loaded = arenas.load("othello", {"match": {"duration_s": 3600.0, "countdown_s": 0.02}})
+    tokens, referee = {seat.id: new_token() for seat in loaded.seats}, new_token()
+    keys = Keys(NAME)
+    files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
+    admission = Admission(*files, Limits(), loaded.match.open_levels)
+    hashes = {seat: hash_token(token) for seat, token in tokens.items()}
+    inbox = Inbox(keys, list(tokens), hashes, admission)
+    desk = DecisionDesk([hash_token(referee)])
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        CourtNetwork(keys, ["tcp/127.0.0.1:0"], inbox, desk) as network,
+    ):
+        court = MeasuredCourt(
+            CourtSettings(NAME, loaded, {}, Path(folder)), network, lambda event: None
+        )
+        yield Measured(court, inbox, network.locators[0], tokens, referee)
+
+
+def main() -> None:
+    """Run a court until the input ends."""
+    with measured_court() as opened:
+        where = {"name": NAME, "address": opened.address}
+        print(json.dumps(where | {"tokens": opened.tokens, "referee": opened.referee}), flush=True)
+        os.set_blocking(sys.stdin.fileno(), False)
+
+        def stopping() -> bool:
+            word = sys.stdin.readline().strip()
+            if word == "count":
+                print(json.dumps(opened.court.told()), flush=True)
+            return word == "stop"
+
+        opened.court.run(stopping)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,139 @@
+"""`python -m benchmarks.watched`: does a crowd make a court's beats longer?
+
+A real court with two controllers in PLAYING; 300 pages through a gateway, 100 direct
+spectators, or as many as one likes. Rounds without and with the crowd take turns; a beat's time is
+the whole of it, on the wall clock. The crowd is a process of its own on the last core, where
+it is as little in the way of the court as one machine allows (Linux only).
+"""
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from typing import Any
+
+from benchmarks.processes import LACOC, ask, read_line, started
+from lacoc_shared.seat import BEATS_PER_S
+
+AIM = 1.2
+_SETTLE_S = 2.0
+
+
+def watched(direct: int, pages: int, seconds: float, rounds: int) -> dict[str, Any]:
+    """Measure in turns without and with the crowd.
+
+    Args:
+        direct: spectators with a session with the court each.
+        pages: spectators through a gateway.
+        seconds: of a round.
+        rounds: of each kind.
+
+    Returns:
+        The 99th percentile of the beat's time in each round, the ratios, beats that were slow or
+        missed, and what the slowest spectator got.
+    """
+    alone, with_crowd = [], []
+    slowest_hz: list[float] = []
+    with ExitStack() as stack:
+        court = stack.enter_context(started("benchmarks.measured"))
+        opened = read_line(court)
+        players = stack.enter_context(started("benchmarks.players"))
+        ask(players, json.dumps([opened]))
+        words = ("--court", opened["name"], "--connect", opened["address"])
+        gateway = stack.enter_context(
+            started(LACOC, "web", "--json", "--viewers", str(pages + 1), *words)
+        )
+        url = read_line(gateway)["url"]
+        for _ in range(rounds):
+            alone.append(_round(court, seconds))
+            with _crowd(opened, direct) as sessions, _pages(url, pages) as windows:
+                for one in (*sessions, *windows):
+                    ask(one, "count")
+                with_crowd.append(_round(court, seconds))
+                for one in (*sessions, *windows):
+                    counted = ask(one, "count")
+                    frames = min(frames for frames, _ in counted["counts"])
+                    slowest_hz.append(frames / counted["seconds"])
+        court.communicate("stop\n", timeout=60)
+    ratios = [
+        after["p99_ms"] / before["p99_ms"] for before, after in zip(alone, with_crowd, strict=True)
+    ]
+    return {
+        "direct": direct,
+        "pages": pages,
+        "p99_alone_ms": statistics.median(one["p99_ms"] for one in alone),
+        "p99_watched_ms": statistics.median(one["p99_ms"] for one in with_crowd),
+        "p50_alone_ms": statistics.median(one["p50_ms"] for one in alone),
+        "p50_watched_ms": statistics.median(one["p50_ms"] for one in with_crowd),
+        "ratios": [round(ratio, 3) for ratio in ratios],
+        "ratio": statistics.median(ratios),
+        "beats": sum(one["beats"] for one in with_crowd),
+        "missed": sum(one["missed"] for one in with_crowd),
+        "slow": sum(one["slow"] for one in with_crowd),
+        "slow_alone": sum(one["slow"] for one in alone),
+        "slowest_hz": min(slowest_hz),
+    }
+
+
+def _round(court: subprocess.Popen[str], seconds: float) -> dict[str, float]:
+    time.sleep(_SETTLE_S)
+    begin_s = ask(court, "count")["at_s"]
+    time.sleep(seconds)
+    told = ask(court, "count")
+    wall_ms = sorted(1000 * took_s for took_s in told["wall_s"])
+    due = (told["at_s"] - begin_s) * BEATS_PER_S
+    return {
+        "beats": len(wall_ms),
+        # Those that it did not catch up with: a court that is on time has the one that is due.
+        "missed": max(0, int(due) - len(wall_ms)),
+        "slow": told["slow_beats"],
+        "p50_ms": statistics.median(wall_ms),
+        "p99_ms": statistics.quantiles(wall_ms, n=100)[-1],
+    }
+
+
+@contextmanager
+def _crowd(opened: dict[str, Any], number: int) -> Iterator[list[subprocess.Popen[str]]]:
+    where = (opened["address"], opened["name"], str(number))
+    with _on_last_core("benchmarks.direct", *where, wanted=number) as crowd:
+        yield crowd
+
+
+@contextmanager
+def _pages(url: str, number: int) -> Iterator[list[subprocess.Popen[str]]]:
+    with _on_last_core("benchmarks.spectators", url, str(number), "25", wanted=number) as crowd:
+        yield crowd
+
+
+@contextmanager
+def _on_last_core(module: str, *words: str, wanted: int) -> Iterator[list[subprocess.Popen[str]]]:
+    """The process of a crowd, once all are there; none if nobody is wanted."""
+    if not wanted:
+        yield []
+        return
+    with started(module, *words) as process:
+        os.sched_setaffinity(process.pid, sorted(os.sched_getaffinity(0))[-1:])
+        read_line(process)
+        yield [process]
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.watched", description=__doc__)
+    parser.add_argument("--direct", type=int, default=0, help="spectators of the court itself")
+    parser.add_argument("--pages", type=int, default=0, help="spectators through a gateway")
+    parser.add_argument("--seconds", type=float, default=10.0, help="of each round")
+    parser.add_argument("--rounds", type=int, default=7)
+    options = parser.parse_args()
+    found = watched(**vars(options))
+    print(json.dumps(found, indent=1))
+    sys.exit(found["ratio"] > AIM or bool(found["missed"]))
+
+
+if __name__ == "__main__":
+    main()
