@@ -12,7 +12,7 @@ PAGES_FROM := $(shell find client/web/src client/web/public -type f) \
 	$(addprefix client/web/,index.html package-lock.json vite.config.ts)
 NPM := PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix client/web --loglevel=error
 
-.PHONY: help demo test format lint type walls check build bench fuzz mutants wheel-smoke web clean
+.PHONY: help demo test format lint type walls check build bench fuzz mutants soak wheel-smoke web clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list.
@@ -63,6 +63,9 @@ fuzz: .venv/.test ## Feed a million hostile packets and 100,000 hostile files to
 
 mutants: .venv/.mutation ## Change the code of rules, match, drive and codec bit by bit: do tests notice?
 	$(BIN)/python tests/mutation $(ARGS)
+
+soak: .venv/.test ## Play matches end to start for an hour: nothing may grow or be left over.
+	$(BIN)/python -m benchmarks.soak $(ARGS)
 
 clean: ## Remove everything that was made.
 	rm -rf .venv build dist client/web/node_modules client/lacoc_client/pages .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

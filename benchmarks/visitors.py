@@ -36,8 +36,7 @@ class _Door:
         self.chance = chance
         self.open = asyncio.Event()
         self.inside = self.visits = self.frames = 0
-        self.turned_away = 0
-        """Who got no answer: a busy machine."""
+        self.unanswered = 0
 
     async def stay(self) -> None:
         """As long as this visitor wants, or until all are sent away."""
@@ -55,7 +54,7 @@ class _Door:
                 self.frames += await visit(address, self)
                 self.visits += 1
             except UserError:
-                self.turned_away += 1
+                self.unanswered += 1
             self.inside -= 1
             await asyncio.sleep(self.chance.uniform(0, 2 * _PAUSE_S))
 
@@ -113,7 +112,7 @@ async def main() -> None:
                 door.open.clear()
                 while door.inside:
                     await asyncio.sleep(_LOOK_S)
-            counts = {name: getattr(door, name) for name in ("visits", "frames", "turned_away")}
+            counts = {name: getattr(door, name) for name in ("visits", "frames", "unanswered")}
             print(json.dumps(counts), flush=True)
         for task in tasks:
             task.cancel()

@@ -1,8 +1,8 @@
 """A court's place on the network: what arrives in a beat, what goes out after it.
 
-Nothing here runs on a thread of its own: rings and desks are emptied by `poll`, once a
-beat, in the same order every time. What it may believe is the inbox's to say; a request
-is answered when the match has taken it in and the record is written.
+Nothing comes in on a thread of its own: rings and desks are emptied by `poll`, once a
+beat, in the same order every time. What it may believe is the inbox's to say; a request is
+answered when the match has taken it in and the record is written. An outbox sends the rest.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -11,6 +11,7 @@ from typing import NamedTuple, Self
 
 from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.inbox import COMMANDS_PER_BEAT, Door, Inbox
+from lacoc_server.outbox import Outbox
 from lacoc_shared.access_rules import Protection
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
@@ -75,6 +76,7 @@ class CourtNetwork:
         self._inbox = inbox
         self._decision_desk = decision_desk
         self._session = session = open_court(listen, protection)
+        self._outbox = Outbox()
         self._frame = session.publisher(keys.frame)
         self._event = session.history_publisher(keys.event, _EVENTS_KEPT)
         self._sheet = session.history_publisher(keys.sheet, 1)
@@ -101,6 +103,7 @@ class CourtNetwork:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._outbox.close()
         self._session.close()
 
     def poll(self, now_s: float, match: int, beat: int) -> list[Arrival]:
@@ -130,16 +133,16 @@ class CourtNetwork:
             now_s: monotonic time: answers to it are counted from here.
         """
         self._inbox.links.sent(now_s)
-        self._frame.put(frame)
+        self._outbox.send_newest(self._frame, frame)
 
     def publish_event(self, event: Event) -> None:
         """Send an event that must arrive; those who come late get it too."""
-        self._event.put(encode(event))
+        self._outbox.send(self._event, encode(event))
 
     def publish_sheet(self, sheet: Sheet) -> None:
         """Send a changed sheet, which must arrive, and keep it for those who ask."""
         self._sheet_bytes = encode(sheet)
-        self._sheet.put(self._sheet_bytes)
+        self._outbox.send(self._sheet, self._sheet_bytes)
 
     def publish_scene(self, scene: Scene) -> None:
         """Keep a changed scene for those who ask: frames tell by its hash that it changed."""
@@ -147,7 +150,7 @@ class CourtNetwork:
 
     def publish_health(self, health: Health) -> None:
         """Send the court's health."""
-        self._health.put(encode(health))
+        self._outbox.send_newest(self._health, encode(health))
 
     def seat_health(self, now_s: float) -> tuple[SeatHealth, ...]:
         """How each seat's link is, in the arena's order."""

@@ -18,7 +18,7 @@ Config = dict[str, Any]
 
 RUNTIME_POOLS = (
     "(rx:(worker_threads:16),acc:(worker_threads:8),net:(worker_threads:8),"
-    "tx:(worker_threads:4),app:(worker_threads:4))"
+    "tx:(worker_threads:1),app:(worker_threads:4))"
 )
 """Value of ZENOH_RUNTIME for a court: with the default pools three clients that vanish silently
 hold up everybody's commands for ten seconds."""

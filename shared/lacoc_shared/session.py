@@ -31,7 +31,7 @@ from lacoc_shared.mistakes import UserError
 _OTHER_FILES = 200
 """That a court's process opens besides one for each session: records, modules, Zenoh's own."""
 _RECOVERY = timedelta(seconds=2)
-"""How often a receiver of a history asks whether the last message was lost; gaps it sees at once."""
+"""How often the receiver of a history asks whether it lacks the last; gaps it sees at once."""
 
 
 class NoReply(Exception):

@@ -1,0 +1,60 @@
+"""Five minutes of matches with visitors who come and go; `make soak` has the hour."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.append(str(Path(__file__).parents[2]))
+from benchmarks.soak import MOST_GROWTH, Figures, Look, soak
+
+MINUTES = 5.0
+WARM_MINUTES = 2.0
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="the kernel's own counts are read")
+def test_nothing_grows_and_nothing_is_left_over() -> None:
+    """Memory of each process after two minutes; threads, files and sockets; every record."""
+    figures = soak(MINUTES, match_s=10.0, speed=2.0, warm_minutes=WARM_MINUTES, visitors_most=5)
+    assert figures.same == figures.matches > 0
+    assert figures.frames > 0
+    assert {name: figures.left_over(name) for name in figures.looks} == {
+        name: {} for name in figures.looks
+    }
+    grown = {name: figures.growth(name) for name in figures.looks}
+    assert all(growth < MOST_GROWTH for growth in grown.values()), grown
+
+
+def _figures(looks: list[Look]) -> Figures:
+    return Figures(
+        minutes=1,
+        matches=1,
+        visits=1,
+        frames=1,
+        unanswered=0,
+        same=1,
+        looks={"it": looks},
+        warm_s=5,
+    )
+
+
+def test_a_leak_would_be_seen() -> None:
+    """Half a per cent a match is a leak; a single look that is off is none."""
+    steady = [Look(at_s, 100_000_000, 9, 20, 3, 0) for at_s in range(20)]
+    growing = [look._replace(memory_bytes=round(1e8 * 1.005**look.at_s)) for look in steady]
+    off = [*steady[:9], steady[9]._replace(memory_bytes=150_000_000), *steady[10:]]
+    assert _figures(growing).growth("it") > MOST_GROWTH
+    assert not _figures(growing).held
+    assert _figures(off).growth("it") == 0
+    assert _figures(off).held
+
+
+@pytest.mark.parametrize("what", ["threads", "files", "sockets", "children"])
+def test_what_is_left_over_would_be_seen(what: str) -> None:
+    """One more than while it warmed up."""
+    steady = [Look(at_s, 100_000_000, 9, 20, 3, 0) for at_s in range(20)]
+    last = steady[-1]._replace(**{what: getattr(steady[-1], what) + 1})
+    figures = _figures([*steady[:-1], last])
+    assert figures.left_over("it") == {what: 1}
+    assert not figures.held
