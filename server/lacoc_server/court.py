@@ -22,6 +22,7 @@ from lacoc_server.network import Arrival, CourtNetwork
 from lacoc_server.pace import Pace
 from lacoc_server.recovery import Unfinished
 from lacoc_server.world import World
+from lacoc_shared import heap
 from lacoc_shared.contest import HealthLimits
 from lacoc_shared.decisions import Next, Official
 from lacoc_shared.inputs import Advice, Decide, Input
@@ -133,6 +134,7 @@ class Court:
             self._close()
             joins: list[Input] = [seat.join for seat in match.seats if seat.join and not seat.left]
             self._journal = self._open(match.setup.match + 1)
+            heap.give_back()  # models and worlds of the match before
             return joins
         if match.phase is Phase.FINISHED:
             reasons = self._health.verdict().advice

@@ -7,16 +7,14 @@ project imports zenoh.
 """
 
 import atexit
-import ctypes
 import json
 import os
-import sys
 import tempfile
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -25,15 +23,13 @@ import zenoh
 import zenoh.ext
 from zenoh.handlers import Callback, RingChannel
 
-from lacoc_shared import address, network_config
+from lacoc_shared import address, heap, network_config
 from lacoc_shared.access import Credentials
 from lacoc_shared.access_rules import Protection
 from lacoc_shared.mistakes import UserError
 
 _OTHER_FILES = 200
 """That a court's process opens besides one for each session: records, modules, Zenoh's own."""
-_M_ARENA_MAX = -8  # in malloc.h
-_HEAPS = 2
 _RECOVERY = timedelta(seconds=2)
 """How often the receiver of a history asks whether it lacks the last; gaps it sees at once."""
 
@@ -345,18 +341,7 @@ def _allow_files(count: int) -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
 
 
-def _share_heaps() -> None:
-    """Let Zenoh's many threads share few heaps.
-
-    The C library gives each a heap of its own, and each keeps the most that it ever held: a
-    process whose clients come and go grows for hours.
-    """
-    if sys.platform == "linux":
-        with suppress(AttributeError):  # only glibc has several
-            ctypes.CDLL(None).mallopt(_M_ARENA_MAX, _HEAPS)
-
-
 def _open(config: dict[str, Any]) -> zenoh.Session:
-    _share_heaps()
+    heap.share()
     zenoh.init_log_from_env_or("off")  # its words are for developers: RUST_LOG=warn shows them
     return zenoh.open(zenoh.Config.from_json5(json.dumps(config)))
