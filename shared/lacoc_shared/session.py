@@ -15,7 +15,6 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from datetime import timedelta
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -30,8 +29,6 @@ from lacoc_shared.mistakes import UserError
 
 _OTHER_FILES = 200
 """That a court's process opens besides one for each session: records, modules, Zenoh's own."""
-_RECOVERY = timedelta(seconds=2)
-"""How often the receiver of a history asks whether it lacks the last; gaps it sees at once."""
 
 
 class NoReply(Exception):
@@ -178,7 +175,7 @@ class Session:
                 key,
                 cache=zenoh.ext.CacheConfig(depth),
                 sample_miss_detection=zenoh.ext.MissDetectionConfig(
-                    heartbeat=None, sporadic_heartbeat=None
+                    heartbeat=0.5, sporadic_heartbeat=None
                 ),
                 publisher_detection=True,
             )
@@ -214,13 +211,10 @@ class Session:
             self._session,
             key,
             Callback(mailbox.deliver, indirect=False),
-            history=zenoh.ext.HistoryConfig(max_samples=depth, detect_late_publishers=True),
-            # A court would hear of a lost last message sooner by heartbeats, but its router keeps
-            # 5 kB for ever of each session that had subscribed to them and to late publishers.
-            recovery=zenoh.ext.RecoveryConfig(
-                periodic_queries=_RECOVERY,  # type: ignore[arg-type]
-                heartbeat=None,
-            ),
+            # A publisher that comes late is noticed by its heartbeat. To let Zenoh look out for it
+            # as well would cost the court's router 5 kB for ever of each session that ever came.
+            history=zenoh.ext.HistoryConfig(max_samples=depth, detect_late_publishers=False),
+            recovery=zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
         )
         return mailbox
 
