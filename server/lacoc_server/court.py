@@ -1,7 +1,8 @@
 """A court: the loop that gives a match its beats, and the only reader of a clock.
 
-One thread. Each beat takes what arrived, lets the match have it, records, and only then
-answers and publishes: what anybody was told is on disk (design.md, "One beat").
+One thread; only an outbox sends beside it. Each beat takes what arrived, lets the match have
+it, records, and only then answers and publishes: what anybody was told is on disk (design.md,
+"One beat").
 """
 
 import hashlib
