@@ -97,6 +97,8 @@ def try_contestant(env: Environment) -> None:
     error = env.run("lacoc", "serve", "--arena", "othello", code=2).stderr
     assert error.count("\n") == 1, error
     assert 'pip install "lacoc[server]"' in error, error
+    error = env.run("lacoc", "contest", "keys", "--host", "localhost", code=2).stderr
+    assert re.search(r"Needs cryptography.*lacoc\[server\]", error), error
 
 
 def try_court(env: Environment) -> None:
@@ -104,6 +106,8 @@ def try_court(env: Environment) -> None:
     try_both(env)
     packages = ["lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lacoc_client"]
     env.run("python", "-c", IMPORT_ALL.format(packages=packages))
+    env.run("lacoc", "contest", "keys", "--host", "localhost")
+    assert "--invitation main.left.toml" in env.run("lacoc", "contest", "show").stdout
     env.run("lacoc", "demo", "--headless", "--seconds", "3")
 
 
