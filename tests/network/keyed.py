@@ -29,9 +29,9 @@ def keyed_file(folder: Path, where: str = "127.0.0.1:0", name: str = "contest") 
 class KeyedCourt(CourtStub):
     """A court for tests with keys; `people` has the way of each person, at its own port."""
 
-    def __init__(self, file: Path) -> None:
+    def __init__(self, file: Path, listen: str = "127.0.0.1:0") -> None:
         contest = contests.load(file)
-        super().__init__("127.0.0.1:0", protection(contest, "main"))
+        super().__init__(listen, protection(contest, "main"))
         everybody = entrances.everybody(contest, "main")
         self.people: Mapping[str, Access] = {
             who: msgspec.structs.replace(access, connect=self.address)

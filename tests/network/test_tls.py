@@ -5,6 +5,7 @@ import re
 import socket
 import tempfile
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from datetime import timedelta
@@ -12,9 +13,10 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from court_stub import CourtStub
+from court_stub import CourtStub, until
 from keyed import KeyedCourt, keyed_file
 
+from lacoc_client.controller import Controller, Hold
 from lacoc_server.certificates import LIFE, Authority, utc_now
 from lacoc_shared import contest as contests
 from lacoc_shared import entrances
@@ -45,6 +47,21 @@ def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
         access = msgspec.structs.replace(keyed.people["left"], connect=f"tls/{host}:{port}")
         with open_client([access.connect], credentials=access.credentials) as session:
             assert session.ask("lacoc/main/sheet")
+
+
+def test_a_court_that_comes_back_is_entered_again(tmp_path: Path) -> None:
+    """A connection with keys heals as one without does, in both directions."""
+    file = keyed_file(tmp_path)
+    with ExitStack() as stack:
+        with KeyedCourt(file) as court:
+            address, left = court.address, court.people["left"]
+            session = stack.enter_context(court.enter("left"))
+            controller = Controller(session, "main", "left", left.token, "Ants")
+            controller.join()
+        until(lambda: controller.view.poll() or controller.view.silent_s(time.monotonic()) > 0.2)
+        with KeyedCourt(file, address) as court:
+            until(lambda: controller.poll(time.monotonic()) and court.inputs)
+            until(lambda: controller.poll(time.monotonic()) and controller.hold is Hold.HELD)
 
 
 def test_keys_of_another_contest(keyed: KeyedCourt, tmp_path: Path) -> None:
