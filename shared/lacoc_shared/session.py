@@ -335,7 +335,14 @@ def _allow_files(count: int) -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
 
 
+_WITHOUT_PASSWORDS = ",zenoh::api::session=info"
+"""At debug it writes down the whole configuration it was opened with."""
+
+
 def _open(config: dict[str, Any]) -> zenoh.Session:
     heap.share()
+    words = os.environ.get("RUST_LOG", "")
+    if words and not words.endswith(_WITHOUT_PASSWORDS):
+        os.environ["RUST_LOG"] = words + _WITHOUT_PASSWORDS
     zenoh.init_log_from_env_or("off")  # its words are for developers: RUST_LOG=warn shows them
     return zenoh.open(zenoh.Config.from_json5(json.dumps(config)))

@@ -3,6 +3,8 @@
 import os
 import re
 import socket
+import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -20,7 +22,7 @@ from lacoc_client.controller import Controller, Hold
 from lacoc_server.certificates import LIFE, Authority, utc_now
 from lacoc_shared import contest as contests
 from lacoc_shared import entrances
-from lacoc_shared.access import Access
+from lacoc_shared.access import Access, invitation_text
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.session import open_client, open_court
 
@@ -150,6 +152,32 @@ def test_passwords_are_on_disk_only_while_a_court_opens(
         pass
     assert [mode for path, mode in seen if path.endswith("users")] == [0o600]
     assert list((tmp_path / "t").iterdir()) == []
+
+
+def test_no_password_in_zenohs_own_log(keyed: KeyedCourt, tmp_path: Path) -> None:
+    """Also where somebody lets it say everything."""
+    left = keyed.people["left"]
+    invitation = tmp_path / "left.toml"
+    invitation.write_text(invitation_text(left, "x"))
+    code = (
+        "import sys, pathlib; from lacoc_shared.access import *\n"
+        "from lacoc_shared.session import *\n"
+        "left = read_invitation(pathlib.Path(sys.argv[1]))\n"
+        "with open_client([left.connect], credentials=left.credentials) as session:\n"
+        "    session.ask('lacoc/main/sheet')\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(invitation)],
+        env=os.environ | {"RUST_LOG": "trace"},
+        capture_output=True,
+        timeout=60,
+    )
+    said = done.stdout + done.stderr
+    assert done.returncode == 0, said
+    assert b"DEBUG" in said
+    assert left.credentials is not None
+    assert left.credentials.password.encode() not in said
+    assert left.token.encode() not in said
 
 
 @contextmanager
