@@ -90,9 +90,7 @@ def measured_court() -> Iterator[Measured]:
         tempfile.TemporaryDirectory() as folder,
         CourtNetwork(keys, ["tcp/127.0.0.1:0"], inbox, desk) as network,
     ):
-        court = MeasuredCourt(
-            CourtSettings(NAME, loaded, {}, Path(folder)), network, lambda event: None
-        )
+        court = MeasuredCourt(CourtSettings(NAME, loaded, {}, Path(folder)), network)
         yield Measured(court, inbox, network.locators[0], tokens, referee)
 
 
