@@ -8,6 +8,7 @@ entry (rules 1, "Where each number lives").
 import importlib
 from collections.abc import Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import Annotated, Any, Literal
 
 import msgspec
@@ -18,6 +19,8 @@ from lacoc_shared import plugins
 from lacoc_shared.gait import Level
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.toml_text import BadToml, read_toml
+
+_GROUP = "lacoc.arenas"
 
 Seconds = Annotated[float, msgspec.Meta(ge=0, le=86_400)]
 
@@ -62,7 +65,9 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class Arena:
     """An arena as played: its file with the contest's overrides, and its rules."""
 
-    def __init__(self, name: str, settings: dict[str, Any], module: str) -> None:
+    def __init__(
+        self, name: str, settings: dict[str, Any], module: ModuleType, folder: Path | None
+    ) -> None:
         """Use `load` or `from_settings`.
 
         Raises:
@@ -71,13 +76,15 @@ class Arena:
         self.name = name
         self.settings = settings
         """The whole file as plain values; with `name` it makes the same arena again."""
-        self._module = module
+        self.folder = folder
+        """Where it lies if it is not installed; its code was run because a user named it."""
+        self._module = module.__name__
         try:
             file = msgspec.convert(settings, _File)
         except msgspec.ValidationError as error:
             raise UserError(f"The file of arena {name!r} is wrong: {error}.") from None
         try:
-            self.game: AnyGame = importlib.import_module(f"{module}.rules").make(file.game)
+            self.game: AnyGame = importlib.import_module(f"{self._module}.rules").make(file.game)
         except ValueError as error:  # msgspec.ValidationError is one
             raise UserError(f"The table [game] of arena {name!r} is wrong: {error}.") from None
         ids = [seat.id for seat in file.seat]
@@ -111,22 +118,38 @@ def load(name: str, overrides: Mapping[str, Any] | None = None) -> Arena:
     Raises:
         UserError: if there is no such arena or its file is wrong.
     """
-    module = plugins.package("lacoc.arenas", "arena", name)
+    module = plugins.package(_GROUP, "arena", name)
     path = plugins.folder_of(module) / "arena.toml"
     try:
         settings = read_toml(path.read_bytes())
     except (OSError, BadToml) as error:
         raise UserError(f"The arena file {path} can't be read: {error}.") from None
-    return Arena(_canonical(name), merge(settings, overrides or {}), module.__name__)
+    folder = None if name in plugins.installed(_GROUP) else Path(name).expanduser().resolve()
+    return Arena(str(folder or name), merge(settings, overrides or {}), module, folder)
 
 
-def from_settings(name: str, settings: dict[str, Any]) -> Arena:
+def from_settings(name: str, settings: dict[str, Any], folder: Path | None = None) -> Arena:
     """Make the arena of a record again, with the settings it was played with.
 
+    Args:
+        name: as the record has it. It stands for an installed arena only: a record may come from
+            anybody, and a folder's code must not run because a record names it.
+        settings: `Arena.settings`.
+        folder: of an arena that is not installed, as the user named it.
+
     Raises:
-        UserError: if the arena is not installed here.
+        UserError: if the arena is not installed here, and no folder was named.
     """
-    return Arena(name, settings, plugins.package("lacoc.arenas", "arena", name).__name__)
+    if folder is not None and name not in plugins.installed(_GROUP):
+        return Arena(name, settings, plugins.package_of_folder(folder), folder)
+    try:
+        module = plugins.installed_package(_GROUP, "arena", name)
+    except UserError as error:
+        raise UserError(
+            f"{error} The code of an arena in a folder runs only if you name the folder yourself: "
+            "--arena FOLDER, if you trust it."
+        ) from None
+    return Arena(name, settings, module, None)
 
 
 def merge(settings: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
@@ -137,7 +160,3 @@ def merge(settings: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str
         both = isinstance(old, Mapping) and isinstance(value, Mapping)
         merged[key] = merge(old, value) if both else value  # type: ignore[arg-type]
     return merged
-
-
-def _canonical(name: str) -> str:
-    return name if name in plugins.installed("lacoc.arenas") else str(Path(name).resolve())

@@ -1,5 +1,6 @@
 """Requests to a court, and its refusals put into words."""
 
+import time
 from typing import TypeVar
 
 import msgspec
@@ -15,6 +16,8 @@ T = TypeVar("T")
 ANSWER_S = 5.0
 """A court answers within a beat or two; one that needs longer is in trouble."""
 
+_COMING_BACK_S = 1.0
+_AGAIN_S = 0.05
 _MAX_BYTES = 1 << 20
 
 
@@ -51,16 +54,26 @@ def ask(
 def fetch(
     session: Session, keys: Keys, key: str, payload: bytes = b"", timeout_s: float = ANSWER_S
 ) -> bytes:
-    """Ask a court in bytes; see `ask`."""
-    try:
-        return session.ask(key, payload, timeout_s)
-    except NoReply:
-        raise NoCourt(no_answer(session, keys.court)) from None
-    except Refused as refused:
-        refusal = understand(refused.payload, Refusal)
-        if refusal.mistakes:
-            raise FileRefused(list(refusal.mistakes)) from None
-        raise UserError(refusal.reason) from None
+    """Ask a court in bytes; see `ask`.
+
+    A court that was started again can't be asked for a moment after its first frame: it is asked
+    again, as long as nobody can have taken the request in.
+    """
+    end_s = time.monotonic() + _COMING_BACK_S
+    while True:
+        asked = session.routers()
+        try:
+            return session.ask(key, payload, timeout_s)
+        except NoReply:
+            lost = asked and session.routers() != asked
+            if lost or time.monotonic() >= end_s:
+                raise NoCourt(no_answer(session, keys.court)) from None
+            time.sleep(_AGAIN_S)
+        except Refused as refused:
+            refusal = understand(refused.payload, Refusal)
+            if refusal.mistakes:
+                raise FileRefused(list(refusal.mistakes)) from None
+            raise UserError(refusal.reason) from None
 
 
 def understand(payload: bytes, kind: type[T]) -> T:

@@ -2,32 +2,33 @@
 
 One thread; only an outbox sends beside it. Each beat takes what arrived, lets the match have
 it, records, and only then answers and publishes: what anybody was told is on disk (design.md,
-"One beat").
+"One beat"). Where the disk does not take it, the court waits: no beat passes until it does.
 """
 
 import hashlib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from lacoc_arenas.arena import Arena
 from lacoc_server.court_log import CourtLog
 from lacoc_server.health import MatchHealth
 from lacoc_server.journal import Journal
-from lacoc_server.match import Match
+from lacoc_server.match import Beat, Match
 from lacoc_server.metrics import CourtMetrics
-from lacoc_server.network import Arrival, CourtNetwork
+from lacoc_server.network import Arrival, CourtNetwork, Outcome
 from lacoc_server.pace import Pace
-from lacoc_server.recovery import Unfinished
+from lacoc_server.recovery import IN_PLAY, Unfinished
 from lacoc_server.world import World
 from lacoc_shared import heap
 from lacoc_shared.contest import HealthLimits
-from lacoc_shared.decisions import Next, Official
+from lacoc_shared.decisions import Halt, Next, Official
 from lacoc_shared.inputs import Advice, Decide, Input
 from lacoc_shared.messages import Health, HealthVerdict
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.pack import pack_in_background
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
@@ -50,6 +51,16 @@ class CourtSettings:
     """1: a beat every 20 ms; more for a demonstration in a hurry."""
     health: HealthLimits = field(default_factory=HealthLimits)
     """Beyond these a replay is advised."""
+
+
+class _Made(NamedTuple):
+    """A beat that is over, and what is to be told of it."""
+
+    beat: Beat
+    frame: bytes
+    arrivals: Sequence[Arrival]
+    outcomes: Sequence[Outcome]
+    """For each arrival."""
 
 
 class Court:
@@ -77,6 +88,14 @@ class Court:
         self._pace = Pace(time.monotonic(), settings.speed, _offset_s(settings.name))
         self._inputs: list[Input] = []
         """The court's own, for the next beat."""
+        self._made: _Made | None = None
+        """A beat that nobody was told of yet."""
+        self._frame = b""
+        """The newest that was published."""
+        self._trouble = ""
+        """What is wrong with the disk of the record."""
+        self._waits = 0
+        """Beats that could have been in the time that the disk did not take the record."""
         if left is None:
             self._journal = self._open(1)
         else:
@@ -108,14 +127,48 @@ class Court:
                 packing.wait()
 
     def _beat(self, now_s: float) -> None:
+        try:
+            if self._journal.match.next_wanted:
+                self._open_next()
+            if self._made is None:
+                self._made = self._make(now_s)
+            self._journal.flush()
+        except UserError as trouble:
+            self._wait(now_s, str(trouble))
+            return
+        made, self._made, self._waits = self._made, None, 0
+        self._inputs = self._follow()
+        self._tell(made, now_s)
+
+    def _make(self, now_s: float) -> _Made:
+        """Let the match have a beat."""
         own, self._inputs = self._inputs, []
         match, network = self._journal.match, self._network
-        arrivals: list[Arrival] = network.poll(now_s, match.setup.match, match.beats + 1)
+        arrivals = network.poll(now_s, match.setup.match, match.beats + 1)
         beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
-        for arrival, outcome in zip(arrivals, beat.outcomes[len(own) :], strict=True):
+        return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])
+
+    def _wait(self, now_s: float, trouble: str) -> None:
+        """Let no beat pass: nobody may be told what is not on disk.
+
+        What was published last is published again, so that nobody takes the court for dead.
+        """
+        self._trouble = trouble
+        self._network.turn_away(trouble)
+        if self._frame:
+            self._network.publish_again(self._frame)
+        if self._waits % HEALTH_BEATS == 0:
+            self._say_health(now_s)
+        self._waits += 1
+
+    def _tell(self, made: _Made, now_s: float) -> None:
+        """Answer and publish what a beat made."""
+        match, network, beat = self._journal.match, self._network, made.beat
+        for arrival, outcome in zip(made.arrivals, made.outcomes, strict=True):
             if arrival.answer is not None:
                 arrival.answer(outcome)
-        network.publish_frame(frame, time.monotonic())
+        self._frame = made.frame
+        network.publish_frame(made.frame, time.monotonic())
         for event in beat.events:
             network.publish_event(event)
             self._log.event(self.match_id, event)
@@ -126,17 +179,23 @@ class Court:
             network.publish_sheet(match.sheet())
         if match.beats % HEALTH_BEATS == 0:
             self._say_health(now_s)
-        self._inputs = self._follow()
+
+    def _open_next(self) -> None:
+        if self._waits % HEALTH_BEATS:  # a match takes longer than a beat to make
+            raise UserError(self._trouble)
+        match = self._journal.match
+        following = self._open(match.setup.match + 1)
+        self._close()
+        self._journal = following
+        heap.give_back()  # models and worlds of the match before
+        self._inputs = [seat.join for seat in match.seats if seat.join and not seat.left]
 
     def _follow(self) -> list[Input]:
-        """What comes after a beat that ended something."""
-        match = self._journal.match
-        if match.next_wanted:
-            self._close()
-            joins: list[Input] = [seat.join for seat in match.seats if seat.join and not seat.left]
-            self._journal = self._open(match.setup.match + 1)
-            heap.give_back()  # models and worlds of the match before
-            return joins
+        """What comes after a beat that was recorded: the court's own decisions."""
+        match, before = self._journal.match, self._trouble
+        self._trouble = now = self._journal.trouble
+        if before != now and match.phase in IN_PLAY:
+            return [Decide("court", before or now, Halt())]
         if match.phase is Phase.FINISHED:
             reasons = self._health.verdict().advice
             if reasons != match.advice:
@@ -159,7 +218,7 @@ class Court:
             settings=settings.arena.settings,
             limits=dict(settings.limits),
         )
-        return self._journal_of(Match(setup, World))
+        return self._journal_of(Match(setup, World, settings.arena.folder))
 
     def _journal_of(
         self, match: Match, segment: int = 0, before: HealthVerdict | None = None
@@ -184,7 +243,7 @@ class Court:
             self._packing.append(pack_in_background(self._settings.recordings, self.match_id))
 
     def _say_health(self, now_s: float) -> None:
-        pace, match, writer = self._pace, self._journal.match, self._journal.writer
+        pace, match = self._pace, self._journal.match
         health = Health(
             match=match.setup.match,
             beat=match.beats,
@@ -195,7 +254,7 @@ class Court:
             dropped=self._network.dropped,
             decisions=match.legality(),
             verdict=self._health.verdict(),
-            record_trouble=writer.trouble if writer else "",
+            record_trouble=self._trouble,
             input_delay_ms=self._network.input_delay_ms,
         )
         self._network.publish_health(health)

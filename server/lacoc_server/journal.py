@@ -87,6 +87,20 @@ class Journal:
                 writer.snapshot(number, match.physics.save())
         return beat, encoded
 
+    def flush(self) -> None:
+        """See that all beats so far are written.
+
+        Raises:
+            UserError: if the disk does not take them.
+        """
+        if self.writer is not None:
+            self.writer.flush()
+
+    @property
+    def trouble(self) -> str:
+        """What the disk said of what was written before, as a sentence; "" while all is well."""
+        return "" if self.writer is None else self.writer.sync_trouble
+
     def close(self) -> None:
         """Finish the record's segment."""
         if self.writer is not None:

@@ -11,6 +11,7 @@ physics, the rules.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from lacoc_arenas import arena as arenas
@@ -87,14 +88,15 @@ class Match:
     Args:
         setup: what it is made from.
         make_physics: builds the robots on their field.
+        folder: of the arena, if it is not installed.
 
     Raises:
         UserError: if the arena is not installed or its settings are wrong.
     """
 
-    def __init__(self, setup: Setup, make_physics: MakePhysics) -> None:
+    def __init__(self, setup: Setup, make_physics: MakePhysics, folder: Path | None = None) -> None:
         self.setup = setup
-        self.arena = arenas.from_settings(setup.arena, setup.settings)
+        self.arena = arenas.from_settings(setup.arena, setup.settings, folder)
         self.game = self.arena.game
         self.limits = Limits.of(setup.limits)
         self.rules = self.arena.match

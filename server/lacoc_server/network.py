@@ -125,6 +125,20 @@ class CourtNetwork:
         _serve(self._scene_desk, self._scene_bytes)
         return arrivals
 
+    def turn_away(self, reason: str) -> None:
+        """Refuse the requests that arrived: no beat can take them in.
+
+        Args:
+            reason: a sentence for those who asked.
+        """
+        refusal = encode(Refusal(reason))
+        for desk, _ in self._desks:
+            for _ in range(_REQUESTS_PER_BEAT):
+                if (request := desk.take()) is not None:
+                    request.refuse(refusal)
+        _serve(self._sheet_desk, self._sheet_bytes)
+        _serve(self._scene_desk, self._scene_bytes)
+
     def publish_frame(self, frame: bytes, now_s: float) -> None:
         """Send an encoded frame; a slow receiver misses it.
 
@@ -134,6 +148,10 @@ class CourtNetwork:
         """
         self._inbox.links.sent(now_s)
         self._outbox.send_newest(self._frame, frame)
+
+    def publish_again(self, frame: bytes) -> None:
+        """Send a frame that was published before, as a sign of life."""
+        self._frame.put(frame)
 
     def publish_event(self, event: Event) -> None:
         """Send an event that must arrive; those who come late get it too."""

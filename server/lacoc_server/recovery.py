@@ -8,9 +8,15 @@ from lacoc_server.replay import resume
 from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Decide, Input, KeySeat
 from lacoc_shared.messages import Event, HealthVerdict
-from lacoc_shared.record.files import is_held, record_paths
-from lacoc_shared.record.reader import Record
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.files import is_held, record_paths, segment_name
+from lacoc_shared.record.reader import NoMatch, Record
 from lacoc_shared.seat import Phase
+
+IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
+"""What the court halts when its match was interrupted."""
+_OPENING_BYTES = 1 << 14
+"""A shorter file without a header was cut while its court opened it: nothing is lost with it."""
 
 
 @dataclass(frozen=True)
@@ -28,41 +34,75 @@ class Unfinished:
     """By seat that is held: the token that opens it."""
     health: HealthVerdict | None
     """How well it had been held until then."""
+    cut: str
+    """Where its record ends, in words."""
 
     @property
     def inputs(self) -> list[Input]:
         """What the court does first: nobody may find a match already running."""
-        if self.match.phase in (Phase.PLAYING, Phase.COUNTDOWN):
+        if self.match.phase in IN_PLAY:
             return [Decide("court", "the court was started again", Halt())]
         return []
 
 
-def unfinished(folder: Path, court: str) -> Unfinished | None:
+def unfinished(folder: Path, court: str, arena: Path | None = None) -> Unfinished | None:
     """Find the newest match of a court whose record was not finished; None if there is none.
 
-    A record that a running court of this name writes right now was not left behind.
+    A record that a running court of this name writes right now was not left behind, nor one
+    without a header: its court was killed before it had opened.
+
+    Args:
+        folder: of the records.
+        court: the court's name.
+        arena: folder of the arena that the court plays, if it is not installed.
 
     Raises:
         UserError: if there is one and it can't go on here; the message says why.
     """
-    segments = [
+    for path in reversed(_left_behind(folder, court)):
+        try:
+            record = Record.read(record_paths(path))
+            if record.gap:
+                raise UserError(record.cut)
+            match = resume(record, folder=arena)
+        except NoMatch as error:
+            if path.stat().st_size < _OPENING_BYTES:
+                continue
+            raise _can_not_go_on(path, error) from None
+        except UserError as error:
+            raise _can_not_go_on(path, error) from None
+        return _as_left(record, match, segment_name(path)[1] + 1)
+    return None
+
+
+def _left_behind(folder: Path, court: str) -> list[Path]:
+    """Segments that no court writes, of matches that came after the last one that was packed."""
+    name = f"*-{court}-[0-9][0-9][0-9]"
+    packed = max((path.stem for path in folder.glob(f"{name}.mcap")), default="")
+    return [
         path
-        for path in sorted(folder.glob(f"*-{court}-[0-9][0-9][0-9].*.live.mcap"))
-        if not is_held(path)
+        for path in sorted(folder.glob(f"{name}.*.live.mcap"))
+        if segment_name(path)[0] > packed and not is_held(path)
     ]
-    if not segments:
-        return None
-    paths = record_paths(segments[-1])
-    record = Record.read(paths)
-    match = resume(record)
+
+
+def _can_not_go_on(path: Path, error: UserError) -> UserError:
+    return UserError(
+        f"The match of {path} was not finished, and can't go on here. {error} "
+        "Its record stays as it is; 'lacoc serve --fresh' opens a new match."
+    )
+
+
+def _as_left(record: Record, match: Match, segment: int) -> Unfinished:
     held = [seat for seat in match.seats if seat.join]
     return Unfinished(
         match,
-        record.headers[-1].segment + 1,
+        segment,
         tuple(event for event in record.events if event.beat <= match.beats),
         {seat.id: _last_seq(record, seat.index) for seat in match.seats},
         {seat.id: seat.join.token_hash for seat in held if seat.join},
         record.health,
+        record.cut,
     )
 
 

@@ -70,6 +70,7 @@ def simulate(
     players: Sequence[Player],
     folder: Path | None = None,
     watch: Callable[[Frame], None] | None = None,
+    arena: Path | None = None,
 ) -> Result:
     """Play one match to its end.
 
@@ -78,6 +79,7 @@ def simulate(
         players: one for each seat.
         folder: where its record goes; None: no record.
         watch: sees every frame.
+        arena: folder of the arena, if it is not installed.
 
     Returns:
         The official result.
@@ -86,7 +88,7 @@ def simulate(
         UserError: if the arena has no end of time, or a record can't be written.
         FileRefused: if a player's files have mistakes.
     """
-    match = Match(setup, World)
+    match = Match(setup, World, arena)
     if not match.duration_ticks:
         raise UserError(f"A match of {setup.arena} has no end of its own: give --seconds.")
     packed = folder / f"{setup.match_id}.mcap" if folder else None

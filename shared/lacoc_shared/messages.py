@@ -364,7 +364,8 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     verdict: HealthVerdict | None = None
     """How well this match was held; None: that is not measured."""
     record_trouble: str = ""
-    """What is wrong with the disk of the record, a sentence; "" while all is well."""
+    """What is wrong with the disk of the record, a sentence: why the match does not go on, or what
+    else that disk reports. "" while all is well."""
     input_delay_ms: int = 0
     """From a frame to the effect of what was done upon it, the same for all seats; 0: the contest
     does not make links equal."""

@@ -26,17 +26,27 @@ def package(group: str, what: str, name: str) -> ModuleType:
     Raises:
         UserError: if there is no such package; the message lists the ones there are.
     """
-    entries = installed(group)
-    if name in entries:
-        module: ModuleType = entries[name].load()
-        return module
-    folder = Path(name).expanduser()
-    if folder.is_dir():
+    if name not in installed(group) and (folder := Path(name).expanduser()).is_dir():
         return package_of_folder(folder)
-    raise UserError(
-        f"There is no {what} {name!r}. Installed: {', '.join(entries)}. "
-        "A folder works too: give its path."
-    )
+    try:
+        return installed_package(group, what, name)
+    except UserError as error:
+        raise UserError(f"{error} A folder works too: give its path.") from None
+
+
+def installed_package(group: str, what: str, name: str) -> ModuleType:
+    """Import an installed package: for names that a file or a court gives.
+
+    A folder is never taken: its code would run only because somebody wrote its name.
+
+    Raises:
+        UserError: if no package of that name is installed; the message lists the ones there are.
+    """
+    entries = installed(group)
+    if name not in entries:
+        raise UserError(f"There is no {what} {name!r:.200}. Installed: {', '.join(entries)}.")
+    module: ModuleType = entries[name].load()
+    return module
 
 
 def package_of_folder(folder: Path) -> ModuleType:

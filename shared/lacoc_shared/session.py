@@ -242,6 +242,10 @@ class Session:
                 raise Refused(error)
         raise NoReply(key)
 
+    def routers(self) -> tuple[str, ...]:
+        """Identities of the courts' sessions that this one is connected to now."""
+        return tuple(sorted(map(str, self._session.info.routers_zid())))
+
     def announce(self, key: str) -> None:
         """Let others see that this session is alive, until it closes."""
         self._announcements.append(self._session.liveliness().declare_token(key))

@@ -1,6 +1,7 @@
 """Arena files: every setting counts, a wrong one is named, and others bring their own games."""
 
 import copy
+import os
 import shutil
 import sys
 import tomllib
@@ -416,7 +417,20 @@ def test_game_in_a_folder(race: Path) -> None:
     assert ground.game.size_m == (4.0, 1.0)
     assert ground.name == str(race)
     play_race(ground)
-    play_race(arena.from_settings(ground.name, ground.settings))
+    play_race(arena.from_settings(ground.name, ground.settings, ground.folder))
+
+
+def test_a_folder_runs_no_code_because_a_record_names_it(race: Path) -> None:
+    """A record may come from anybody: only what is installed, or the user names, is imported."""
+    (race / "__init__.py").write_text("raise SystemExit('code of a stranger')")
+    settings = tomllib.loads((race / "arena.toml").read_text())
+    for name in (str(race), os.path.relpath(race)):
+        with pytest.raises(
+            UserError, match=r"There is no arena .* if you name the folder yourself"
+        ):
+            arena.from_settings(name, settings)
+    with pytest.raises(SystemExit, match="code of a stranger"):
+        arena.from_settings(str(race), settings, race)
 
 
 def test_game_installed_by_entry_point(race: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -58,6 +58,7 @@ SPEAKERS = (
     "shared/lacoc_shared/gait_reader.py",
     "shared/lacoc_shared/gait_text.py",
     "shared/lacoc_shared/gait_workbook.py",
+    "shared/lacoc_shared/record/writer.py",
     "shared/lacoc_shared/seat.py",
 )
 """Where the sentences come from that a page shows."""

@@ -1,6 +1,7 @@
 """The journal's promise: whatever happens to the process or the file, whole messages stay."""
 
 import os
+import re
 import signal
 import struct
 import subprocess
@@ -116,7 +117,7 @@ def test_a_segment_cut_anywhere_gives_every_whole_message(
     )
     assert [data for _, data in record.snapshots] == whole.get("/lacoc/snapshot", [])
     assert (record.result is not None) == ("/lacoc/result" in whole)
-    assert ("without an end" in record.cut) == (b"\x0f\x04\0\0\0\0\0\0\0" not in cut)
+    assert ("has no end there" in record.cut) == (b"\x0f\x04\0\0\0\0\0\0\0" not in cut)
 
 
 def test_a_packed_file_cut_anywhere_is_read_or_refused(tmp_path: Path, packed: Path) -> None:
@@ -147,14 +148,57 @@ def test_a_wrong_byte_anywhere_is_read_or_refused(
         Record.read(path)
 
 
-def test_a_damaged_packed_file_is_refused(tmp_path: Path, packed: Path) -> None:
-    """A closed file that is damaged says so; it is not taken for a short match."""
-    data = bytearray(packed.read_bytes())
-    data[len(data) // 2] ^= 0xFF
-    path = tmp_path / "m.mcap"
+def test_a_damaged_closed_file_says_so(tmp_path: Path, segment: Path) -> None:
+    """What is before the damage is had; it is not taken for a short match, and stays as it is."""
+    data = bytearray(segment.read_bytes())
+    at = data.index(codec.encode(KeySeat(0, 24, 1, 2)))  # what entered at beat 23
+    data[at] ^= 0xFF
+    path = tmp_path / "m.000.live.mcap"
     path.write_bytes(data)
-    with pytest.raises(UserError, match=r"is damaged .* Copy it again"):
-        Record.read(path)
+    record = Record.read(path)
+    assert [beat for beat, _ in record.frames] == list(range(23))
+    assert "stops after beat 22, and is damaged there" in record.cut
+    assert "Copy it again" in record.cut
+    with pytest.raises(UserError, match=r"not packed, and its segments are kept.*beat 22"):
+        pack.pack([path], tmp_path / "m.mcap")
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes() == data
+
+
+def test_a_missing_segment_is_told(
+    tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
+) -> None:
+    """What is before it is had, and what is behind it is not taken for the same."""
+    write_match(tmp_path, close=False)
+    late = RecordWriter(tmp_path, header(segment=2, first_beat=60))
+    late.frame(60, codec.encode(frame(60)))
+    late.close()
+    record = Record.read(late.path)
+    assert [beat for beat, _ in record.frames] == list(range(40))
+    assert "stops after beat 39, and has no end there" in record.cut
+    assert f"Beats 40 to 59 are missing before {late.path}" in record.cut
+    with pytest.raises(UserError, match="Beats 40 to 59 are missing"):
+        pack.pack(files.segment_paths(tmp_path, "m"), tmp_path / "m.mcap")
+    assert len(files.segment_paths(tmp_path, "m")) == 2
+
+
+@pytest.mark.parametrize("size", [0, 8, 100])
+def test_a_segment_without_a_header_holds_nothing(
+    size: int, tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
+) -> None:
+    """A court that was killed while it opened the file: the next one goes on behind it."""
+    first = write_match(tmp_path, close=False)
+    empty = tmp_path / "m.001.live.mcap"
+    empty.write_bytes(first.read_bytes()[:size])
+    assert Record.read(empty) == Record.read([first])
+    third = RecordWriter(tmp_path, header(segment=2, first_beat=40))
+    third.frame(40, codec.encode(frame(40)))
+    third.close()
+    record = Record.read(third.path)
+    assert [beat for beat, _ in record.frames] == list(range(41))
+    assert record.cut == ""
+    pack.pack(files.segment_paths(tmp_path, "m"), tmp_path / "m.mcap")
+    assert Record.read(tmp_path / "m.mcap") == record
 
 
 def test_an_unfinished_segment_ends_where_it_stops_making_sense(
@@ -170,7 +214,8 @@ def test_an_unfinished_segment_ends_where_it_stops_making_sense(
     path.write_bytes(data[:start] + bytes(100) + data[start + 100 :])
     before = Record.read(path)
     assert [beat for beat, _ in before.frames] == list(range(38))
-    assert "stops after beat 37" in before.cut
+    assert "stops after beat 37, and has no end there" in before.cut
+    assert re.search(r"its last 4\d\d\d bytes can't be read", before.cut)
     with_next = RecordWriter(tmp_path, header(segment=1, first_beat=38))
     with_next.frame(38, codec.encode(frame(38)))
     with_next.close()
@@ -319,7 +364,7 @@ def test_files_that_are_no_record_of_one_match_are_refused(
         writer.finish()
     newer = RecordWriter(tmp_path, msgspec.structs.replace(header(match_id="newer"), format=7))
     newer.close()
-    late = RecordWriter(tmp_path, header(segment=1, match_id="late"))
+    late = RecordWriter(tmp_path, header(segment=1, match_id="late", first_beat=5))
     late.close()
     mine = write_match(tmp_path)
     for paths, sentence in (
@@ -327,8 +372,9 @@ def test_files_that_are_no_record_of_one_match_are_refused(
         (table, "it is no MCAP file"),
         (foreign, "but not a LACOC record"),
         (newer.path, "has format 7, and this software reads format 1"),
-        (late.path, "segment 0 comes next"),
+        (late.path, "the segments before it are missing"),
         ([mine, late.path], "belongs to match late"),
+        ([mine, mine], "comes after segment 0"),
         ([], "There is no match in no files"),
     ):
         with pytest.raises(UserError, match=sentence):
@@ -345,8 +391,8 @@ def test_a_record_is_never_overwritten(tmp_path: Path, header: MakeHeader) -> No
         RecordWriter(tmp_path / "file", header())
 
 
-def test_a_full_disk_stops_no_match(tmp_path: Path, header: MakeHeader, frame: MakeFrame) -> None:
-    """What the disk does not take waits in memory, `trouble` says so, and nothing is lost."""
+def test_a_full_disk_loses_nothing(tmp_path: Path, header: MakeHeader, frame: MakeFrame) -> None:
+    """What the disk does not take waits in memory until it could be written; `flush` says so."""
     resource = pytest.importorskip("resource")
     unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
     writer = RecordWriter(tmp_path, header())
@@ -354,13 +400,21 @@ def test_a_full_disk_stops_no_match(tmp_path: Path, header: MakeHeader, frame: M
         resource.setrlimit(resource.RLIMIT_FSIZE, (5000, unlimited[1]))
         for beat in range(100):
             writer.frame(beat, codec.encode(frame(beat)))
-        assert "can't be written: File too large" in writer.trouble
-        assert "make room" in writer.trouble
+        with pytest.raises(UserError, match=r"can't be written: File too large\. Make room"):
+            writer.flush()
+        assert writer.path.stat().st_size == 5000
+        resource.setrlimit(resource.RLIMIT_FSIZE, (6000, unlimited[1]))
+        with pytest.raises(UserError, match="can't be written"):
+            writer.flush()
+        assert writer.path.stat().st_size == 6000
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100, unlimited[1]))
+        with pytest.raises(UserError, match=r"No record can be written to .*File too large"):
+            RecordWriter(tmp_path / "next", header(match_id="next"))
+        assert list((tmp_path / "next").iterdir()) == []
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
-    assert writer.path.stat().st_size == 5000
     writer.frame(100, codec.encode(frame(100)))
-    assert writer.trouble == ""
+    writer.flush()
     writer.close()
     record = Record.read(writer.path)
     assert [beat for beat, _ in record.frames] == list(range(101))
@@ -370,7 +424,7 @@ def test_a_full_disk_stops_no_match(tmp_path: Path, header: MakeHeader, frame: M
 def test_a_disk_that_reports_errors_later_is_heard(
     tmp_path: Path, header: MakeHeader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The disk's answer comes a second after the write; it stays in `trouble`."""
+    """The disk's answer comes a second after the write; it stays in `sync_trouble`."""
     writer = RecordWriter(tmp_path, header())
     asked = threading.Event()
 
@@ -382,7 +436,7 @@ def test_a_disk_that_reports_errors_later_is_heard(
     writer.frame(0, b"")
     writer.close()
     assert asked.is_set()
-    assert "reports: Input/output error" in writer.trouble
+    assert "reports: Input/output error" in writer.sync_trouble
 
 
 def test_closing_twice_is_once(tmp_path: Path, header: MakeHeader) -> None:
@@ -419,7 +473,7 @@ def test_a_bomb_is_no_record(segment: Path, tmp_path: Path) -> None:
         path = tmp_path / "m.mcap"
         data = segment.read_bytes()
         path.write_bytes(data[:8] + struct.pack("<BQ", 6, len(body)) + body + data[-8:])
-        with pytest.raises(UserError, match="damaged at its beginning"):
+        with pytest.raises(UserError, match="There is no match in"):
             Record.read(path)
 
 
@@ -443,7 +497,8 @@ def test_a_damaged_time_ends_what_is_read(
         writer.frame(beat, codec.encode(frame(0)))
     record = Record.read(writer.path)
     assert record.last_beat == 1
-    assert "stops after beat 1 " in record.cut
+    assert "stops after beat 1, and has no end there" in record.cut
     writer.close()
-    with pytest.raises(UserError, match="damaged at beat 1 "):
-        Record.read(writer.path)
+    record = Record.read(writer.path)
+    assert record.last_beat == 1
+    assert "stops after beat 1, and is damaged there" in record.cut

@@ -1,91 +1,31 @@
 """A court that is killed and started again (rules 4, design.md "Record")."""
 
-import json
 import os
 import signal
-import socket
-import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from running import WAIT_S, frame, phase, seated, served, until, write_contest
 
-from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
+from lacoc_client.spectator import Spectator
 from lacoc_server.recovery import unfinished
 from lacoc_server.replay import Verdict, verify
 from lacoc_shared.contest import load
 from lacoc_shared.decisions import Resume, Start
 from lacoc_shared.gait import Level
-from lacoc_shared.messages import Frame
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
 from lacoc_shared.session import open_client
 
 pytestmark = pytest.mark.slow
 
-WAIT_S = 30.0
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
-
-
-@contextmanager
-def served(contest: Path, folder: Path) -> Iterator[subprocess.Popen[str]]:
-    """A court's process that has opened."""
-    words = ["serve", "--json", "--contest", str(contest), "--recordings", str(folder)]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "lacoc_shared", *words], stdout=subprocess.PIPE, text=True
-    )
-    try:
-        assert process.stdout is not None
-        assert json.loads(process.stdout.readline())["kind"] == "open"
-        yield process
-    finally:
-        process.terminate()
-        process.communicate(timeout=WAIT_S)
-
-
-def until(controllers: list[Controller], true: Callable[[], bool]) -> None:
-    """Let the controllers do their work until something is true."""
-    end_s = time.monotonic() + WAIT_S
-    while not true():
-        assert time.monotonic() < end_s, "it did not come true"
-        for controller in controllers:
-            controller.wait_frame(0.02)
-
-
-def frame(controller: Controller) -> Frame:
-    """The newest frame; waits for the first."""
-    until([controller], lambda: controller.view.frame is not None)
-    assert controller.view.frame is not None
-    return controller.view.frame
-
-
-def phase(controller: Controller) -> int:
-    return frame(controller).phase
-
 
 @pytest.fixture
 def contest(tmp_path: Path) -> Path:
-    path = tmp_path / "contest.toml"
-    path.write_text(f"""
-[court.main]
-arena = "othello"
-listen = ["tcp/127.0.0.1:{free_port()}"]
-settings.match.countdown_s = 0.2
-seat.left.token = "the token of left"
-seat.right.token = "the token of right"
-referee.token = "the token of the referee"
-""")
-    return path
+    return write_contest(tmp_path / "contest.toml")
 
 
 def test_a_killed_court_goes_on(contest: Path, tmp_path: Path) -> None:
@@ -95,14 +35,8 @@ def test_a_killed_court_goes_on(contest: Path, tmp_path: Path) -> None:
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
         session = stack.enter_context(open_client([court.address()]))
-        controllers = [
-            Controller(session, name, seat, holder.token, f"Team {seat}")
-            for seat, holder in court.seat.items()
-        ]
+        controllers = seated(session, contest)
         left = controllers[0]
-        for controller in controllers:
-            controller.join()
-            controller.ready()
         until(controllers, lambda: phase(left) == Phase.READY)
         referee = RefereeClient(session, name, court.referee.token)
         referee.decide(Start(), "", "Kubota")
@@ -194,6 +128,25 @@ def played(controller: Controller) -> int:
     """Beats that the court has measured."""
     health = controller.view.health
     return health.verdict.played_beats if health and health.verdict else 0
+
+
+def test_a_court_that_just_came_back_can_be_asked(contest: Path, tmp_path: Path) -> None:
+    """Its first frame comes before the way to its desks is known: the client asks again."""
+    folder = tmp_path / "recordings"
+    name, court = load(contest).court()
+    with ExitStack() as stack:
+        process = stack.enter_context(served(contest, folder))
+        session = stack.enter_context(open_client([court.address()]))
+        view = Spectator(session, name)
+        referee = RefereeClient(session, name, court.referee.token)
+        for _ in range(3):
+            process.kill()
+            process.wait()
+            while view.wait_frame(0.2) is not None:
+                pass
+            process = stack.enter_context(served(contest, folder))
+            assert view.wait_frame(WAIT_S) is not None
+            referee.enter()
 
 
 def test_a_running_court_is_not_taken_over(contest: Path, tmp_path: Path) -> None:

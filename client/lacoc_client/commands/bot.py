@@ -82,7 +82,9 @@ def bot_command(
             team or own_team[:_NAME_MAX],
             **files._asdict(),
         )
-        player = BotPlayer(controller, arenas.load(arena or controller.view.sheet.arena), name)
+        sheet = controller.view.sheet
+        ground = arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
+        player = BotPlayer(controller, ground, name)
         for note in controller.join():
             screen.show(note)
         screen.show(f"{name} holds seat {access.seat} of court {access.court}.")

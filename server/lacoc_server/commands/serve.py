@@ -86,10 +86,12 @@ def serve_command(
     _check_seats(name, entry, loaded)
     keys = Keys(name)
     folder = recordings or plan.recordings
-    left = None if fresh else unfinished(folder, name)
+    left = None if fresh else unfinished(folder, name, loaded.folder)
     if left is not None:
         loaded = left.match.arena
         screen.note(f"Going on with match {left.match.setup.match_id}. --fresh opens a new one.")
+        if left.cut:
+            screen.note(left.cut)
     admission = Admission(
         SentFile(*find_robot(plan.robot)),
         *sample_gait_files(plan.robot),
@@ -116,6 +118,7 @@ def serve_command(
         running = Court(settings, network, left)
         if exporter is not None:
             exporter.registry.register(running.metrics)
+        stop = _stop_on_signal()
         _open_doors(
             name,
             entry,
@@ -125,7 +128,6 @@ def serve_command(
             made_here=made_here,
             json=json,
         )
-        stop = _stop_on_signal()
         log.start(json)
         running.run(lambda: bool(stop))
 

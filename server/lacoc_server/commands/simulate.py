@@ -134,7 +134,7 @@ def _play(job: _Job, watch: Any = None) -> Result:
         player(arena, seat, name, job.robot, late_ticks=job.late_ticks)
         for seat, name in enumerate(job.players)
     ]
-    return simulate(setup, seated, Path(job.folder) if job.folder else None, watch)
+    return simulate(setup, seated, Path(job.folder) if job.folder else None, watch, arena.folder)
 
 
 def _run_one(job: _Job) -> list[Result]:

@@ -19,14 +19,26 @@ DIFFERENT = 1
 @app.command(name="verify")
 def verify_command(
     file: Annotated[Path, typer.Argument(help="The record: a .mcap file.")],
+    arena: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="The folder of a game that is not installed; its code is run.",
+            exists=True,
+            file_okay=False,
+        ),
+    ] = None,
     json: options.Json = False,
 ) -> None:
-    """Simulate a record again and say "same", or name the first beat that differs."""
+    """Simulate a record again and say "same", or name the first beat that differs.
+
+    No folder is used because a record names it: its code would run.
+    """
     record = Record.read(record_paths(file))
     verdict = Verdict(0, 0)
     with screen.progress() as progress:
         task = progress.add_task("simulating", total=record.last_beat + 1)
-        for step in verify(record):
+        for step in verify(record, arena):
             if isinstance(step, Verdict):
                 verdict = step
             else:

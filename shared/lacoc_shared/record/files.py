@@ -22,6 +22,18 @@ def packed_path(folder: Path, match_id: str) -> Path:
     return folder / f"{match_id}.mcap"
 
 
+def segment_name(path: Path) -> tuple[str, int]:
+    """The match of a segment, and its number in it.
+
+    Raises:
+        ValueError: if the file has not the name of a segment.
+    """
+    name = _SEGMENT.fullmatch(path.name)
+    if name is None:
+        raise ValueError(path.name)
+    return name["match_id"], int(name["segment"])
+
+
 def segment_paths(folder: Path, match_id: str) -> list[Path]:
     """The segments of a match that are there, in their order."""
     found = [

@@ -16,6 +16,7 @@ from mcap.writer import Writer
 from lacoc_shared import __version__
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
+from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE
 from lacoc_shared.record.stream import walk
 
@@ -31,11 +32,14 @@ def pack(segments: Sequence[Path], out: Path) -> None:
         out: the packed file.
 
     Raises:
-        UserError: if a segment can't be read or the file can't be written; all segments stay.
+        UserError: if a segment can't be read to its end or the file can't be written; all
+            segments stay.
     """
     unfinished = out.with_name(f"{out.name}.part")
     try:
         if not out.exists():
+            if cut := Record.read(segments).cut:  # what can't be read now must not be lost for ever
+                raise UserError(f"{out} was not packed, and its segments are kept. {cut}")
             _write(segments, unfinished)
             unfinished.rename(out)
             files.sync_folder(out.parent)

@@ -18,6 +18,14 @@ from lacoc_shared.record.stream import walk
 V = TypeVar("V")
 
 
+class NoMatch(UserError):
+    """Nothing of a match was written into these files."""
+
+
+class _Gap(Exception):
+    """Beats are missing; the message says which."""
+
+
 @dataclass
 class Record:
     """Everything that is known of a match, by beat."""
@@ -41,7 +49,10 @@ class Record:
     last_beat: int = -1
     """The last beat of which anything is known; -1: none."""
     cut: str = ""
-    """Where the record stops without an end, as a sentence; "" if it was closed."""
+    """Up to where the record could be had and why not further, in words; "" if it is whole."""
+
+    gap: bool = False
+    """Whether it stops there because a later segment does not follow."""
 
     @property
     def header(self) -> Header:
@@ -58,40 +69,43 @@ class Record:
 
     @classmethod
     def read(cls, paths: Path | Iterable[Path]) -> "Record":
-        """Read a record.
+        """Read a record, as far as it can be had.
 
-        A file that was never closed (a killed court, a copy that broke off) gives every whole
-        message up to where it stops, and `cut` says so.
+        A file that was never closed (a killed court, a copy that broke off) or is damaged gives
+        every whole message up to there; where beats are missing between two segments, those
+        before them are had. `cut` says so.
 
         Args:
             paths: a packed file, or a segment, with which all segments of its match are read;
                 or several segments, in order.
 
         Raises:
-            UserError: if a file is not there, not a record, of another format, or damaged, or
-                if a segment is missing.
+            NoMatch: if no file has a whole header.
+            UserError: if a file is not there, not a record, of another format or another match,
+                or if the beginning is missing.
         """
         if isinstance(paths, Path):
             paths = files.record_paths(paths)
         paths = list(paths)
         record = cls()
-        for path in paths:
-            record._read_file(path)
+        try:
+            for path in paths:
+                record._read_file(path)
+        except _Gap as gap:
+            record.gap, record.cut = True, f"{record.cut} {gap}".lstrip()
         if not record.headers:
-            raise UserError(
+            raise NoMatch(
                 f"There is no match in {' '.join(map(str, paths)) or 'no files'}: a record begins "
                 "with its header, and none was written."
             )
         return record
 
     def _read_file(self, path: Path) -> None:
-        ended = walk(path, partial(self._take, path))
-        self.cut = (
-            ""
-            if ended
-            else f"{path} stops after beat {self.last_beat} without an end: it was never closed, "
-            "or not copied whole."
-        )
+        before = len(self.headers)
+        wrong = walk(path, partial(self._take, path))
+        if wrong and len(self.headers) == before and before:
+            return  # of a court that was killed before it had opened: nothing of it counts
+        self.cut = f"{path} stops after beat {self.last_beat}, and {wrong}" if wrong else ""
 
     def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
         """Add one message."""
@@ -127,10 +141,20 @@ class Record:
                 f"{path} belongs to match {header.match_id}, the files before it to "
                 f"{self.header.match_id}. Give the files of one match."
             )
-        if header.segment != len(self.headers):
+        if not self.headers and header.first_beat > 0:
             raise UserError(
-                f"{path} is segment {header.segment} of match {header.match_id}, but segment "
-                f"{len(self.headers)} comes next. Put all its segments into one folder."
+                f"{path} begins with beat {header.first_beat} of match {header.match_id}: the "
+                "segments before it are missing. Put all its segments into one folder."
+            )
+        if self.headers and header.segment <= self.headers[-1].segment:
+            raise UserError(
+                f"{path} is segment {header.segment} of match {header.match_id}, and comes after "
+                f"segment {self.headers[-1].segment}. Give the segments in their order."
+            )
+        if header.first_beat > self.last_beat + 1:
+            raise _Gap(
+                f"Beats {self.last_beat + 1} to {header.first_beat - 1} are missing before {path}, "
+                "so it was not read: a segment is not there, or is damaged."
             )
         self.headers.append(header)
         self._forget_from(header.first_beat)

@@ -53,22 +53,19 @@ class _Format(msgspec.Struct):
     format: int
 
 
-def walk(path: Path, take: Take) -> bool:
-    """Give every whole message of a file to `take`.
-
-    A file that was never closed is had up to where it stops, or stops making sense: after a
-    power cut its last second may be anything.
+def walk(path: Path, take: Take) -> str:
+    """Give every whole message of a file to `take`, up to where it stops or is damaged.
 
     Args:
         path: a segment, or a packed file.
         take: gets the messages.
 
     Returns:
-        Whether the file was closed; False: it may have held more.
+        "" if the file was closed and is whole; else what is wrong with it, as the end of a
+        sentence: it may have held more.
 
     Raises:
-        UserError: if it can't be read, is not a record, is of another format, or was closed
-            and is damaged.
+        UserError: if it can't be read, is not a record, or is of another format.
     """
     try:
         data = path.read_bytes()
@@ -78,10 +75,12 @@ def walk(path: Path, take: Take) -> bool:
         raise UserError(
             f"{path} is not a LACOC record: it is no MCAP file. Give the .mcap of a match."
         )
-    beat = -1
+    beat, whole = -1, 0
     topics: dict[int, str] = {}
+    file = BytesIO(data)
     try:
-        for record in _records(data):
+        for record in _records(file, len(data)):
+            whole = file.tell()
             if isinstance(record, Message):
                 topic = topics[record.channel_id]
                 beat = _next_beat(beat, record.log_time // BEAT_NS, topic)
@@ -89,7 +88,7 @@ def walk(path: Path, take: Take) -> bool:
             elif isinstance(record, Channel):
                 topics[record.id] = record.topic
             elif isinstance(record, DataEnd):
-                return True
+                return ""
             elif isinstance(record, FileHeader) and record.profile != PROFILE:
                 raise UserError(
                     f"{path} is an MCAP file, but not a LACOC record. Give the .mcap of a match "
@@ -97,12 +96,9 @@ def walk(path: Path, take: Take) -> bool:
                 )
     except _DAMAGE as error:
         if data[len(MCAP0_MAGIC) :].endswith(MCAP0_MAGIC):
-            place = f"at beat {beat}" if beat >= 0 else "at its beginning"
-            raise UserError(
-                f"The record {path} is damaged {place} ({error}). "
-                "Copy it again from where it was made."
-            ) from None
-    return False
+            return f"is damaged there ({error}). Copy it again from where it was made."
+    rest = f"; its last {len(data) - whole} bytes can't be read" if whole < len(data) else ""
+    return f"has no end there: it was never closed, not copied whole, or is damaged{rest}."
 
 
 def _next_beat(before: int, beat: int, topic: str) -> int:
@@ -116,17 +112,15 @@ def _next_beat(before: int, beat: int, topic: str) -> int:
     return beat
 
 
-def _records(data: bytes) -> Iterator[McapRecord]:
+def _records(file: BytesIO, size: int) -> Iterator[McapRecord]:
     """The records of a file, also those in its chunks; no more than a match may have.
 
     Raises:
         McapError: if a chunk is larger than it may be, or packed in a way that records are not.
             Much else, if the file is damaged.
     """
-    left = _UNPACKED_BYTES + _UNPACKED_RATIO * len(data)
-    reader = StreamReader(
-        BytesIO(data), validate_crcs=True, record_size_limit=len(data), emit_chunks=True
-    )
+    left = _UNPACKED_BYTES + _UNPACKED_RATIO * size
+    reader = StreamReader(file, validate_crcs=True, record_size_limit=size, emit_chunks=True)
     for record in reader.records:
         if not isinstance(record, Chunk):
             yield record

@@ -39,8 +39,7 @@ _HEAD_BYTES = 22
 class RecordWriter:
     """One segment of a match's record, open for writing.
 
-    A disk that is full or broken does not stop a match: what can't be written waits in
-    memory, in order, and `trouble` says so until it could.
+    What a full disk does not take waits in memory, in order, until `flush` could write it.
 
     Args:
         folder: where records lie; made if it is not there.
@@ -56,12 +55,7 @@ class RecordWriter:
             folder.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("xb", buffering=0)
         except OSError as error:
-            raise UserError(
-                f"The record {self.path} is there already, and a record is never overwritten."
-                if self.path.exists()
-                else f"No record can be written to {folder}: {error.strerror}. "
-                "Name a folder that this user may write to."
-            ) from None
+            raise _no_record(self.path, error) from None
         files.hold(self._file)
         self._backlog = bytearray()
         self._write_error = ""
@@ -85,19 +79,35 @@ class RecordWriter:
             MCAP0_MAGIC
             + _bytes(FileHeader(PROFILE, f"lacoc {__version__}"), *self._channels, first)
         )
+        if self._backlog:
+            self._file.close()
+            self.path.unlink()
+            raise UserError(
+                f"No record can be written to {folder}: {self._write_error}. Make room there, or "
+                "name another folder."
+            )
         self._dirty = True
         self._closing = threading.Event()
         self._syncer = threading.Thread(target=self._sync, name="record sync", daemon=True)
         self._syncer.start()
 
-    @property
-    def trouble(self) -> str:
-        """What is wrong with the disk, as a sentence; "" while all is well."""
+    def flush(self) -> None:
+        """Write what waits in memory.
+
+        Raises:
+            UserError: if the disk does not take it.
+        """
         if self._backlog:
-            return (
-                f"The record {self.path} can't be written: {self._write_error}. "
-                f"{len(self._backlog)} bytes wait in memory: make room on its disk."
+            self._put(b"")
+        if self._backlog:
+            raise UserError(
+                f"The record {self.path.name} can't be written: {self._write_error}. Make room on "
+                "its disk."
             )
+
+    @property
+    def sync_trouble(self) -> str:
+        """What the disk said of what was written before, as a sentence; "" while all is well."""
         return self._sync_error
 
     def input(self, beat: int, item: Input) -> None:
@@ -157,17 +167,19 @@ class RecordWriter:
     def _put(self, data: bytes) -> None:
         """Append to the file; what the disk does not take is kept for the next time."""
         waiting = self._backlog
-        if waiting:
-            waiting += data
-        try:
-            written = self._file.write(waiting or data)
-        except OSError as error:
-            written = 0
-            self._write_error = error.strerror or str(error)
-        if waiting:
-            del waiting[:written]
-        elif written != len(data):
+        written = 0 if waiting else self._append(data)
+        if written < len(data):
             waiting += data[written:]
+        if waiting:  # after a part, the disk says why it was not more
+            del waiting[: self._append(waiting)]
+
+    def _append(self, data: bytes | bytearray) -> int:
+        """Append what the disk takes; returns how many bytes that is."""
+        try:
+            return self._file.write(data)
+        except OSError as error:
+            self._write_error = error.strerror or str(error)
+            return 0
 
     def _sync(self) -> None:
         """Bring the file to the disk once a second, beside the beat."""
@@ -191,7 +203,7 @@ class RecordWriter:
     def _sync_failed(self, error: OSError) -> None:
         # Stays: the system may have dropped what it could not write, and then says nothing more.
         self._sync_error = (
-            f"The disk of the record {self.path} reports: {error.strerror}. "
+            f"The disk of the record {self.path.name} reports: {error.strerror}. "
             "A power cut may lose a part of the record: check that disk."
         )
 
@@ -214,6 +226,15 @@ class RecordWriter:
         )
         footer = Footer(summary_start=start, summary_offset_start=0, summary_crc=0)
         return end + _bytes(*self._channels, statistics, footer) + MCAP0_MAGIC
+
+
+def _no_record(path: Path, error: OSError) -> UserError:
+    if path.exists():
+        return UserError(f"The record {path} is there already, and a record is never overwritten.")
+    return UserError(
+        f"No record can be written to {path.parent}: {error.strerror}. "
+        "Name a folder that this user may write to."
+    )
 
 
 def _bytes(*records: McapRecord) -> bytes:

@@ -161,6 +161,30 @@ const EVENTS: readonly Pattern[] = [
   ["{team} takes {corner} for 1 point.", "{team} が {corner} を獲得（1 点）。"],
 ];
 
+/** What the disk says (lacoc_shared/record/writer.py). */
+const DISK: readonly Pattern[] = [
+  [
+    "The record {name} can't be written: {why}. Make room on its disk.",
+    "記録 {name} に書き込めません（{why}）。ディスクの空きを増やしてください。",
+  ],
+  [
+    "The disk of the record {name} reports: {why}. A power cut may lose a part of the record: check that disk.",
+    "記録 {name} のディスクがエラーを報告しました（{why}）。停電すると記録の一部が失われるおそれがあります。ディスクを確かめてください。",
+  ],
+  [
+    "No record can be written to {folder}: {why}. Make room there, or name another folder.",
+    "{folder} に記録を書き込めません（{why}）。空きを増やすか、別のフォルダーを指定してください。",
+  ],
+  [
+    "No record can be written to {folder}: {why}. Name a folder that this user may write to.",
+    "{folder} に記録を書き込めません（{why}）。書き込めるフォルダーを指定してください。",
+  ],
+  [
+    "The record {name} is there already, and a record is never overwritten.",
+    "記録 {name} はすでにあり、上書きしません。",
+  ],
+];
+
 /** What a referee decides, and why it can't be (lacoc_server/referee.py). */
 const DECISIONS: readonly Pattern[] = [
   ["ready for {team}.", "{team} の代わりに準備完了としました。"],
@@ -596,6 +620,7 @@ const PATTERNS: readonly Pattern[] = [
   ...EVENTS,
   ...HEALTH,
   ...DECISIONS,
+  ...DISK,
   ...CONTESTANTS,
   ...GATEWAY,
   ...COUNTED,

@@ -77,7 +77,7 @@ export function Advice({ advice }: { advice: readonly string[] }) {
 
 function verdict(health: Health | null, recent: number): VerdictName {
   if (!health) return "unknown";
-  if (health.real_time_factor < BAD_FACTOR) return "bad";
+  if (health.record_trouble || health.real_time_factor < BAD_FACTOR) return "bad";
   return health.real_time_factor < WATCH_FACTOR || recent > 0 ? "watch" : "good";
 }
 

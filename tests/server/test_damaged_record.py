@@ -1,0 +1,261 @@
+"""Records that are cut, damaged, foreign or of other software: at verify, and where a court starts.
+
+What can be had is had, it is said in words, and the record stays as it is.
+"""
+
+import json
+import random
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+from running import WAIT_S, served, write_contest
+from stage import FORWARD, LEFT, QUICK, RIGHT, X, decide, join, key, setup
+from typer.testing import CliRunner
+
+from lacoc_arenas import arena as arenas
+from lacoc_server.commands.verify import app as verify_app
+from lacoc_server.journal import Journal
+from lacoc_server.match import Match
+from lacoc_server.recovery import unfinished
+from lacoc_server.replay import Verdict, verify
+from lacoc_server.world import World
+from lacoc_shared import decisions as d
+from lacoc_shared import plugins
+from lacoc_shared.codec import encode
+from lacoc_shared.inputs import Input, ReadySeat
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import files
+from lacoc_shared.record.commands import app as replay_app
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.record.writer import RecordWriter
+
+pytestmark = pytest.mark.slow
+
+ID = "20260501-100000-main-001"
+INPUTS: dict[int, list[Input]] = {
+    0: [join(LEFT), join(RIGHT)],
+    1: [ReadySeat(LEFT, True), ReadySeat(RIGHT, True)],
+    8: [decide(d.Start())],
+    20: [key(LEFT, FORWARD, 1), key(RIGHT, FORWARD, 1)],
+    80: [key(RIGHT, X, 2)],
+}
+BEATS = 120
+
+
+def play(folder: Path, made: Setup, arena: Path | None = None) -> Path:
+    """The segment that a court leaves behind that is killed in beat 120 of a match."""
+    journal = Journal(Match(made, World, arena), folder)
+    for number in range(BEATS):
+        journal.beat(INPUTS.get(number, ()))
+    assert journal.writer is not None
+    return journal.writer.path
+
+
+@pytest.fixture(scope="module")
+def left_behind(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    made = msgspec.structs.replace(setup("othello", QUICK), match_id=ID)
+    return play(tmp_path_factory.mktemp("left"), made).read_bytes()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "recordings"
+    made.mkdir()
+    return made
+
+
+def segment(folder: Path, data: bytes, number: int = 0) -> Path:
+    path = files.segment_path(folder, ID, number)
+    path.write_bytes(data)
+    return path
+
+
+def with_header(data: bytes, folder: Path, **changes: Any) -> bytes:
+    """The same record with another header."""
+    path = segment(folder, data)
+    header = Record.read(path).header
+    old, new = encode(header), encode(msgspec.structs.replace(header, **changes))
+    at = data.index(old)
+    length = int.from_bytes(data[at - 30 : at - 22], "little") + len(new) - len(old)
+    head = data[: at - 30] + length.to_bytes(8, "little") + data[at - 22 : at]
+    return head + new + data[at + len(old) :]
+
+
+def versions(data: bytes, folder: Path, **changes: str) -> bytes:
+    header = Record.read(segment(folder, data)).header
+    return with_header(data, folder, versions={**header.versions, **changes})
+
+
+def verdict(path: Path) -> Verdict:
+    *_, last = verify(Record.read(path))
+    assert isinstance(last, Verdict)
+    return last
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.83, 0.999])
+def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder: Path) -> None:
+    """It verifies up to there, and a court goes on from there."""
+    path = segment(folder, left_behind[: round(share * len(left_behind))])
+    found = verdict(path)
+    assert found.text == "same"
+    left = unfinished(folder, "main")
+    assert left is not None
+    assert left.match.beats + 1 == found.beats
+    assert "has no end there" in left.cut
+
+
+def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder: Path) -> None:
+    """Verify and a court's start end with words, never with an error of the program.
+
+    What a court goes on with is the match that was recorded, as far as it could be read.
+    """
+    whole = Record.read(segment(folder, left_behind))
+    chance = random.Random(7)
+    told = {"verify": 0, "start": 0}
+    for _ in range(60):
+        data = bytearray(left_behind)
+        data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+        path = segment(folder, bytes(data))
+        try:
+            found = verdict(path)
+            told["verify"] += found.text != "same" or found.beats < BEATS
+        except UserError:
+            told["verify"] += 1
+        try:
+            left = unfinished(folder, "main")
+            told["start"] += left is None or left.match.beats < BEATS - 1
+        except UserError:
+            told["start"] += 1
+        assert path.read_bytes() == data
+    # The rest means nothing for the match: versions, times of publishing, numbers of messages.
+    assert told["verify"] > 50
+    assert told["start"] > 10
+    assert whole.last_beat == BEATS - 1
+
+
+@pytest.mark.parametrize("size", [0, 4, 900])
+def test_an_empty_last_segment_is_passed_over(size: int, left_behind: bytes, folder: Path) -> None:
+    """A court was killed while it started again: the next one goes on all the same."""
+    segment(folder, left_behind)
+    segment(folder, left_behind[:size], 1)
+    left = unfinished(folder, "main")
+    assert left is not None
+    assert (left.match.beats, left.segment) == (BEATS - 1, 2)
+
+
+def test_an_empty_first_segment_is_no_match(left_behind: bytes, folder: Path) -> None:
+    """Killed while it opened: there is nothing to go on with."""
+    segment(folder, left_behind[:700])
+    assert unfinished(folder, "main") is None
+
+
+def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
+    """Nobody goes on with a match of which a part is missing; what is before it can be had."""
+    first = segment(folder, left_behind)
+    header = msgspec.structs.replace(Record.read(first).header, segment=2, first_beat=200)
+    RecordWriter(folder, header).close()
+    words = "Beats 120 to 199 are missing before"
+    with pytest.raises(UserError, match=rf"{words}.*serve --fresh"):
+        unfinished(folder, "main")
+    for command in (["info"], ["export", "--events", "--out", str(folder / "out")]):
+        done = CliRunner().invoke(replay_app, [*command, str(first)])
+        assert done.exit_code == 0
+        assert words in " ".join(done.stderr.split())
+    done = CliRunner().invoke(verify_app, [str(first), "--json"])
+    found = json.loads(done.stdout)
+    assert (found["same"], found["beats"]) == (True, BEATS)
+    assert words in found["cut"]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda data, at: with_header(data, at, format=2), "has format 2, and this software reads"),
+        (lambda data, at: with_header(data, at, format=0), "has format 0, and this software reads"),
+        (lambda data, at: versions(data, at, mujoco="3.9.9"), "made with MuJoCo 3.9.9"),
+        (lambda data, at: data.replace(*other_model(data)), "damaged, or this is not the software"),
+        (
+            lambda data, at: with_header(data, at, setup=setup_of("/home/a/game")),
+            "There is no arena '/home/a/game'",
+        ),
+    ],
+)
+def test_a_record_of_another_version_is_refused(
+    change: Callable[[bytes, Path], bytes], words: str, left_behind: bytes, tmp_path: Path
+) -> None:
+    """With the reason; the record stays as it is, and the court can open a fresh match."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    folder.mkdir()
+    data = change(left_behind, folder)
+    path = segment(folder, data)
+    with pytest.raises(UserError) as refused:
+        unfinished(folder, "main")
+    assert words in str(refused.value)
+    serve = ["serve", "--contest", str(contest), "--recordings", str(folder)]
+    done = subprocess.run(
+        [sys.executable, "-m", "lacoc_shared", *serve],
+        capture_output=True,
+        text=True,
+        timeout=WAIT_S,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert words in " ".join(done.stderr.split())
+    assert "--fresh" in done.stderr
+    with served(contest, folder, "--fresh"):
+        assert path.read_bytes() == data
+    assert path.read_bytes() == data
+    assert unfinished(folder, "main") is None, "a match came after it"
+
+
+def setup_of(arena: str) -> Setup:
+    return msgspec.structs.replace(setup("othello", QUICK), match_id=ID, arena=arena)
+
+
+def other_model(data: bytes) -> tuple[bytes, bytes]:
+    """The model's hash in the event of READY, and another one."""
+    at = data.index(b"\xa5model\xb0") + 7
+    return data[at : at + 16], b"0" * 16
+
+
+def test_no_code_runs_because_a_record_names_it(tmp_path: Path, left_behind: bytes) -> None:
+    """Verify and a court's start refuse a folder that nobody named; --arena names one."""
+    game, folder = tmp_path / "game", tmp_path / "recordings"
+    game.mkdir()
+    folder.mkdir()
+    (game / "__init__.py").write_text("raise SystemExit('code of a stranger')")
+    path = segment(folder, with_header(left_behind, folder, setup=setup_of(str(game))))
+    done = CliRunner().invoke(verify_app, [str(path)])
+    assert "code of a stranger" not in done.output
+    assert isinstance(done.exception, UserError)
+    assert "--arena FOLDER" in str(done.exception)
+    with pytest.raises(UserError, match="if you name the folder yourself"):
+        unfinished(folder, "main")
+    with pytest.raises(SystemExit, match="code of a stranger"):
+        unfinished(folder, "main", game)
+
+
+def test_a_folder_that_the_user_names_plays_its_record(tmp_path: Path) -> None:
+    """A game in a folder, verified where the folder lies elsewhere; and resumed."""
+    original = plugins.folder_of(plugins.package("lacoc.arenas", "arena", "othello"))
+    here, there = tmp_path / "here", tmp_path / "there"
+    shutil.copytree(original, here, ignore=shutil.ignore_patterns("__pycache__"))
+    ground = arenas.load(str(here), QUICK)
+    made = msgspec.structs.replace(
+        setup("othello", QUICK), match_id=ID, arena=ground.name, settings=ground.settings
+    )
+    path = tmp_path / files.segment_path(tmp_path, ID, 0)
+    path.write_bytes(play(tmp_path / "running", made, here).read_bytes())
+    here.rename(there)
+    done = CliRunner().invoke(verify_app, [str(path), "--arena", str(there)])
+    assert done.stdout.startswith("same: 120 beats"), done.output
+    left = unfinished(path.parent, "main", there)
+    assert left is not None
+    assert (left.match.beats, left.match.arena.folder) == (BEATS - 1, there)
