@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from msgspec.structs import replace
+
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
 from lacoc_server.entry import Entry

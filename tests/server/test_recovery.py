@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from running import WAIT_S, frame, phase, seated, served, until, write_contest
 
+from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_server.recovery import unfinished
@@ -85,14 +86,8 @@ def test_how_well_it_was_held_outlives_the_kill(contest: Path, tmp_path: Path) -
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
         session = stack.enter_context(open_client([court.address()]))
-        controllers = [
-            Controller(session, name, seat, holder.token, f"Team {seat}")
-            for seat, holder in court.seat.items()
-        ]
+        controllers = seated(session, contest)
         left = controllers[0]
-        for controller in controllers:
-            controller.join()
-            controller.ready()
         until(controllers, lambda: phase(left) == Phase.READY)
         referee = RefereeClient(session, name, court.referee.token)
         referee.decide(Start(), "", "Kubota")
