@@ -151,7 +151,7 @@ class CourtNetwork:
 
     def publish_again(self, frame: bytes) -> None:
         """Send a frame that was published before, as a sign of life."""
-        self._frame.put(frame)
+        self._outbox.send_newest(self._frame, frame)
 
     def publish_event(self, event: Event) -> None:
         """Send an event that must arrive; those who come late get it too."""

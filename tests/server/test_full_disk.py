@@ -1,4 +1,4 @@
-"""A disk that is full in the middle of a match (docs/decisions/0011-full-disk.md)."""
+"""A disk that is full in the middle of a match (docs/decisions/0013-full-disk.md)."""
 
 import resource
 import shutil
