@@ -85,7 +85,7 @@ class Court:
         """Its numbers, for who watches courts."""
         self._scene = b""
         self._packing: list[Any] = []
-        self._pace = Pace(time.monotonic(), settings.speed, _offset_s(settings.name))
+        self._pace = Pace(time.monotonic(), settings.speed, _offset_s(network.locators))
         self._inputs: list[Input] = []
         """The court's own, for the next beat."""
         self._made: _Made | None = None
@@ -262,6 +262,9 @@ class Court:
         self.metrics.health(self.match_id, health, self._network.doors())
 
 
-def _offset_s(name: str) -> float:
-    """Part of a second by which a court's beats are shifted (design.md, "Time")."""
-    return int.from_bytes(hashlib.blake2b(name.encode(), digest_size=4).digest()) / 2**32
+def _offset_s(locators: tuple[str, ...]) -> float:
+    """Part of a second by which a court's beats are shifted (design.md, "Time").
+
+    Names of courts may be the same on one machine; where they listen is not.
+    """
+    return int.from_bytes(hashlib.blake2b(repr(locators).encode(), digest_size=4).digest()) / 2**32

@@ -20,12 +20,13 @@ class Pace:
     Args:
         now_s: monotonic time.
         speed: 2 lets two beats of 20 ms pass in 20 ms.
-        offset_s: puts the beats of this court between those of others on the machine.
+        offset_s: beats come so long after the whole beats of the machine's clock, which is the
+            same for all its processes: so they come between those of other courts.
     """
 
     def __init__(self, now_s: float, speed: float = 1.0, offset_s: float = 0.0) -> None:
         self._beat_s = BEAT_S / speed
-        self._due_s = now_s + offset_s % self._beat_s
+        self._due_s = now_s + (offset_s - now_s) % self._beat_s
         self._starts_s: deque[float] = deque(maxlen=_WINDOW_BEATS)
         self.late_s = 0.0
         """How late the newest beat began."""

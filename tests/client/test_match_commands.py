@@ -164,7 +164,7 @@ def test_bots_play_match_after_match(
 
 def _a_ghost_plays_the_record_again(court: CourtProcess, referee: Referee, folder: Path) -> None:
     """A ghost takes the seat from the bot, with the files and the keys of the first match."""
-    record = next((folder / "recordings").glob("*-001.mcap"))
+    record = _packed(folder / "recordings", "*-001.mcap")
     court.start("bot", f"ghost:{record}:left", *court.where("left"), stdout=subprocess.DEVNULL)
     deadline_s = time.monotonic() + 20
     teams: list[str] = []
@@ -173,6 +173,15 @@ def _a_ghost_plays_the_record_again(court: CourtProcess, referee: Referee, folde
         teams = [seat["team"] for seat in json.loads(referee.run("status", "--json")[1])["seats"]]
     referee.decide("start")
     referee.decide("official")
+
+
+def _packed(folder: Path, name: str) -> Path:
+    """The record of a match, which a process of its own packs when the match is over."""
+    deadline_s = time.monotonic() + 20
+    while not (found := [*folder.glob(name)]):
+        assert time.monotonic() < deadline_s, [*folder.iterdir()]
+        time.sleep(0.1)
+    return found[0]
 
 
 def test_a_bot_ends_when_its_seat_is_taken(open_court: OpenCourt) -> None:
