@@ -16,7 +16,7 @@ T = TypeVar("T")
 ANSWER_S = 5.0
 """A court answers within a beat or two; one that needs longer is in trouble."""
 
-_COMING_BACK_S = 1.0
+_COMING_BACK_S = 0.5
 _AGAIN_S = 0.05
 _MAX_BYTES = 1 << 20
 

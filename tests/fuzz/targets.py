@@ -10,7 +10,7 @@ from typing import Any
 
 import doors
 
-from lacoc_arenas.arena import Arena
+from lacoc_arenas.arena import Arena, from_settings
 from lacoc_client.gateway import wire
 from lacoc_client.key_script import KeyScript
 from lacoc_robots.spec import read_robot
@@ -132,7 +132,7 @@ def _robot(data: bytes) -> None:
 @cache
 def _othello() -> Arena:
     settings = read_toml((CORPUS / "arena" / "othello.toml").read_bytes())
-    return Arena("othello", settings, "lacoc_arenas.othello")
+    return from_settings("othello", settings)
 
 
 @_accepts(UserError)
@@ -144,9 +144,9 @@ def _contest(data: bytes) -> None:
 
 @_accepts(UserError, BadToml)
 def _arena(data: bytes) -> None:
-    name = "flag_strike" if b"pole_radius_m" in data else "othello"
+    name = "flag-strike" if b"pole_radius_m" in data else "othello"
     settings = read_toml(data)
-    arena = Arena(name, settings, f"lacoc_arenas.{name}")
+    arena = from_settings(name, settings)
     codec.encode(arena.settings)
     arena.game.start()
     if len(data) % _WORLDS == 0:

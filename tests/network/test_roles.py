@@ -14,7 +14,7 @@ from lacoc_client.spectator import Spectator
 from lacoc_shared.access import Credentials
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.decisions import Start
-from lacoc_shared.inputs import Decide
+from lacoc_shared.inputs import Decide, SilentSeat
 from lacoc_shared.messages import Command, DecisionRequest, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seal import command_mac
@@ -48,7 +48,8 @@ def passed(session: Session) -> None:
 def heard(court: KeyedCourt) -> int:
     """How much the court was asked or told: what it took in and what it refused."""
     refused = sum(sum(reasons.values()) for reasons in court.refused.values())
-    return len(court.inputs) + refused + sum(court.network.dropped.values())
+    told = [item for item in court.inputs if not isinstance(item, SilentSeat)]
+    return len(told) + refused + sum(court.network.dropped.values())
 
 
 @pytest.mark.parametrize("who", EVERYBODY)
