@@ -148,6 +148,51 @@ def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: P
     assert verdict.text == "same"
 
 
+SYNCING_FAILS = """
+import os, runpy, sys
+
+flag, fsync = sys.argv[1], os.fsync
+
+def failing(descriptor):
+    if os.path.exists(flag):
+        raise OSError(5, "Input/output error")
+    fsync(descriptor)
+
+os.fsync = failing
+sys.argv = sys.argv[4:]
+runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
+"""
+"""Runs the command that follows; the disk keeps nothing while a file is there."""
+
+
+def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -> None:
+    """The referee hears of it, and may go on: everybody but a power cut has the record."""
+    contest, broken = write_contest(tmp_path / "contest.toml"), tmp_path / "broken"
+    name, court = load(contest).court()
+    before = [sys.executable, "-c", SYNCING_FAILS, str(broken)]
+    with (
+        served(contest, tmp_path / "recordings", before=before),
+        open_client([court.address()]) as session,
+    ):
+        controllers = seated(session, contest)
+        left = controllers[0]
+        until(controllers, lambda: phase(left) == Phase.READY)
+        referee = RefereeClient(session, name, court.referee.token)
+        referee.decide(Start(), "", "Kubota")
+        until(controllers, lambda: phase(left) == Phase.PLAYING)
+        broken.touch()
+        until(controllers, lambda: phase(left) == Phase.HALTED)
+        reasons = [e.data["reason"] for e in left.view.events if e.kind == "decision"]
+        assert "reports: Input/output error" in reasons[-1]
+        until(controllers, lambda: "reports: Input/output error" in trouble(left))
+        referee.decide(Resume(), "", "Kubota")
+        until(controllers, lambda: phase(left) == Phase.PLAYING)
+        resumed = frame(left).beat
+        # Two seconds, in which the disk was asked again and refused again.
+        until(controllers, lambda: frame(left).beat > resumed + 100)
+        assert phase(left) == Phase.PLAYING
+
+
 def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
     """Where no file can be made, the match that is over stays, and it is said why."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
