@@ -46,7 +46,7 @@ def test_field() -> None:
     """Rules 6 field: 2.0 x 2.0 m, four circles of radius 0.15 m, 0.20 m from both walls."""
     assert GAME.size_m == (2.0, 2.0)
     assert CORNERS == [(-0.8, -0.8), (0.8, -0.8), (-0.8, 0.8), (0.8, 0.8)]
-    assert {marker.radius_m for marker in GAME.markers[:4]} == {0.15}
+    assert {(marker.kind, marker.radius_m) for marker in GAME.markers[:4]} == {("corner", 0.15)}
     assert [marker.name for marker in GAME.markers[:5]] == [
         "corner0",
         "corner1",
@@ -295,6 +295,7 @@ def test_referee_sets_corners_and_flags() -> None:
     stands = GAME.set(down, INDEX["flag19"], NEUTRAL)
     assert claims(tick(stands, view(touched=("flag19",)))[1]) == [(0, "flag19")]
     assert sum(now != was for now, was in zip(down.board, START.board, strict=True)) == 2
+    assert GAME.board(GAME.set(START, INDEX["flag0"], DOWN))[INDEX["flag0"]] == DOWN
     with pytest.raises(ValueError, match=r"^a corner is neutral, left or right$"):
         GAME.set(START, 0, DOWN)
 

@@ -61,6 +61,7 @@ def tick(
 def test_board_is_six_by_six() -> None:
     """Workshop 5-1 rule 1, rules 5 board: 6 x 6 cells around the origin, c0r0 at the lower left."""
     assert len(GAME.markers) == 36
+    assert {(disc.kind, disc.points) for disc in GAME.markers} == {("disc", 1)}
     assert middle("c0r0") == (-0.75, -0.75)
     assert middle("c5r0") == (0.75, -0.75)
     assert middle("c0r5") == (-0.75, 0.75)
@@ -153,6 +154,15 @@ def test_being_put_down_flips_nothing() -> None:
     assert again is after, "the same object where nothing changed"
 
 
+def test_being_put_down_and_in_a_gap_at_once() -> None:
+    """Rules 5 start: the start cell is the last cell, for either robot, wherever it stands now."""
+    before = state(board("LR...."), "c0r5", "c1r5")
+    after, _ = GAME.step(before, (view(GAP, placed="c0r2"), view(GAP)), 0.02)
+    assert after.last == (INDEX["c0r2"], INDEX["c1r5"])
+    after, _ = GAME.step(before, (view(GAP), view(GAP, placed="c5r3")), 0.02)
+    assert after.last == (INDEX["c0r5"], INDEX["c5r3"])
+
+
 def test_walking_off_the_start_in_the_tick_of_being_put_down() -> None:
     """Rules 5 start: in that very tick the start cell is already the last one."""
     before = state(board("......", "......", "......", "LR...."), "c4r4")
@@ -177,7 +187,17 @@ def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
 
 @pytest.mark.parametrize(
     ("x_m", "y_m"),
-    [(0.0, 0.0), (0.0, 0.15), (0.3, 0.15), (0.9, 0.15), (math.nan, 0.0), (math.inf, 0.15)],
+    [
+        (0.0, 0.0),
+        (0.0, 0.15),
+        (0.3, 0.15),
+        (0.9, 0.15),
+        (1.05, 0.15),  # where the middles of more columns and rows would be
+        (-0.15, -1.05),
+        (-3.15, 0.15),
+        (math.nan, 0.0),
+        (math.inf, 0.15),
+    ],
 )
 def test_between_and_outside_the_discs(x_m: float, y_m: float) -> None:
     """Rules 5 entering: between two discs, outside the board and nowhere at all is no cell."""
@@ -351,6 +371,14 @@ def test_second_robot_may_claim_a_disc_the_first_stands_on() -> None:
     before = state(board("..R..."), "c1r5", "c2r5")
     _, events = tick(before, "c1r5", "c1r5")
     assert [event.seat for event in events] == [1]
+
+
+def test_a_disc_that_is_the_others_last_cell_can_be_entered() -> None:
+    """Rules 5 entering: a robot's last cell says nothing about the other's."""
+    before = state(board("LR...."), "c0r5", "c1r5")
+    after, events = tick(before, "c1r5")
+    assert [(event.seat, event.marker) for event in events] == [(0, "c1r5")]
+    assert after.last == (INDEX["c1r5"], INDEX["c1r5"])
 
 
 def test_last_cell_that_flips_in_the_same_tick_still_counts() -> None:

@@ -5,6 +5,7 @@ People read them, the record keeps them, and the pages' Japanese is made of them
 
 from typing import Any
 
+import msgspec
 import pytest
 from stage import FORWARD, LEFT, QUICK, RIGHT, Script, Stage, X, decide, join, key
 
@@ -242,6 +243,16 @@ def test_what_a_take_back_leaves_in_the_log() -> None:
         scores=(5, 0),
         changes=changes,
     )
+
+
+def test_a_sheet_of_a_robot_that_does_not_walk() -> None:
+    """Rules 3: practice opens both levels, and a file for one of them is enough."""
+    whole = join(LEFT)
+    stage = Stage("practice")
+    stage.beat(msgspec.structs.replace(whole, locomotion=None))
+    (seat,) = stage.match.sheet().seats
+    assert seat.team == "Ants"
+    assert (seat.keys[1], seat.postures) == ((), ())
 
 
 @pytest.mark.parametrize(

@@ -124,6 +124,7 @@ def test_why_a_match_cannot_start_names_all_that_is_missing() -> None:
     assert stage.match.legality()["start"] == (
         "only in READY; the match is LOBBY; left (Ants) has not said ready; nobody has joined right"
     )
+    assert stage.match.legality()["halt"] == "only in COUNTDOWN or PLAYING; the match is LOBBY"
 
 
 @pytest.mark.parametrize("name", sorted(LEGAL))

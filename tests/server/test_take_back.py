@@ -245,6 +245,17 @@ def test_a_match_may_turn_out_to_have_been_over() -> None:
     assert reply.scores == (15, 5)
 
 
+def test_what_turned_out_to_be_over_stays_over() -> None:
+    """Rules 4, take-back: a later take-back begins with what an earlier one had made."""
+    stage = flag_strike({**ALL_FOUR, 35: {RIGHT: CORNERS[0]}})
+    put = stage.decide(d.Set("flag0", "right")).event
+    take_back(stage, event(stage, "capture", "corner0").number)
+    assert (stage.phase, stage.scores) == (P.FINISHED, (20, 1))
+    take_back(stage, put)
+    assert (stage.phase, stage.scores) == (P.FINISHED, (20, 0))
+    assert stage.match.history.over == stage.match.ended == "the left team holds all corners"
+
+
 def test_time_is_up_stays_up() -> None:
     """Rules 4, take-back: the clock stays as it was; the result is worked out again."""
     short = {"match": {"duration_s": 1.0, "countdown_s": 0.02}}
