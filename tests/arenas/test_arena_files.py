@@ -203,6 +203,11 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
     ),
     (
         "flag-strike",
+        {"starts": [[-0.6, 0.4]], **move(0, 0, [0.40, -0.35], [-0.40, 0.35])},
+        "flag0 (green, [0.4, -0.35]) is 0.206 m from the right start [0.6, -0.4]",
+    ),
+    (
+        "flag-strike",
         move(3, 0, [0.5, 0.6], [-0.5, -0.6]),
         "flag18 (black, [0.5, 0.6]) is 0.211 m from the edge of corner3",
     ),

@@ -209,7 +209,8 @@ def test_touching_discs_share_no_point() -> None:
     game = with_settings(pitch_m=0.5, disc_radius_m=0.25)
     assert game.cell_at(0.5, 0.25) == INDEX["c4r3"]
     assert game.cell_at(-0.5, -0.25) == INDEX["c1r2"]
-    assert game.cell_at(0.0, 0.25) == NO_CELL
+    assert game.cell_at(0.0, 0.25) == game.cell_at(0.25, 0.0) == NO_CELL
+    assert game.cell_at(1.5, 0.25) == game.cell_at(0.25, 1.5) == NO_CELL
 
 
 def test_entered_cell_becomes_the_last_whatever_happens() -> None:

@@ -16,6 +16,12 @@ def test_field() -> None:
     assert GAME.starts == ((Place(0.0, 0.0, math.pi / 2),),)
 
 
+def test_the_start_may_be_anywhere_within_the_walls() -> None:
+    """Rules 4: the start is a setting, in a field of 2.4 m up to 1.2 m from the middle."""
+    game = arena.load("practice", {"game": {"start": [1.1, -1.1]}}).game
+    assert game.starts[0][0][:2] == (1.1, -1.1)
+
+
 def test_nothing_happens() -> None:
     """Rules 4: no markers, no points, no end, no winner, nothing to set."""
     state = GAME.start()

@@ -256,6 +256,22 @@ def test_a_match_that_is_over_ends_at_once() -> None:
     assert stage.match.ended == "the left team holds all corners"
 
 
+def test_all_corners_win_whatever_the_points_where_the_arena_says_so() -> None:
+    """Rules 6 all four: with `all_corners_win` the holder has won."""
+    stage = Stage("flag-strike", {"game": {"all_corners_win": True}}, script=_all_corners())
+    stage.to_playing()
+    stage.until(P.FINISHED)
+    stage.decide(d.Adjust("right", 30))
+    assert (stage.scores, stage.match.winner()) == ((20, 30), "left")
+
+
+def test_the_shortest_match_is_one_tick() -> None:
+    """Rules 4: a duration is a number of ticks; only 0 is without end."""
+    stage = Stage(overrides={"match": {"duration_s": 0.02}}).to_playing()
+    stage.until(P.FINISHED, at_most=5)
+    assert (stage.match.ticks, stage.match.ended) == (1, "time is up")
+
+
 def test_a_fault_halts_before_the_tick() -> None:
     """Design, "Failure policy": the state before the tick, HALTED, which robot and when."""
     script = Script(faults={4: Fault(RIGHT, "a velocity became not a number")})
