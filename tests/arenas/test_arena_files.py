@@ -179,7 +179,12 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
     ("othello", {"start_cells": [[0, 6]]}, "Expected `int` <= 5 - at `$.start_cells[0][1]`"),
     ("othello", {"start_cells": [[0, 1], [0, 1]]}, ": start_cells names a cell twice"),
     ("othello", {"flank": "yes"}, "`$.flank`"),
-    ("flag-strike", {"corner_inset_m": 0.9}, "make the corners overlap"),
+    (
+        "flag-strike",
+        {"size_m": [2.4, 2.0], "corner_inset_m": 0.9},
+        "corner_inset_m 0.9 and corner_radius_m 0.15 make the corners overlap in a field of "
+        "2.4 x 2.0 m",
+    ),
     ("flag-strike", {"starts": [[-1.2, 0.0]]}, "the start [-1.2, 0.0] is outside the walls"),
     ("flag-strike", {"starts": [[-1.0, 0.0]]}, "the start [-1.0, 0.0] is outside the walls"),
     ("flag-strike", {"starts": [[-0.6, 1.0]]}, "the start [-0.6, 1.0] is outside the walls"),
@@ -240,6 +245,18 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
     ("practice", {"start": [1.2, 0.0]}, "start [1.2, 0.0] is outside the walls"),
     ("practice", {"heading_deg": float("nan")}, "`$.heading_deg`"),
 ]
+
+
+@pytest.mark.parametrize(
+    "game",
+    [
+        {"size_m": [2.4, 2.0], "starts": [[-1.1, 0.0]]},
+        {"corner_inset_m": 0.52, "clearance_m": 0.01},
+    ],
+)
+def test_a_field_of_other_measures(game: dict[str, Any]) -> None:
+    """Rules 6 field: what fits within the walls, apart from one another, is a field."""
+    assert arena.load("flag-strike", {"game": game}).game.markers
 
 
 @pytest.mark.parametrize(("name", "game", "says"), WRONG)

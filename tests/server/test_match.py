@@ -26,6 +26,7 @@ from stage import (
 )
 
 from lacoc_arenas import arena as arenas
+from lacoc_robots.library import find_robot
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import HeardSeat, Input, KeySeat, LeaveSeat, SilentSeat
@@ -210,6 +211,42 @@ def test_being_put_back_claims_nothing() -> None:
     stage.beat(key(LEFT, X))
     assert stage.match.history.state.last[LEFT] == 12
     assert stage.numbers("flip") == []
+
+
+def test_being_put_back_is_no_walk() -> None:
+    """Rules 5, start: the start cell is not entered, even from a neighbour of one's own."""
+    script = Script(poses={1: {LEFT: (-0.45, -0.15)}})
+    stage = playing(script=script, ticks=3)
+    stage.beat(decide(d.Set("c0r2", "right")))
+    stage.beat(key(LEFT, X))
+    assert stage.match.history.state.last[LEFT] == 12
+    assert (stage.board["c0r2"], stage.numbers("flip")) == ("right", [])
+
+
+def _postures(stage: Stage, ticks: int) -> list[int]:
+    """Target postures of the left seat while it walks forward."""
+    stage.beat(key(LEFT, FORWARD))
+    stage.run(ticks)
+    return [beat.frame.seats[LEFT].posture for beat in stage.beats[-ticks - 1 :]]
+
+
+@pytest.mark.parametrize("repeat", [True, False])
+def test_whether_sequences_repeat_is_the_arenas_to_say(repeat: bool) -> None:
+    """Rules 3: with repeat = false a sequence runs once."""
+    walked = _postures(playing(match={"repeat": repeat, "countdown_s": 0.02}), 600)
+    assert (max(walked) > 0, 0 in walked[-300:]) == (True, repeat)
+
+
+def test_how_a_sequence_goes_on_is_the_robots_to_say() -> None:
+    """Rules 1 and 3: a robot with advance = "time" takes each posture for hold_s."""
+    _, data = find_robot("hexapod")
+    by_time = data.replace(b'advance = "reached"', b'advance = "time"')
+    by_time = by_time.replace(b"hold_s = 0.0", b"hold_s = 0.1")
+    assert by_time != data
+    stage = Stage(overrides=QUICK).to_playing(join(LEFT, robot_file=by_time), join(RIGHT))
+    stage.run(2)
+    length = stage.match.sheet().seats[LEFT].postures[FORWARD]
+    assert _postures(stage, 99) == [tick // 5 % length for tick in range(100)]
 
 
 # Silence, refusals.

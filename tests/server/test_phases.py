@@ -105,6 +105,7 @@ def test_ready_needs_every_seat_joined_and_ready() -> None:
     stage.beat(ReadySeat(RIGHT, True))
     assert stage.phase is P.READY
     assert stage.match.missing() == []
+    assert stage.beats[-1].sheet_changed, "it names the scene with the robots"
 
 
 @pytest.mark.parametrize("phase", [P.LOBBY, P.READY])
