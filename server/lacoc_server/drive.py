@@ -48,9 +48,9 @@ class Drive:
         gait: Gait,
         start: Posture,
         ang_min_rad_s: float,
-        advance: Literal["reached", "time"] = "reached",
-        hold_us: int = 0,
-        repeat: bool = True,
+        advance: Literal["reached", "time"],
+        hold_us: int,
+        repeat: bool,
     ) -> None:
         self._gait = gait
         self._start = start

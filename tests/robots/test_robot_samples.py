@@ -57,7 +57,7 @@ def walk(
     qpos = [model.joint(f"r0_j{joint}").qposadr[0] for joint in range(robot.joints)]
     data.qpos[qpos] = robot.start_posture
     drive = Drive(
-        gait, robot.start_posture, robot.ang_min_rad_s, robot.advance, hold_us=robot.hold_us
+        gait, robot.start_posture, robot.ang_min_rad_s, robot.advance, robot.hold_us, repeat=True
     )
     state = drive.press(drive.begin(Level.LOCOMOTION), Level.LOCOMOTION, digit)
     for _ in range(round(seconds * 50)):

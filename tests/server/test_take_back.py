@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from stage import LEFT, QUICK, RIGHT, Script, Stage, X, key, seen
 
 from lacoc_arenas import arena as arenas
-from lacoc_arenas.game import Observation, Place, RobotView
+from lacoc_arenas.game import GameEvent, Observation, Place, RobotView
 from lacoc_server.history import History
 from lacoc_shared import decisions as d
 from lacoc_shared.messages import DecisionReply, Event, Refusal
@@ -366,6 +366,34 @@ def observations(draw: st.DrawFn, arena: str) -> list[Observation]:
 
 
 GAMES = {name: arenas.load(name).game for name in ("othello", "flag-strike")}
+
+
+class Stopwatch:
+    """A game that counts seconds: one of its own package may need to know how long a tick is."""
+
+    def start(self) -> float:
+        return 0.0
+
+    def step(
+        self, state: float, observation: Observation, dt_s: float, struck: object = ()
+    ) -> tuple[float, tuple[GameEvent, ...]]:
+        return state + dt_s, ()
+
+    def over(self, state: float) -> str:
+        return ""
+
+    def set(self, state: float, marker: int, value: int) -> float:
+        return state
+
+
+def test_a_tick_is_20_ms_in_play_and_in_a_fold() -> None:
+    """Rules 4: a tick is 20 ms, also when it is judged again."""
+    history = History(Stopwatch())  # type: ignore[arg-type]
+    history.set(0, 0, number=1)
+    for _ in range(3):
+        history.observe((), 2)
+    assert history.state == pytest.approx(0.06)
+    assert history.without(1).state == history.state
 
 
 @settings(max_examples=60, deadline=None)

@@ -32,7 +32,7 @@ def commands(
 ) -> Iterator[list[Posture]]:
     """Commanded angles of both seats, tick by tick."""
     drives = [
-        Drive(e.gait, e.robot.start_posture, e.robot.ang_min_rad_s, e.robot.advance, 0)
+        Drive(e.gait, e.robot.start_posture, e.robot.ang_min_rad_s, e.robot.advance, 0, True)
         for e in entries
     ]
     states = [it.begin(B) for it in drives]
