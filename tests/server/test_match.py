@@ -3,6 +3,7 @@
 import math
 import random
 import struct
+from itertools import pairwise
 
 import msgspec
 import pytest
@@ -358,6 +359,22 @@ def test_the_order_of_arrival_favours_no_seat(inputs: list[Input], mix: random.R
         assert encode(one.frame) == encode(other.frame)
         one.beat()
         other.beat()
+
+
+def test_the_order_of_a_beat_is_that_of_its_kinds() -> None:
+    """Design, "One beat": requests, silences, decisions, [x], digits, however they arrive."""
+    stage = playing(ticks=2)
+    freeze = decide(d.Freeze("right", 1.0))
+    inputs = (key(RIGHT, FORWARD), key(LEFT, X), freeze, SilentSeat(RIGHT), join(RIGHT))
+    beat = stage.beat(*inputs)
+    told = [(event.kind, event.seat) for event in beat.events]
+    assert told == [("join", RIGHT), ("silent", RIGHT), ("decision", -1), ("restart", LEFT)]
+    assert beat.outcomes[0] == Refusal("FROZEN")
+    for later, earlier in pairwise(inputs):
+        one, other = playing(ticks=2), playing(ticks=2)
+        one.beat(later, earlier)
+        other.beat(earlier, later)
+        assert encode(one.events) == encode(other.events)
 
 
 def test_decisions_come_before_keys() -> None:

@@ -115,7 +115,7 @@ def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
     stage = Stage().to_ready()
     stage.beat(item)
     assert stage.phase is P.LOBBY
-    assert stage.frame.poses == b""
+    assert (stage.frame.poses, stage.beats[-1].sheet_changed) == (b"", True)
     stage.beat(join(LEFT))
     stage.beat(ReadySeat(LEFT, True))
     assert stage.phase is P.READY
