@@ -188,6 +188,7 @@ def test_what_a_fault_in_ready_leaves_in_the_log() -> None:
 def test_what_the_court_measured_in_the_log() -> None:
     """Design, "Health": a replay is advised with its reasons, or not any more."""
     stage = Stage(overrides=QUICK).to(P.PLAYING)
+    assert stage.match.advice == ()
     reasons = ("3 slow beats", "a beat 80 ms late")
     beat = stage.beat(Advice(reasons))
     assert beat.outcomes == (Done(),)
