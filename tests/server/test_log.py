@@ -7,8 +7,22 @@ from typing import Any
 
 import msgspec
 import pytest
-from stage import FORWARD, LEFT, QUICK, RIGHT, Script, Stage, X, decide, join, key
+from stage import (
+    FORWARD,
+    LEFT,
+    QUICK,
+    RIGHT,
+    Script,
+    ScriptedPhysics,
+    Stage,
+    X,
+    decide,
+    join,
+    key,
+    setup,
+)
 
+from lacoc_server.match import Match
 from lacoc_server.physics import Fault
 from lacoc_shared import __version__
 from lacoc_shared import decisions as d
@@ -294,6 +308,18 @@ def test_answers_about_empty_seats() -> None:
     assert stage.match.seats[RIGHT].team == "right"
     stage.decide(d.Abort())
     assert stage.send(join(RIGHT)) == Done("This match is over: you play in the next.")
+
+
+def test_a_robot_is_weighed_by_the_contest_and_the_arena() -> None:
+    """Rules 1 and 3: the contest limits robots, the arena says which levels need a file."""
+    light = msgspec.structs.replace(setup("othello"), limits={"mass_max_kg": 0.4})
+    stage = Stage()
+    stage.match = Match(light, lambda arena, entries: ScriptedPhysics(arena, entries, Script()))
+    heavy = stage.send(join(LEFT))
+    assert isinstance(heavy, Refusal)
+    assert any("0.4" in mistake.expected for mistake in heavy.mistakes), heavy.mistakes
+    cannot_walk = Stage().send(msgspec.structs.replace(join(LEFT), locomotion=None))
+    assert isinstance(cannot_walk, Refusal)
 
 
 def test_a_result_says_all() -> None:

@@ -426,6 +426,7 @@ def test_a_touch_is_recorded_only_where_there_is_one() -> None:
     script = Script(touches={3: {RIGHT: (4, 9)}})
     stage = playing("flag-strike", script, ticks=4)
     stage.beat(key(LEFT, X))
+    stage.run(3)  # it is put back once
     noted = {b.frame.clock_ticks: b.touch for b in stage.beats if b.touch}
     assert noted[3].touched == ((), (4, 9))
     assert noted[5].placed == ((-0.6, 0.0, 0.0), None)
