@@ -249,7 +249,7 @@ def test_freeze_and_its_end() -> None:
     done(stage, d.Freeze("left", 1.0))
     seat = stage.frame.seats[LEFT]
     assert (seat.key, seat.locked_ticks) == (STAND, 49)
-    assert seat.flags & SeatFlag.FROZEN
+    assert seat.flags == SeatFlag.JOINED | SeatFlag.READY | SeatFlag.FROZEN
     assert stage.send(key(LEFT, FORWARD, seq=2)) == Refusal("FROZEN")
     assert stage.send(key(LEFT, X, seq=3)) == Refusal("FROZEN")
     assert stage.send(key(RIGHT, FORWARD)) == Done()
