@@ -1,5 +1,6 @@
 """Watch a court: frames, events from the first on, the sheet and the scene."""
 
+import math
 import time
 from collections.abc import Callable
 
@@ -15,6 +16,8 @@ from lacoc_shared.session import Session
 
 _EVENTS_DEPTH = 4096
 _FETCH_TRIES = 3
+_LACKING_S = 1.0
+"""How often a court is asked for events that did not come."""
 
 
 class _Version(msgspec.Struct):
@@ -55,6 +58,8 @@ class Spectator:
         self.health: Health | None = None
         """The newest health."""
         self._log: EventLog[Event] = EventLog()
+        self._asked_s = -math.inf
+        """When events were last asked for."""
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -72,6 +77,8 @@ class Spectator:
         """
         while (mail := self._events.take()) is not None:
             self._take_in(understand(mail.payload, Event))
+        if self._log.lacks and time.monotonic() >= self._asked_s + _LACKING_S:
+            self._fetch_events()
         if (mail := self._healths.take()) is not None:
             self.health = understand(mail.payload, Health)
         newest = self._frames.take()
@@ -145,6 +152,16 @@ class Spectator:
                 self.frame, self.frame_s = frame, newer.arrived_s
         if self.sheet.scene != frame.scene:
             raise UserError(_OTHER_SCENE)
+
+    def _fetch_events(self) -> None:
+        """Get the whole log: one who came while events were sent may have missed the first."""
+        self._asked_s = time.monotonic()
+        try:
+            events = fetch(self._session, self.keys, self.keys.event, timeout_s=1.0)
+        except NoCourt:  # it went away just now
+            return
+        new = self._log.restore([(one, one) for one in understand(events, tuple[Event, ...])])
+        self._new_events = sorted(self._new_events + new, key=lambda event: event.number)
 
     def _take_in(self, event: Event) -> None:
         if self._log.add(event, event):

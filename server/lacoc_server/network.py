@@ -7,7 +7,7 @@ answered when the match has taken it in and the record is written. An outbox sen
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import NamedTuple, Self
+from typing import NamedTuple, Self, TypeVar
 
 from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.inbox import COMMANDS_PER_BEAT, Door, Inbox
@@ -40,6 +40,7 @@ _FETCHES_PER_BEAT = 8
 _EVENTS_KEPT = 1024
 
 
+T = TypeVar("T")
 _Judge = Callable[[Request], Input | Done | Refusal]
 
 
@@ -94,6 +95,9 @@ class CourtNetwork:
         self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
         self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
+        self._log_desk = session.desk(keys.event, _FETCH_DESK)
+        self._log: list[Event] = []
+        """All events of the match."""
         self._sheet_bytes = self._scene_bytes = b""
         session.announce(keys.alive)
         self.locators = session.locators()
@@ -121,8 +125,7 @@ class CourtNetwork:
         arrivals = [Arrival(one, None) for one in inputs]
         for desk, judge in self._desks:
             arrivals += self._let_in(desk, judge)
-        _serve(self._sheet_desk, self._sheet_bytes)
-        _serve(self._scene_desk, self._scene_bytes)
+        self._serve_fetches()
         return arrivals
 
     def turn_away(self, reason: str) -> None:
@@ -136,8 +139,7 @@ class CourtNetwork:
             for _ in range(_REQUESTS_PER_BEAT):
                 if (request := desk.take()) is not None:
                     request.refuse(refusal)
-        _serve(self._sheet_desk, self._sheet_bytes)
-        _serve(self._scene_desk, self._scene_bytes)
+        self._serve_fetches()
 
     def publish_frame(self, frame: bytes, now_s: float) -> None:
         """Send an encoded frame; a slow receiver misses it.
@@ -155,6 +157,9 @@ class CourtNetwork:
 
     def publish_event(self, event: Event) -> None:
         """Send an event that must arrive; those who come late get it too."""
+        if self._log and self._log[0].match != event.match:
+            self._log = []
+        self._log.append(event)
         self._outbox.send(self._event, encode(event))
 
     def publish_sheet(self, sheet: Sheet) -> None:
@@ -187,6 +192,11 @@ class CourtNetwork:
     def dropped(self) -> dict[str, int]:
         """Refusals that belong to no seat, by reason."""
         return dict(self._decision_desk.refused)
+
+    def _serve_fetches(self) -> None:
+        _serve(self._sheet_desk, self._sheet_bytes, bytes)
+        _serve(self._scene_desk, self._scene_bytes, bytes)
+        _serve(self._log_desk, self._log, encode)
 
     def _let_in(self, desk: Desk, judge: _Judge) -> Iterator[Arrival]:
         for _ in range(_REQUESTS_PER_BEAT):
@@ -232,10 +242,10 @@ def _empty(ring: Ring) -> list[bytes]:
     return waiting
 
 
-def _serve(desk: Desk, payload: bytes) -> None:
+def _serve(desk: Desk, kept: T, write: Callable[[T], bytes]) -> None:
     """Answer those who fetch something; those who ask too early or in a crowd wait their turn."""
-    for _ in range(_FETCHES_PER_BEAT if payload else 0):
+    for _ in range(_FETCHES_PER_BEAT if kept else 0):
         request = desk.take()
         if request is None:
             return
-        request.reply(payload)
+        request.reply(write(kept))

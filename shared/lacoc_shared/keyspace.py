@@ -47,7 +47,7 @@ class Keys:
 
     @property
     def event(self) -> str:
-        """Court to all, numbered, must arrive."""
+        """Court to all, numbered, must arrive; by query all of the match."""
         return f"{self.root}/event"
 
     @property

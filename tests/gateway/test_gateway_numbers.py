@@ -37,7 +37,7 @@ def test_a_scrape_and_the_log_of_a_gateway(venue: Venue) -> None:
         venue.page()
     found = scrape(url)
     assert (found["viewers"], found["connected"], found["sent_away_total"]) == (3, 1, 1)
-    assert found["frames_sent_total"] > 10
+    assert found["frames_sent_total"] > 0
     assert found["frames_dropped_total"] >= 0
     left.close()
     court.kill()

@@ -160,6 +160,32 @@ def test_a_log_that_begins_again() -> None:
     assert (list(log), log.number) == (["next 1"], 2)
 
 
+def test_a_log_that_lacks_events_takes_in_the_whole() -> None:
+    """Numbers begin at 1, without a gap; what came after the list was made stays."""
+    log: EventLog[str] = EventLog()
+    assert not log.lacks
+    for number in (4, 5, 7):
+        log.add(event(number, "a"), f"live {number}")
+    assert log.lacks
+    whole = [(event(n, "a"), f"listed {n}") for n in range(1, 7)]
+    assert [one.number for one in log.restore(whole)] == [1, 2, 3, 6]
+    assert list(log) == [*(f"listed {n}" for n in range(1, 7)), "live 7"]
+    assert (log.lacks, log.number) == (False, 1)
+    assert log.restore(whole) == []
+    assert log.number == 1
+
+
+def test_the_whole_log_of_a_match_before_is_no_news() -> None:
+    """The court may begin another match between the question and the answer."""
+    log: EventLog[str] = EventLog()
+    log.add(event(2, "next", match=2), "next 2")
+    assert log.restore([(event(1, "old"), "old 1")]) == []
+    assert list(log) == ["next 2"]
+    assert log.restore([]) == []
+    assert len(log.restore([(event(1, "next", match=3), "after 1")])) == 1
+    assert list(log) == ["after 1"]
+
+
 def test_an_allowance_is_spent_and_comes_back() -> None:
     """A burst, then the rate."""
     allowance = Allowance(1000.0, 5)

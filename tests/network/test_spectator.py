@@ -1,5 +1,8 @@
 """Watching a real court over a real network, and the referee's hand."""
 
+import threading
+from contextlib import ExitStack
+
 import pytest
 from court_stub import KEYS, WHISTLE, CourtStub, make_event, make_scene, until
 
@@ -30,6 +33,25 @@ def test_a_late_comer_is_complete_at_once(court: CourtStub, session: Session) ->
     seen(spectator, list(range(1, 302)))
     assert [event.number for event in spectator.take_events()] == list(range(1, 302))
     assert spectator.take_events() == []
+
+
+@pytest.mark.slow
+def test_who_comes_while_events_are_sent_gets_them_all(court: CourtStub) -> None:
+    """The history alone sometimes loses what was sent before the first that comes live."""
+
+    def send() -> None:
+        for number in range(1, 301):
+            court.network.publish_event(make_event(number))
+
+    sending = threading.Thread(target=send)
+    with ExitStack() as stack:
+        sessions = [stack.enter_context(open_client([court.address])) for _ in range(20)]
+        sending.start()
+        spectators = [Spectator(session, "main") for session in sessions]
+        sending.join()
+        for spectator in spectators:
+            seen(spectator, list(range(1, 301)))
+            assert [event.number for event in spectator.take_events()] == list(range(1, 301))
 
 
 def test_the_log_is_that_of_one_match(court: CourtStub, session: Session) -> None:

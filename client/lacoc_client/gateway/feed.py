@@ -15,7 +15,7 @@ from lacoc_client.gateway.viewer import Frames, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared import log
 from lacoc_shared.access import Access
-from lacoc_shared.codec import BadMessage, decode, scene_hash
+from lacoc_shared.codec import BadMessage, decode, encode, scene_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event
 from lacoc_shared.mistakes import UserError
@@ -87,6 +87,7 @@ class CourtFeed:
         self._why = ""
         self._wrong_version = ""
         self._fetching: asyncio.Task[None] | None = None
+        self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
         self._explained_s = 0.0
         self._task: asyncio.Task[None] | None = None
@@ -98,7 +99,8 @@ class CourtFeed:
 
     async def stop(self) -> None:
         """Close the connection."""
-        tasks = [task for task in (self._task, self._fetching, self._explaining) if task]
+        started = (self._task, self._fetching, self._restoring, self._explaining)
+        tasks = [task for task in started if task]
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
@@ -270,10 +272,25 @@ class CourtFeed:
             return
         if self._log.number == log:
             self._send(framed)
-            return
+        else:
+            self._send_log()
+        if self._log.lacks and (self._restoring is None or self._restoring.done()):
+            self._restoring = asyncio.get_running_loop().create_task(self._restore())
+
+    def _send_log(self) -> None:
         self._send(self._link())  # its new number says that what was before is no more
         for kept in self._log:
             self._send(kept)
+
+    async def _restore(self) -> None:
+        """Get the whole log: who came while events were sent may have missed the first."""
+        while self._log.lacks:
+            with contextlib.suppress(UserError, BadMessage):  # it went away just now
+                events = decode(await self._ask(self._keys.event), tuple[Event, ...], _MAX_BYTES)
+                framed = [(event, wire.message(Kind.EVENT, encode(event))) for event in events]
+                if self._log.restore(framed):
+                    self._send_log()
+            await asyncio.sleep(_FETCH_AGAIN_S)
 
     def _take_sheet(self, payload: bytes) -> None:
         try:
