@@ -39,8 +39,7 @@ def main() -> None:
             else:
                 kept.append(session.ring(keys.frame, 1))
             kept.append(session.ring(keys.health, 1))
-            session.history_mailbox(keys.sheet, 1)
-            session.history_mailbox(keys.event, 64)
+            kept += [session.ring(keys.sheet, 1), session.ring(keys.event, 64)]
         print(json.dumps({"open": options.spectators}), flush=True)
         began_s = time.monotonic()
         while sys.stdin.readline():

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Generic, TypeVar
 
 from lacoc_shared.messages import Event
+from lacoc_shared.seat import BEATS_PER_S
 
 T = TypeVar("T")
 
@@ -17,33 +18,42 @@ class EventLog(Generic[T]):
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Event, T]] = {}
+        self._first = 1
+        """Number from which on the court still lists them."""
         self.number = 0
         """Another number: the log began anew."""
 
     def __iter__(self) -> Iterator[T]:
         return iter([kept for _, kept in self._known.values()])
 
-    @property
-    def lacks(self) -> bool:
-        """Whether an event before the newest is not there: numbers begin at 1, without a gap."""
-        return len(self._known) < max(self._known, default=0)
-
-    def restore(self, events: Sequence[tuple[Event, T]]) -> list[Event]:
-        """Take in the whole log of a match as the court has it.
+    def differs(self, match: int, beat: int, number: int) -> bool:
+        """Whether the court's log is another than this: something did not come.
 
         Args:
-            events: all that the court had sent when it was asked, in their order.
+            match: the match that is on, as the court's health says.
+            beat: when it said so.
+            number: of the newest event then, counted from 1 without a gap; 0: it does not say.
+        """
+        newest = self._known[max(self._known)][0] if self._known else None
+        if newest is not None and len(self._known) <= newest.number - self._first:
+            return True
+        if number == 0:
+            return False
+        if newest is None or newest.match != match:
+            return True
+        came_later = beat < newest.beat <= beat + BEATS_PER_S
+        return newest.number < number or (newest.number > number and not came_later)
+
+    def restore(self, events: Sequence[tuple[Event, T]]) -> list[Event]:
+        """Take in the log as the court lists it, instead of what was known.
 
         Returns:
-            Those that were not known, also later ones, in their order.
+            Those that were not known, in their order.
         """
-        known = list(self._known.values())
-        if not events or any(event.match > events[-1][0].match for event, _ in known):
-            return []  # the court has begun another match meanwhile
-        whole = [*events, *(one for one in known if _follows(one[0], events[-1][0]))]
-        before, self._known = self._known, {event.number: (event, kept) for event, kept in whole}
-        new = [event for event, _ in whole if before.get(event.number, (None,))[0] != event]
-        self.number += bool(new)
+        before, self._known = self._known, {event.number: (event, kept) for event, kept in events}
+        self._first = events[0][0].number if events else 1
+        new = [event for event, _ in events if before.get(event.number, (None,))[0] != event]
+        self.number += bool(new) or len(before) > len(events)
         return new
 
     def add(self, event: Event, kept: T) -> bool:
@@ -52,6 +62,8 @@ class EventLog(Generic[T]):
         if known is not None and known[0] == event:
             return False
         other_match = any(one.match != event.match for one, _ in self._known.values())
+        if other_match:
+            self._first = 1
         if known is not None or other_match:
             self._known = (
                 {}
@@ -61,7 +73,3 @@ class EventLog(Generic[T]):
             self.number += 1
         self._known[event.number] = (event, kept)
         return True
-
-
-def _follows(event: Event, last: Event) -> bool:
-    return event.match == last.match and event.number > last.number

@@ -1,6 +1,5 @@
 """Watch a court: frames, events from the first on, the sheet and the scene."""
 
-import math
 import time
 from collections.abc import Callable
 
@@ -8,7 +7,7 @@ import msgspec
 
 from lacoc_client.asking import ANSWER_S, NoCourt, fetch, understand
 from lacoc_client.event_log import EventLog
-from lacoc_shared.codec import scene_hash
+from lacoc_shared.codec import message_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
 from lacoc_shared.mistakes import UserError
@@ -16,8 +15,8 @@ from lacoc_shared.session import Session
 
 _EVENTS_DEPTH = 4096
 _FETCH_TRIES = 3
-_LACKING_S = 1.0
-"""How often a court is asked for events that did not come."""
+_ASK_AGAIN_S = 1.0
+"""How often a court is asked for what did not come."""
 
 
 class _Version(msgspec.Struct):
@@ -45,12 +44,14 @@ class Spectator:
         self.keys = Keys(court)
         self._session = session
         self._frames = session.mailbox(self.keys.frame, 1, notify)
-        self._sheets = session.history_mailbox(self.keys.sheet, 1)
+        self._sheets = session.mailbox(self.keys.sheet, 1)
         self._healths = session.mailbox(self.keys.health, 1)
-        self._events = session.history_mailbox(self.keys.event, _EVENTS_DEPTH)
+        self._events = session.mailbox(self.keys.event, _EVENTS_DEPTH)
         self._new_events: list[Event] = []
-        self.sheet: Sheet = self._fetch_sheet()
+        self.sheet: Sheet
         """Who plays what; always that of the newest frame's scene."""
+        self._sheet_hash = b""
+        self._fetch_sheet()
         self.frame: Frame | None = None
         """The newest frame."""
         self.frame_s = time.monotonic()
@@ -58,8 +59,9 @@ class Spectator:
         self.health: Health | None = None
         """The newest health."""
         self._log: EventLog[Event] = EventLog()
-        self._asked_s = -math.inf
-        """When events were last asked for."""
+        self._asked_s = 0.0
+        """When the court was last asked for what did not come."""
+        self._fetch_events()
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -77,13 +79,12 @@ class Spectator:
         """
         while (mail := self._events.take()) is not None:
             self._take_in(understand(mail.payload, Event))
-        if self._log.lacks and time.monotonic() >= self._asked_s + _LACKING_S:
-            self._fetch_events()
         if (mail := self._healths.take()) is not None:
             self.health = understand(mail.payload, Health)
         newest = self._frames.take()
         if (mail := self._sheets.take()) is not None:
-            self.sheet = _read_sheet(mail.payload)
+            self._read_sheet(mail.payload)
+        self._ask_for_what_lacks()
         if newest is None:
             return None
         self.frame, self.frame_s = understand(newest.payload, Frame), newest.arrived_s
@@ -126,13 +127,38 @@ class Spectator:
         """
         for _ in range(_FETCH_TRIES):
             scene = fetch(self._session, self.keys, self.keys.scene)
-            if scene_hash(scene) == self.sheet.scene:
+            if message_hash(scene) == self.sheet.scene:
                 return understand(scene, Scene)
-            self.sheet = self._fetch_sheet()
+            self._fetch_sheet()
         raise UserError(_OTHER_SCENE)
 
-    def _fetch_sheet(self, timeout_s: float = ANSWER_S) -> Sheet:
-        return _read_sheet(fetch(self._session, self.keys, self.keys.sheet, timeout_s=timeout_s))
+    def _fetch_sheet(self, timeout_s: float = ANSWER_S) -> None:
+        self._read_sheet(fetch(self._session, self.keys, self.keys.sheet, timeout_s=timeout_s))
+
+    def _read_sheet(self, payload: bytes) -> None:
+        version = understand(payload, _Version).protocol
+        if version != PROTOCOL:
+            raise UserError(
+                f"The court speaks version {version} of the protocol, this program version "
+                f"{PROTOCOL}: install the version of lacoc that the organiser uses."
+            )
+        self.sheet, self._sheet_hash = understand(payload, Sheet), message_hash(payload)
+
+    def _ask_for_what_lacks(self) -> None:
+        """Get what was sent while this was away, or was dropped on a slow link."""
+        told = self.health
+        if told is None or time.monotonic() < self._asked_s + _ASK_AGAIN_S:
+            return
+        lacks_event = self._log.differs(told.match, told.beat, told.events)
+        lacks_sheet = told.sheet not in (b"", self._sheet_hash)
+        try:
+            if lacks_event:
+                self._fetch_events()
+            if lacks_sheet:
+                self._asked_s = time.monotonic()
+                self._fetch_sheet(timeout_s=1.0)
+        except NoCourt:  # it went away just now
+            return
 
     def _catch_up(self, frame: Frame) -> None:
         """The scene changed: get the sheet that belongs to the frame.
@@ -141,7 +167,7 @@ class Spectator:
         """
         for _ in range(_FETCH_TRIES):
             try:
-                self.sheet = self._fetch_sheet(timeout_s=1.0)
+                self._fetch_sheet(timeout_s=1.0)
             except NoCourt:  # it went away just now: the next frame will ask again
                 return
             if self.sheet.scene == frame.scene:
@@ -154,12 +180,8 @@ class Spectator:
             raise UserError(_OTHER_SCENE)
 
     def _fetch_events(self) -> None:
-        """Get the whole log: one who came while events were sent may have missed the first."""
         self._asked_s = time.monotonic()
-        try:
-            events = fetch(self._session, self.keys, self.keys.event, timeout_s=1.0)
-        except NoCourt:  # it went away just now
-            return
+        events = fetch(self._session, self.keys, self.keys.event, timeout_s=1.0)
         new = self._log.restore([(one, one) for one in understand(events, tuple[Event, ...])])
         self._new_events = sorted(self._new_events + new, key=lambda event: event.number)
 
@@ -172,13 +194,3 @@ _OTHER_SCENE = (
     "The court's frames show another scene than its sheet describes. Start this program again; "
     "if that does not help, tell the organiser."
 )
-
-
-def _read_sheet(payload: bytes) -> Sheet:
-    version = understand(payload, _Version).protocol
-    if version != PROTOCOL:
-        raise UserError(
-            f"The court speaks version {version} of the protocol, this program version "
-            f"{PROTOCOL}: install the version of lacoc that the organiser uses."
-        )
-    return understand(payload, Sheet)

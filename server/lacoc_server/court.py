@@ -256,6 +256,8 @@ class Court:
             verdict=self._health.verdict(),
             record_trouble=self._trouble,
             input_delay_ms=self._network.input_delay_ms,
+            events=self._network.newest_event,
+            sheet=self._network.sheet_hash,
         )
         self._network.publish_health(health)
         self._log.health(self.match_id, health)

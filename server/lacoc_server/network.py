@@ -7,13 +7,13 @@ answered when the match has taken it in and the record is written. An outbox sen
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import NamedTuple, Self, TypeVar
+from typing import NamedTuple, Self
 
 from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.inbox import COMMANDS_PER_BEAT, Door, Inbox
 from lacoc_server.outbox import Outbox
 from lacoc_shared.access_rules import Protection
-from lacoc_shared.codec import encode
+from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
 from lacoc_shared.keyspace import ENTER, Keys
 from lacoc_shared.messages import (
@@ -37,10 +37,10 @@ _DESK = 16
 _FETCH_DESK = 256  # a crowd may arrive at once
 _REQUESTS_PER_BEAT = 4  # that are refused; of one desk at most one enters a beat
 _FETCHES_PER_BEAT = 8
-_EVENTS_KEPT = 1024
+_EVENTS_LISTED = 2000
+"""At most, and the newest: a reply has its limit, and a practice may go on for days."""
 
 
-T = TypeVar("T")
 _Judge = Callable[[Request], Input | Done | Refusal]
 
 
@@ -79,8 +79,8 @@ class CourtNetwork:
         self._session = session = open_court(listen, protection)
         self._outbox = Outbox()
         self._frame = session.publisher(keys.frame)
-        self._event = session.history_publisher(keys.event, _EVENTS_KEPT)
-        self._sheet = session.history_publisher(keys.sheet, 1)
+        self._event = session.publisher(keys.event)
+        self._sheet = session.publisher(keys.sheet)
         self._health = session.publisher(keys.health)
         self._commands = [session.ring(keys.command(seat), _RING) for seat in inbox.seats]
         self._desks: list[tuple[Desk, _Judge]] = [
@@ -156,14 +156,14 @@ class CourtNetwork:
         self._outbox.send_newest(self._frame, frame)
 
     def publish_event(self, event: Event) -> None:
-        """Send an event that must arrive; those who come late get it too."""
+        """Send an event, and keep it for those who come late or missed it."""
         if self._log and self._log[0].match != event.match:
             self._log = []
-        self._log.append(event)
+        self._log = [*self._log[1 - _EVENTS_LISTED :], event]
         self._outbox.send(self._event, encode(event))
 
     def publish_sheet(self, sheet: Sheet) -> None:
-        """Send a changed sheet, which must arrive, and keep it for those who ask."""
+        """Send a changed sheet, and keep it for those who ask."""
         self._sheet_bytes = encode(sheet)
         self._outbox.send(self._sheet, self._sheet_bytes)
 
@@ -172,8 +172,18 @@ class CourtNetwork:
         self._scene_bytes = encode(scene)
 
     def publish_health(self, health: Health) -> None:
-        """Send the court's health."""
+        """Send the court's health; by it everybody finds what did not reach them."""
         self._outbox.send_newest(self._health, encode(health))
+
+    @property
+    def newest_event(self) -> int:
+        """Number of the event that was sent last; 0: none."""
+        return self._log[-1].number if self._log else 0
+
+    @property
+    def sheet_hash(self) -> bytes:
+        """Of the sheet that was sent last."""
+        return message_hash(self._sheet_bytes)
 
     def seat_health(self, now_s: float) -> tuple[SeatHealth, ...]:
         """How each seat's link is, in the arena's order."""
@@ -194,9 +204,11 @@ class CourtNetwork:
         return dict(self._decision_desk.refused)
 
     def _serve_fetches(self) -> None:
-        _serve(self._sheet_desk, self._sheet_bytes, bytes)
-        _serve(self._scene_desk, self._scene_bytes, bytes)
-        _serve(self._log_desk, self._log, encode)
+        if self._sheet_bytes:  # who asks too early waits
+            _serve(self._sheet_desk, lambda: self._sheet_bytes)
+        if self._scene_bytes:
+            _serve(self._scene_desk, lambda: self._scene_bytes)
+        _serve(self._log_desk, lambda: encode(self._log))
 
     def _let_in(self, desk: Desk, judge: _Judge) -> Iterator[Arrival]:
         for _ in range(_REQUESTS_PER_BEAT):
@@ -242,10 +254,10 @@ def _empty(ring: Ring) -> list[bytes]:
     return waiting
 
 
-def _serve(desk: Desk, kept: T, write: Callable[[T], bytes]) -> None:
-    """Answer those who fetch something; those who ask too early or in a crowd wait their turn."""
-    for _ in range(_FETCHES_PER_BEAT if kept else 0):
+def _serve(desk: Desk, payload: Callable[[], bytes]) -> None:
+    """Answer those who fetch something; those who ask in a crowd wait their turn."""
+    for _ in range(_FETCHES_PER_BEAT):
         request = desk.take()
         if request is None:
             return
-        request.reply(write(kept))
+        request.reply(payload())

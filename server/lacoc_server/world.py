@@ -15,7 +15,7 @@ from lacoc_robots.model import add_robot, set_options
 from lacoc_server.entry import Entry
 from lacoc_server.physics import Fault
 from lacoc_server.scene import make_scene
-from lacoc_shared.codec import encode, scene_hash
+from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.gait import Posture
 from lacoc_shared.seat import NOBODY
 
@@ -86,7 +86,7 @@ class World:
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self.scene = make_scene(self.model, arena.game, seats)
-        self.scene_hash = scene_hash(encode(self.scene))
+        self.scene_hash = message_hash(encode(self.scene))
         buffer = np.empty(mujoco.mj_sizeModel(self.model), np.uint8)
         mujoco.mj_saveModel(self.model, None, buffer)
         self.model_hash = hashlib.blake2b(buffer.data, digest_size=8).hexdigest()

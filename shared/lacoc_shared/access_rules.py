@@ -61,12 +61,10 @@ def access_control(protection: Protection | None) -> dict[str, Any]:
 
 
 def _watching() -> Rules:
-    # A wildcard does not cover the @ of a history: it is named.
-    histories = ["lacoc/*/event/@adv/**", "lacoc/*/sheet/@adv/**"]
     return {
         "court-to-all": _rule(
             "egress",
-            ["lacoc/**", *histories],
+            ["lacoc/**"],
             [
                 *("put", "delete", "reply", "query", "declare_subscriber", "declare_queryable"),
                 *("liveliness_token", "liveliness_query", "declare_liveliness_subscriber"),
@@ -74,17 +72,17 @@ def _watching() -> Rules:
         ),
         "watch": _rule(
             "ingress",
-            [*(f"lacoc/*/{what}" for what in ("frame", "event", "sheet", "health")), *histories],
+            [f"lacoc/*/{what}" for what in ("frame", "event", "sheet", "health")],
             ["declare_subscriber"],
         ),
         "fetch": _rule(
             "ingress",
-            [*(f"lacoc/*/{what}" for what in ("sheet", "scene", "event/**")), *histories],
+            [f"lacoc/*/{what}" for what in ("sheet", "scene", "event")],
             ["query"],
         ),
         "presence": _rule(
             "ingress",
-            ["lacoc/*/live/**", *histories],
+            ["lacoc/*/live/**"],
             ["liveliness_query", "declare_liveliness_subscriber"],
         ),
     }

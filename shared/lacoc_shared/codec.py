@@ -44,9 +44,9 @@ def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
         raise BadMessage(str(error)) from None
 
 
-def scene_hash(scene: bytes) -> bytes:
-    """The 8 bytes by which frames and sheets name an encoded `Scene`."""
-    return hashlib.blake2b(scene, digest_size=8).digest()
+def message_hash(message: bytes) -> bytes:
+    """The 8 bytes by which frames, sheets and health name an encoded `Scene` or `Sheet`."""
+    return hashlib.blake2b(message, digest_size=8).digest()
 
 
 def pack_states(states: tuple[int, ...]) -> bytes:

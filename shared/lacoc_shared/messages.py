@@ -369,3 +369,7 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     input_delay_ms: int = 0
     """From a frame to the effect of what was done upon it, the same for all seats; 0: the contest
     does not make links equal."""
+    events: int = 0
+    """Number of the newest event: whoever has fewer asks for them."""
+    sheet: bytes = b""
+    """8 bytes of BLAKE2 over the newest sheet: whoever has another asks for it."""

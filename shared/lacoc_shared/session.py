@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import zenoh
-import zenoh.ext
 from zenoh.handlers import Callback, RingChannel
 
 from lacoc_shared import address, heap, network_config
@@ -46,7 +45,7 @@ class Refused(Exception):
 class Publisher:
     """Sends bytes under one key expression; a receiver too slow to take them misses some."""
 
-    def __init__(self, publisher: zenoh.Publisher | zenoh.ext.AdvancedPublisher) -> None:
+    def __init__(self, publisher: zenoh.Publisher) -> None:
         self._publisher = publisher
 
     def put(self, payload: bytes) -> None:
@@ -162,25 +161,6 @@ class Session:
         """Declare that this session sends under a key expression."""
         return Publisher(self._session.declare_publisher(key))
 
-    def history_publisher(self, key: str, depth: int) -> Publisher:
-        """Declare a publisher whose messages must arrive, also at those who come late.
-
-        Args:
-            key: key expression.
-            depth: number of messages that are kept for them.
-        """
-        return Publisher(
-            zenoh.ext.declare_advanced_publisher(
-                self._session,
-                key,
-                cache=zenoh.ext.CacheConfig(depth),
-                sample_miss_detection=zenoh.ext.MissDetectionConfig(
-                    heartbeat=0.5, sporadic_heartbeat=None
-                ),
-                publisher_detection=True,
-            )
-        )
-
     def ring(self, key: str, depth: int) -> Ring:
         """Subscribe; the owner polls, and the newest `depth` messages wait for it."""
         channel: RingChannel[zenoh.Sample] = RingChannel(depth)
@@ -196,26 +176,6 @@ class Session:
         """
         mailbox = Mailbox(depth, notify)
         self._session.declare_subscriber(key, Callback(mailbox.deliver, indirect=False))
-        return mailbox
-
-    def history_mailbox(
-        self, key: str, depth: int, notify: Callable[[], None] | None = None
-    ) -> Mailbox:
-        """Subscribe to a `history_publisher`: what it sent before comes first, and nothing lacks.
-
-        A publisher that comes back (a restarted court) is noticed, and its history comes too.
-        Arguments as for a mailbox.
-        """
-        mailbox = Mailbox(depth, notify)
-        zenoh.ext.declare_advanced_subscriber(
-            self._session,
-            key,
-            Callback(mailbox.deliver, indirect=False),
-            # A publisher that comes late is noticed by its heartbeat. To let Zenoh look out for it
-            # as well would cost the court's router 5 kB for ever of each session that ever came.
-            history=zenoh.ext.HistoryConfig(max_samples=depth, detect_late_publishers=False),
-            recovery=zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
-        )
         return mailbox
 
     def desk(self, key: str, depth: int) -> Desk:

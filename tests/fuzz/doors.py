@@ -84,8 +84,6 @@ class _Session:
     def publisher(self, *_: Any) -> "_Session":
         return self
 
-    history_publisher = publisher
-
     def ring(self, key: str, depth: int) -> _Queue:
         return self.queues.setdefault(key, _Queue(depth))
 

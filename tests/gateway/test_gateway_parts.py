@@ -142,8 +142,8 @@ def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
     assert len(socket.written) == pytest.approx(expected, rel=0.02, abs=1)
 
 
-def event(number: int, text: str = "", match: int = 1) -> Event:
-    return Event(number=number, match=match, beat=0, clock_ticks=0, kind="phase", text=text)
+def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:
+    return Event(number=number, match=match, beat=beat, clock_ticks=0, kind="phase", text=text)
 
 
 def test_a_log_that_begins_again() -> None:
@@ -160,30 +160,43 @@ def test_a_log_that_begins_again() -> None:
     assert (list(log), log.number) == (["next 1"], 2)
 
 
-def test_a_log_that_lacks_events_takes_in_the_whole() -> None:
-    """Numbers begin at 1, without a gap; what came after the list was made stays."""
+def test_a_log_is_held_against_what_the_court_says() -> None:
+    """Numbers begin at 1, without a gap; what came after the court said so is no difference."""
     log: EventLog[str] = EventLog()
-    assert not log.lacks
-    for number in (4, 5, 7):
+    assert not log.differs(1, 0, 0)
+    assert log.differs(1, 500, 3)
+    for number in (1, 2, 3):
+        log.add(event(number, "a", beat=number), f"live {number}")
+    said = [(1, 2, 3), (1, 2, 2), (1, 3, 2), (1, 9999, 3), (1, 9999, 4), (2, 0, 1), (1, 0, 0)]
+    assert [log.differs(*one) for one in said] == [False, False, True, False, True, True, False]
+    log.add(event(5, "a"), "live 5")
+    assert log.differs(1, 0, 0)
+
+
+def test_the_courts_list_stands_for_the_log() -> None:
+    """What was known of it is no news; what the court does not know was another match's."""
+    log: EventLog[str] = EventLog()
+    for number in (4, 5):
         log.add(event(number, "a"), f"live {number}")
-    assert log.lacks
     whole = [(event(n, "a"), f"listed {n}") for n in range(1, 7)]
     assert [one.number for one in log.restore(whole)] == [1, 2, 3, 6]
-    assert list(log) == [*(f"listed {n}" for n in range(1, 7)), "live 7"]
-    assert (log.lacks, log.number) == (False, 1)
-    assert log.restore(whole) == []
-    assert log.number == 1
+    assert (list(log), log.number) == ([f"listed {n}" for n in range(1, 7)], 1)
+    assert (log.restore(whole), log.number) == ([], 1)
+    assert [one.number for one in log.restore([(event(1, "b"), "b 1")])] == [1]
+    assert (list(log), log.number) == (["b 1"], 2)
+    assert (log.restore([]), list(log), log.number) == ([], [], 3)
 
 
-def test_the_whole_log_of_a_match_before_is_no_news() -> None:
-    """The court may begin another match between the question and the answer."""
+def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
+    """A practice of days: the list has its newest events only."""
     log: EventLog[str] = EventLog()
-    log.add(event(2, "next", match=2), "next 2")
-    assert log.restore([(event(1, "old"), "old 1")]) == []
-    assert list(log) == ["next 2"]
-    assert log.restore([]) == []
-    assert len(log.restore([(event(1, "next", match=3), "after 1")])) == 1
-    assert list(log) == ["after 1"]
+    log.add(event(90, "a"), "live 90")
+    assert log.restore([(event(n, "a"), f"listed {n}") for n in range(50, 91)])
+    assert not log.differs(1, 0, 90)
+    log.add(event(92, "a"), "live 92")
+    assert log.differs(1, 0, 0)
+    log.add(event(1, "b", match=2), "next 1")
+    assert not log.differs(2, 0, 1)
 
 
 def test_an_allowance_is_spent_and_comes_back() -> None:

@@ -12,7 +12,7 @@ from lacoc_server.inbox import Inbox
 from lacoc_server.network import CourtNetwork, Outcome
 from lacoc_shared import seal
 from lacoc_shared.access_rules import Protection
-from lacoc_shared.codec import encode, scene_hash
+from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import (
@@ -59,7 +59,7 @@ def make_sheet(scene: Scene, **changes: Any) -> Sheet:
     fields: dict[str, Any] = {"protocol": PROTOCOL, "version": "0", "court": "main", "match": 1}
     fields |= {"arena": "test", "title": "Test", "duration_s": 180.0, "levels": (1,)}
     fields |= {"settings": {}, "seats": seats, "markers": ()}
-    fields |= {"scene": scene_hash(encode(scene))}
+    fields |= {"scene": message_hash(encode(scene))}
     return Sheet(**(fields | changes))
 
 
@@ -138,7 +138,7 @@ class CourtStub:
                 self._publish(beat, now_s)
 
     def _publish(self, beat: int, now_s: float) -> None:
-        scene = scene_hash(encode(self.scene))
+        scene = message_hash(encode(self.scene))
         seats = tuple(self._seats.values())
         frame = Frame(1, beat, Phase.PLAYING, 0, 0, seats, b"", b"", scene, bytes(8))
         self.network.publish_frame(encode(frame), now_s)
@@ -152,6 +152,8 @@ class CourtStub:
                 seats=self.network.seat_health(now_s),
                 dropped=self.network.dropped,
                 decisions={},
+                events=self.network.newest_event,
+                sheet=self.network.sheet_hash,
             )
             self.network.publish_health(health)
 

@@ -127,7 +127,6 @@ def test_nobody_speaks_for_the_court(
     box, court_box = watching.mailbox(key, 64), watching.mailbox(KEYS.frame, 1)
     forger = sessions[who]
     forger.publisher(key).put(b"forged")
-    forger.history_publisher(key, 8).put(b"forged")
     desk = forger.desk(key, 4)
     forger.announce("lacoc/forged/live/court")
     forger.ask(KEYS.scene if what == "sheet" else KEYS.sheet)  # all before it was dealt with

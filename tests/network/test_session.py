@@ -199,7 +199,7 @@ def test_a_program_that_forgets_to_close_still_ends(router: Session, end: str) -
     code = (
         "import sys; from lacoc_shared.session import *\n"
         "client = open_client([sys.argv[1]]); client.mailbox('lacoc/main/frame', 1)\n"
-        "client.history_mailbox('lacoc/main/event', 9)\n"
+        "client.mailbox('lacoc/main/event', 9)\n"
         "court = open_court(['127.0.0.1:0']); court.desk('lacoc/main/sheet', 1)\n"
         f"court.ring('lacoc/main/seat/left/key', 9); {end}"
     )

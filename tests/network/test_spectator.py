@@ -10,7 +10,7 @@ from lacoc_client.asking import understand
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_shared import decisions as d
-from lacoc_shared.codec import encode, scene_hash
+from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import Sheet
 from lacoc_shared.mistakes import UserError
@@ -93,7 +93,7 @@ def test_a_changed_scene_is_followed(court: CourtStub, session: Session) -> None
         court.in_a_beat(lambda scene=scene: court.show(scene, title=scene.bodies[0].name))
         until(lambda name=name: spectator.wait_frame(1.0) and spectator.sheet.title == name)
         assert spectator.frame is not None
-        assert spectator.frame.scene == spectator.sheet.scene == scene_hash(encode(scene))
+        assert spectator.frame.scene == spectator.sheet.scene == message_hash(encode(scene))
         assert spectator.scene() == scene
 
 

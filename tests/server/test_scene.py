@@ -10,7 +10,7 @@ from stage import entry
 from lacoc_arenas import arena as arenas
 from lacoc_server.scene import make_scene
 from lacoc_server.world import World
-from lacoc_shared.codec import decode, encode, scene_hash
+from lacoc_shared.codec import decode, encode, message_hash
 from lacoc_shared.kinematics import ForwardKinematics
 from lacoc_shared.messages import MARKER_STATES, Scene
 from lacoc_shared.mistakes import UserError
@@ -85,7 +85,7 @@ def test_the_hash_is_of_what_is_drawn() -> None:
     hashes = {it.scene_hash for it in worlds}
     assert len(hashes) == 3
     assert all(len(h) == 8 for h in hashes)
-    assert worlds[1].scene_hash == scene_hash(encode(worlds[1].scene))
+    assert worlds[1].scene_hash == message_hash(encode(worlds[1].scene))
     assert World(ground, [entry()] * 2).scene_hash == worlds[1].scene_hash
 
 

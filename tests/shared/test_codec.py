@@ -11,8 +11,8 @@ from lacoc_shared.codec import (
     BadMessage,
     decode,
     encode,
+    message_hash,
     pack_states,
-    scene_hash,
     unpack_states,
 )
 from lacoc_shared.messages import Command, Refusal
@@ -72,8 +72,8 @@ def test_a_longer_payload_is_refused_unread() -> None:
 
 def test_a_scene_is_named_by_8_bytes_of_its_hash() -> None:
     """docs/protocol.md: frames and sheets name a scene by BLAKE2b, 8 bytes, of what was sent."""
-    assert scene_hash(b"scene") == hashlib.blake2b(b"scene", digest_size=8).digest()
-    assert scene_hash(b"scene") != scene_hash(b"scenf")
+    assert message_hash(b"scene") == hashlib.blake2b(b"scene", digest_size=8).digest()
+    assert message_hash(b"scene") != message_hash(b"scenf")
 
 
 def test_states_are_two_bits_the_first_lowest() -> None:

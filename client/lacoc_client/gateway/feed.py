@@ -15,7 +15,7 @@ from lacoc_client.gateway.viewer import Frames, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared import log
 from lacoc_shared.access import Access
-from lacoc_shared.codec import BadMessage, decode, encode, scene_hash
+from lacoc_shared.codec import BadMessage, decode, encode, message_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event
 from lacoc_shared.mistakes import UserError
@@ -53,6 +53,13 @@ class _Sheet(msgspec.Struct):
     match_id: str = ""
 
 
+class _Health(msgspec.Struct):
+    match: int
+    beat: int
+    events: int = 0
+    sheet: bytes = b""
+
+
 class CourtFeed:
     """A court as its pages see it; used from the event loop only.
 
@@ -87,6 +94,9 @@ class CourtFeed:
         self._why = ""
         self._wrong_version = ""
         self._fetching: asyncio.Task[None] | None = None
+        self._told = _Health(0, 0)
+        """What the court said last of all that it sent."""
+        self._sheet_hash = b""
         self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
         self._explained_s = 0.0
@@ -158,7 +168,7 @@ class CourtFeed:
                 self.session = await self._threads.run(
                     lambda: open_client([self.access.connect], credentials=self.access.credentials)
                 )
-                self._subscribe(self.session)
+                await self._subscribe(self.session)
             except UserError as error:
                 self._why = str(error)
                 self._send(self._link())
@@ -219,12 +229,11 @@ class CourtFeed:
         text = await self._threads.run(lambda: no_answer(session, self.court))
         self._why = "" if self._connected else text
 
-    def _subscribe(self, session: Session) -> None:
+    async def _subscribe(self, session: Session) -> None:
+        """Listen; pages that see a frame know its sheet and all that happened before."""
         loop = asyncio.get_running_loop()
 
-        def hear(
-            subscribe: Callable[..., Mailbox], key: str, depth: int, take: Callable[[bytes], None]
-        ) -> None:
+        def hear(key: str, depth: int, take: Callable[[bytes], None]) -> None:
             boxes: list[Mailbox] = []
 
             def empty() -> None:
@@ -235,13 +244,16 @@ class CourtFeed:
                 with contextlib.suppress(RuntimeError):  # the loop has ended
                     loop.call_soon_threadsafe(empty)
 
-            boxes.append(subscribe(key, depth, notify))
+            boxes.append(session.mailbox(key, depth, notify))
             empty()  # what came before there was a box to look into
 
-        hear(session.history_mailbox, self._keys.sheet, 1, self._take_sheet)
-        hear(session.history_mailbox, self._keys.event, _EVENTS_DEPTH, self._take_event)
-        hear(session.mailbox, self._keys.health, 1, self._take_health)
-        hear(session.mailbox, self._keys.frame, 1, self._take_frame)
+        hear(self._keys.sheet, 1, self._take_sheet)
+        hear(self._keys.event, _EVENTS_DEPTH, self._take_event)
+        with contextlib.suppress(UserError, BadMessage):  # it will come
+            self._take_sheet(await self._ask(self._keys.sheet))
+            self._take_log(await self._ask(self._keys.event))
+        hear(self._keys.health, 1, self._take_health)
+        hear(self._keys.frame, 1, self._take_frame)
 
     def _take_frame(self, payload: bytes) -> None:
         try:
@@ -274,23 +286,37 @@ class CourtFeed:
             self._send(framed)
         else:
             self._send_log()
-        if self._log.lacks and (self._restoring is None or self._restoring.done()):
-            self._restoring = asyncio.get_running_loop().create_task(self._restore())
 
     def _send_log(self) -> None:
         self._send(self._link())  # its new number says that what was before is no more
         for kept in self._log:
             self._send(kept)
 
+    @property
+    def _lacks_events(self) -> bool:
+        return self._log.differs(self._told.match, self._told.beat, self._told.events)
+
+    @property
+    def _lacks_sheet(self) -> bool:
+        return self._told.sheet not in (b"", self._sheet_hash)
+
     async def _restore(self) -> None:
-        """Get the whole log: who came while events were sent may have missed the first."""
-        while self._log.lacks:
+        """Get what was sent while this was away, or was dropped on a slow link."""
+        while self._lacks_events or self._lacks_sheet:
             with contextlib.suppress(UserError, BadMessage):  # it went away just now
-                events = decode(await self._ask(self._keys.event), tuple[Event, ...], _MAX_BYTES)
-                framed = [(event, wire.message(Kind.EVENT, encode(event))) for event in events]
-                if self._log.restore(framed):
-                    self._send_log()
+                if self._lacks_events:
+                    self._take_log(await self._ask(self._keys.event))
+                if self._lacks_sheet:
+                    self._take_sheet(await self._ask(self._keys.sheet))
             await asyncio.sleep(_FETCH_AGAIN_S)
+            if not self._connected:
+                return  # the next health asks again
+
+    def _take_log(self, payload: bytes) -> None:
+        events = decode(payload, tuple[Event, ...], _MAX_BYTES)
+        framed = [(event, wire.message(Kind.EVENT, encode(event))) for event in events]
+        if self._log.restore(framed):
+            self._send_log()
 
     def _take_sheet(self, payload: bytes) -> None:
         try:
@@ -302,12 +328,21 @@ class CourtFeed:
         if sheet.protocol != PROTOCOL:
             self._other_version(sheet.protocol)
         self._sheet_scene, self.match_id = sheet.scene, sheet.match_id
+        self._sheet_hash = message_hash(payload)
         framed = wire.message(Kind.SHEET, payload)
         if framed != self._sheet:
             self._sheet = framed
             self._send(framed)
 
     def _take_health(self, payload: bytes) -> None:
+        try:
+            self._told = decode(payload, _Health, _MAX_BYTES)
+        except BadMessage:
+            self._other_version()
+            return
+        idle = self._restoring is None or self._restoring.done()
+        if idle and (self._lacks_events or self._lacks_sheet):
+            self._restoring = asyncio.get_running_loop().create_task(self._restore())
         self._health = framed = wire.message(Kind.HEALTH, payload)
         for viewer in self._viewers:
             viewer.send_if_fast(framed)
@@ -329,7 +364,7 @@ class CourtFeed:
         while not self._frame_scene == self._scene_hash == self._sheet_scene:
             try:
                 scene = await self._ask(self._keys.scene)
-                found = scene_hash(scene)
+                found = message_hash(scene)
                 if found == self._frame_scene and found != self._scene_hash:
                     self._scene_hash = found
                     self._scene = wire.message(Kind.SCENE, found + scene)

@@ -181,6 +181,8 @@ export interface Health {
   verdict: HealthVerdict | null;
   record_trouble: string;
   input_delay_ms: number;
+  events: number;
+  sheet: Uint8Array;
 }
 
 export interface DecisionReply {
