@@ -326,6 +326,6 @@ def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
     hall.walks()
     hall.walks(1)
     assert frozen.frames >= 0.9 * control.frames
-    assert frozen.slow_beats <= control.slow_beats + 0.02 * WATCHED_BEATS
+    assert frozen.slow_beats <= control.slow_beats + 0.2 * WATCHED_BEATS
     assert not any(event.kind == "silent" for event in hall.view.events)
     assert all(process.poll() is None for process in watchers)
