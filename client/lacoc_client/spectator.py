@@ -15,8 +15,6 @@ from lacoc_shared.session import Session
 
 _EVENTS_DEPTH = 4096
 _FETCH_TRIES = 3
-_ASK_AGAIN_S = 1.0
-"""How often a court is asked for what did not come."""
 
 
 class _Version(msgspec.Struct):
@@ -59,9 +57,7 @@ class Spectator:
         self.health: Health | None = None
         """The newest health."""
         self._log: EventLog[Event] = EventLog()
-        self._asked_s = 0.0
-        """When the court was last asked for what did not come."""
-        self._fetch_events()
+        self._fetch_events(ANSWER_S)
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -77,14 +73,16 @@ class Spectator:
         Raises:
             UserError: if the court's messages are not understood.
         """
+        told: Health | None = None
         while (mail := self._events.take()) is not None:
             self._take_in(understand(mail.payload, Event))
         if (mail := self._healths.take()) is not None:
-            self.health = understand(mail.payload, Health)
+            self.health = told = understand(mail.payload, Health)
         newest = self._frames.take()
         if (mail := self._sheets.take()) is not None:
             self._read_sheet(mail.payload)
-        self._ask_for_what_lacks()
+        if told is not None:
+            self._ask_for_what_lacks(told)
         if newest is None:
             return None
         self.frame, self.frame_s = understand(newest.payload, Frame), newest.arrived_s
@@ -144,18 +142,12 @@ class Spectator:
             )
         self.sheet, self._sheet_hash = understand(payload, Sheet), message_hash(payload)
 
-    def _ask_for_what_lacks(self) -> None:
+    def _ask_for_what_lacks(self, told: Health) -> None:
         """Get what was sent while this was away, or was dropped on a slow link."""
-        told = self.health
-        if told is None or time.monotonic() < self._asked_s + _ASK_AGAIN_S:
-            return
-        lacks_event = self._log.differs(told.match, told.beat, told.events)
-        lacks_sheet = told.sheet not in (b"", self._sheet_hash)
         try:
-            if lacks_event:
-                self._fetch_events()
-            if lacks_sheet:
-                self._asked_s = time.monotonic()
+            if self._log.differs(told.match, told.beat, told.events):
+                self._fetch_events(timeout_s=1.0)
+            if told.sheet not in (b"", self._sheet_hash):
                 self._fetch_sheet(timeout_s=1.0)
         except NoCourt:  # it went away just now
             return
@@ -179,9 +171,8 @@ class Spectator:
         if self.sheet.scene != frame.scene:
             raise UserError(_OTHER_SCENE)
 
-    def _fetch_events(self) -> None:
-        self._asked_s = time.monotonic()
-        events = fetch(self._session, self.keys, self.keys.event, timeout_s=1.0)
+    def _fetch_events(self, timeout_s: float) -> None:
+        events = fetch(self._session, self.keys, self.keys.event, timeout_s=timeout_s)
         new = self._log.restore([(one, one) for one in understand(events, tuple[Event, ...])])
         self._new_events = sorted(self._new_events + new, key=lambda event: event.number)
 

@@ -325,7 +325,9 @@ def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
         os.kill(process.pid, signal.SIGCONT)
     hall.walks()
     hall.walks(1)
+    # What else the machine does comes and goes: it is looked at before and after.
+    slow_beats = max(control.slow_beats, watched(hall).slow_beats)
     assert frozen.frames >= 0.9 * control.frames
-    assert frozen.slow_beats <= control.slow_beats + 0.2 * WATCHED_BEATS
+    assert frozen.slow_beats <= slow_beats + 0.02 * WATCHED_BEATS
     assert not any(event.kind == "silent" for event in hall.view.events)
     assert all(process.poll() is None for process in watchers)
