@@ -115,6 +115,8 @@ class Controller:
         self._joined: Joined | None = None
         self._health_seen: Health | None = None
         self._seq = 0
+        self._requests = 0
+        """Of this session, ready and leave."""
         self._standing = (0, 0, 0)
         """Sequence number, level and key of the command that stands."""
         self._sent_s = 0.0
@@ -165,6 +167,7 @@ class Controller:
         self.view.poll()
         self._health_seen = self.view.health  # older than the session: says nothing of it
         self._joined = joined
+        self._requests = 0
         self._seq = max(self._seq, joined.last_seq)
         self._pressed.clear()
         self.hold, self.reason = Hold.HELD, ""
@@ -278,8 +281,9 @@ class Controller:
     def _request(self, what: str, ready: bool) -> str:
         joined = self._session_held()
         key = self._keys.request(self.seat, what)
-        mac = seal.request_mac(joined.secret, key, joined.session, ready)
-        request = SeatRequest(session=joined.session, ready=ready, mac=mac)
+        self._requests += 1
+        mac = seal.request_mac(joined.secret, key, joined.session, self._requests, ready)
+        request = SeatRequest(session=joined.session, seq=self._requests, ready=ready, mac=mac)
         return ask(self._session, self._keys, key, request, Done).text
 
     def _send(self, upon: Frame | None = None) -> None:

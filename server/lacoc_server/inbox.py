@@ -316,11 +316,15 @@ class Inbox:
         if isinstance(secret, Why):
             return seat.refuse(secret, _SESSION_SENTENCES[secret].format(seat=seat.name))
         key_expression = self._keys.request(seat.name, what)
-        expected = seal.request_mac(secret, key_expression, request.session, request.ready)
+        expected = seal.request_mac(
+            secret, key_expression, request.session, request.seq, request.ready
+        )
         if not seal.same(request.mac, expected):
             return seat.refuse(
                 Why.BAD_SEAL, f"The request's seal is not that of seat {seat.name}: join again."
             )
+        if not self._sessions.is_next(request.session, request.seq):
+            return seat.refuse(Why.OLD, "This request has come before, or a newer one has.")
         return request
 
     def _presence(self, seat: _Seat) -> list[Input]:

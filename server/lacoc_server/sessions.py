@@ -1,5 +1,6 @@
 """Who holds which seat: sessions, each a number with a secret, and why one ended."""
 
+from dataclasses import dataclass
 from enum import StrEnum
 
 from lacoc_shared import seal
@@ -28,12 +29,20 @@ class Why(StrEnum):
     BAD_DECISION = "bad decision"
 
 
+@dataclass
+class _Held:
+    seat: int
+    secret: bytes
+    requests: int = 0
+    """Sequence number of the newest ready or leave."""
+
+
 class Sessions:
     """The sessions of a court: at most one holds a seat."""
 
     def __init__(self) -> None:
-        self._secrets: dict[int, tuple[int, bytes]] = {}
-        """Seat and secret of each session that holds a seat."""
+        self._held: dict[int, _Held] = {}
+        """Each session that holds a seat."""
         self._ended: dict[int, tuple[int, Why]] = {}
         """Seat of each ended session and why it ended; the oldest are forgotten."""
 
@@ -45,26 +54,39 @@ class Sessions:
         """
         self.end(seat, Why.REPLACED)
         number, secret = seal.new_session(), seal.new_secret()
-        self._secrets[number] = (seat, secret)
+        self._held[number] = _Held(seat, secret)
         return number, secret
 
     def end(self, seat: int, why: Why) -> None:
         """End the session that holds a seat, if there is one."""
         number = self.holder(seat)
         if number:
-            del self._secrets[number]
+            del self._held[number]
             self._ended[number] = (seat, why)
         if len(self._ended) > _REMEMBERED:
             del self._ended[next(iter(self._ended))]
 
     def holder(self, seat: int) -> int:
         """Number of the session that holds a seat; 0: none."""
-        return next((n for n, (held, _) in self._secrets.items() if held == seat), 0)
+        return next((number for number, held in self._held.items() if held.seat == seat), 0)
 
     def secret(self, seat: int, number: int) -> bytes | Why:
         """The secret of a session that holds a seat, or why it does not hold it."""
-        if number in self._secrets:
-            held, secret = self._secrets[number]
-            return secret if held == seat else Why.NOT_YOUR_SEAT
-        held, why = self._ended.get(number, (seat, Why.UNKNOWN_SESSION))
-        return why if held == seat else Why.NOT_YOUR_SEAT
+        if number in self._held:
+            held = self._held[number]
+            return held.secret if held.seat == seat else Why.NOT_YOUR_SEAT
+        its_seat, why = self._ended.get(number, (seat, Why.UNKNOWN_SESSION))
+        return why if its_seat == seat else Why.NOT_YOUR_SEAT
+
+    def is_next(self, number: int, seq: int) -> bool:
+        """Whether a proven request of a session is newer than all before; then it is the newest.
+
+        Args:
+            number: of a session that holds a seat.
+            seq: the request's own.
+        """
+        held = self._held[number]
+        if seq <= held.requests:
+            return False
+        held.requests = seq
+        return True

@@ -125,6 +125,8 @@ class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """Say ready, take it back, or leave; proven by the session's secret, not the token."""
 
     session: int
+    seq: int
+    """Counts the session's requests from 1."""
     ready: bool = True
     mac: bytes
 

@@ -75,9 +75,9 @@ def command_mac(
     return _mac(secret, f"{key_expression} {session} {seq} {level} {key} {match} {seen}")
 
 
-def request_mac(secret: bytes, key_expression: str, session: int, ready: bool) -> bytes:
+def request_mac(secret: bytes, key_expression: str, session: int, seq: int, ready: bool) -> bytes:
     """The seal of a ready or leave request."""
-    return _mac(secret, f"{key_expression} {session} {int(ready)}")
+    return _mac(secret, f"{key_expression} {session} {seq} {int(ready)}")
 
 
 def same(one: bytes, other: bytes) -> bool:

@@ -18,7 +18,7 @@ from lacoc_server.decision_desk import DecisionDesk
 from lacoc_server.entry import Admission
 from lacoc_server.inbox import Inbox
 from lacoc_server.network import Arrival, CourtNetwork
-from lacoc_server.sessions import Sessions, Why
+from lacoc_server.sessions import Sessions, Why, _Held
 from lacoc_shared import codec, seal
 from lacoc_shared.decisions import DECISIONS, Adjust, Clock, Halt, Set, Start, TakeBack
 from lacoc_shared.inputs import Decide, HeardSeat, JoinSeat, KeySeat, LeaveSeat, SilentSeat
@@ -102,7 +102,7 @@ class _Sessions(Sessions):
 
     def begin(self, seat: int) -> tuple[int, bytes]:
         self.end(seat, Why.REPLACED)
-        self._secrets[SESSIONS[seat]] = (seat, SECRETS[seat])
+        self._held[SESSIONS[seat]] = _Held(seat, SECRETS[seat])
         return SESSIONS[seat], SECRETS[seat]
 
 
@@ -113,15 +113,15 @@ def command(seat: int, seq: int, level: int, key: int, match: int = 0, seen: int
     return codec.encode(Command(*numbers, mac))
 
 
-def request(seat: int, what: str, ready: bool) -> bytes:
+def request(seat: int, what: str, ready: bool, seq: int) -> bytes:
     """A ready or leave that its seat has sealed."""
-    mac = _request_mac(seat, what, ready)
-    return codec.encode(SeatRequest(session=SESSIONS[seat], ready=ready, mac=mac))
+    mac = _request_mac(seat, what, ready, seq)
+    return codec.encode(SeatRequest(session=SESSIONS[seat], seq=seq, ready=ready, mac=mac))
 
 
-def _request_mac(seat: int, what: str, ready: bool) -> bytes:
+def _request_mac(seat: int, what: str, ready: bool, seq: int) -> bytes:
     key = KEYS.request(SEATS[seat], what)
-    return seal.request_mac(SECRETS[seat], key, SESSIONS[seat], ready)
+    return seal.request_mac(SECRETS[seat], key, SESSIONS[seat], seq, ready)
 
 
 def join(token: str, **more: Any) -> bytes:
@@ -236,7 +236,7 @@ class Doors:
         inbox = self._inbox
         return (
             tuple((seat.last_seq, seat.joined, seat.silent) for seat in inbox._seats),
-            tuple(inbox._sessions._secrets.items()),
+            repr(inbox._sessions._held),
         )
 
     def _has_right(self, arrival: Arrival) -> bool:
@@ -253,13 +253,19 @@ class Doors:
         if isinstance(item, Decide):
             return REFEREE.encode() in payload
         what = "leave" if isinstance(item, LeaveSeat) else "ready"
-        return any(_request_mac(item.seat, what, yes) in payload for yes in (True, False))
+        return any(
+            _request_mac(item.seat, what, ready, seq) in payload
+            for sealed, ready, seq in _REQUESTS
+            if sealed == what
+        )
 
 
 _SEALED = {(1, 1, 2), (3, 1, RESTART_KEY), (2, 0, 3)}
 """Sequence number, level and key of the left seat's sealed seeds."""
 _FIRST_OWN = 10
 """The sequence numbers of the seats' own controllers begin after the seeds'."""
+_REQUESTS = (("ready", True, 1), ("ready", False, 2), ("leave", True, 3), ("leave", False, 4))
+"""What is asked, ready and sequence number of each seat's sealed seeds."""
 
 
 def _hash(token: str) -> str:
@@ -280,8 +286,7 @@ def command_seeds() -> list[bytes]:
 
 def request_seeds() -> list[bytes]:
     """Ready and leave: of the seat, of the other, sealed for something else."""
-    good = [request(seat, what, yes) for seat in (0, 1) for what in ("ready", "leave")
-            for yes in (True, False)]  # fmt: skip
+    good = [request(seat, *one) for seat in (0, 1) for one in _REQUESTS]
     return [*good, *(one[:-1] + b"\0" for one in good)]
 
 

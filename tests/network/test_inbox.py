@@ -75,10 +75,10 @@ def command(
     return encode(Command(*numbers, mac))
 
 
-def request(joined: Joined, what: str, ready: bool = True, seat: int = LEFT) -> bytes:
+def request(joined: Joined, what: str, ready: bool = True, seat: int = LEFT, seq: int = 1) -> bytes:
     key = KEYS.request(SEATS[seat], what)
-    mac = seal.request_mac(joined.secret, key, joined.session, ready)
-    return encode(SeatRequest(session=joined.session, ready=ready, mac=mac))
+    mac = seal.request_mac(joined.secret, key, joined.session, seq, ready)
+    return encode(SeatRequest(session=joined.session, seq=seq, ready=ready, mac=mac))
 
 
 def refusals(inbox: Inbox, seat: int = LEFT) -> dict[str, int]:
@@ -358,15 +358,32 @@ def test_ready_and_leave_are_proven_by_the_session() -> None:
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.ready(LEFT, request(joined, "ready")) == ReadySeat(LEFT, True)
-    assert inbox.ready(LEFT, request(joined, "ready", False)) == ReadySeat(LEFT, False)
+    assert inbox.ready(LEFT, request(joined, "ready", False, seq=2)) == ReadySeat(LEFT, False)
     assert isinstance(inbox.ready(LEFT, request(joined, "leave")), Refusal)  # another key
     assert isinstance(inbox.ready(RIGHT, request(joined, "ready", seat=RIGHT)), Refusal)
     assert isinstance(inbox.leave(LEFT, b""), Refusal)
-    assert inbox.leave(LEFT, request(joined, "leave")) == LeaveSeat(LEFT)
+    assert inbox.leave(LEFT, request(joined, "leave", seq=3)) == LeaveSeat(LEFT)
     inbox.left(LEFT)
     assert inbox.commands(9.0, [[command(joined, 1)], []]) == []
     assert refusals(inbox) == {"bad seal": 1, "bad bytes": 1, "left": 1}
     assert not inbox.health(9.0)[LEFT].joined
+
+
+def test_a_request_counts_once() -> None:
+    """Whoever read a ready or a leave on the line gains nothing by sending it again."""
+    inbox = make()
+    joined = take_seat(inbox)
+    ready, taken_back = request(joined, "ready"), request(joined, "ready", False, seq=2)
+    assert inbox.ready(LEFT, ready) == ReadySeat(LEFT, True)
+    assert inbox.ready(LEFT, taken_back) == ReadySeat(LEFT, False)
+    for heard in (ready, taken_back, request(joined, "ready", seq=0)):
+        assert isinstance(inbox.ready(LEFT, heard), Refusal)
+    assert isinstance(inbox.leave(LEFT, request(joined, "leave", seq=2)), Refusal)
+    assert refusals(inbox) == {"old": 4}
+    assert inbox.ready(LEFT, request(joined, "ready", seq=9)) == ReadySeat(LEFT, True)
+    again = take_seat(inbox)
+    assert isinstance(inbox.ready(LEFT, request(joined, "ready", seq=10)), Refusal)
+    assert inbox.ready(LEFT, request(again, "ready")) == ReadySeat(LEFT, True)
 
 
 def test_a_restarted_court_knows_its_seats() -> None:

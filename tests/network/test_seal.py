@@ -70,8 +70,8 @@ def test_a_command_seal_is_the_documented_one() -> None:
 @pytest.mark.parametrize("ready", [False, True])
 def test_a_request_seal_is_the_documented_one(ready: bool) -> None:
     """docs/protocol.md: the text of a request ends with its 1 or 0."""
-    expected = hashlib.blake2b(b"lacoc/a 77 %d" % ready, key=b"k" * 16, digest_size=8).digest()
-    assert seal.request_mac(b"k" * 16, "lacoc/a", 77, ready) == expected
+    expected = hashlib.blake2b(b"lacoc/a 77 3 %d" % ready, key=b"k" * 16, digest_size=8).digest()
+    assert seal.request_mac(b"k" * 16, "lacoc/a", 77, 3, ready) == expected
 
 
 def test_every_part_changes_the_seal() -> None:
@@ -89,4 +89,5 @@ def test_every_part_changes_the_seal() -> None:
     seals = {seal.command_mac(b"s" * 16, *parts) for parts in [base, *others]}
     assert len(seals) == 8
     assert seal.command_mac(b"t" * 16, *base) not in seals
-    assert seal.request_mac(b"s" * 16, "k", 7, True) != seal.request_mac(b"s" * 16, "k", 7, False)
+    requests = [("k", 7, 1, True), ("k", 7, 1, False), ("k", 7, 11, True), ("k", 71, 1, True)]
+    assert len({seal.request_mac(b"s" * 16, *parts) for parts in requests}) == 4
