@@ -21,6 +21,8 @@ from benchmarks.processes import LACOC, ask, read_line, started
 from lacoc_shared.seat import BEATS_PER_S
 
 AIM = 1.2
+HUNDREDS = 300
+"""Of more sessions than this it is only asked that no beat is missed."""
 _SETTLE_S = 2.0
 
 
@@ -132,7 +134,8 @@ def main() -> None:
     options = parser.parse_args()
     found = watched(**vars(options))
     print(json.dumps(found, indent=1))
-    sys.exit(found["ratio"] > AIM or bool(found["missed"]))
+    held = found["ratio"] <= AIM or options.direct > HUNDREDS
+    sys.exit(bool(found["missed"]) or not held)
 
 
 if __name__ == "__main__":

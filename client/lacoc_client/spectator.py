@@ -1,7 +1,9 @@
 """Watch a court: frames, events from the first on, the sheet and the scene."""
 
+import contextlib
 import time
 from collections.abc import Callable
+from typing import TypeVar
 
 import msgspec
 
@@ -11,10 +13,13 @@ from lacoc_shared.codec import message_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import Session
+from lacoc_shared.session import Mail, Session
+
+T = TypeVar("T")
 
 _EVENTS_DEPTH = 4096
 _FETCH_TRIES = 3
+_STRAYS = 5
 
 
 class _Version(msgspec.Struct):
@@ -57,6 +62,8 @@ class Spectator:
         self.health: Health | None = None
         """The newest health."""
         self._log: EventLog[Event] = EventLog()
+        self._strays = 0
+        """Messages in a row that make no sense."""
         self._fetch_events(ANSWER_S)
 
     @property
@@ -75,17 +82,19 @@ class Spectator:
         """
         told: Health | None = None
         while (mail := self._events.take()) is not None:
-            self._take_in(understand(mail.payload, Event))
+            if (event := self._read(mail, Event)) is not None:
+                self._take_in(event)
         if (mail := self._healths.take()) is not None:
-            self.health = told = understand(mail.payload, Health)
+            told = self._read(mail, Health)
+            self.health = told or self.health
         newest = self._frames.take()
-        if (mail := self._sheets.take()) is not None:
+        if (mail := self._sheets.take()) is not None and self._read(mail, Sheet) is not None:
             self._read_sheet(mail.payload)
         if told is not None:
             self._ask_for_what_lacks(told)
-        if newest is None:
+        if newest is None or (frame := self._read(newest, Frame)) is None:
             return None
-        self.frame, self.frame_s = understand(newest.payload, Frame), newest.arrived_s
+        self.frame, self.frame_s = frame, newest.arrived_s
         if self.frame.scene != self.sheet.scene:
             self._catch_up(self.frame)
         return self.frame
@@ -130,6 +139,27 @@ class Spectator:
             self._fetch_sheet()
         raise UserError(_OTHER_SCENE)
 
+    def _read(self, mail: Mail, kind: type[T]) -> T | None:
+        """Decode what the court sent, or nothing if it makes no sense.
+
+        Then the sheet is asked for: it says whether this court speaks another version. A single
+        message that went astray ends no match.
+
+        Raises:
+            UserError: if it does, or if nothing makes sense any more.
+        """
+        try:
+            message = understand(mail.payload, kind)
+        except UserError:
+            self._strays += 1
+            if self._strays > _STRAYS:
+                raise
+            with contextlib.suppress(NoCourt):  # it went away just now
+                self._fetch_sheet(timeout_s=1.0)
+            return None
+        self._strays = 0
+        return message
+
     def _fetch_sheet(self, timeout_s: float = ANSWER_S) -> None:
         self._read_sheet(fetch(self._session, self.keys, self.keys.sheet, timeout_s=timeout_s))
 
@@ -164,10 +194,10 @@ class Spectator:
                 return
             if self.sheet.scene == frame.scene:
                 return
-            newer = self._frames.take() if self._frames.wait(1.0) else None
-            if newer is not None:
-                frame = understand(newer.payload, Frame)
-                self.frame, self.frame_s = frame, newer.arrived_s
+            mail = self._frames.take() if self._frames.wait(1.0) else None
+            if mail is not None and (newer := self._read(mail, Frame)) is not None:
+                frame = self.frame = newer
+                self.frame_s = mail.arrived_s
         if self.sheet.scene != frame.scene:
             raise UserError(_OTHER_SCENE)
 

@@ -4,10 +4,12 @@ import signal
 import time
 
 import pytest
+from court_stub import CourtStub
 from page_client import PageClient, Refused, SleepyPage, x_of
 from venue import TOKENS, Venue
 
 from lacoc_client.gateway.wire import Kind
+from lacoc_shared.codec import encode
 from lacoc_shared.seat import Phase, SeatFlag
 
 pytestmark = pytest.mark.slow
@@ -196,7 +198,7 @@ def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
     left.close()
     court.close()
     venue.court("--fresh")
-    watcher.wait(lambda: watcher.link["connected"] and watcher.links[-2]["connected"] is False)
+    watcher.wait(lambda: not any("Old Ants" in event.text for event in watcher.events))
     venue.contestant("left", "New Ants")
     watcher.wait(lambda: any("New Ants is ready" in event.text for event in watcher.events))
     assert [event.number for event in watcher.events] == [*range(1, len(watcher.events) + 1)]
@@ -291,3 +293,23 @@ def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
     assert len(old) < 4 * 50
     assert len([one for one in beats if one >= beat]) >= 2
     assert len(quick.frames) > 0.3 * (quick.frames[-1][1] - quick.frames[0][1])  # nobody waits
+
+
+def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
+    """The sheet says whether the court has another version, not one message that makes no sense."""
+    with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
+        venue.web()
+        page = venue.page()
+        page.wait(lambda: len(page.frames) > 5)
+        links = len(page.links)
+        for _ in range(20):
+            court.silent = True
+            court.in_a_beat(lambda: court.network.publish_frame(encode({"astray": 1}), 0.0))
+            time.sleep(0.1)
+            court.silent, seen = False, len(page.frames)
+            page.wait(lambda seen=seen: len(page.frames) > seen)
+        assert page.links[links:] == []
+        court.in_a_beat(lambda: court.show(court.scene, protocol=99))
+        page.wait(lambda: "version 99" in page.link["text"])
+        court.in_a_beat(lambda: court.show(court.scene))
+        page.wait(lambda: page.link["connected"])

@@ -12,7 +12,7 @@ from lacoc_client.spectator import Spectator
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide
-from lacoc_shared.messages import Sheet
+from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.session import NoReply, Session, open_client
 
@@ -37,7 +37,7 @@ def test_a_late_comer_is_complete_at_once(court: CourtStub, session: Session) ->
 
 @pytest.mark.slow
 def test_who_comes_while_events_are_sent_gets_them_all(court: CourtStub) -> None:
-    """The history alone sometimes loses what was sent before the first that comes live."""
+    """A subscription that begins in a burst has its end alone: the rest is asked for."""
 
     def send() -> None:
         for number in range(1, 301):
@@ -116,6 +116,42 @@ def test_another_version_of_the_protocol_is_a_sentence(court: CourtStub, session
     until(lambda: encode(99) in session.ask(KEYS.sheet))
     with pytest.raises(UserError, match=r"version 99 .* this program version 1"):
         Spectator(session, "main")
+
+
+def test_a_message_that_goes_astray_ends_nothing(court: CourtStub, session: Session) -> None:
+    """It is left out; the sheet says that the court speaks the same version still."""
+    spectator = Spectator(session, "main")
+    for _ in range(10):
+        court.silent = True
+        until(lambda: spectator.wait_frame(0.2) is None)
+        court.in_a_beat(lambda: court.network.publish_frame(encode({"astray": 1}), 0.0))
+        assert spectator.wait_frame(0.2) is None
+        court.silent = False
+        assert spectator.wait_frame(5.0)
+
+
+def test_a_court_that_makes_no_sense_is_a_sentence(court: CourtStub, session: Session) -> None:
+    """Its sheet says the same version, and yet no frame is understood."""
+    spectator = Spectator(session, "main")
+    court.silent = True
+
+    def speak() -> Frame | None:
+        court.in_a_beat(lambda: court.network.publish_frame(b"\xc1", 0.0))
+        return spectator.wait_frame(0.2)
+
+    with pytest.raises(UserError, match="is not understood"):
+        until(lambda: speak() and False)
+
+
+def test_a_court_that_comes_back_with_another_version(court: CourtStub, session: Session) -> None:
+    """What it sends makes no sense to those who stayed connected; its sheet tells them why."""
+    spectator = Spectator(session, "main")
+    assert spectator.wait_frame(1.0)
+    court.in_a_beat(lambda: court.show(court.scene, protocol=99))
+    until(lambda: encode(99) in session.ask(KEYS.sheet))
+    court.in_a_beat(lambda: court.network.publish_frame(encode({"version": 99}), 0.0))
+    with pytest.raises(UserError, match=r"version 99 .* this program version 1"):
+        until(lambda: spectator.wait_frame(1.0) and False)
 
 
 def test_a_sheet_that_is_not_understood_is_a_sentence() -> None:

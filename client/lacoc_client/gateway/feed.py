@@ -93,10 +93,11 @@ class CourtFeed:
         self._connected = False
         self._why = ""
         self._wrong_version = ""
-        self._fetching: asyncio.Task[None] | None = None
         self._told = _Health(0, 0)
         """What the court said last of all that it sent."""
         self._sheet_hash = b""
+        self._doubt = False
+        """Something made no sense: is this still a court of this version? Its sheet says."""
         self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
         self._explained_s = 0.0
@@ -109,7 +110,7 @@ class CourtFeed:
 
     async def stop(self) -> None:
         """Close the connection."""
-        started = (self._task, self._fetching, self._restoring, self._explaining)
+        started = (self._task, self._restoring, self._explaining)
         tasks = [task for task in started if task]
         for task in tasks:
             task.cancel()
@@ -247,19 +248,19 @@ class CourtFeed:
             boxes.append(session.mailbox(key, depth, notify))
             empty()  # what came before there was a box to look into
 
-        hear(self._keys.sheet, 1, self._take_sheet)
+        hear(self._keys.sheet, 1, self._hear_sheet)
         hear(self._keys.event, _EVENTS_DEPTH, self._take_event)
         with contextlib.suppress(UserError, BadMessage):  # it will come
-            self._take_sheet(await self._ask(self._keys.sheet))
+            await self._fetch_sheet()
             self._take_log(await self._ask(self._keys.event))
         hear(self._keys.health, 1, self._take_health)
         hear(self._keys.frame, 1, self._take_frame)
 
     def _take_frame(self, payload: bytes) -> None:
         try:
-            scene = decode(payload, _Frame, _MAX_BYTES).scene
+            self._frame_scene = decode(payload, _Frame, _MAX_BYTES).scene
         except BadMessage:
-            self._other_version()
+            self._stray()
             return
         now_s = self._frame_s = time.monotonic()
         framed = self._frame = wire.message(Kind.FRAME, payload)
@@ -267,16 +268,14 @@ class CourtFeed:
             self._come_back()
         for viewer in self._viewers:
             viewer.offer(framed, now_s)
-        if scene != self._frame_scene:
-            self._frame_scene = scene
-        if self._frame_scene != self._scene_hash or self._frame_scene != self._sheet_scene:
+        if self._lacks_scene or self._lacks_sheet:
             self._catch_up()
 
     def _take_event(self, payload: bytes) -> None:
         try:
             event = decode(payload, Event, _MAX_BYTES)
         except BadMessage:
-            self._other_version()
+            self._stray()
             return
         log = self._log.number
         framed = wire.message(Kind.EVENT, payload)
@@ -297,34 +296,63 @@ class CourtFeed:
         return self._log.differs(self._told.match, self._told.beat, self._told.events)
 
     @property
+    def _lacks_scene(self) -> bool:
+        return self._frame_scene != self._scene_hash
+
+    @property
     def _lacks_sheet(self) -> bool:
-        return self._told.sheet not in (b"", self._sheet_hash)
+        other = self._told.sheet not in (b"", self._sheet_hash)
+        return self._doubt or other or self._frame_scene != self._sheet_scene
+
+    def _catch_up(self) -> None:
+        """Get what is new, was sent while this was away, or was dropped on a slow link."""
+        if self._restoring is None or self._restoring.done():
+            self._restoring = asyncio.get_running_loop().create_task(self._restore())
 
     async def _restore(self) -> None:
-        """Get what was sent while this was away, or was dropped on a slow link."""
-        while self._lacks_events or self._lacks_sheet:
+        while self._lacks_events or self._lacks_scene or self._lacks_sheet:
             with contextlib.suppress(UserError, BadMessage):  # it went away just now
                 if self._lacks_events:
                     self._take_log(await self._ask(self._keys.event))
+                if self._lacks_scene:
+                    self._take_scene(await self._ask(self._keys.scene))
                 if self._lacks_sheet:
-                    self._take_sheet(await self._ask(self._keys.sheet))
+                    await self._fetch_sheet()
             await asyncio.sleep(_FETCH_AGAIN_S)
             if not self._connected:
-                return  # the next health asks again
+                return  # the next frame or health asks again
+
+    def _take_scene(self, payload: bytes) -> None:
+        found = message_hash(payload)
+        if found == self._frame_scene and found != self._scene_hash:
+            self._scene_hash = found
+            self._scene = wire.message(Kind.SCENE, found + payload)
+            self._send(self._scene)
 
     def _take_log(self, payload: bytes) -> None:
         events = decode(payload, tuple[Event, ...], _MAX_BYTES)
         framed = [(event, wire.message(Kind.EVENT, encode(event))) for event in events]
-        if self._log.restore(framed):
+        log = self._log.number
+        self._log.restore(framed)
+        if self._log.number != log:
             self._send_log()
 
-    def _take_sheet(self, payload: bytes) -> None:
+    async def _fetch_sheet(self) -> None:
+        payload = await self._ask(self._keys.sheet)
         try:
-            sheet = decode(payload, _Sheet, _MAX_BYTES)
+            self._take_sheet(payload)
         except BadMessage:
             self._other_version()
-            return
-        self._wrong_version = ""
+
+    def _hear_sheet(self, payload: bytes) -> None:
+        try:
+            self._take_sheet(payload)
+        except BadMessage:
+            self._stray()
+
+    def _take_sheet(self, payload: bytes) -> None:
+        sheet = decode(payload, _Sheet, _MAX_BYTES)
+        self._wrong_version, self._doubt = "", False
         if sheet.protocol != PROTOCOL:
             self._other_version(sheet.protocol)
         self._sheet_scene, self.match_id = sheet.scene, sheet.match_id
@@ -338,14 +366,19 @@ class CourtFeed:
         try:
             self._told = decode(payload, _Health, _MAX_BYTES)
         except BadMessage:
-            self._other_version()
+            self._stray()
             return
-        idle = self._restoring is None or self._restoring.done()
-        if idle and (self._lacks_events or self._lacks_sheet):
-            self._restoring = asyncio.get_running_loop().create_task(self._restore())
+        if self._lacks_events or self._lacks_sheet:
+            self._catch_up()
         self._health = framed = wire.message(Kind.HEALTH, payload)
         for viewer in self._viewers:
             viewer.send_if_fast(framed)
+
+    def _stray(self) -> None:
+        """Something made no sense: the sheet says whether the court has another version."""
+        if not self._wrong_version:
+            self._doubt = True
+            self._catch_up()
 
     def _other_version(self, protocol: int | None = None) -> None:
         speaks = "another version" if protocol is None else f"version {protocol}"
@@ -354,28 +387,6 @@ class CourtFeed:
             f"Court {self.court!r} speaks {speaks} of the protocol, this gateway version "
             f"{PROTOCOL}: install the version of lacoc that the court has."
         )
-
-    def _catch_up(self) -> None:
-        """The frames show another scene than the pages have: get it, and the sheet if it lacks."""
-        if self._fetching is None or self._fetching.done():
-            self._fetching = asyncio.get_running_loop().create_task(self._fetch())
-
-    async def _fetch(self) -> None:
-        while not self._frame_scene == self._scene_hash == self._sheet_scene:
-            try:
-                scene = await self._ask(self._keys.scene)
-                found = message_hash(scene)
-                if found == self._frame_scene and found != self._scene_hash:
-                    self._scene_hash = found
-                    self._scene = wire.message(Kind.SCENE, found + scene)
-                    self._send(self._scene)
-                if self._sheet_scene != self._frame_scene:
-                    self._take_sheet(await self._ask(self._keys.sheet))
-            except UserError:  # it went away just now
-                pass
-            await asyncio.sleep(_FETCH_AGAIN_S)
-            if not self._connected:
-                return  # the next frame asks again
 
     async def _ask(self, key: str) -> bytes:
         session = self.session
