@@ -73,7 +73,12 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     page.press("x")
     page.key_stands(0)
     page.until("Number(document.querySelectorAll('.figures dd')[1].firstChild.data) < 0.04")
-    page.press("3")  # at once: practice has no pause
+    page.press("2")  # at once: practice has no pause
+    page.key_stands(2)
+    page.until("Number(document.querySelectorAll('.figures dd')[1].firstChild.data) > 0.01")
+    page.press("x")  # also a step from the start it is a new walk
+    page.until("Number(document.querySelectorAll('.figures dd')[1].firstChild.data) === 0")
+    page.press("3")
     page.key_stands(3)
 
     page.press("z")

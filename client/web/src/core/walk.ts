@@ -1,7 +1,7 @@
 /** How far and how fast a robot walks: what a student watches while a gait is tried out. */
 
 import { places } from "./poses";
-import type { Frame, Sheet } from "./wire";
+import type { Event, Frame, Sheet } from "./wire";
 
 /** A robot's walk since it was put on the floor. */
 export interface Walk {
@@ -9,8 +9,6 @@ export interface Walk {
   headingDegrees: number;
   /** Length of its way [m]. */
   walkedM: number;
-  /** As the crow flies from where it began [m]. */
-  awayM: number;
   /** Over the last second [m/s]. */
   speedMps: number;
 }
@@ -19,8 +17,6 @@ const BEATS_PER_S = 50;
 /** A body sways with each step: its way is taken between points so far apart. */
 const STEP_M = 0.01;
 const WINDOW_BEATS = BEATS_PER_S;
-/** What goes faster does not walk: it was put back to the start. */
-const JUMP_MPS = 0.6;
 
 interface Spot {
   beat: number;
@@ -31,7 +27,7 @@ interface Spot {
 /** Follows one robot. */
 export class Walker {
   private match = -1;
-  private start: Spot | null = null;
+  private beganBeat = 0;
   private corner: Spot | null = null;
   private walkedM = 0;
   private spots: Spot[] = [];
@@ -39,20 +35,23 @@ export class Walker {
   /** @param seat Index of the robot's seat. */
   constructor(private readonly seat: number) {}
 
-  /** Look at a frame; null while the robot does not stand on the floor. */
-  look(frame: Frame, sheet: Sheet): Walk | null {
+  /**
+   * Look at a frame; null while the robot does not stand on the floor.
+   *
+   * @param events All of the match: one of them may say that the robot was put back to its start.
+   */
+  look(frame: Frame, sheet: Sheet, events: readonly Event[]): Walk | null {
     const place = places(frame, sheet)[this.seat];
     if (!place) {
-      this.begin(null, frame.match);
+      this.begin(null, frame);
       return null;
     }
     const spot = { beat: frame.beat, xM: place.xM, yM: place.yM };
-    const last = this.spots.at(-1);
-    if (!last || frame.match !== this.match || isJump(last, spot)) {
-      this.begin(spot, frame.match);
+    if (!this.corner || frame.match !== this.match || this.wasPutBack(frame, events)) {
+      this.begin(spot, frame);
     }
     this.spots = [...this.spots.filter((one) => spot.beat - one.beat <= WINDOW_BEATS), spot];
-    const stepM = apart(this.corner!, spot);
+    const stepM = this.corner ? apart(this.corner, spot) : 0;
     if (stepM >= STEP_M) {
       this.walkedM += stepM;
       this.corner = spot;
@@ -62,22 +61,22 @@ export class Walker {
     return {
       headingDegrees: (Math.round((place.headingRad * 180) / Math.PI) + 360) % 360,
       walkedM: this.walkedM,
-      awayM: apart(this.start!, spot),
       speedMps: beats ? (apart(first, spot) * BEATS_PER_S) / beats : 0,
     };
   }
 
-  private begin(spot: Spot | null, match: number): void {
-    this.match = match;
-    this.start = this.corner = spot;
+  private wasPutBack(frame: Frame, events: readonly Event[]): boolean {
+    const last = events.findLast((event) => event.kind === "restart" && event.seat === this.seat);
+    return last !== undefined && this.beganBeat < last.beat && last.beat <= frame.beat;
+  }
+
+  private begin(spot: Spot | null, frame: Frame): void {
+    this.match = frame.match;
+    this.beganBeat = frame.beat;
+    this.corner = spot;
     this.walkedM = 0;
     this.spots = [];
   }
-}
-
-function isJump(from: Spot, to: Spot): boolean {
-  const seconds = Math.max(1, to.beat - from.beat) / BEATS_PER_S;
-  return apart(from, to) > JUMP_MPS * seconds + STEP_M;
 }
 
 function apart(one: Spot, other: Spot): number {

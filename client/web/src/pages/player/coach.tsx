@@ -154,7 +154,7 @@ function WalkFigures({ court, player }: { court: Court; player: Player }) {
     const timer = setInterval(() => {
       const frame = court.frame.peek();
       const sheet = court.sheet.peek();
-      if (frame && sheet) walk.value = walker.look(frame, sheet);
+      if (frame && sheet) walk.value = walker.look(frame, sheet, court.events.peek());
     }, LOOK_MS);
     return () => clearInterval(timer);
   }, [court, walker, walk]);
