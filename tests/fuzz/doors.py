@@ -223,7 +223,8 @@ class Doors:
         for seat in (0, 1):
             key = KEYS.command(SEATS[seat])
             last = max(self._inbox._seats[seat].last_seq, _FIRST_OWN)
-            seen = max(0, self._match.match.beats - seat)
+            # A court that has just begun knows no frame that could have been seen.
+            seen = max(0, self._match.match.beats - seat) if self._beats else 0
             if self._beats % 10 == 5 * seat:
                 last += 1
                 item = KeySeat(seat, last, 1, last % 4, seen)
@@ -323,8 +324,10 @@ def seat_key(what: str) -> Callable[[bytes], str]:
 
 
 def request_key(payload: bytes) -> str:
-    """Ready and leave by turns."""
-    return KEYS.request("left", ("ready", "leave")[sum(payload[-4:]) % 2])
+    """That of a seed by its sequence number, if it can be found; the rest comes as ready."""
+    at = payload.find(b"seq") + 3
+    asked = next((what for what, _, seq in _REQUESTS if payload[at : at + 1] == bytes((seq,))), "")
+    return KEYS.request("left", asked or "ready")
 
 
 ANSWERS = (Done, DecisionReply, Joined)

@@ -5,9 +5,17 @@ from signal import SIGPROF, getsignal, signal
 
 import pytest
 from campaign import arm, feed
-from doors import BATCH, KEYS, Doors, StateChanged, command
+from doors import (
+    BATCH,
+    KEYS,
+    Doors,
+    StateChanged,
+    command,
+    command_seeds,
+    request_seeds,
+)
 from mutate import Mutator
-from targets import TARGETS, Target
+from targets import CORPUS, TARGETS, Target
 
 SLOW = {"gait workbook": 10, "gait text": 120, "record, exported": 10, "court: joins": 40}
 INPUTS = 200
@@ -34,6 +42,17 @@ def test_the_same_seed_makes_the_same_inputs(target: Target) -> None:
     """A run can be made again."""
     one, other = (Mutator(target.seeds, target.kind, "7") for _ in range(2))
     assert [one.next() for _ in range(20)] == [other.next() for _ in range(20)]
+
+
+def test_good_packets_get_in() -> None:
+    """The seeds are the court's present messages: what is made of them comes near to being good."""
+    for folder, seeds in (("requests", request_seeds()), ("commands", command_seeds())):
+        kept = [path.read_bytes() for path in sorted((CORPUS / folder).iterdir())]
+        assert kept == seeds, "run tests/fuzz/make_corpus.py"
+    for name in ("court: requests", "court: joins", "court: decisions"):
+        target = next(target for target in TARGETS if target.name == name)
+        *_, figures = feed(target, len(target.seeds) + 100, seed=1)
+        assert figures.accepted
 
 
 def test_a_change_of_state_would_be_seen() -> None:
