@@ -8,6 +8,9 @@ from lacoc_shared.seat import BEATS_PER_S
 
 T = TypeVar("T")
 
+KEPT = 2000
+"""Of a practice that goes on for days the newest, as many as the court lists."""
+
 
 class EventLog(Generic[T]):
     """Keeps something for each event: the event itself, or its bytes.
@@ -61,7 +64,8 @@ class EventLog(Generic[T]):
         known = self._known.get(event.number)
         if known is not None and known[0] == event:
             return False
-        other_match = any(one.match != event.match for one, _ in self._known.values())
+        of_match = next((one.match for one, _ in self._known.values()), event.match)
+        other_match = of_match != event.match
         if other_match:
             self._first = 1
         if known is not None or other_match:
@@ -72,4 +76,7 @@ class EventLog(Generic[T]):
             )
             self.number += 1
         self._known[event.number] = (event, kept)
+        if len(self._known) > KEPT:
+            del self._known[min(self._known)]
+            self._first = min(self._known)
         return True

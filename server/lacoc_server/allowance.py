@@ -10,11 +10,15 @@ class Allowance:
         self._left = float(burst)
         self._last_s = 0.0
 
-    def take(self, wanted: int, now_s: float) -> int:
-        """How many of those wanted may pass now."""
+    def left(self, now_s: float) -> int:
+        """How many may pass now."""
         grown = max(0.0, now_s - self._last_s) * self._rate_hz
         self._left = min(self._burst, self._left + grown)
         self._last_s = now_s
-        allowed = min(wanted, int(self._left))
+        return int(self._left)
+
+    def take(self, wanted: int, now_s: float) -> int:
+        """Let as many of those wanted pass as may; how many."""
+        allowed = min(wanted, self.left(now_s))
         self._left -= allowed
         return allowed

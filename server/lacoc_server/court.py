@@ -128,9 +128,9 @@ class Court:
 
     def _beat(self, now_s: float) -> None:
         try:
-            if self._journal.match.next_wanted:
-                self._open_next()
             if self._made is None:
+                if self._journal.match.next_wanted:
+                    self._open_next()
                 self._made = self._make(now_s)
             self._journal.flush()
         except UserError as trouble:
@@ -144,7 +144,8 @@ class Court:
         """Let the match have a beat."""
         own, self._inputs = self._inputs, []
         match, network = self._journal.match, self._network
-        arrivals = network.poll(now_s, match.setup.match, match.beats + 1)
+        silent = [seat.silent for seat in match.seats]
+        arrivals = network.poll(now_s, match.setup.match, match.beats + 1, silent)
         beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
         return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])
 
@@ -188,7 +189,7 @@ class Court:
         self._close()
         self._journal = following
         heap.give_back()  # models and worlds of the match before
-        self._inputs = [seat.join for seat in match.seats if seat.join and not seat.left]
+        self._inputs = list(match.next_joins())
 
     def _follow(self) -> list[Input]:
         """What comes after a beat that was recorded: the court's own decisions."""

@@ -36,21 +36,25 @@ class _Link:
         self._silent = False
         self._heard: int | None = None
         """What the doors had counted when this second of PLAYING began."""
+        self._counted = 0
+        """Its beats so far."""
         self._carried = 0
 
-    def count(self, silent: bool, heard: int, second_ends: bool) -> None:
+    def count(self, silent: bool, heard: int) -> None:
         """Count a beat of PLAYING."""
         self.silent_s += silent * BEAT_S
         self.silences += silent and not self._silent
         self._silent = silent
         if self._heard is None:
-            self._heard = heard
-        elif second_ends:
+            self._heard, self._counted = heard, 0
+            return
+        self._counted += 1
+        if self._counted == BEATS_PER_S:
             came = heard - self._heard + self._carried
             self.expected += REPEATS_HZ
             self.arrived += min(came, REPEATS_HZ)
             self._carried = max(0, min(came - REPEATS_HZ, _CARRIED))
-            self._heard = heard
+            self._heard, self._counted = heard, 0
 
     def pause(self) -> None:
         """Count nothing until the next beat of PLAYING."""
@@ -127,9 +131,8 @@ class MatchHealth:
             self._slow_beats += self._late_s > SLOW_S
             self._worst_late_s = max(self._worst_late_s, self._late_s)
         self._playing_since = self._now_s
-        second_ends = self._beats % BEATS_PER_S == 0
         for seat, link, door in zip(self._match.seats, self._links, self._doors, strict=True):
-            link.count(seat.silent and not seat.left, door.heard, second_ends)
+            link.count(seat.silent and not seat.left, door.heard)
 
     def verdict(self) -> HealthVerdict:
         """How well the match was held so far."""

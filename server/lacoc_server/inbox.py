@@ -40,7 +40,9 @@ from lacoc_shared.seat import RESTART_KEY
 SILENT_AFTER_S = 1.0
 """A joined seat without a valid command for longer than this is silent (rules 3)."""
 COMMANDS_PER_BEAT = 16
-"""More of a seat's commands are not looked at in one beat: the newest count."""
+"""More of a seat's commands do not count in one beat: the newest do."""
+LOOKED_AT_PER_BEAT = 64
+"""More of what comes for a seat is not looked at in one beat, whoever it is from."""
 COMMANDS_HZ = 200.0
 """Nor more than this in the long run; a controller sends 10 and what is pressed, a bot 60."""
 NAME_MAX = 24
@@ -48,6 +50,7 @@ FILE_NAME_MAX = 100
 """A file's name stands in each of its mistakes."""
 
 _JOINS_HZ, _JOINS_BURST = 1.0, 5  # each may cost the reading of three files
+_READYS_HZ, _READYS_BURST = 1.0, 5  # each may cost the making of a model, and is an event for all
 _RATE_WINDOW_S = 2.0
 
 _SESSION_SENTENCES = {
@@ -74,13 +77,13 @@ class _Seat:
         self.last_seq = last_seq
         self.joined = joined
         self.heard_s: float | None = None
-        self.silent = False
         self.refused: Counter[str] = Counter()
         self.heard = 0
         """Valid commands."""
         self.valid_s: deque[float] = deque(maxlen=int(2 * COMMANDS_HZ * _RATE_WINDOW_S))
         self.commands = Allowance(COMMANDS_HZ, COMMANDS_PER_BEAT)
         self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
+        self.readys = Allowance(_READYS_HZ, _READYS_BURST)
 
     def refuse(self, why: Why, reason: str) -> Refusal:
         self.refused[why] += 1
@@ -137,12 +140,15 @@ class Inbox:
         """The seats' names, in the arena's order."""
         return tuple(seat.name for seat in self._seats)
 
-    def commands(self, now_s: float, arrived: Sequence[Sequence[bytes]]) -> list[Input]:
+    def commands(
+        self, now_s: float, arrived: Sequence[Sequence[bytes]], silent: Sequence[bool]
+    ) -> list[Input]:
         """Take a beat's commands in.
 
         Args:
             now_s: monotonic time.
             arrived: for each seat the payloads on its key expression, the newest last.
+            silent: for each seat, whether the match takes it for silent.
 
         Returns:
             For each seat: that it fell silent or is heard again, then of the keys that take effect
@@ -150,13 +156,12 @@ class Inbox:
         """
         self._now_s = now_s
         inputs: list[Input] = []
-        for seat, payloads in zip(self._seats, arrived, strict=True):
-            allowed = seat.commands.take(min(len(payloads), COMMANDS_PER_BEAT), now_s)
-            if allowed < len(payloads):
-                seat.refused[Why.FLOOD] += len(payloads) - allowed
-            keys = self._newest(seat, payloads[len(payloads) - allowed :])
-            inputs += self._presence(seat)
-            inputs += keys
+        for seat, payloads, is_silent in zip(self._seats, arrived, silent, strict=True):
+            for command in self._own(seat, payloads):
+                self._take(seat, command)
+            inputs += self._presence(seat, is_silent)
+            newest = {key.key == RESTART_KEY: key for key in self.links.release(seat.index)}
+            inputs += [newest[restart] for restart in (True, False) if restart in newest]
         return inputs
 
     def join(self, index: int, payload: bytes) -> JoinSeat | Refusal:
@@ -225,7 +230,12 @@ class Inbox:
     def ready(self, index: int, payload: bytes) -> ReadySeat | Refusal:
         """Judge a ready request."""
         request = self._request(index, payload, "ready")
-        return request if isinstance(request, Refusal) else ReadySeat(index, request.ready)
+        if isinstance(request, Refusal):
+            return request
+        seat = self._seats[index]
+        if not seat.readys.take(1, self._now_s):
+            return seat.refuse(Why.FLOOD, "Ready and not ready too often: wait a few seconds.")
+        return ReadySeat(index, request.ready)
 
     def leave(self, index: int, payload: bytes) -> LeaveSeat | Refusal:
         """Judge a leave request; it takes effect with `left`."""
@@ -236,7 +246,7 @@ class Inbox:
         """Free a seat whose leaving was taken in."""
         seat = self._seats[index]
         self._sessions.end(index, Why.LEFT)
-        seat.joined = seat.silent = False
+        seat.joined = False
         seat.heard_s = None
         self.links.drop(index)
 
@@ -263,24 +273,44 @@ class Inbox:
             late=self.links.late(seat.index),
         )
 
-    def _newest(self, seat: _Seat, payloads: Sequence[bytes]) -> list[Input]:
-        key_expression = self._keys.command(seat.name)
-        for payload in payloads:
-            command = self._command(seat, key_expression, payload)
+    def _own(self, seat: _Seat, payloads: Sequence[bytes]) -> list[Command]:
+        """The newest commands that are proven to be the seat's own, the oldest first.
+
+        What anybody else sends takes nothing of what the seat may send.
+        """
+        allowed = seat.commands.left(self._now_s)
+        own: list[Command] = []
+        looked_at = 0
+        for payload in reversed(payloads[-LOOKED_AT_PER_BEAT:]):
+            if len(own) == allowed:
+                break
+            looked_at += 1
+            command = self._proven(seat, payload)
             if isinstance(command, Why):
                 seat.refused[command] += 1
-                continue
-            seat.heard_s = self._now_s
-            seat.heard += 1
-            seat.valid_s.append(self._now_s)
-            self.links.heard(seat.index, command)
-            if command.seq > seat.last_seq:  # else only a sign of life
-                seat.last_seq = command.seq
-                self.links.hold(seat.index, command)
-        newest = {key.key == RESTART_KEY: key for key in self.links.release(seat.index)}
-        return [newest[restart] for restart in (True, False) if restart in newest]
+            else:
+                own.append(command)
+        seat.commands.take(len(own), self._now_s)
+        if looked_at < len(payloads):
+            seat.refused[Why.FLOOD] += len(payloads) - looked_at
+        return own[::-1]
 
-    def _command(self, seat: _Seat, key_expression: str, payload: bytes) -> Command | Why:
+    def _take(self, seat: _Seat, command: Command) -> None:
+        why = self._nonsense(seat, command)
+        is_new = command.seq > seat.last_seq
+        if why is None and not (self.links.heard(seat.index, command) or is_new):
+            why = Why.STALE
+        if why is not None:
+            seat.refused[why] += 1
+            return
+        seat.heard_s = self._now_s
+        seat.heard += 1
+        seat.valid_s.append(self._now_s)
+        if is_new:  # else only a sign of life
+            seat.last_seq = command.seq
+            self.links.hold(seat.index, command)
+
+    def _proven(self, seat: _Seat, payload: bytes) -> Command | Why:
         if len(payload) > COMMAND_MAX_BYTES:
             return Why.TOO_LONG
         try:
@@ -291,9 +321,10 @@ class Inbox:
         if isinstance(secret, Why):
             return secret
         *numbers, mac = msgspec.structs.astuple(command)
-        expected = seal.command_mac(secret, key_expression, *numbers)
-        if not seal.same(mac, expected):
-            return Why.BAD_SEAL
+        expected = seal.command_mac(secret, self._keys.command(seat.name), *numbers)
+        return command if seal.same(mac, expected) else Why.BAD_SEAL
+
+    def _nonsense(self, seat: _Seat, command: Command) -> Why | None:
         if command.level not in (Level.POSTURE, Level.LOCOMOTION):
             return Why.OUT_OF_RANGE
         if not (0 <= command.key <= RESTART_KEY and 0 <= command.seq < 2**53):
@@ -302,9 +333,7 @@ class Inbox:
             return Why.OUT_OF_RANGE
         if self.links.is_ahead(command):
             return Why.AHEAD
-        if 0 < command.seq < seat.last_seq:
-            return Why.OLD
-        return command
+        return Why.OLD if 0 < command.seq < seat.last_seq else None
 
     def _request(self, index: int, payload: bytes, what: str) -> SeatRequest | Refusal:
         seat = self._seats[index]
@@ -327,13 +356,15 @@ class Inbox:
             return seat.refuse(Why.OLD, "This request has come before, or a newer one has.")
         return request
 
-    def _presence(self, seat: _Seat) -> list[Input]:
+    def _presence(self, seat: _Seat, is_silent: bool) -> list[Input]:
+        """What the match takes the seat for and it is not: also a new match, or a restarted one."""
         if not seat.joined:
             return []
         if seat.heard_s is None:  # held since before a restart of the court
+            if is_silent:
+                return []
             seat.heard_s = self._now_s
-        silent = self._now_s - seat.heard_s > SILENT_AFTER_S
-        if silent == seat.silent:
+        now_silent = self._now_s - seat.heard_s > SILENT_AFTER_S
+        if now_silent == is_silent:
             return []
-        seat.silent = silent
-        return [SilentSeat(seat.index) if silent else HeardSeat(seat.index)]
+        return [SilentSeat(seat.index) if now_silent else HeardSeat(seat.index)]

@@ -24,8 +24,14 @@ CHANGE_BEATS = 3 * BEATS_PER_S
 """The common delay changes at most so often."""
 LOWER_BEATS = 2
 """It is only lowered by so much or more: a delay that wavers is worse than a long one."""
+FRESH_BEATS = 2 * BEATS_PER_S
+"""A frame that is named again is not older than this, or whoever names it is not there any more."""
 TRUST_S = 2 * BEAT_S
 """A command is believed to have been under way for its seat's p95 and so much more, at most."""
+
+
+_NONE = (0, 0)
+"""Match and beat of no frame."""
 
 
 class Trip(NamedTuple):
@@ -57,7 +63,7 @@ class _Held(NamedTuple):
 class _Link:
     samples: deque[tuple[int, float]] = field(default_factory=deque)
     """Round trips [s], each with its tick."""
-    newest: tuple[int, int] = (0, 0)
+    newest: tuple[int, int] = _NONE
     """Match and beat of the newest frame that a command named."""
     trip: Trip | None = None
     held: deque[_Held] = field(default_factory=deque)
@@ -115,13 +121,22 @@ class Links:
         """Whether it names a frame that was not there yet."""
         return (command.match, command.seen) > (self._match, self._beat - 1)
 
-    def heard(self, seat: int, command: Command) -> None:
-        """Take a round trip; one that names no newer frame than the last says nothing new."""
+    def heard(self, seat: int, command: Command) -> bool:
+        """Take a round trip; one that names no newer frame than the last says nothing new.
+
+        Returns:
+            Whether it says that its sender is there: it names a newer frame, or the same, if that
+            is not long ago. So a command that was overheard is soon worth nothing.
+        """
         link, seen = self._links[seat], (command.match, command.seen)
+        if seen <= link.newest:
+            is_fresh = command.match == self._match and self._beat - command.seen <= FRESH_BEATS
+            return seen == link.newest and (is_fresh or seen == _NONE)
+        link.newest = seen
         frame = self._seen(command)
-        if frame is not None and seen > link.newest:
-            link.newest = seen
+        if frame is not None:
             link.samples.append((self._tick, self._begun_s[-1] - frame.sent_s))
+        return True
 
     def hold(self, seat: int, command: Command) -> None:
         """Take a new key; `release` gives it back when it takes effect."""

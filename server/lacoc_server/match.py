@@ -176,6 +176,11 @@ class Match:
                 reasons.append(f"{seat.id} ({seat.team}) has not said ready")
         return reasons
 
+    def next_joins(self) -> list[JoinSeat]:
+        """Who sits where in the match after this one, with the files that they sent last."""
+        joins = [seat.coming or seat.join for seat in self.seats if not seat.left]
+        return [join for join in joins if join is not None]
+
     def legality(self) -> dict[str, str]:
         """Every decision: "" if it is legal now, else why not."""
         return referee.legality(self)

@@ -10,7 +10,7 @@ from functools import partial
 from typing import NamedTuple, Self
 
 from lacoc_server.decision_desk import DecisionDesk
-from lacoc_server.inbox import COMMANDS_PER_BEAT, Door, Inbox
+from lacoc_server.inbox import LOOKED_AT_PER_BEAT, Door, Inbox
 from lacoc_server.outbox import Outbox
 from lacoc_shared.access_rules import Protection
 from lacoc_shared.codec import encode, message_hash
@@ -32,7 +32,7 @@ from lacoc_shared.session import Desk, Request, Ring, open_court
 Outcome = Done | DecisionReply | Refusal
 """What a match makes of an input."""
 
-_RING = 4 * COMMANDS_PER_BEAT
+_RING = LOOKED_AT_PER_BEAT
 _DESK = 16
 _FETCH_DESK = 256  # a crowd may arrive at once
 _REQUESTS_PER_BEAT = 4  # that are refused; of one desk at most one enters a beat
@@ -110,7 +110,7 @@ class CourtNetwork:
         self._outbox.close()
         self._session.close()
 
-    def poll(self, now_s: float, match: int, beat: int) -> list[Arrival]:
+    def poll(self, now_s: float, match: int, beat: int, silent: Sequence[bool]) -> list[Arrival]:
         """Take in what arrived since the last beat.
 
         What is refused at the door is answered at once and is not among the arrivals.
@@ -119,9 +119,11 @@ class CourtNetwork:
             now_s: monotonic time.
             match: number of the match.
             beat: number of the beat that begins now.
+            silent: for each seat, whether the match takes it for silent.
         """
         self._inbox.links.begin(now_s, match, beat)
-        inputs = self._inbox.commands(now_s, [_empty(ring) for ring in self._commands])
+        waiting = [_empty(ring) for ring in self._commands]
+        inputs = self._inbox.commands(now_s, waiting, silent)
         arrivals = [Arrival(one, None) for one in inputs]
         for desk, judge in self._desks:
             arrivals += self._let_in(desk, judge)

@@ -284,6 +284,10 @@ def _nobody(match: Match) -> str:
     return "" if any(seat.join for seat in match.seats) else "nobody has joined"
 
 
+def _missing(match: Match) -> str:
+    return "; ".join(match.missing())  # also what changed a moment ago, in this beat
+
+
 def _no_end(match: Match) -> str:
     return "" if match.duration_ticks else "this match has no end"
 
@@ -308,7 +312,7 @@ _RULES: dict[type[d.Decision], _Rule] = {
         lambda match, decision: contestant.ready(match, _seat(match, decision.seat), True),
         also=_nobody,
     ),
-    d.Start: _Rule(frozenset({Phase.READY}), _start, _begin_countdown),
+    d.Start: _Rule(frozenset({Phase.READY}), _start, _begin_countdown, also=_missing),
     d.Halt: _Rule(
         frozenset({Phase.COUNTDOWN, Phase.PLAYING}),
         lambda match, decision: "halted.",

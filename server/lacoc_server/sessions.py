@@ -19,6 +19,7 @@ class Why(StrEnum):
     NOT_YOUR_SEAT = "not your seat"
     BAD_SEAL = "bad seal"
     OLD = "old"
+    STALE = "stale"
     OUT_OF_RANGE = "out of range"
     AHEAD = "ahead"
     FLOOD = "flood"

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lacoc_client.controller import Hold
-from lacoc_client.event_log import EventLog
+from lacoc_client.event_log import KEPT, EventLog
 from lacoc_client.gateway import home, server, wire
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.page import Allowance
@@ -185,6 +185,17 @@ def test_the_courts_list_stands_for_the_log() -> None:
     assert [one.number for one in log.restore([(event(1, "b"), "b 1")])] == [1]
     assert (list(log), log.number) == (["b 1"], 2)
     assert (log.restore([]), list(log), log.number) == ([], [], 3)
+
+
+def test_the_newest_of_a_very_long_log_are_kept() -> None:
+    """Whoever comes late gets no more than the court would list, and nothing is missed by that."""
+    log: EventLog[int] = EventLog()
+    for number in range(1, 3 * KEPT):
+        log.add(event(number, "a"), number)
+    assert list(log) == [*range(2 * KEPT, 3 * KEPT)]
+    assert not log.differs(1, 0, 3 * KEPT - 1)
+    assert log.add(event(1, "next", match=2), 1)
+    assert (list(log), log.differs(2, 0, 1)) == ([1], False)
 
 
 def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:

@@ -13,7 +13,7 @@ from lacoc_server.network import CourtNetwork, Outcome
 from lacoc_shared import seal
 from lacoc_shared.access_rules import Protection
 from lacoc_shared.codec import encode, message_hash
-from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat
+from lacoc_shared.inputs import Decide, HeardSeat, Input, JoinSeat, KeySeat, SilentSeat
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import (
     PROTOCOL,
@@ -86,6 +86,7 @@ class CourtStub:
         self.inputs: list[Input] = []
         self.scene = make_scene("empty")
         self.silent = False
+        self._silent: set[int] = set()
         self._seats = {seat: SeatFrame(0, 0, 1, 0, 0, 0, 0, 0, 0, 0) for seat in range(2)}
         self._todo: list[Callable[[], None]] = []
         self._stopping = threading.Event()
@@ -127,7 +128,8 @@ class CourtStub:
         while not self._stopping.wait(0.005):
             beat += 1
             now_s = time.monotonic()
-            arrivals = self.network.poll(now_s, 1, beat)
+            silent = [seat in self._silent for seat in range(2)]
+            arrivals = self.network.poll(now_s, 1, beat, silent)
             outcomes = [self._apply(arrival.input, beat) for arrival in arrivals]
             for arrival, outcome in zip(arrivals, outcomes, strict=True):
                 if arrival.answer:
@@ -159,6 +161,10 @@ class CourtStub:
 
     def _apply(self, one: Input, beat: int) -> Outcome:
         self.inputs.append(one)
+        if isinstance(one, SilentSeat):
+            self._silent.add(one.seat)
+        if isinstance(one, HeardSeat):
+            self._silent.discard(one.seat)
         if isinstance(one, JoinSeat) and one.team == "Nobody":
             return Refusal("there is no such team")
         if isinstance(one, JoinSeat):

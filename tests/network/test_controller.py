@@ -177,7 +177,7 @@ def test_a_flood_on_one_seat_does_not_touch_the_other(
         until(lambda: one.wait_frame(0.2) and one.round_trip_ms is not None)
         trips.append(one.round_trip_ms)
     assert [key for _, key in court.keys(seat=1)] == [2] * 20
-    assert court.refused["left"]["flood"] > 0
+    assert court.refused["left"]["bad bytes"] > 0
     assert court.refused["right"] == {}
     assert sorted(trips)[10] < 200
 

@@ -1,5 +1,6 @@
 """The court's inbox, with a time that the test gives."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import msgspec
@@ -7,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.inbox import COMMANDS_HZ, COMMANDS_PER_BEAT, Inbox
+from lacoc_server.inbox import COMMANDS_HZ, COMMANDS_PER_BEAT, LOOKED_AT_PER_BEAT, Inbox
+from lacoc_server.links import FRESH_BEATS
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import (
@@ -47,8 +49,23 @@ def check_files(join: Join) -> Join:
     return msgspec.structs.replace(join, robot=join.robot or CONTEST_ROBOT)
 
 
-def make(**more: Any) -> Inbox:
-    return Inbox(KEYS, SEATS, HASHES, check_files, **more)
+class Court(Inbox):
+    """An inbox and what its match makes of the seats' silence."""
+
+    silent = (False, False)
+
+    def beat(self, now_s: float, arrived: Sequence[Sequence[bytes]]) -> list[Input]:
+        inputs = self.commands(now_s, arrived, self.silent)
+        for item in inputs:
+            if isinstance(item, SilentSeat | HeardSeat):
+                left, right = self.silent
+                now = isinstance(item, SilentSeat)
+                self.silent = (now, right) if item.seat == LEFT else (left, now)
+        return inputs
+
+
+def make(**more: Any) -> Court:
+    return Court(KEYS, SEATS, HASHES, check_files, **more)
 
 
 def join_bytes(seat: int = LEFT, **changes: Any) -> bytes:
@@ -126,7 +143,7 @@ def test_a_join_is_refused_with_its_reason(payload: bytes, words: str, why: str)
     assert words in refusal.reason
     assert len(refusal.mistakes) == (2 if why == "bad files" else 0)
     assert refusals(inbox) == {why: 1}
-    assert inbox.commands(0.1, [[command(holder, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
+    assert inbox.beat(0.1, [[command(holder, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
 
 
 def test_a_seat_without_a_token_is_closed() -> None:
@@ -138,10 +155,10 @@ def test_a_seat_without_a_token_is_closed() -> None:
 def test_joins_can_not_flood_the_reading_of_files() -> None:
     """A join may cost a lot, so even the right token gets only so many of them a second."""
     inbox = make()
-    inbox.commands(10.0, [[], []])
+    inbox.beat(10.0, [[], []])
     answers = [inbox.join(LEFT, join_bytes()) for _ in range(50)]
     assert sum(isinstance(answer, JoinSeat) for answer in answers) == 5
-    inbox.commands(12.0, [[], []])
+    inbox.beat(12.0, [[], []])
     assert isinstance(inbox.join(LEFT, join_bytes()), JoinSeat)
 
 
@@ -149,10 +166,10 @@ def test_the_same_token_takes_the_seat_over() -> None:
     """The same person's new window: the old session is refused from then on as replaced."""
     inbox = make()
     old = take_seat(inbox)
-    inbox.commands(0.1, [[command(old, 5)], []])
+    inbox.beat(0.1, [[command(old, 5)], []])
     new = take_seat(inbox)
     assert new.last_seq == 5
-    assert inbox.commands(0.2, [[command(old, 6), command(new, 6, key=3)], []]) == [
+    assert inbox.beat(0.2, [[command(old, 6), command(new, 6, key=3)], []]) == [
         KeySeat(LEFT, 6, 1, 3)
     ]
     assert refusals(inbox) == {"replaced": 1}
@@ -165,9 +182,9 @@ def test_a_command_counts_once_and_its_repetition_is_a_sign_of_life() -> None:
     """Rules 3: repetition with the same sequence number is retransmission and heartbeat in one."""
     inbox = make()
     joined = take_seat(inbox)
-    assert inbox.commands(0.1, [[command(joined, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
+    assert inbox.beat(0.1, [[command(joined, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
     for beat in range(200):
-        assert inbox.commands(0.2 + beat * 0.02, [[command(joined, 1)], []]) == []
+        assert inbox.beat(0.2 + beat * 0.02, [[command(joined, 1)], []]) == []
     assert refusals(inbox) == {}
     assert inbox.health(4.2)[LEFT].commands_hz == pytest.approx(50, abs=1)
 
@@ -178,12 +195,12 @@ def test_the_newest_restart_comes_before_the_newest_digit() -> None:
     joined = take_seat(inbox)
     keys = (3, RESTART_KEY, 1, RESTART_KEY, 4)
     sent = [command(joined, seq, key) for seq, key in enumerate(keys, 1)]
-    assert inbox.commands(0.1, [sent, []]) == [
+    assert inbox.beat(0.1, [sent, []]) == [
         KeySeat(LEFT, 4, 1, RESTART_KEY),
         KeySeat(LEFT, 5, 1, 4),
     ]
     later = [command(joined, 6, 7), command(joined, 7, RESTART_KEY)]
-    assert inbox.commands(0.2, [later, []]) == [
+    assert inbox.beat(0.2, [later, []]) == [
         KeySeat(LEFT, 7, 1, RESTART_KEY),
         KeySeat(LEFT, 6, 1, 7),
     ]
@@ -212,7 +229,7 @@ def test_an_altered_command_is_refused(field: str, value: object, why: str) -> N
     """A seal covers every number of a command."""
     inbox = make()
     joined = take_seat(inbox)
-    assert inbox.commands(0.1, [[altered(command(joined, 10), field, value)], []]) == []
+    assert inbox.beat(0.1, [[altered(command(joined, 10), field, value)], []]) == []
     assert refusals(inbox) == {why: 1}
 
 
@@ -234,8 +251,8 @@ def test_a_sealed_command_that_makes_no_sense_is_refused(
     """Old and impossible commands have no effect and are counted by reason."""
     inbox = make()
     joined = take_seat(inbox)
-    inbox.commands(0.1, [[command(joined, 10)], []])
-    assert inbox.commands(0.2, [[command(joined, seq, key, level)], []]) == []
+    inbox.beat(0.1, [[command(joined, 10)], []])
+    assert inbox.beat(0.2, [[command(joined, seq, key, level)], []]) == []
     assert refusals(inbox) == {why: 1}
 
 
@@ -247,12 +264,12 @@ def test_a_frame_that_is_not_there_yet_is_refused() -> None:
     inbox.links.sent(0.08)
     inbox.links.begin(0.1, 1, 7)
     early = [command(joined, 1, match=1, seen=7), command(joined, 1, match=2, seen=0)]
-    assert inbox.commands(0.1, [early, []]) == []
+    assert inbox.beat(0.1, [early, []]) == []
     negative = [command(joined, 1, match=-1), command(joined, 1, match=1, seen=-5)]
-    assert inbox.commands(0.1, [negative, []]) == []
+    assert inbox.beat(0.1, [negative, []]) == []
     assert refusals(inbox) == {"ahead": 2, "out of range": 2}
     key = KeySeat(LEFT, 1, 1, 2, seen=6)
-    assert inbox.commands(0.1, [[command(joined, 1, match=1, seen=6)], []]) == [key]
+    assert inbox.beat(0.1, [[command(joined, 1, match=1, seen=6)], []]) == [key]
 
 
 def test_held_keys_obey_the_rules_of_the_beat_in_which_they_take_effect() -> None:
@@ -262,7 +279,7 @@ def test_held_keys_obey_the_rules_of_the_beat_in_which_they_take_effect() -> Non
 
     def beat(number: int, *sent: bytes) -> list[Input]:
         inbox.links.begin(number * 0.02, 1, number)
-        inputs = inbox.commands(number * 0.02, [sent, []])
+        inputs = inbox.beat(number * 0.02, [sent, []])
         inbox.links.sent(number * 0.02 + 0.002)
         return inputs
 
@@ -291,7 +308,7 @@ def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     forged = command(left, 1, seat=RIGHT)
     stolen = command(left, 1, seat=LEFT)
-    assert inbox.commands(0.1, [[], [forged, stolen, command(right, 1, seat=RIGHT)]]) == [
+    assert inbox.beat(0.1, [[], [forged, stolen, command(right, 1, seat=RIGHT)]]) == [
         KeySeat(RIGHT, 1, 1, 2)
     ]
     assert refusals(inbox, RIGHT) == {"not your seat": 2}
@@ -302,12 +319,12 @@ def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
     """Failure policy: the newest wins; the other seat and the beat's time are untouched."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
-    inbox.commands(0.0, [[], []])
+    inbox.beat(0.0, [[], []])
     seq = 0
     for beat in range(1, 101):  # 2 s
         flood = [command(left, seq + n, key=n % 10) for n in range(1, 65)]
         seq += 64
-        taken = inbox.commands(beat * 0.02, [flood, [command(right, beat, seat=RIGHT)]])
+        taken = inbox.beat(beat * 0.02, [flood, [command(right, beat, seat=RIGHT)]])
         assert taken == [KeySeat(LEFT, seq, 1, 64 % 10), KeySeat(RIGHT, beat, 1, 2)]
     health = inbox.health(2.0)[LEFT]
     heeded = 6400 - health.refused["flood"]
@@ -318,20 +335,105 @@ def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
 def test_a_flood_of_rubbish_costs_a_fixed_amount() -> None:
     """Bytes beyond the allowance are not even read."""
     inbox = make()
-    inbox.commands(5.0, [[b"rubbish"] * 1000, []])
-    assert refusals(inbox) == {"flood": 1000 - COMMANDS_PER_BEAT, "bad bytes": COMMANDS_PER_BEAT}
+    inbox.beat(5.0, [[b"rubbish"] * 1000, []])
+    looked_at = LOOKED_AT_PER_BEAT
+    assert refusals(inbox) == {"flood": 1000 - looked_at, "bad bytes": looked_at}
+
+
+def test_rubbish_of_others_takes_nothing_of_what_a_seat_may_send() -> None:
+    """Failure policy: the seat is not disturbed, without access rules either."""
+    inbox = make()
+    joined = take_seat(inbox)
+    other = take_seat(inbox, RIGHT)
+    rubbish = [b"rubbish", command(other, 7), altered(command(joined, 9), "seq", 10), b""] * 15
+    seq = 0
+    for beat in range(1, 501):  # 10 s, 3,000 pieces of rubbish a second
+        now_s, own = beat * 0.02, []
+        if beat % 5 == 0:
+            seq += 1
+            own = [command(joined, seq)]
+        taken = inbox.beat(now_s, [[*rubbish[:30], *own, *rubbish[30:]], []])
+        assert [item for item in taken if isinstance(item, KeySeat)] == [
+            KeySeat(LEFT, seq, 1, 2)
+        ] * len(own)
+        assert SilentSeat(LEFT) not in taken
+    assert inbox.doors()[LEFT].heard == 100
+    assert "flood" not in refusals(inbox)
+
+
+def test_an_overheard_command_does_not_keep_a_seat_alive() -> None:
+    """Rules 3: silent is whose controller is gone, whatever others send again of it."""
+    inbox = make()
+    joined = take_seat(inbox)
+    newest = b""
+    for beat in range(1, 1001):
+        inbox.links.begin(beat * 0.02, 1, beat)
+        sent = []
+        if beat <= 500 and beat % 5 == 0:  # ten a second, each upon the newest frame
+            newest = command(joined, 1, match=1, seen=beat - 1)
+            sent = [newest]
+        taken = inbox.beat(beat * 0.02, [[*sent, newest] if newest else [], []])
+        inbox.links.sent(beat * 0.02)
+        if SilentSeat(LEFT) in taken:
+            break
+    assert 500 + 50 < beat <= 500 + 50 + FRESH_BEATS
+    assert refusals(inbox)["stale"] > 0
+    assert inbox.beat((beat + 1) * 0.02, [[command(joined, 2, match=1, seen=beat - 1)], []]) == [
+        HeardSeat(LEFT),
+        KeySeat(LEFT, 2, 1, 2, seen=beat - 1),
+    ]
+
+
+def test_a_controller_that_gets_no_frames_is_not_believed_for_long() -> None:
+    """Who sees nothing steers nothing: its repetitions name a frame of two seconds ago."""
+    inbox = make()
+    joined = take_seat(inbox)
+    for beat in range(1, 1001):
+        inbox.links.begin(beat * 0.02, 1, beat)
+        if SilentSeat(LEFT) in inbox.beat(beat * 0.02, [[command(joined, 1, match=1)], []]):
+            break
+        inbox.links.sent(beat * 0.02)
+    assert 0 < beat - FRESH_BEATS - 50 <= 2
+
+
+def test_silence_is_what_the_match_does_not_know_yet() -> None:
+    """A new match, or one that a contestant left and came back to, is told how it is now."""
+    inbox = make()
+    joined = take_seat(inbox)
+    assert inbox.commands(5.0, [[], []], (False, False)) == [SilentSeat(LEFT)]
+    assert inbox.commands(5.02, [[], []], (True, False)) == []
+    assert inbox.commands(5.04, [[], []], (False, False)) == [SilentSeat(LEFT)]  # another match
+    assert inbox.commands(5.06, [[command(joined, 1)], []], (True, False))[0] == HeardSeat(LEFT)
+    assert inbox.commands(5.08, [[], []], (False, False)) == []
+    inbox.left(LEFT)
+    assert inbox.commands(5.1, [[], []], (True, False)) == []
+    take_seat(inbox)
+    assert inbox.commands(5.12, [[], []], (True, False)) == [HeardSeat(LEFT)]
+
+
+def test_ready_can_not_flood_the_log() -> None:
+    """Each is an event for everybody, and may make a model."""
+    inbox = make()
+    joined = take_seat(inbox)
+    inbox.beat(10.0, [[], []])
+    answers = [inbox.ready(LEFT, request(joined, "ready", n % 2 > 0, seq=n)) for n in range(1, 50)]
+    assert sum(isinstance(answer, ReadySeat) for answer in answers) == 5
+    assert isinstance(answers[-1], Refusal)
+    assert "wait" in answers[-1].reason
+    inbox.beat(12.0, [[], []])
+    assert isinstance(inbox.ready(LEFT, request(joined, "ready", seq=50)), ReadySeat)
 
 
 def test_a_seat_is_silent_after_a_second_and_heard_again() -> None:
     """Rules 3: silent for 1 s of wall time gets "silent" as an input."""
     inbox = make()
     joined = take_seat(inbox)
-    assert inbox.commands(1.0, [[], []]) == []
-    assert inbox.commands(1.02, [[], []]) == [SilentSeat(LEFT)]
-    assert inbox.commands(1.04, [[], []]) == []
-    assert inbox.commands(5.0, [[command(joined, 0)], []]) == [HeardSeat(LEFT)]
-    assert inbox.commands(6.02, [[], []]) == [SilentSeat(LEFT)]
-    assert inbox.commands(7.0, [[command(joined, 1)], []]) == [
+    assert inbox.beat(1.0, [[], []]) == []
+    assert inbox.beat(1.02, [[], []]) == [SilentSeat(LEFT)]
+    assert inbox.beat(1.04, [[], []]) == []
+    assert inbox.beat(5.0, [[command(joined, 0)], []]) == [HeardSeat(LEFT)]
+    assert inbox.beat(6.02, [[], []]) == [SilentSeat(LEFT)]
+    assert inbox.beat(7.0, [[command(joined, 1)], []]) == [
         HeardSeat(LEFT),
         KeySeat(LEFT, 1, 1, 2),
     ]
@@ -342,15 +444,15 @@ def test_refused_commands_are_no_sign_of_life() -> None:
     inbox = make()
     joined = take_seat(inbox)
     bad = altered(command(joined, 1), "key", 5)
-    assert inbox.commands(1.02, [[bad], []]) == [SilentSeat(LEFT)]
+    assert inbox.beat(1.02, [[bad], []]) == [SilentSeat(LEFT)]
 
 
 def test_a_late_beat_makes_nobody_silent() -> None:
     """After a stall of the court the commands that waited are read before silence is judged."""
     inbox = make()
     joined = take_seat(inbox)
-    inbox.commands(0.5, [[command(joined, 1)], []])
-    assert inbox.commands(9.0, [[command(joined, 1)], []]) == []
+    inbox.beat(0.5, [[command(joined, 1)], []])
+    assert inbox.beat(9.0, [[command(joined, 1)], []]) == []
 
 
 def test_ready_and_leave_are_proven_by_the_session() -> None:
@@ -364,7 +466,7 @@ def test_ready_and_leave_are_proven_by_the_session() -> None:
     assert isinstance(inbox.leave(LEFT, b""), Refusal)
     assert inbox.leave(LEFT, request(joined, "leave", seq=3)) == LeaveSeat(LEFT)
     inbox.left(LEFT)
-    assert inbox.commands(9.0, [[command(joined, 1)], []]) == []
+    assert inbox.beat(9.0, [[command(joined, 1)], []]) == []
     assert refusals(inbox) == {"bad seal": 1, "bad bytes": 1, "left": 1}
     assert not inbox.health(9.0)[LEFT].joined
 
@@ -391,17 +493,27 @@ def test_a_restarted_court_knows_its_seats() -> None:
     before = make()
     old = take_seat(before)
     after = make(last_seqs={"left": 41}, joined=("left",))
-    assert after.commands(100.0, [[command(old, 42)], []]) == []
+    assert after.beat(100.0, [[command(old, 42)], []]) == []
     assert refusals(after) == {"unknown session": 1}
-    assert after.commands(101.1, [[], []]) == [SilentSeat(LEFT)]
+    assert after.beat(101.1, [[], []]) == [SilentSeat(LEFT)]
     assert after.health(101.1)[LEFT].joined
     assert after.health(101.1)[LEFT].session == 0
     new = take_seat(after)
     assert new.last_seq == 41
-    assert after.commands(101.2, [[command(new, 41), command(new, 42)], []]) == [
+    assert after.beat(101.2, [[command(new, 41), command(new, 42)], []]) == [
         HeardSeat(LEFT),
         KeySeat(LEFT, 42, 1, 2),
     ]
+
+
+def test_a_seat_that_was_silent_at_the_kill_is_silent_until_it_is_heard() -> None:
+    """The record says so, and a restart of the court is no sign of life."""
+    after = make(last_seqs={"left": 41}, joined=("left",))
+    for now_s in (100.0, 100.5, 105.0):
+        assert after.commands(now_s, [[], []], (True, False)) == []
+    new = take_seat(after)
+    taken = after.commands(105.1, [[command(new, 42)], []], (True, False))
+    assert taken == [HeardSeat(LEFT), KeySeat(LEFT, 42, 1, 2)]
 
 
 ARBITRARY = st.binary(max_size=200) | st.recursive(
@@ -416,7 +528,7 @@ ARBITRARY = st.binary(max_size=200) | st.recursive(
 def test_no_bytes_ever_raise(payloads: list[bytes]) -> None:
     """Failure policy: never an exception in the loop, and nothing enters the match."""
     inbox = make()
-    assert inbox.commands(0.0, [payloads, payloads]) == []
+    assert inbox.beat(0.0, [payloads, payloads]) == []
     for payload in payloads:
         for judge in (inbox.join, inbox.ready, inbox.leave):
             assert isinstance(judge(LEFT, payload), Refusal)
@@ -432,4 +544,4 @@ def test_no_numbers_ever_raise(numbers: tuple[int, int, int], mac: bytes) -> Non
     """Well-formed commands with any numbers and any seal have no effect."""
     inbox = make()
     joined = take_seat(inbox)
-    assert inbox.commands(0.0, [[encode(Command(joined.session, *numbers, 0, 0, mac))], []]) == []
+    assert inbox.beat(0.0, [[encode(Command(joined.session, *numbers, 0, 0, mac))], []]) == []

@@ -74,6 +74,15 @@ def test_a_request_seal_is_the_documented_one(ready: bool) -> None:
     assert seal.request_mac(b"k" * 16, "lacoc/a", 77, 3, ready) == expected
 
 
+@pytest.mark.parametrize("token", ["", "a token", "\ud800 is no character"])
+def test_a_password_is_the_documented_one(token: str) -> None:
+    """docs/protocol.md: 20 bytes of BLAKE2b over user, a space and token, as hexadecimal digits."""
+    text = b"main.left " + token.encode("utf-8", "surrogatepass")
+    digest = hashlib.blake2b(text, digest_size=20, person=b"lacoc password").hexdigest()
+    assert seal.password("main.left", token) == digest
+    assert seal.password("main.right", token) != digest
+
+
 def test_every_part_changes_the_seal() -> None:
     """No two different commands share a seal, also where digits could run together."""
     base = ("lacoc/main/seat/left/key", 7, 11, 1, 2, 1, 900)

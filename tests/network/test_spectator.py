@@ -10,7 +10,7 @@ from lacoc_client.asking import understand
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_shared import decisions as d
-from lacoc_shared.codec import encode, message_hash
+from lacoc_shared.codec import decode, encode, message_hash
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.mistakes import UserError
@@ -113,7 +113,7 @@ def test_a_court_whose_frames_do_not_fit_its_sheet_is_told_of(
 def test_another_version_of_the_protocol_is_a_sentence(court: CourtStub, session: Session) -> None:
     """Protocol version is checked by the sheet, also where the sheet itself looks different."""
     court.in_a_beat(lambda: court.show(court.scene, protocol=99))
-    until(lambda: encode(99) in session.ask(KEYS.sheet))
+    until(lambda: decode(session.ask(KEYS.sheet), Sheet).protocol == 99)
     with pytest.raises(UserError, match=r"version 99 .* this program version 1"):
         Spectator(session, "main")
 
@@ -148,7 +148,7 @@ def test_a_court_that_comes_back_with_another_version(court: CourtStub, session:
     spectator = Spectator(session, "main")
     assert spectator.wait_frame(1.0)
     court.in_a_beat(lambda: court.show(court.scene, protocol=99))
-    until(lambda: encode(99) in session.ask(KEYS.sheet))
+    until(lambda: decode(session.ask(KEYS.sheet), Sheet).protocol == 99)
     court.in_a_beat(lambda: court.network.publish_frame(encode({"version": 99}), 0.0))
     with pytest.raises(UserError, match=r"version 99 .* this program version 1"):
         until(lambda: spectator.wait_frame(1.0) and False)

@@ -147,6 +147,18 @@ def test_repeats_that_come_a_little_early_or_late() -> None:
     assert held.left.expected - held.left.arrived <= 1
 
 
+def test_repeats_of_a_match_that_is_often_halted() -> None:
+    """A halt costs no repeat: a second begins with play, and one that is cut short counts none."""
+    held = Held()
+    for _ in range(6):
+        for beat in range(60):
+            held.heard += beat % 5 == 4
+            held.beat()
+        held.beat(decide(Halt()))
+        held.beat(decide(Resume()))
+    assert held.left.expected == held.left.arrived == 60
+
+
 def test_silences() -> None:
     """Issue 4: how often and how long a seat was silent while the match was played."""
     held = Held()

@@ -1,13 +1,13 @@
 """The phases of a match as a table (rules 4)."""
 
 import pytest
-from stage import FORWARD, LEFT, RIGHT, B, Script, Stage, X, join, key, seen
+from stage import FORWARD, LEFT, RIGHT, B, Script, Stage, X, decide, join, key, seen
 
 from lacoc_server.match import TRANSITIONS
 from lacoc_server.physics import Fault
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import encode
-from lacoc_shared.inputs import HeardSeat, LeaveSeat, ReadySeat, SilentSeat
+from lacoc_shared.inputs import HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import DecisionReply, Done, Event, Refusal
 from lacoc_shared.seat import No, Phase, SeatFlag
 
@@ -341,8 +341,7 @@ def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
     changed = stage.send(join(LEFT, robot="quadruped"))
     assert isinstance(changed, Done)
     assert "the next takes your new ones" in changed.text
-    coming = stage.match.seats[LEFT].coming
-    assert coming == join(LEFT, robot="quadruped")
+    assert stage.match.next_joins() == [join(LEFT, robot="quadruped"), join(RIGHT)]
     assert stage.match.sheet().seats[LEFT].robot == "Hexapod"
     assert isinstance(stage.send(ReadySeat(LEFT, False)), Refusal)
     left = stage.send(LeaveSeat(LEFT))
@@ -359,7 +358,17 @@ def test_who_joins_after_the_end_plays_in_the_next_match() -> None:
     assert isinstance(answer, Done)
     assert "next" in answer.text
     assert stage.match.seats[RIGHT].join is None
-    assert stage.match.seats[RIGHT].coming == join(RIGHT)
+    assert stage.match.next_joins() == [join(LEFT), join(RIGHT)]
+
+
+@pytest.mark.parametrize("change", [LeaveSeat(RIGHT), ReadySeat(RIGHT, False)])
+def test_who_changes_their_mind_in_the_beat_of_start_is_not_begun_without(change: Input) -> None:
+    """Rules 4: READY means that both are; what comes first in a beat counts."""
+    stage = Stage().to(P.READY)
+    *_, started = stage.beat(change, decide(d.Start())).outcomes
+    assert isinstance(started, Refusal)
+    assert "right" in started.reason
+    assert stage.phase is P.LOBBY
 
 
 def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:

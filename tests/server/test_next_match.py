@@ -1,0 +1,184 @@
+"""From one match of a court to the next: who sits there, with what, and who is heard."""
+
+import errno
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from running import until
+
+from lacoc_arenas import arena as arenas
+from lacoc_client.controller import Controller
+from lacoc_client.referee import RefereeClient
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.limits import Limits
+from lacoc_server.court import Court, CourtSettings
+from lacoc_server.decision_desk import DecisionDesk
+from lacoc_server.entry import Admission
+from lacoc_server.inbox import Inbox
+from lacoc_server.network import CourtNetwork
+from lacoc_shared.decisions import Abort, Next, Start
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import SeatFrame, SentFile, Sheet
+from lacoc_shared.record.writer import RecordWriter
+from lacoc_shared.seal import hash_token
+from lacoc_shared.seat import Phase, SeatFlag
+from lacoc_shared.session import Session, open_client
+
+pytestmark = pytest.mark.slow
+
+TOKENS = {"left": "the token of left", "right": "the token of right"}
+WHISTLE = "the token of the referee"
+
+
+class Room(NamedTuple):
+    """A court and those who are connected to it."""
+
+    sessions: tuple[Session, Session]
+    referee: RefereeClient
+
+    def controller(self, seat: int, robot: str = "hexapod") -> Controller:
+        name = list(TOKENS)[seat]
+        postures, locomotion = sample_gait_files(robot)
+        return Controller(
+            self.sessions[seat],
+            "main",
+            name,
+            TOKENS[name],
+            f"Team {name}",
+            robot=SentFile(*find_robot(robot)),
+            postures=postures,
+            locomotion=locomotion,
+        )
+
+    def decide(self, decision: Start | Abort | Next) -> None:
+        self.referee.decide(decision, "a test", "Kubota")
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Iterator[Room]:
+    """A court in a thread of this process, whose disk a test can fill."""
+    arena = arenas.load("othello", {"match": {"countdown_s": 0.02}})
+    files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
+    admission = Admission(*files, Limits(), arena.match.open_levels)
+    hashes = {seat: hash_token(token) for seat, token in TOKENS.items()}
+    inbox = Inbox(Keys("main"), list(TOKENS), hashes, admission)
+    desk = DecisionDesk([hash_token(WHISTLE)])
+    over = threading.Event()
+    with (
+        CourtNetwork(Keys("main"), ["tcp/127.0.0.1:0"], inbox, desk) as network,
+        ExitStack() as stack,
+    ):
+        court = Court(CourtSettings("main", arena, {}, tmp_path / "recordings"), network)
+        thread = threading.Thread(target=court.run, args=(over.is_set,))
+        thread.start()
+        stack.callback(thread.join)
+        stack.callback(over.set)
+        left, right = (stack.enter_context(open_client([network.locators[0]])) for _ in range(2))
+        yield Room((left, right), RefereeClient(left, "main", WHISTLE))
+
+
+def sheet(controller: Controller, match: int) -> Sheet:
+    """The sheet of a match, once it is there."""
+    until([controller], lambda: controller.view.sheet.match == match)
+    return controller.view.sheet
+
+
+def seat_of(controller: Controller, seat: int) -> SeatFrame:
+    assert controller.view.frame is not None
+    return controller.view.frame.seats[seat]
+
+
+def phase_is(controller: Controller, phase: Phase) -> bool:
+    return controller.view.frame is not None and controller.view.frame.phase == phase
+
+
+def test_the_next_match_takes_the_files_that_were_sent_in_this_one(room: Room) -> None:
+    """Rules 4: a match keeps the files that it began with; what is sent meanwhile is not lost."""
+    players = [room.controller(seat) for seat in range(2)]
+    for player in players:
+        player.join()
+        player.ready()
+    until(players, lambda: phase_is(players[0], Phase.READY))
+    room.decide(Start())
+    until(players, lambda: phase_is(players[0], Phase.PLAYING))
+    left = room.controller(0, "quadruped")
+    assert "the next takes your new ones" in "".join(left.join())
+    assert sheet(left, 1).seats[0].robot == "Hexapod"
+    room.decide(Abort())
+    room.decide(Next())
+    robots = [seat.robot for seat in sheet(left, 2).seats]
+    assert robots == ["Quadruped", "Hexapod"]
+
+
+def test_who_joins_when_a_match_is_over_sits_in_the_next(room: Room) -> None:
+    """Rules 4: and can say ready there."""
+    left, right = room.controller(0), room.controller(1)
+    left.join()
+    room.decide(Abort())
+    assert "you play in the next" in "".join(right.join())
+    room.decide(Next())
+    assert [seat.team for seat in sheet(right, 2).seats] == ["Team left", "Team right"]
+    right.ready()
+
+
+def test_who_was_silent_before_is_silent_in_the_next_match(room: Room) -> None:
+    """Rules 3: a dead controller is not taken for a living one because a match opens."""
+    left, right = room.controller(0), room.controller(1)
+    left.join()
+    right.join()  # and is not heard from then on
+    until([left], lambda: seat_of(left, 1).flags & SeatFlag.SILENT)
+    room.decide(Abort())
+    room.decide(Next())
+    until([left], lambda: left.view.frame is not None and left.view.frame.match == 2)
+    until([left], lambda: seat_of(left, 1).flags & SeatFlag.SILENT)
+    until([left, right], lambda: not seat_of(left, 1).flags & SeatFlag.SILENT)
+    assert not seat_of(left, 0).flags & SeatFlag.SILENT
+
+
+def test_who_left_in_play_and_came_back_is_heard(room: Room) -> None:
+    """Rules 4: the seat stays theirs; nobody takes them for silent when they steer again."""
+    players = [room.controller(seat) for seat in range(2)]
+    for player in players:
+        player.join()
+        player.ready()
+    until(players, lambda: phase_is(players[0], Phase.READY))
+    room.decide(Start())
+    until(players, lambda: phase_is(players[0], Phase.PLAYING))
+    players[0].leave()
+    until(players[1:], lambda: seat_of(players[1], 0).flags & SeatFlag.SILENT)
+    players[0].join()
+    until(players, lambda: not seat_of(players[1], 0).flags & SeatFlag.SILENT)
+
+
+def test_the_disk_fills_in_the_beat_of_next(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is answered when it is on disk; then the next match opens with both teams."""
+    players = [room.controller(seat) for seat in range(2)]
+    for player in players:
+        player.join()
+    room.decide(Abort())
+    append, filled, room_again = RecordWriter._append, threading.Event(), threading.Event()
+
+    def until_next(self: RecordWriter, data: bytes | bytearray) -> int:
+        if b"\xa4next" in bytes(data):
+            filled.set()
+        if filled.is_set() and not room_again.is_set():
+            self._write_error = os.strerror(errno.ENOSPC)
+            return 0
+        return append(self, data)
+
+    monkeypatch.setattr(RecordWriter, "_append", until_next)
+    deciding = threading.Thread(target=room.decide, args=(Next(),))
+    deciding.start()
+    left = players[0]
+    until(players, lambda: left.view.health is not None and left.view.health.record_trouble)
+    assert filled.is_set()
+    assert sheet(left, 1).match == 1
+    room_again.set()
+    deciding.join(10)
+    assert not deciding.is_alive()
+    assert [seat.team for seat in sheet(left, 2).seats] == ["Team left", "Team right"]
