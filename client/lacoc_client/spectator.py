@@ -20,6 +20,7 @@ T = TypeVar("T")
 _EVENTS_DEPTH = 4096
 _FETCH_TRIES = 3
 _STRAYS = 5
+_OTHER_SCENE_S = 3.0
 
 
 class _Version(msgspec.Struct):
@@ -58,7 +59,9 @@ class Spectator:
         self.frame: Frame | None = None
         """The newest frame."""
         self.frame_s = time.monotonic()
-        """When it arrived (before the first: since when it is waited for)."""
+        """When the newest arrived (before the first: since when it is waited for)."""
+        self._other_since_s: float | None = None
+        """Since when frames come without their sheet."""
         self.health: Health | None = None
         """The newest health."""
         self._log: EventLog[Event] = EventLog()
@@ -94,10 +97,11 @@ class Spectator:
             self._ask_for_what_lacks(told)
         if newest is None or (frame := self._read(newest, Frame)) is None:
             return None
-        self.frame, self.frame_s = frame, newest.arrived_s
-        if self.frame.scene != self.sheet.scene:
-            self._catch_up(self.frame)
-        return self.frame
+        self.frame_s = newest.arrived_s
+        if not self._has_sheet_of(frame):
+            return None
+        self.frame = frame
+        return frame
 
     def wait_frame(self, timeout_s: float) -> Frame | None:
         """Wait for a new frame; None if none came in time.
@@ -182,24 +186,22 @@ class Spectator:
         except NoCourt:  # it went away just now
             return
 
-    def _catch_up(self, frame: Frame) -> None:
-        """The scene changed: get the sheet that belongs to the frame.
+    def _has_sheet_of(self, frame: Frame) -> bool:
+        """Whether the sheet belongs to a frame; if the scene has changed it is asked for.
 
-        The court sends the frame a moment before the sheet, and the scene may change again.
+        The court sends the frame a moment before the sheet, and the scene may change again: a
+        frame whose sheet is not there is passed over.
         """
-        for _ in range(_FETCH_TRIES):
-            try:
+        if frame.scene != self.sheet.scene:
+            with contextlib.suppress(NoCourt):  # it went away just now: the next frame asks again
                 self._fetch_sheet(timeout_s=1.0)
-            except NoCourt:  # it went away just now: the next frame will ask again
-                return
-            if self.sheet.scene == frame.scene:
-                return
-            mail = self._frames.take() if self._frames.wait(1.0) else None
-            if mail is not None and (newer := self._read(mail, Frame)) is not None:
-                frame = self.frame = newer
-                self.frame_s = mail.arrived_s
-        if self.sheet.scene != frame.scene:
+        if frame.scene == self.sheet.scene:
+            self._other_since_s = None
+            return True
+        self._other_since_s = self._other_since_s or self.frame_s
+        if self.frame_s - self._other_since_s > _OTHER_SCENE_S:
             raise UserError(_OTHER_SCENE)
+        return False
 
     def _fetch_events(self, timeout_s: float) -> None:
         events = fetch(self._session, self.keys, self.keys.event, timeout_s=timeout_s)
