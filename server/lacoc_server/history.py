@@ -1,8 +1,8 @@
 """What the rules have seen and decided, so that one event can be taken back (rules 4).
 
-Nothing is edited away. A match keeps every observation; to take an event back, the
-game is folded again from that tick with that event's claim struck out. Paths, clock
-and all other decisions stay as they were.
+Nothing is edited away. A match keeps every observation since its first event; to take
+an event back, the game is folded again from that tick with that event's claim struck
+out. Paths, clock and all other decisions stay as they were.
 """
 
 from dataclasses import dataclass, replace
@@ -59,6 +59,7 @@ class History:
         self.state: Any = game.start()
         """The game's state now."""
         self._steps: list[Step] = []
+        """From the one before the first event that can be taken back."""
         self._step_of: dict[int, int] = {}
 
     def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
@@ -149,6 +150,10 @@ class History:
         }
 
     def _append(self, step: Step) -> None:
+        if not (step.numbers or self._step_of):
+            # A fold begins at an event: without one, the step just before is all it can need.
+            # A practice, which has none, may go on for days.
+            self._steps.clear()
         for number in step.numbers:
             self._step_of[number] = len(self._steps)
         self._steps.append(step)
