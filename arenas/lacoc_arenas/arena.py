@@ -40,6 +40,8 @@ class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     """Sequences repeat while the command stands (4-2, "continuous control")."""
     start: Literal["referee", "ready"] = "referee"
     """Who starts: the referee, or every seat by saying ready."""
+    unattended_s: Seconds = 900.0
+    """A match that starts by "ready" ends when no seat has been heard for this long; 0: never."""
 
     @property
     def open_levels(self) -> tuple[Level, ...]:

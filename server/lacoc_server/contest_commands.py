@@ -71,6 +71,7 @@ token = "{referee}"
 # restart_freeze_s = 5.0   # keys are refused for so long after [x]
 # levels = ["B"]           # ["A", "B"]: posture keys too
 # start = "ready"          # begin when all seats are ready, without a referee's word
+# unattended_s = 900.0     # such a match ends when nobody has been heard for so long; 0: never
 """
 
 

@@ -79,10 +79,19 @@ def leave(match: Match, seat: Seat) -> Done:
     match.tell("leave", f"{seat.team} has left; the seat stays theirs.", seat=seat.index)
     seat.silent = seat.left = True
     seat.stand()
-    unattended = match.rules.start == "ready" and all(other.left for other in match.seats)
-    if unattended and match.phase in (Phase.PLAYING, Phase.HALTED):
-        match.finish("everybody has left")
     return Done("The seat stays yours.")
+
+
+def unattended(match: Match) -> str:
+    """Why a match that nobody judges is over, though its game is not; "" while it goes on."""
+    if match.rules.start != "ready":
+        return ""
+    if all(seat.left for seat in match.seats):
+        return "everybody has left"
+    limit = round(match.rules.unattended_s * BEATS_PER_S)
+    if 0 < limit <= match.silent_beats:
+        return f"nobody has been heard for {match.rules.unattended_s / 60:g} minutes"
+    return ""
 
 
 def silent(match: Match, seat: Seat) -> Done:

@@ -106,6 +106,8 @@ class Match:
         self.countdown_beats = 0
         self.ticks = 0
         """Ticks of PLAYING."""
+        self.silent_beats = 0
+        """Beats since the last in which a seat was not silent."""
         self.clock_offset = 0
         """Ticks that a referee added to the clock."""
         self.seats = [
@@ -279,6 +281,7 @@ class Match:
 
     def _move_on(self) -> None:
         """Change phase where that needs nobody's word."""
+        self.silent_beats = (self.silent_beats + 1) * all(seat.silent for seat in self.seats)
         if self.phase is Phase.LOBBY and not self.missing():
             self._build()
             self.enter(Phase.READY, model=self.physics.model_hash)
@@ -288,6 +291,9 @@ class Match:
             self.begin_countdown()
         if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
             self.enter(Phase.PLAYING)
+        on = self.phase in (Phase.PLAYING, Phase.HALTED)  # a countdown leads to PLAYING
+        if on and (why := contestant.unattended(self)):
+            self.finish(why)
 
     def _tick(self) -> bool:
         """One tick of physics, judged by the rules while the match is played."""

@@ -125,7 +125,7 @@ def test_practice_match() -> None:
     match = ground.match
     assert match.open_levels == (Level.POSTURE, Level.LOCOMOTION)
     assert (match.duration_s, match.countdown_s, match.restart_freeze_s) == (0.0, 0.0, 0.0)
-    assert match.start == "ready"
+    assert (match.start, match.unattended_s) == ("ready", 900.0)
 
 
 @pytest.mark.parametrize("name", ["othello", "flag-strike"])

@@ -85,7 +85,10 @@ def test_flag_strike() -> None:
 def test_practice() -> None:
     """The practice arena's field."""
     size = settings("practice")["size_m"]
-    assert "{} x {} m".format(*size) in SECTIONS["Practice"]  # type: ignore[misc]
+    text = SECTIONS["Practice"]
+    assert "{} x {} m".format(*size) in text  # type: ignore[misc]
+    minutes = arenas.load("practice").match.unattended_s / 60
+    assert f"heard of you for {minutes:g} minutes" in text
 
 
 def test_the_workshops_robot() -> None:

@@ -384,6 +384,76 @@ def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
     assert stage.match.ended == "everybody has left"
 
 
+READY = {"match": {"start": "ready", "countdown_s": 0.1, "unattended_s": 3.0}}
+"""Nobody judges; nobody is waited for longer than 150 beats."""
+
+
+@pytest.mark.parametrize("others", [[], [LeaveSeat(RIGHT)]])
+def test_who_leaves_in_the_countdown_has_left(others: list[LeaveSeat]) -> None:
+    """Rules 4: without a referee a match ends when everybody has left, whenever they did."""
+    stage = Stage(overrides=READY).to(P.READY)
+    stage.beat()
+    assert stage.phase is P.COUNTDOWN
+    stage.beat(LeaveSeat(LEFT), *others)
+    stage.run(10)
+    assert stage.phase is (P.FINISHED if others else P.PLAYING)
+    stage.beat(LeaveSeat(RIGHT))
+    assert (stage.phase, stage.match.ended) == (P.FINISHED, "everybody has left")
+
+
+@pytest.mark.parametrize("halted", [False, True])
+def test_a_match_that_nobody_judges_ends_when_nobody_is_heard(halted: bool) -> None:
+    """Rules 4: every seat silent for `unattended_s`, in play or in a halt, and it is over."""
+    stage = Stage(overrides=READY).to_ready()
+    stage.until(P.PLAYING)
+    stage.beat(*([decide(d.Halt())] if halted else []))
+    stage.beat(SilentSeat(LEFT))
+    stage.run(200)
+    stage.beat(SilentSeat(RIGHT))
+    stage.run(148)
+    stage.beat(HeardSeat(LEFT))  # a coffee break is over just in time
+    stage.beat(SilentSeat(LEFT))
+    stage.run(148)
+    assert stage.phase is (P.HALTED if halted else P.PLAYING)
+    stage.beat()
+    assert stage.phase is P.FINISHED
+    assert stage.match.result().reason == "nobody has been heard for 0.05 minutes"
+
+
+def test_who_comes_back_is_heard() -> None:
+    """Rules 3: a match with somebody there goes on, though all had been silent."""
+    stage = Stage(overrides=READY).to_ready()
+    stage.until(P.PLAYING)
+    stage.beat(LeaveSeat(LEFT), SilentSeat(RIGHT))
+    stage.beat(join(LEFT), HeardSeat(LEFT))
+    stage.run(300)
+    assert stage.phase is P.PLAYING
+
+
+@pytest.mark.parametrize(
+    "match", [{"start": "referee"}, {"start": "ready", "unattended_s": 0.0, "duration_s": 0.0}]
+)
+def test_a_match_may_wait_for_ever(match: dict[str, object]) -> None:
+    """Rules 4: a referee ends a match that nobody plays; 0 is "never" for the others."""
+    stage = Stage(overrides={"match": {"unattended_s": 0.02, "countdown_s": 0.02, **match}})
+    stage.to_playing()
+    stage.beat(SilentSeat(LEFT), SilentSeat(RIGHT))
+    stage.run(1000)
+    assert stage.phase is P.PLAYING
+
+
+def test_a_practice_outlives_a_coffee_break() -> None:
+    """Rules 4, practice: a quarter of an hour without a word, and it ends."""
+    stage = Stage("practice").to_playing()
+    stage.beat(SilentSeat(LEFT))
+    for _ in range(14 * 60 * 50):
+        stage.match.beat()
+    assert stage.phase is P.PLAYING
+    for _ in range(60 * 50):
+        stage.match.beat()
+    assert stage.match.ended == "nobody has been heard for 15 minutes"
+
+
 def test_a_match_with_a_referee_goes_on_though_everybody_has_left() -> None:
     """Rules 4: in a match the seats stay theirs, and the end is the referee's to declare."""
     stage = Stage().to(P.PLAYING)

@@ -124,6 +124,7 @@ const EVENTS: readonly Pattern[] = [
   ["ended by the referee", "審判が終了させました"],
   ["aborted by the referee", "審判が打ち切りました"],
   ["everybody has left", "全員が退出しました"],
+  ["nobody has been heard for {#n} minutes", "{#n} 分間、誰からも通信がありません"],
   ["By the rules: {Result}, {score}.", "規則による結果：{Result}（{score}）"],
   ["a draw", "引き分け"],
   ["{team} wins", "{team} の勝ち"],
