@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from lacoc_arenas.arena import Arena
+from lacoc_server import unjudged
 from lacoc_server.court_log import CourtLog
 from lacoc_server.health import MatchHealth
 from lacoc_server.journal import Journal
@@ -25,7 +26,7 @@ from lacoc_server.recovery import IN_PLAY, Unfinished
 from lacoc_server.world import World
 from lacoc_shared import heap
 from lacoc_shared.contest import HealthLimits
-from lacoc_shared.decisions import Halt, Next, Official
+from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Advice, Decide, Input
 from lacoc_shared.messages import Health, HealthVerdict
 from lacoc_shared.mistakes import UserError
@@ -201,12 +202,12 @@ class Court:
             reasons = self._health.verdict().advice
             if reasons != match.advice:
                 return [Advice(reasons)]
-        if match.rules.start == "ready":  # nobody judges: the court opens the next by itself
-            if match.phase is Phase.FINISHED:
-                return [Decide("court", "", Official())]
-            if match.phase is Phase.OFFICIAL:
-                return [Decide("court", "", Next())]
+        if match.rules.start == "ready":
+            return unjudged.decisions(match, self._held)
         return []
+
+    def _held(self) -> list[bool]:
+        return [bool(one.session) for one in self._network.seat_health(time.monotonic())]
 
     def _open(self, number: int) -> Journal:
         settings = self._settings

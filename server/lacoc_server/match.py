@@ -123,6 +123,8 @@ class Match:
         self.advice: tuple[str, ...] = ()
         """Why the court advises a replay."""
         self.next_wanted = False
+        self.fault: Fault | None = None
+        """What stopped physics in the last tick that was tried."""
         self.staging = Staging(self.arena, make_physics)
         self._shown: tuple[Any, bytes] = (None, b"")
         """A state of the game and its board as frames carry it."""
@@ -298,9 +300,9 @@ class Match:
     def _tick(self) -> bool:
         """One tick of physics, judged by the rules while the match is played."""
         states = [seat.drive.tick(seat.state) for seat in self.seats if seat.drive and seat.state]
-        fault = self.physics.step([state.angles for state in states])
-        if fault is not None:
-            self._fail(fault)
+        self.fault = self.physics.step([state.angles for state in states])
+        if self.fault is not None:
+            self._fail(self.fault)
             return False
         for seat, state in zip(self.seats, states, strict=True):
             seat.state = state

@@ -55,6 +55,7 @@ SPEAKERS = (
     "server/lacoc_server/match.py",
     "server/lacoc_server/referee.py",
     "server/lacoc_server/staging.py",
+    "server/lacoc_server/unjudged.py",
     "shared/lacoc_shared/gait_reader.py",
     "shared/lacoc_shared/gait_text.py",
     "shared/lacoc_shared/gait_workbook.py",

@@ -1,0 +1,240 @@
+"""A court whose match no referee judges: it goes on by itself (rules 4, start = "ready")."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from stage import LEFT, RIGHT, Script, ScriptedPhysics, decide, join, key
+
+from lacoc_arenas import arena as arenas
+from lacoc_server import court as court_module
+from lacoc_server.court import Court, CourtSettings
+from lacoc_server.inbox import Door
+from lacoc_server.match import Match, Outcome
+from lacoc_server.network import Arrival
+from lacoc_server.physics import Fault
+from lacoc_server.recovery import unfinished
+from lacoc_server.replay import Verdict, verify
+from lacoc_server.world import World
+from lacoc_shared import decisions as d
+from lacoc_shared.inputs import HeardSeat, Input, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
+from lacoc_shared.messages import Done, Event, SeatHealth
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.writer import RecordWriter
+from lacoc_shared.seat import NOBODY, Phase
+
+P = Phase
+LONG = 200
+"""Beats: four seconds."""
+
+
+class Quiet:
+    """A network on which only the test speaks."""
+
+    locators = ("tcp/127.0.0.1:1",)
+    input_delay_ms = newest_event = 0
+    sheet_hash = b""
+    dropped: dict[str, int] = {}  # noqa: RUF012 - nobody changes it
+
+    def __init__(self, seats: int) -> None:
+        self.sessions = [0] * seats
+        self.said: list[Input] = []
+        self.events: list[Event] = []
+        self.outcomes: list[Outcome] = []
+
+    def poll(self, now_s: float, match: int, beat: int, silent: Sequence[bool]) -> list[Arrival]:
+        said, self.said = self.said, []
+        for item in said:
+            if isinstance(item, JoinSeat):
+                self.sessions[item.seat] = 7
+        return [Arrival(item, self.outcomes.append) for item in said]
+
+    def doors(self) -> tuple[Door, ...]:
+        return (Door(0, {}),) * len(self.sessions)
+
+    def seat_health(self, now_s: float) -> tuple[SeatHealth, ...]:
+        return tuple(
+            SeatHealth(id="s", joined=True, session=one, heard_ms=None, commands_hz=0.0, refused={})
+            for one in self.sessions
+        )
+
+    def publish_event(self, event: Event) -> None:
+        self.events.append(event)
+
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        return lambda *_: None
+
+
+class Held:
+    """A court, beat by beat."""
+
+    def __init__(
+        self, arena: str, folder: Path | None = None, overrides: dict[str, Any] | None = None
+    ) -> None:
+        self.ground, self.folder = arenas.load(arena, overrides), folder
+        self.now_s = 0.0
+        self.open()
+
+    def open(self) -> None:
+        left = unfinished(self.folder, "main") if self.folder else None
+        self.network = Quiet(len(self.ground.seats))
+        settings = CourtSettings("main", self.ground, {}, self.folder)
+        self.court = Court(settings, self.network, left)  # type: ignore[arg-type]
+
+    def kill(self) -> None:
+        """As a kill leaves it: nothing more is written, and nobody holds the file."""
+        writer = self.court._journal.writer
+        assert writer is not None
+        writer._closing.set()
+        writer._syncer.join()
+        writer._file.close()
+
+    @property
+    def match(self) -> Match:
+        return self.court._journal.match
+
+    def beat(self, *said: Input) -> Match:
+        self.network.said += said
+        self.now_s += 0.02
+        self.court._health.begin(self.now_s, 0.0, self.network.doors())
+        self.court._beat(self.now_s)
+        return self.match
+
+    def run(self, beats: int) -> Match:
+        for _ in range(beats):
+            self.beat()
+        return self.match
+
+    def begin(self) -> None:
+        for seat in range(len(self.ground.seats)):
+            self.beat(join(seat))
+            self.beat(ReadySeat(seat, True))
+        self.run(3)
+        assert self.match.phase is P.PLAYING
+
+    @property
+    def decided(self) -> list[str]:
+        return [e.data["decision"] for e in self.network.events if e.kind == "decision"]
+
+
+@pytest.mark.parametrize("arena", ["practice", "othello"])
+def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena: str) -> None:
+    """Rules 4, start = "ready": there is no referee who could resume it; until then it waits."""
+    held = Held(arena, tmp_path, {"match": {"start": "ready", "countdown_s": 0.02}})
+    held.begin()
+    held.kill()
+    held.open()
+    assert held.run(LONG).phase is P.HALTED, "nobody may find a match already running"
+    ticks = held.match.ticks
+    held.beat(join(LEFT))
+    assert held.run(30).phase is P.PLAYING
+    assert held.match.ticks > ticks
+    held.beat(key(LEFT, 2, seq=9))
+    assert held.network.outcomes[-1] == Done()
+    assert held.decided == ["halt", "resume"]
+    held.kill()
+    *_, verdict = verify(Record.read(sorted(tmp_path.iterdir())))
+    assert isinstance(verdict, Verdict)
+    assert verdict.text == "same"
+
+
+def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> None:
+    """Rules 4: to resume is the referee's, where there is one."""
+    held = Held("othello", tmp_path, {"match": {"countdown_s": 0.02}})
+    held.beat(join(LEFT), join(RIGHT))
+    held.beat(ReadySeat(LEFT, True), ReadySeat(RIGHT, True))
+    held.beat(decide(d.Start()))
+    held.run(3)
+    held.kill()
+    held.open()
+    held.beat(join(LEFT), join(RIGHT))
+    assert held.run(LONG).phase is P.HALTED
+    held.kill()
+
+
+def test_silence_keeps_a_halted_match_waiting_and_then_ends_it() -> None:
+    """Rules 3 and 4: nobody is there to play on; the next match opens, and waits for them."""
+    held = Held("practice", None, {"match": {"unattended_s": 10.0}})
+    held.begin()
+    held.beat(SilentSeat(LEFT))
+    held.beat(decide(d.Halt()))
+    assert held.run(LONG).phase is P.HALTED
+    held.beat(HeardSeat(LEFT))
+    assert held.run(30).phase is P.PLAYING
+    held.beat(SilentSeat(LEFT))
+    assert held.run(520).setup.match == 2
+    assert (held.match.phase, held.match.seats[LEFT].team) == (P.LOBBY, "Ants")
+    reasons = [e.text for e in held.network.events if e.data.get("after") == "FINISHED"]
+    assert reasons == ["FINISHED: nobody has been heard for 0.166667 minutes."]
+
+
+def test_leaving_a_halted_match_ends_it() -> None:
+    """Rules 4: when everybody has left, the match is over and the next opens, empty."""
+    held = Held("practice")
+    held.begin()
+    held.beat(decide(d.Halt()))
+    held.beat(LeaveSeat(LEFT))
+    assert held.run(5).setup.match == 2
+    assert held.match.seats[LEFT].join is None
+
+
+@pytest.mark.parametrize("seat", [LEFT, NOBODY])
+def test_after_a_fault_the_robot_is_put_back_and_play_goes_on(
+    monkeypatch: pytest.MonkeyPatch, seat: int
+) -> None:
+    """Design, "Failure policy": HALTED; from where it stopped it would fail again."""
+    script = Script(faults={10: Fault(seat, "a velocity became not a number")})
+    monkeypatch.setattr(
+        court_module, "World", lambda arena, entries: ScriptedPhysics(arena, entries, script)
+    )
+    held = Held("practice")
+    held.begin()
+    held.run(LONG)
+    assert (held.match.phase, held.match.fault) == (P.PLAYING, None)
+    assert held.decided == ["restart", "resume"]
+    assert held.match.ticks > LONG - 30
+
+
+def test_a_fault_that_comes_back_at_once_fills_no_log(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A robot that can't stand is tried twice a second, for as long as somebody is there."""
+    held = Held("practice")
+    held.begin()
+    monkeypatch.setattr(World, "step", lambda self, angles: Fault(LEFT, "too many contacts"))
+    held.run(10 * 50)
+    assert held.decided.count("resume") in (19, 20)
+    held.beat(LeaveSeat(LEFT))
+    assert held.run(5).setup.match == 2
+
+
+def test_after_a_full_disk_play_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Decision 13: with room again the match is halted; here nobody else would resume it."""
+    held = Held("practice", tmp_path)
+    held.begin()
+
+    def full(writer: RecordWriter) -> None:
+        raise UserError("The record can't be written: No space left on device.")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(RecordWriter, "flush", full)
+        beats = held.match.beats
+        held.run(LONG)
+        assert held.match.beats == beats + 1
+    held.run(60)
+    assert held.match.phase is P.PLAYING
+    assert held.decided == ["halt", "resume"]
+    held.kill()
+
+
+def test_a_disk_that_reports_errors_halts_the_match_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Decision 13: the record is there for everybody but a power cut; so a referee may go on."""
+    held = Held("practice", tmp_path)
+    held.begin()
+    monkeypatch.setattr(RecordWriter, "sync_trouble", "The disk reports: Input/output error.")
+    held.run(LONG)
+    assert held.match.phase is P.PLAYING
+    assert held.decided == ["halt", "resume"]
+    held.kill()
