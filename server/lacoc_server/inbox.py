@@ -109,6 +109,8 @@ class Inbox:
             raises `FileRefused`.
         last_seqs: for a restarted court, the newest sequence numbers of its record, by seat.
         joined: for a restarted court, the seats that are held.
+        former: hashes of tokens that open seats too: of who held them before a restart of the
+            court made new ones.
         most_delay_ms: links are made equal by a delay of at most this; 0: they are not.
     """
 
@@ -121,10 +123,11 @@ class Inbox:
         *,
         last_seqs: Mapping[str, int] | None = None,
         joined: Collection[str] = (),
+        former: Mapping[str, str] | None = None,
         most_delay_ms: int = 0,
     ) -> None:
         self._keys = keys
-        self._token_hashes = dict(token_hashes)
+        self._token_hashes = (token_hashes, former or {})
         self._check_files = check_files
         self._seats = [
             _Seat(index, name, (last_seqs or {}).get(name, 0), name in joined)
@@ -178,8 +181,9 @@ class Inbox:
             join = codec.decode(payload, Join, JOIN_MAX_BYTES)
         except codec.BadMessage as error:
             return seat.refuse(Why.BAD_BYTES, f"The join was not understood: {error}.")
-        token_hash = self._token_hashes.get(seat.name, "")
-        if not seal.verify_token(join.token, token_hash):
+        hashes = [by_seat[seat.name] for by_seat in self._token_hashes if seat.name in by_seat]
+        token_hash = next((one for one in hashes if seal.verify_token(join.token, one)), None)
+        if token_hash is None:
             return seat.refuse(
                 Why.WRONG_TOKEN,
                 f"This token does not open seat {seat.name}. "

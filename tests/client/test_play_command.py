@@ -210,6 +210,18 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
     assert [path.suffix for path in (tmp_path / "kept").iterdir()] == [".mcap"]
 
 
+def test_practice_begins_anew(tmp_path: Path) -> None:
+    """Workshop 4-4: a match that a killed court left in the folder is not gone on with."""
+    kept = ("--recordings", str(tmp_path / "kept"))
+    left = CourtProcess(tmp_path, "--arena", "othello", *kept)
+    left.process.kill()
+    left.close()
+    words = ("practice", "--terminal", *kept)
+    code, said = piped(tmp_path, "0.1 0\n0.5 q\n", *words)
+    assert code == 0, said
+    assert len([*(tmp_path / "kept").glob("*-main-001*.mcap")]) == 2
+
+
 def test_practice_without_mujoco_says_what_to_install(tmp_path: Path) -> None:
     """A contestant's machine has no MuJoCo: one line, exit code 2."""
     (tmp_path / "mujoco.py").write_text("raise ModuleNotFoundError('no mujoco', name='mujoco')")

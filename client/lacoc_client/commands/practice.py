@@ -81,7 +81,8 @@ def _court(folder: Path, recordings: Path) -> Iterator[Access]:
     """A court with the practice arena, as a process that ends with this."""
     # What it says goes into a file: a pipe that nobody empties would stop it.
     said, complained = folder / "court.out", folder / "court.err"
-    words = ["serve", "--json", "--arena", "practice", "--listen", "tcp/127.0.0.1:0"]
+    # Fresh: who practises begins anew, also where a killed court left a match in the folder.
+    words = ["serve", "--json", "--fresh", "--arena", "practice", "--listen", "tcp/127.0.0.1:0"]
     environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
     with said.open("wb") as out, complained.open("wb") as err:
         court = subprocess.Popen(

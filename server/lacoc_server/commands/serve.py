@@ -17,7 +17,7 @@ from lacoc_server.entry import Admission
 from lacoc_server.inbox import Inbox
 from lacoc_server.network import CourtNetwork
 from lacoc_server.protection import protection
-from lacoc_server.recovery import unfinished
+from lacoc_server.recovery import Unfinished, unfinished
 from lacoc_shared import contest as contests
 from lacoc_shared import entrances, log, options, screen
 from lacoc_shared.address import endpoint
@@ -78,7 +78,9 @@ def serve_command(
     and for the referee. Ctrl-C closes the court; the record is finished first.
 
     If the court was killed in a match, start it again in the same way: the match goes on from
-    where it was, halted, with its seats, clock and score.
+    where it was, halted, with its seats, clock and score. Where no referee starts matches, it
+    resumes by itself when a contestant is back. Without a contest file the new tokens open its
+    seats, and those with which they were taken do still.
     """
     plan, made_here = _contest(contest, arena, listen)
     name, entry = plan.court(court)
@@ -88,6 +90,7 @@ def serve_command(
     folder = recordings or plan.recordings
     left = None if fresh else unfinished(folder, name, loaded.folder)
     if left is not None:
+        _check_arena(left, loaded)
         loaded = left.match.arena
         screen.note(f"Going on with match {left.match.setup.match_id}. --fresh opens a new one.")
         if left.cut:
@@ -101,11 +104,12 @@ def serve_command(
     inbox = Inbox(
         keys,
         [seat.id for seat in loaded.seats],
-        {seat: hash_token(holder.token) for seat, holder in entry.seat.items()}
-        | (left.token_hashes if left else {}),
+        {seat: hash_token(holder.token) for seat, holder in entry.seat.items()},
         admission,
         last_seqs=left.last_seqs if left else None,
         joined=left.token_hashes if left else (),
+        # A contest file's word is the last: who lost a token gets another one there.
+        former=left.token_hashes if left and made_here else None,
         most_delay_ms=entry.most_delay_ms,
     )
     desk = DecisionDesk([hash_token(entry.referee.token)])
@@ -155,6 +159,16 @@ def _check_seats(name: str, entry: contests.Court, arena: Arena) -> None:
         raise UserError(
             f"Court {name!r} has tokens for {_names(there)}, but {arena.name} has the seats "
             f"{_names(wanted)}: mend [court.{name}.seat] in the contest file."
+        )
+
+
+def _check_arena(left: Unfinished, arena: Arena) -> None:
+    """The seats whose tokens are told must be those of the match that goes on."""
+    match = left.match
+    if match.arena.name != arena.name:
+        raise UserError(
+            f"Match {match.setup.match_id} was not finished, and it is {match.arena.name}, not "
+            f"{arena.name}. Serve {match.arena.name} to go on with it; --fresh opens a new match."
         )
 
 

@@ -1,0 +1,98 @@
+"""What a court that was killed and started again says of its tokens is true."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from running import WAIT_S, frame, phase, seated, served, until, write_contest
+
+from lacoc_client.controller import Controller
+from lacoc_shared.contest import load
+from lacoc_shared.gait import Level
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import open_client
+
+pytestmark = pytest.mark.slow
+
+
+def serving(folder: Path, arena: str) -> list[str]:
+    court = ["serve", "--json", "--arena", arena, "--listen", "tcp/127.0.0.1:0"]
+    return [sys.executable, "-m", "lacoc_shared", *court, "--recordings", str(folder)]
+
+
+@contextmanager
+def opened(folder: Path, arena: str = "practice") -> Iterator[dict[str, Any]]:
+    """A court without a contest file, killed in the end; what it says when it opens."""
+    process = subprocess.Popen(serving(folder, arena), stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        yield json.loads(process.stdout.readline())
+    finally:
+        process.kill()
+        process.communicate(timeout=WAIT_S)
+
+
+@contextmanager
+def practising(court: dict[str, Any], token: str) -> Iterator[Controller]:
+    with open_client([court["locators"][0]]) as session:
+        controller = Controller(session, court["court"], "solo", token, "Ants")
+        controller.join()
+        yield controller
+
+
+def test_the_printed_token_opens_the_seat_of_a_match_that_goes_on(tmp_path: Path) -> None:
+    """Rules 4, practice: killed in PLAYING; with either token the contestant walks on."""
+    with opened(tmp_path) as first, practising(first, first["tokens"]["solo"]) as controller:
+        controller.ready()
+        until([controller], lambda: phase(controller) == Phase.PLAYING)
+        until([controller], lambda: frame(controller).clock_ticks > 20)
+    tokens = [first["tokens"]["solo"]]
+    for _ in range(2):
+        with opened(tmp_path) as again:
+            assert again["match_id"] == first["match_id"]
+            tokens.append(again["tokens"]["solo"])
+            for token in (tokens[0], tokens[-1]):
+                with practising(again, token) as controller:
+                    until([controller], lambda c=controller: phase(c) == Phase.PLAYING)
+                    seq = controller.press(Level.LOCOMOTION, 2)
+                    until(
+                        [controller],
+                        lambda c=controller, seq=seq: frame(c).seats[0].applied_seq == seq,
+                    )
+            with pytest.raises(UserError, match="does not open seat solo"):
+                practising(again, "not-the-token-of-it").__enter__()
+
+
+def test_another_arenas_match_is_not_gone_on_with(tmp_path: Path) -> None:
+    """Its seats are others: the tokens that are printed would open none."""
+    with opened(tmp_path, "othello") as first:
+        pass
+    done = subprocess.run(
+        serving(tmp_path, "practice"), capture_output=True, text=True, timeout=WAIT_S, check=False
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    said = " ".join(done.stderr.split())
+    assert f"Match {first['match_id']} was not finished, and it is othello, not practice." in said
+    assert "--fresh opens a new match" in said
+
+
+def test_a_token_that_was_replaced_in_the_contest_file_opens_nothing(tmp_path: Path) -> None:
+    """Docs, security: a lost token gets another; the match that goes on knows that one alone."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    name, court = load(contest).court()
+    with served(contest, folder) as process, open_client([court.address()]) as session:
+        seated(session, contest)
+        process.kill()
+        process.wait()
+    contest.write_text(contest.read_text().replace("the token of left", "another token of left"))
+    with served(contest, folder), open_client([court.address()]) as session:
+        lost = Controller(session, name, "left", "the token of left", "Thief")
+        with pytest.raises(UserError, match="does not open seat left"):
+            lost.join()
+        Controller(session, name, "left", "another token of left", "Team left").join()
