@@ -312,6 +312,10 @@ const CONTESTANTS: readonly Pattern[] = [
     "This court speaks version {#ours} of the protocol, your program version {#yours}: install the version of lacoc that the organiser uses.",
     "コートの通信方式は第 {#ours} 版、お使いのプログラムは第 {#yours} 版です。主催者と同じ版の lacoc を入れてください。",
   ],
+  [
+    "This request has come before, or a newer one has.",
+    "この要求、またはより新しい要求がすでに届いています。",
+  ],
   ["The join was not understood: {error}.", "参加の要求を読み取れませんでした：{error}"],
   ["The request was not understood: {error}.", "要求を読み取れませんでした：{error}"],
   [
