@@ -82,9 +82,9 @@ class _Seat:
         self.commands = Allowance(COMMANDS_HZ, COMMANDS_PER_BEAT)
         self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
 
-    def refuse(self, why: Why, reason: str) -> Refusal:
+    def refuse(self, why: Why, reason: str, *, again: bool = False) -> Refusal:
         self.refused[why] += 1
-        return Refusal(reason)
+        return Refusal(reason, again=again)
 
 
 class _Version(msgspec.Struct):
@@ -181,7 +181,8 @@ class Inbox:
                 "Check the seat and the token that the organiser gave you.",
             )
         if not seat.joins.take(1, self._now_s):
-            return seat.refuse(Why.FLOOD, "Too many joins at once: wait a few seconds.")
+            why = "Too many joins at once: wait a few seconds."
+            return seat.refuse(Why.FLOOD, why, again=True)
         name = join.name.strip()
         if not (0 < len(name) <= NAME_MAX and name.isprintable()):
             return seat.refuse(

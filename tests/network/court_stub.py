@@ -86,6 +86,8 @@ class CourtStub:
         self.inputs: list[Input] = []
         self.scene = make_scene("empty")
         self.silent = False
+        self.trouble = ""
+        """Why no beat can take requests in, as while the disk is full; "": they are."""
         self._seats = {seat: SeatFrame(0, 0, 1, 0, 0, 0, 0, 0, 0, 0) for seat in range(2)}
         self._todo: list[Callable[[], None]] = []
         self._stopping = threading.Event()
@@ -127,15 +129,21 @@ class CourtStub:
         while not self._stopping.wait(0.005):
             beat += 1
             now_s = time.monotonic()
-            arrivals = self.network.poll(now_s, 1, beat)
-            outcomes = [self._apply(arrival.input, beat) for arrival in arrivals]
-            for arrival, outcome in zip(arrivals, outcomes, strict=True):
-                if arrival.answer:
-                    arrival.answer(outcome)
+            if self.trouble:
+                self.network.turn_away(self.trouble)
+            else:
+                self._take_in(now_s, beat)
             while self._todo:
                 self._todo.pop()()
             if not self.silent:
                 self._publish(beat, now_s)
+
+    def _take_in(self, now_s: float, beat: int) -> None:
+        arrivals = self.network.poll(now_s, 1, beat)
+        outcomes = [self._apply(arrival.input, beat) for arrival in arrivals]
+        for arrival, outcome in zip(arrivals, outcomes, strict=True):
+            if arrival.answer:
+                arrival.answer(outcome)
 
     def _publish(self, beat: int, now_s: float) -> None:
         scene = message_hash(encode(self.scene))
