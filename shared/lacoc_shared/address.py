@@ -140,7 +140,7 @@ def _why_not_let_in(one: str, probe: socket.socket, ca: str) -> str:
     host = _split(one)[0]
     try:
         context = ssl.create_default_context(cadata=ca) if ca else _trusting_all()
-    except ssl.SSLError:
+    except (ssl.SSLError, TypeError):  # TypeError: a character that is not ASCII
         return "The certificate in the invitation is damaged: ask the organiser for it again."
     try:
         with context.wrap_socket(probe, server_hostname=host):
