@@ -5,6 +5,7 @@ with a plain socket, after the failure, and said in words that help (network.md 
 """
 
 import errno
+import itertools
 import re
 import socket
 import ssl
@@ -13,6 +14,9 @@ from collections.abc import Sequence
 from lacoc_shared.mistakes import UserError
 
 DEFAULT_PORT = 7447
+
+ANY_HOST = ("0.0.0.0", "::")
+"""Every address of this machine: to listen at, not to call."""
 
 _PROTOCOLS = ("tcp", "tls")
 _ADDRESS = re.compile(
@@ -47,6 +51,18 @@ def endpoint(text: str, protocol: str = "tcp") -> str:
 def host(one: str) -> str:
     """The host of a complete address."""
     return _split(one)[0]
+
+
+def collisions(these: Sequence[str], others: Sequence[str]) -> list[str]:
+    """Which of these complete addresses a machine can't listen at beside the others."""
+    return [one for one in these if any(_collide(_split(one), _split(other)) for other in others)]
+
+
+def free_beside(one: str, taken: Sequence[str]) -> str:
+    """A complete address as this one, with the first port that none of those taken has."""
+    ports = {_split(other)[1] for other in taken}
+    free = next(port for port in itertools.count(DEFAULT_PORT) if port not in ports)
+    return f"{one.rpartition(':')[0]}:{free}"
 
 
 def check_protocols(endpoints: Sequence[str], *, keys: bool) -> None:
@@ -107,6 +123,11 @@ def why_not_listening(endpoints: Sequence[str], error: Exception) -> str:
 def _split(one: str) -> tuple[str, int]:
     host, _, port = one.partition("/")[2].rpartition(":")
     return host.strip("[]"), int(port)
+
+
+def _collide(one: tuple[str, int], other: tuple[str, int]) -> bool:
+    same_host = one[0] == other[0] or one[0] in ANY_HOST or other[0] in ANY_HOST
+    return same_host and one[1] == other[1] != 0  # port 0 takes a free one
 
 
 def _resolves(host: str, port: int) -> bool:
