@@ -1,5 +1,6 @@
 """A court for tests: real network, real inbox; a match that says yes and counts."""
 
+import itertools
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -87,7 +88,8 @@ class CourtStub:
         self.scene = make_scene("empty")
         self.silent = False
         self.trouble = ""
-        """Why no beat can take requests in, as while the disk is full; "": they are."""
+        """Why it makes no beat and sends its last one again, as while the disk is full; "": it
+        makes them."""
         self._seats = {seat: SeatFrame(0, 0, 1, 0, 0, 0, 0, 0, 0, 0) for seat in range(2)}
         self._todo: list[Callable[[], None]] = []
         self._stopping = threading.Event()
@@ -126,17 +128,21 @@ class CourtStub:
 
     def _run(self) -> None:
         beat = 0
-        while not self._stopping.wait(0.005):
-            beat += 1
+        for wake in itertools.count(1):
+            if self._stopping.wait(0.005):
+                return
             now_s = time.monotonic()
             if self.trouble:
                 self.network.turn_away(self.trouble)
             else:
+                beat += 1
                 self._take_in(now_s, beat)
             while self._todo:
                 self._todo.pop()()
             if not self.silent:
-                self._publish(beat, now_s)
+                self._publish_frame(beat, now_s)
+                if wake % 10 == 0:
+                    self._publish_health(beat, now_s)
 
     def _take_in(self, now_s: float, beat: int) -> None:
         arrivals = self.network.poll(now_s, 1, beat)
@@ -145,25 +151,27 @@ class CourtStub:
             if arrival.answer:
                 arrival.answer(outcome)
 
-    def _publish(self, beat: int, now_s: float) -> None:
+    def _publish_frame(self, beat: int, now_s: float) -> None:
         scene = message_hash(encode(self.scene))
         seats = tuple(self._seats.values())
         frame = Frame(1, beat, Phase.PLAYING, 0, 0, seats, b"", b"", scene, bytes(8))
         self.network.publish_frame(encode(frame), now_s)
-        if beat % 10 == 0:
-            health = Health(
-                match=1,
-                beat=beat,
-                real_time_factor=1.0,
-                slow_beats=0,
-                worst_late_ms=0.0,
-                seats=self.network.seat_health(now_s),
-                dropped=self.network.dropped,
-                decisions={},
-                events=self.network.newest_event,
-                sheet=self.network.sheet_hash,
-            )
-            self.network.publish_health(health)
+
+    def _publish_health(self, beat: int, now_s: float) -> None:
+        health = Health(
+            match=1,
+            beat=beat,
+            real_time_factor=1.0,
+            slow_beats=0,
+            worst_late_ms=0.0,
+            seats=self.network.seat_health(now_s),
+            dropped=self.network.dropped,
+            decisions={},
+            record_trouble=self.trouble,
+            events=self.network.newest_event,
+            sheet=self.network.sheet_hash,
+        )
+        self.network.publish_health(health)
 
     def _apply(self, one: Input, beat: int) -> Outcome:
         self.inputs.append(one)
