@@ -1,6 +1,5 @@
 """A court for tests: real network, real inbox; a match that says yes and counts."""
 
-import itertools
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -84,12 +83,12 @@ class CourtStub:
         inbox = Inbox(KEYS, SEATS, token_hashes, check_files, **restored)
         desk = DecisionDesk([seal.hash_token(WHISTLE)])
         self.network = CourtNetwork(KEYS, [listen], inbox, desk, protection)
-        self.inputs: list[Input] = []
-        self.scene = make_scene("empty")
-        self.silent = False
         self.trouble = ""
         """Why it makes no beat and sends its last one again, as while the disk is full; "": it
         makes them."""
+        self.inputs: list[Input] = []
+        self.scene = make_scene("empty")
+        self.silent = False
         self._seats = {seat: SeatFrame(0, 0, 1, 0, 0, 0, 0, 0, 0, 0) for seat in range(2)}
         self._todo: list[Callable[[], None]] = []
         self._stopping = threading.Event()
@@ -128,28 +127,29 @@ class CourtStub:
 
     def _run(self) -> None:
         beat = 0
-        for wake in itertools.count(1):
-            if self._stopping.wait(0.005):
-                return
-            now_s = time.monotonic()
+        while not self._stopping.wait(0.005):
             if self.trouble:
-                self.network.turn_away(self.trouble)
-            else:
-                beat += 1
-                self._take_in(now_s, beat)
+                self._stand_still(beat)
+                continue
+            beat += 1
+            now_s = time.monotonic()
+            arrivals = self.network.poll(now_s, 1, beat)
+            outcomes = [self._apply(arrival.input, beat) for arrival in arrivals]
+            for arrival, outcome in zip(arrivals, outcomes, strict=True):
+                if arrival.answer:
+                    arrival.answer(outcome)
             while self._todo:
                 self._todo.pop()()
             if not self.silent:
                 self._publish_frame(beat, now_s)
-                if wake % 10 == 0:
+                if beat % 10 == 0:
                     self._publish_health(beat, now_s)
 
-    def _take_in(self, now_s: float, beat: int) -> None:
-        arrivals = self.network.poll(now_s, 1, beat)
-        outcomes = [self._apply(arrival.input, beat) for arrival in arrivals]
-        for arrival, outcome in zip(arrivals, outcomes, strict=True):
-            if arrival.answer:
-                arrival.answer(outcome)
+    def _stand_still(self, beat: int) -> None:
+        now_s = time.monotonic()
+        self.network.turn_away(self.trouble)
+        self._publish_frame(beat, now_s)
+        self._publish_health(beat, now_s)
 
     def _publish_frame(self, beat: int, now_s: float) -> None:
         scene = message_hash(encode(self.scene))
