@@ -25,6 +25,10 @@ class NoCourt(UserError):
     """No court of that name answers."""
 
 
+class NotNow(UserError):
+    """The court refuses for now: the same request may be taken later."""
+
+
 def ask(
     session: Session,
     keys: Keys,
@@ -46,7 +50,8 @@ def ask(
     Raises:
         NoCourt: if nobody answers; the message says which courts there are.
         FileRefused: if the court found mistakes in files.
-        UserError: if the court refuses; the message is its reason.
+        NotNow: if the court refuses for now; the message is its reason.
+        UserError: if it refuses for good.
     """
     return understand(fetch(session, keys, key, codec.encode(message), timeout_s), reply)
 
@@ -73,7 +78,7 @@ def fetch(
             refusal = understand(refused.payload, Refusal)
             if refusal.mistakes:
                 raise FileRefused(list(refusal.mistakes)) from None
-            raise UserError(refusal.reason) from None
+            raise (NotNow if refusal.again else UserError)(refusal.reason) from None
 
 
 def understand(payload: bytes, kind: type[T]) -> T:

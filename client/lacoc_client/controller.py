@@ -5,7 +5,7 @@ from collections.abc import Callable
 from enum import Enum
 from typing import NamedTuple
 
-from lacoc_client.asking import NoCourt, ask
+from lacoc_client.asking import NoCourt, NotNow, ask
 from lacoc_client.spectator import Spectator
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
@@ -41,11 +41,12 @@ class Hold(Enum):
     NOT_JOINED = "not joined"
     HELD = "held"
     LOST = "the court does not answer"
-    """The court was restarted and has not answered yet: it is asked again."""
+    """The court was restarted and has not answered yet, or can't take the controller back now:
+    it is asked again."""
     REPLACED = "replaced"
     """The same token joined again elsewhere."""
     REFUSED = "refused"
-    """The court was restarted and did not take the controller back."""
+    """The court was restarted and won't take the controller back."""
     LEFT = "left"
 
 
@@ -111,9 +112,12 @@ class Controller:
             postures=postures,
             locomotion=locomotion,
         )
+        self.index  # noqa: B018 - no such seat is a mistake to hear of before its key is sent on
         self._commands = session.publisher(self._keys.command(seat))
         self._joined: Joined | None = None
         self._health_seen: Health | None = None
+        self._other_holder = False
+        """Whether the newest health named another session."""
         self._seq = 0
         self._requests = 0
         """Of this session, ready and leave."""
@@ -130,7 +134,6 @@ class Controller:
         """Why the seat is not held, where there is more to say."""
         self.round_trip_ms: float | None = None
         """From the newest key to the frame that shows it."""
-        self.index  # noqa: B018 - no such seat is a mistake to hear of at once
 
     @property
     def index(self) -> int:
@@ -166,6 +169,7 @@ class Controller:
         joined = ask(self._session, self._keys, key, self._join, Joined, timeout_s)
         self.view.poll()
         self._health_seen = self.view.health  # older than the session: says nothing of it
+        self._other_holder = False
         self._joined = joined
         self._requests = 0
         self._seq = max(self._seq, joined.last_seq)
@@ -311,26 +315,32 @@ class Controller:
         """See from the court's health whether the seat is still this controller's.
 
         A court that was restarted knows no session, and a newer session with the same token
-        replaces this one: health names the session that holds each seat.
+        replaces this one: health names the session that holds each seat. One that was made before
+        the join may arrive after it, so that only the second in a row is believed of another one.
         """
         health = self.view.health
         if health is None or health is self._health_seen:
             return
         self._health_seen = health
         holder = next((seat.session for seat in health.seats if seat.id == self.seat), 0)
-        if self._joined is not None and holder == self._joined.session:
-            return
+        believed, self._other_holder = self._other_holder, False
         if self._joined is None or holder == 0:
             self._join_again()
-        else:
+        elif holder == self._joined.session:
+            self.hold, self.reason = Hold.HELD, ""
+        elif believed:
             self.hold = Hold.REPLACED
             self.reason = f"seat {self.seat} was joined again from another window or machine"
+        else:
+            self._other_holder = True
 
     def _join_again(self) -> None:
         try:
             self.join(_REJOIN_TIMEOUT_S)
         except NoCourt:  # perhaps it has made a session all the same: the next health tries again
-            self.hold, self._joined = Hold.LOST, None
+            self.hold, self.reason, self._joined = Hold.LOST, "", None
+        except NotNow as error:  # it has made none: who holds the seat from now on is another
+            self.hold, self.reason = Hold.LOST, str(error)
         except FileRefused:
             self.hold, self.reason = Hold.REFUSED, "the court does not accept the files any more"
         except UserError as error:

@@ -100,14 +100,15 @@ def _package(needed: Requirement, *, optional: bool) -> Finding:
 
 
 def court_port(
-    host: str, port: int, *, needed: bool, credentials: Credentials | None = None
+    host: str, port: int, court: str | None, credentials: Credentials | None = None
 ) -> Finding:
     """Whether a court can listen there, or does already.
 
     Args:
         host: address of this machine to listen at.
         port: the port.
-        needed: it stands in the contest file; otherwise a taken port is only a note.
+        court: the court that shall, by the contest file; None: any, and a taken port is only a
+            note.
         credentials: to ask a court that has keys.
     """
     about = f"port {port}"
@@ -119,15 +120,23 @@ def court_port(
             courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     except UserError:
         courts = []
-    if courts:
+    if court in courts or (courts and court is None):
         return Finding(about, Status.OK, f"court {', '.join(courts)} runs here")
-    status = Status.PROBLEM if needed else Status.NOTE
+    if courts:
+        why = f"court {', '.join(courts)} runs here, and the contest file has court {court} here"
+    status = Status.NOTE if court is None else Status.PROBLEM
     todo = "End the program that has it, or give the court another address (--listen)."
     return Finding(about, status, f"a court can't listen at {host}: {why}", todo)
 
 
 def web_port(host: str, port: int, *, needed: bool) -> Finding:
-    """Whether a gateway can listen there, or does already; see `court_port`."""
+    """Whether a gateway can listen there, or does already.
+
+    Args:
+        host: address of this machine to listen at.
+        port: the port.
+        needed: it was asked for; otherwise a taken port is only a note.
+    """
     about = f"port {port}"
     why = _why_taken(host, port)
     if not why:
@@ -209,7 +218,8 @@ def clock(seconds: float) -> Finding:
 
 def disk(folder: Path) -> Finding:
     """Whether records can be written to a folder, how much room there is, how long a sync takes."""
-    there = next(one for one in (folder.absolute(), *folder.absolute().parents) if one.is_dir())
+    above = (folder.absolute(), *folder.absolute().parents)
+    there = next(one for one in above if os.path.lexists(one))
     try:
         free_bytes = shutil.disk_usage(there).free
         syncs_s = _syncs_s(there)

@@ -1,4 +1,4 @@
-"""The link to a court, measured: is it there, how long does it take, what gets lost."""
+"""The link to a court, measured: does it go on, how long does it take, what gets lost."""
 
 import time
 from collections.abc import Iterator
@@ -33,6 +33,7 @@ def link(access: Access, seconds: float) -> Iterator[Finding]:
             yield _version(about, access, view)
             yield _round_trip(session, view)
             yield _frames(view, seconds)
+            yield from _record(view)
     except UserError as error:
         todo = "Check the address with the organiser, the network and firewalls."
         yield Finding(about, Status.PROBLEM, str(error), todo)
@@ -48,6 +49,7 @@ def _version(about: str, access: Access, view: Spectator) -> Finding:
 
 
 def _round_trip(session: Session, view: Spectator) -> Finding:
+    about = f"round trip to {view.keys.court}"
     times_s = []
     for _ in range(_REQUESTS):
         began_s = time.perf_counter()
@@ -60,39 +62,61 @@ def _round_trip(session: Session, view: Spectator) -> Finding:
         f"{p95_s * 1000:.0f} ms (p95); a court answers once in 20 ms"
     )
     if p95_s <= _LONG_TRIP_S:
-        return Finding("round trip", Status.OK, found)
-    return Finding("round trip", Status.NOTE, found, "Keys come late: use a cable, or be nearer.")
+        return Finding(about, Status.OK, found)
+    return Finding(about, Status.NOTE, found, "Keys come late: use a cable, or be nearer.")
 
 
 def _frames(view: Spectator, seconds: float) -> Finding:
-    """Frames a second and the longest gap between two; a frame that is overtaken is lost."""
+    """Frames a second and the longest gap between two; a frame that is overtaken is lost.
+
+    One that came before does not count: a court that can't go on sends its last one again.
+    """
+    about = f"frames of {view.keys.court}"
     first = view.wait_frame(_FIRST_S)
     if first is None:
         todo = "Is the court overloaded, or does something hold its frames back?"
-        return Finding("frames", Status.PROBLEM, "none came within a second", todo)
+        return Finding(about, Status.PROBLEM, "none came within a second", todo)
     count, last, last_s, gap_s = 1, first, view.frame_s, 0.0
     began_s = last_s
     while (now_s := time.monotonic()) - began_s < seconds:
         frame = view.wait_frame(seconds - (now_s - began_s))
         if frame is None:
             break
+        if (frame.match, frame.beat) == (last.match, last.beat):
+            continue
         gap_s = max(gap_s, view.frame_s - last_s)
         count, last, last_s = count + 1, frame, view.frame_s
     gap_s = max(gap_s, time.monotonic() - last_s)
     took_s = time.monotonic() - began_s
     hz = (count - 1) / took_s
     made = last.beat - first.beat if last.match == first.match else count - 1
+    if count == 1 and view.frame is not first:
+        found = (
+            f"the court stands still in {Phase(last.phase).name}: it sends beat {last.beat} again"
+        )
+        return Finding(about, Status.PROBLEM, found, "Tell the organiser: no match goes on there.")
     missed = max(0, made - (count - 1))
     found = (
         f"{hz:.1f} a second in {Phase(last.phase).name}, {missed} of {made} missed, "
         f"the longest gap {gap_s * 1000:.0f} ms"
     )
     if hz >= _LEAST_HZ and gap_s <= _LONG_GAP_S:
-        return Finding("frames", Status.OK, found)
+        return Finding(about, Status.OK, found)
     slow = made * BEAT_S < took_s * _LEAST_HZ / BEATS_PER_S
     todo = (
         "The court itself is slow: tell the organiser."
         if slow
         else "The network loses or holds frames: use a cable, and end what else uses it."
     )
-    return Finding("frames", Status.NOTE, found, todo)
+    return Finding(about, Status.NOTE, found, todo)
+
+
+def _record(view: Spectator) -> Iterator[Finding]:
+    """What is wrong with the court's disk, if it says so."""
+    end_s = time.monotonic() + _FIRST_S
+    while view.health is None and time.monotonic() < end_s:
+        view.wait_frame(_FIRST_S)
+    if view.health is not None and view.health.record_trouble:
+        about, trouble = f"record of {view.keys.court}", view.health.record_trouble
+        todo = "Tell the organiser: nothing goes on that is not recorded."
+        yield Finding(about, Status.PROBLEM, trouble, todo)

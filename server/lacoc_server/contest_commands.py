@@ -52,7 +52,7 @@ robot = "hexapod"          # for a team that brings none: an installed robot or 
 # silent_s = 5.0           # of a seat; heard_percent = 70.0: of its repeats that arrived
 # faults = 0               # stops of physics; resumptions = 2: restarts of a killed court
 
-# One table like this for each court; each listens at a port of its own.
+# One table like this for each court; each listens at a port of its own (7448, 7449, ...).
 [court.{court}]
 arena = "{arena}"
 listen = ["0.0.0.0:7447"]          # 127.0.0.1:7447: this machine alone

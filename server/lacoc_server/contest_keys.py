@@ -66,8 +66,7 @@ def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
         there = folder.ca.exists()
         authority = _authority(folder)
         known = [court.host for court in contest.courts.values()]
-        before = hosts_of(folder.certificate.read_bytes()) if folder.certificate.exists() else []
-        names = list(dict.fromkeys([*_ALWAYS, *before, *filter(None, known), *hosts]))
+        names = list(dict.fromkeys([*_ALWAYS, *_before(folder), *filter(None, known), *hosts]))
         certificate, private_key = authority.issue(names, utc_now())
         _write(folder.private_key, private_key)
         _write(folder.certificate, certificate)
@@ -139,6 +138,24 @@ def _authority(folder: KeyFolder) -> Authority:
             "with --renew: then everybody needs a new invitation."
         )
     return authority
+
+
+def _before(folder: KeyFolder) -> list[str]:
+    """The hosts that the courts' certificate was made for; none if there is none yet.
+
+    Raises:
+        UserError: if what is there is no certificate of a court.
+    """
+    if not folder.certificate.exists():
+        return []
+    try:
+        return hosts_of(folder.certificate.read_bytes())
+    except ValueError as error:
+        raise UserError(
+            f"{folder.certificate} is no certificate of a court ({str(error).partition('. ')[0]}). "
+            "Remove it, and give each --host again: invitations stay valid. Or make all anew with "
+            "--renew: then everybody needs a new invitation."
+        ) from None
 
 
 def _set_aside(path: Path) -> Path | None:

@@ -28,7 +28,8 @@ def join(match: Match, item: JoinSeat) -> Done | Refusal:
     if match.phase in _BEFORE:
         return _sit_down(match, seat, item)
     if seat.join is None and match.phase not in _AFTER:
-        return Refusal(f"The match is on ({match.phase.name}): join when the next one opens.")
+        why = f"The match is on ({match.phase.name}): join when the next one opens."
+        return Refusal(why, again=True)
     seat.left = False
     seat.coming = item
     if seat.join is None:

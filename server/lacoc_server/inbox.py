@@ -85,9 +85,9 @@ class _Seat:
         self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
         self.readys = Allowance(_READYS_HZ, _READYS_BURST)
 
-    def refuse(self, why: Why, reason: str) -> Refusal:
+    def refuse(self, why: Why, reason: str, *, again: bool = False) -> Refusal:
         self.refused[why] += 1
-        return Refusal(reason)
+        return Refusal(reason, again=again)
 
 
 class _Version(msgspec.Struct):
@@ -190,7 +190,8 @@ class Inbox:
                 "Check the seat and the token that the organiser gave you.",
             )
         if not seat.joins.take(1, self._now_s):
-            return seat.refuse(Why.FLOOD, "Too many joins at once: wait a few seconds.")
+            why = "Too many joins at once: wait a few seconds."
+            return seat.refuse(Why.FLOOD, why, again=True)
         name = join.name.strip()
         if not (0 < len(name) <= NAME_MAX and name.isprintable()):
             return seat.refuse(
@@ -238,7 +239,8 @@ class Inbox:
             return request
         seat = self._seats[index]
         if not seat.readys.take(1, self._now_s):
-            return seat.refuse(Why.FLOOD, "Ready and not ready too often: wait a few seconds.")
+            why = "Ready and not ready too often: wait a few seconds."
+            return seat.refuse(Why.FLOOD, why, again=True)
         return ReadySeat(index, request.ready)
 
     def leave(self, index: int, payload: bytes) -> LeaveSeat | Refusal:

@@ -136,7 +136,7 @@ class CourtNetwork:
         Args:
             reason: a sentence for those who asked.
         """
-        refusal = encode(Refusal(reason))
+        refusal = encode(Refusal(reason, again=True))
         for desk, _ in self._desks:
             for _ in range(_REQUESTS_PER_BEAT):
                 if (request := desk.take()) is not None:

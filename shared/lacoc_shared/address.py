@@ -5,6 +5,7 @@ with a plain socket, after the failure, and said in words that help (network.md 
 """
 
 import errno
+import itertools
 import re
 import socket
 import ssl
@@ -13,6 +14,9 @@ from collections.abc import Sequence
 from lacoc_shared.mistakes import UserError
 
 DEFAULT_PORT = 7447
+
+ANY_HOST = ("0.0.0.0", "::")
+"""Every address of this machine: to listen at, not to call."""
 
 _PROTOCOLS = ("tcp", "tls")
 _ADDRESS = re.compile(
@@ -47,6 +51,18 @@ def endpoint(text: str, protocol: str = "tcp") -> str:
 def host(one: str) -> str:
     """The host of a complete address."""
     return _split(one)[0]
+
+
+def collisions(these: Sequence[str], others: Sequence[str]) -> list[str]:
+    """Which of these complete addresses a machine can't listen at beside the others."""
+    return [one for one in these if any(_collide(_split(one), _split(other)) for other in others)]
+
+
+def free_beside(one: str, taken: Sequence[str]) -> str:
+    """A complete address as this one, with the first port that none of those taken has."""
+    ports = {_split(other)[1] for other in taken}
+    free = next(port for port in itertools.count(DEFAULT_PORT) if port not in ports)
+    return f"{one.rpartition(':')[0]}:{free}"
 
 
 def check_protocols(endpoints: Sequence[str], *, keys: bool) -> None:
@@ -109,6 +125,11 @@ def _split(one: str) -> tuple[str, int]:
     return host.strip("[]"), int(port)
 
 
+def _collide(one: tuple[str, int], other: tuple[str, int]) -> bool:
+    same_host = one[0] == other[0] or one[0] in ANY_HOST or other[0] in ANY_HOST
+    return same_host and one[1] == other[1] != 0  # port 0 takes a free one
+
+
 def _resolves(host: str, port: int) -> bool:
     try:
         return bool(socket.getaddrinfo(host, port, type=socket.SOCK_STREAM))
@@ -140,7 +161,7 @@ def _why_not_let_in(one: str, probe: socket.socket, ca: str) -> str:
     host = _split(one)[0]
     try:
         context = ssl.create_default_context(cadata=ca) if ca else _trusting_all()
-    except ssl.SSLError:
+    except (ssl.SSLError, TypeError):  # TypeError: a character that is not ASCII
         return "The certificate in the invitation is damaged: ask the organiser for it again."
     try:
         with context.wrap_socket(probe, server_hostname=host):

@@ -6,6 +6,7 @@ command line or in the environment, and goes before the file then: `options` has
 and what is still None is looked up by `entrances`.
 """
 
+import itertools
 import math
 from collections.abc import Iterable
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
-from lacoc_shared.address import check_protocols, endpoint
+from lacoc_shared.address import ANY_HOST, check_protocols, collisions, endpoint, free_beside
 from lacoc_shared.address import host as address_host
 from lacoc_shared.key_folder import KeyFolder
 from lacoc_shared.keyspace import Keys
@@ -27,8 +28,6 @@ MAIN = "main"
 """Name of the court where nobody names one."""
 LOOPBACK = "127.0.0.1:7447"
 """Where a court listens, and where a client looks for it, if nobody says otherwise."""
-
-_ANY_HOST = ("0.0.0.0", "::")  # "every address of this machine": to listen at, not to call
 
 OTHERS = ("referee", "gateway", "spectators")
 """With the seats, all who come to a court."""
@@ -94,7 +93,7 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     def host(self) -> str:
         """Where others reach it; "" if it listens at every address and nothing says which."""
         found = address_host(self.connect or self.listen[0])
-        return "" if found in _ANY_HOST else found
+        return "" if found in ANY_HOST else found
 
     def address(self, any_host: str = "127.0.0.1") -> str:
         """Where a client connects.
@@ -222,6 +221,10 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
     file = _convert(table, _File, "")
     general = _convert(file.contest, _General, "contest")
     keys = None if general.keys is None else KeyFolder(folder / general.keys)
+    courts = {
+        name: _court(name, entry, folder, keys is not None) for name, entry in file.court.items()
+    }
+    _check_ports(courts)
     return Contest(
         name=general.name,
         recordings=folder / general.recordings,
@@ -229,10 +232,7 @@ def _contest(table: dict[str, Any], folder: Path) -> Contest:
         limits={name: _limit(name, value) for name, value in file.limits.items()},
         health=_convert(file.health, HealthLimits, "health"),
         keys=keys,
-        courts={
-            name: _court(name, entry, folder, keys is not None)
-            for name, entry in file.court.items()
-        },
+        courts=courts,
     )
 
 
@@ -262,6 +262,19 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
         )
     except UserError as error:
         raise _Wrong(f"[{where}]: {error}") from None
+
+
+def _check_ports(courts: dict[str, Court]) -> None:
+    """See that all courts can run at once; two `connect` hosts mean two machines."""
+    taken = [at for court in courts.values() for at in court.listen]
+    for (first, one), (second, other) in itertools.combinations(courts.items(), 2):
+        apart = one.connect and other.connect and one.host != other.host
+        for at in () if apart else collisions(other.listen, one.listen):
+            raise _Wrong(
+                f"[court.{second}]: court {first!r} listens at {at} too, and only one of them can "
+                f'start. Write another port, such as  listen = ["{free_beside(at, taken)}"]; or, '
+                "where each court has a machine of its own, 'connect' in both."
+            )
 
 
 def _limit(name: str, value: Any) -> float:

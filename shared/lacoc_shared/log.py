@@ -6,12 +6,14 @@ never hold a beat.
 """
 
 import atexit
+import codecs
+import json
 import logging
 import queue
 import sys
 import threading
 from datetime import datetime
-from typing import Any
+from typing import Any, TextIO
 
 import msgspec
 import structlog
@@ -23,6 +25,7 @@ _WAITING_MOST = 10_000
 """Lines that wait for a reader; what comes then is lost, and it is said how much."""
 _END_S = 1.0
 """At the end a reader gets so long to take what waits."""
+_ESCAPED = "lacoc-escaped"
 _CLOCK = "%H:%M:%S"
 _DIM, _WARN, _PLAIN = "\x1b[2m", "\x1b[33m", "\x1b[0m"
 
@@ -60,17 +63,32 @@ class _Writer:
     def _run(self) -> None:
         while (line := self._lines.get()) is not None:
             try:
-                sys.stdout.write(f"{line}\n")
+                sys.stdout.write(f"{_for(sys.stdout, line)}\n")
                 sys.stdout.flush()
             except (OSError, ValueError):  # who read it has gone
                 return
 
 
-def start(json: bool) -> None:
+def _for(stream: TextIO, line: str) -> str:
+    """A line with what a stream can't encode written as numbers: a name ends no log."""
+    encoding = stream.encoding or "utf-8"
+    return line.encode(encoding, _ESCAPED).decode(encoding)
+
+
+def _escape(error: UnicodeError) -> tuple[str, int]:
+    """Python's `backslashreplace`, but in the form that JSON has too: a line stays an object."""
+    assert isinstance(error, UnicodeEncodeError)
+    return json.dumps(error.object[error.start : error.end])[1:-1], error.end
+
+
+codecs.register_error(_ESCAPED, _escape)
+
+
+def start(as_json: bool) -> None:
     """Switch the log on.
 
     Args:
-        json: lines of JSON for a program; else words for a person.
+        as_json: lines of JSON for a program; else words for a person.
     """
     writer = _Writer()
     structlog.configure(
@@ -78,7 +96,7 @@ def start(json: bool) -> None:
             structlog.processors.add_log_level,
             structlog.processors.TimeStamper(fmt="iso", utc=True),
             structlog.processors.EventRenamer("text"),
-            _json if json else _words,
+            _json if as_json else _words,
         ],
         wrapper_class=structlog.make_filtering_bound_logger(logging.INFO),
         logger_factory=lambda *_: writer,

@@ -142,6 +142,8 @@ class Refusal(msgspec.Struct, frozen=True):
 
     reason: str
     mistakes: tuple[Mistake, ...] = ()
+    again: bool = False
+    """The same request may be taken later: nothing is wrong with it, the court can't now."""
 
 
 class Enter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

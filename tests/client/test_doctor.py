@@ -11,12 +11,14 @@ from typing import Any
 
 import pytest
 from court_process import OpenCourt, environment
+from court_stub import CourtStub
 from keyed import KeyedCourt, keyed_file
 
 from lacoc_client import doctor
 from lacoc_client.doctor import Status
 from lacoc_client.doctor_link import link
 from lacoc_shared import cli
+from lacoc_shared.access import Access
 
 
 @pytest.fixture
@@ -132,9 +134,9 @@ def test_ports_that_are_taken(
     assert found[f"port {taken}"]["status"] == "problem"
     assert "lacoc web" in found[f"port {taken}"]["todo"]
     assert found["court main"]["status"] == "problem"
-    assert doctor.court_port("127.0.0.1", taken, needed=False).status is Status.NOTE
-    assert doctor.court_port("127.0.0.1", taken, needed=True).status is Status.PROBLEM
-    assert doctor.court_port("192.0.2.7", free(), needed=True).status is Status.PROBLEM
+    assert doctor.court_port("127.0.0.1", taken, None).status is Status.NOTE
+    assert doctor.court_port("127.0.0.1", taken, "main").status is Status.PROBLEM
+    assert doctor.court_port("192.0.2.7", free(), "main").status is Status.PROBLEM
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="a folder in which nobody can write")
@@ -143,6 +145,63 @@ def test_a_disk_that_takes_nothing(capsys: pytest.CaptureFixture[str]) -> None:
     found = look(capsys, Path("/proc/records"))["disk"]
     assert found["status"] == "problem"
     assert "--recordings" in found["todo"]
+
+
+def test_a_file_where_the_records_should_go(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """A court could not open its record there, however much room is in the folder above."""
+    for name in ("file", "link"):
+        folder = tmp_path / name
+        folder.write_text("") if name == "file" else folder.symlink_to(tmp_path / "nowhere")
+        found = look(capsys, folder)["disk"]
+        assert found["status"] == "problem"
+        assert str(folder) in found["found"]
+        assert "--recordings" in found["todo"]
+
+
+def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """A court runs there, but not the one of the contest file: that one could not start."""
+    with CourtStub() as court:
+        port = int(court.address.rpartition(":")[2])
+        text = Path(contest(tmp_path, port)).read_text().replace("court.main", "court.hall")
+        file = tmp_path / "contest.toml"
+        file.write_text(text)
+        found = look(capsys, tmp_path, "--contest", str(file))[f"port {port}"]
+        assert found["status"] == "problem"
+        assert "court main runs here, and the contest file has court hall here" in found["found"]
+        assert "--listen" in found["todo"]
+        assert doctor.court_port("127.0.0.1", port, None).status is Status.OK
+
+
+def test_a_court_that_stands_still() -> None:
+    """It sends its last frame 50 times a second while its disk is full: that is no match."""
+    with CourtStub() as court:
+        court.trouble = "The record m-1 can't be written: No space left on device."
+        access = Access(court="main", connect=court.address)
+        found = {finding.about: finding for finding in link(access, 0.5)}
+    assert found["frames of main"].status is Status.PROBLEM
+    assert "stands still in PLAYING" in found["frames of main"].found
+    assert found["record of main"].status is Status.PROBLEM
+    assert found["record of main"].found == court.trouble
+
+
+def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Each has a link to look at; one that is not there hides nothing of the others."""
+    with CourtStub() as court:
+        text = Path(contest(tmp_path, int(court.address.rpartition(":")[2]))).read_text()
+        port = free()
+        hall = Path(contest(tmp_path, port)).read_text().replace("court.main", "court.hall")
+        file = tmp_path / "contest.toml"
+        file.write_text(hall + text)
+        found = look(capsys, tmp_path, "--contest", str(file))
+        one = look(capsys, tmp_path, "--contest", str(file), "--court", "main")
+    assert "Nobody listens at" in found["court hall"]["found"]
+    assert "Test at tcp/" in found["court main"]["found"]
+    assert found["frames of main"]["status"] != "problem"
+    assert "disk" in found
+    assert "court main" in one
+    assert not {"court hall", f"port {port}"} & one.keys()
 
 
 def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -160,11 +219,11 @@ def test_the_link_to_a_court(
     court = open_court()
     found = look(capsys, tmp_path, "--connect", court.address, "--seconds", "1")
     assert found["court main"]["status"] == "ok"
-    assert found["round trip"]["found"].startswith("50 requests, ")
-    assert " a second in LOBBY, " in found["frames"]["found"]
-    assert found["frames"]["status"] != "problem"
+    assert found["round trip to main"]["found"].startswith("50 requests, ")
+    assert " a second in LOBBY, " in found["frames of main"]["found"]
+    assert found["frames of main"]["status"] != "problem"
     port = int(court.address.rpartition(":")[2])
-    here = doctor.court_port("127.0.0.1", port, needed=True)
+    here = doctor.court_port("127.0.0.1", port, "main")
     assert (here.status, here.found) == (Status.OK, "court main runs here")
     other = look(capsys, tmp_path, "--connect", court.address, "--court", "other")
     assert "there is main" in other["court other"]["found"]
@@ -175,7 +234,7 @@ def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> Non
     with KeyedCourt(keyed_file(tmp_path)) as court:
         port = int(court.address.rpartition(":")[2])
         credentials = court.people["spectators"].credentials
-        found = doctor.court_port("127.0.0.1", port, needed=True, credentials=credentials)
+        found = doctor.court_port("127.0.0.1", port, "main", credentials)
         assert (found.status, found.found) == (Status.OK, "court main runs here")
         findings = list(link(court.people["left"].watching(), 0.5))
     assert "Test at tls/" in findings[0].found

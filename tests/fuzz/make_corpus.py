@@ -152,6 +152,7 @@ duration_s = 60.0
 levels = ["A", "B"]
 [court.second]
 arena = "games/tag"
+listen = ["0.0.0.0:7448"]
 [court.second.seat.runner]
 token = "runner-token-of-second"
 [court.second.referee]

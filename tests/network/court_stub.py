@@ -83,6 +83,9 @@ class CourtStub:
         inbox = Inbox(KEYS, SEATS, token_hashes, check_files, **restored)
         desk = DecisionDesk([seal.hash_token(WHISTLE)])
         self.network = CourtNetwork(KEYS, [listen], inbox, desk, protection)
+        self.trouble = ""
+        """Why it makes no beat and sends its last one again, as while the disk is full; "": it
+        makes them."""
         self.inputs: list[Input] = []
         self.scene = make_scene("empty")
         self.silent = False
@@ -126,6 +129,9 @@ class CourtStub:
     def _run(self) -> None:
         beat = 0
         while not self._stopping.wait(0.005):
+            if self.trouble:
+                self._stand_still(beat)
+                continue
             beat += 1
             now_s = time.monotonic()
             silent = [seat in self._silent for seat in range(2)]
@@ -137,27 +143,37 @@ class CourtStub:
             while self._todo:
                 self._todo.pop()()
             if not self.silent:
-                self._publish(beat, now_s)
+                self._publish_frame(beat, now_s)
+                if beat % 10 == 0:
+                    self._publish_health(beat, now_s)
 
-    def _publish(self, beat: int, now_s: float) -> None:
+    def _stand_still(self, beat: int) -> None:
+        now_s = time.monotonic()
+        self.network.turn_away(self.trouble)
+        self._publish_frame(beat, now_s)
+        self._publish_health(beat, now_s)
+
+    def _publish_frame(self, beat: int, now_s: float) -> None:
         scene = message_hash(encode(self.scene))
         seats = tuple(self._seats.values())
         frame = Frame(1, beat, Phase.PLAYING, 0, 0, seats, b"", b"", scene, bytes(8))
         self.network.publish_frame(encode(frame), now_s)
-        if beat % 10 == 0:
-            health = Health(
-                match=1,
-                beat=beat,
-                real_time_factor=1.0,
-                slow_beats=0,
-                worst_late_ms=0.0,
-                seats=self.network.seat_health(now_s),
-                dropped=self.network.dropped,
-                decisions={},
-                events=self.network.newest_event,
-                sheet=self.network.sheet_hash,
-            )
-            self.network.publish_health(health)
+
+    def _publish_health(self, beat: int, now_s: float) -> None:
+        health = Health(
+            match=1,
+            beat=beat,
+            real_time_factor=1.0,
+            slow_beats=0,
+            worst_late_ms=0.0,
+            seats=self.network.seat_health(now_s),
+            dropped=self.network.dropped,
+            decisions={},
+            record_trouble=self.trouble,
+            events=self.network.newest_event,
+            sheet=self.network.sheet_hash,
+        )
+        self.network.publish_health(health)
 
     def _apply(self, one: Input, beat: int) -> Outcome:
         self.inputs.append(one)

@@ -2,9 +2,11 @@
 
 import time
 
+import msgspec
 import pytest
 from court_stub import KEYS, TOKENS, WRONG, CourtStub, until
 
+from lacoc_client.asking import NotNow
 from lacoc_client.controller import Controller, Hold
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
@@ -142,6 +144,47 @@ def test_a_new_window_takes_over_and_the_old_one_knows(
     assert new.hold is Hold.HELD
 
 
+def test_one_health_of_another_session_is_not_believed(court: CourtStub, session: Session) -> None:
+    """Made before the join and delivered after it, it names the older session: two do not."""
+    one = held(session)
+    until(lambda: one.poll(time.monotonic()) and one.view.health)
+    court.silent = True
+    true = one.view.health
+    assert true is not None
+    others = tuple(msgspec.structs.replace(seat, session=7) for seat in true.seats)
+    stale = msgspec.structs.replace(true, seats=others)
+    for told in (stale, true, stale):
+        before = one.view.health
+        court.in_a_beat(lambda told=told: court.network.publish_health(told))  # type: ignore[misc]
+        until(lambda before=before: one.poll(0.0) or one.view.health is not before)
+        assert one.hold is Hold.HELD
+    court.in_a_beat(lambda: court.network.publish_health(stale))
+    until(lambda: one.poll(0.0) or one.hold is Hold.REPLACED)
+
+
+def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session) -> None:
+    """What only can't be done now is told apart from what is wrong; by the reply, not by words."""
+    one = controller(session)
+    court.trouble = "The record can't be written: make room."
+    with pytest.raises(NotNow, match="make room"):
+        one.join()
+    court.trouble = ""
+    for _ in range(5):
+        one.join()
+    with pytest.raises(NotNow, match="Too many joins"):
+        one.join()
+    with pytest.raises(UserError, match="does not open") as refused:
+        controller(session, token="guess").join()
+    assert not isinstance(refused.value, NotNow)
+
+
+@pytest.mark.parametrize("seat", ["", "a//b", "le?ft", "#"])
+def test_a_seat_that_is_no_key_is_said(court: CourtStub, session: Session, seat: str) -> None:
+    """What stands in an invitation is looked up before it becomes part of a key expression."""
+    with pytest.raises(UserError, match=r"has no seat .*; it has left, right"):
+        Controller(session, "main", seat, "t", "Blue")
+
+
 def test_forged_commands_are_refused_and_counted(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
@@ -212,6 +255,16 @@ def test_a_controller_comes_back_after_a_restart_of_the_court() -> None:
             assert second.keys() == []
             assert one.press(1, 3) == 2
             until(lambda: one.wait_frame(0.1) and second.keys() == [(2, 3)])
+        full = CourtStub(address)
+        full.trouble = "The record can't be written: make room."
+        with full:
+            until(lambda: one.wait_frame(0.1) and one.hold is Hold.LOST and one.reason)
+            assert one.link(time.monotonic()) == full.trouble
+            full.trouble = ""
+            until(lambda: one.wait_frame(0.1) and one.hold is Hold.HELD)
+            assert one.reason == ""
+            assert one.press(1, 4) == 3
+            until(lambda: one.wait_frame(0.1) and full.keys() == [(3, 4)])
         with CourtStub(address, token_hashes={}):
             until(lambda: one.wait_frame(0.1) and one.hold is Hold.REFUSED)
             assert "does not open seat left" in one.link(time.monotonic())

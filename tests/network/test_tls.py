@@ -120,6 +120,8 @@ def test_a_damaged_certificate_and_nobody_there(keyed: KeyedCourt) -> None:
     left = keyed.people["left"]
     damaged = left.ca.replace("BEGIN CERT", "BEGIN SERT")
     assert "damaged" in refused(msgspec.structs.replace(left, ca=damaged))
+    by_mail = left.ca.replace("-----BEGIN", "\u2014\u2013BEGIN\u00a0")
+    assert "damaged" in refused(msgspec.structs.replace(left, ca=by_mail))
     assert "Nobody listens" in refused(msgspec.structs.replace(left, connect="tls/127.0.0.1:1"))
 
 

@@ -164,6 +164,28 @@ def test_what_lacks_is_asked_for(file: Path) -> None:
         entrances.seat_access(contests.load(file), None, None, "left", None)
 
 
+@pytest.mark.parametrize("what", ["empty", "no text", "key", "authority"])
+def test_what_is_no_certificate_of_a_court_is_said(file: Path, what: str) -> None:
+    """A file that was cut or mixed up: both ways out, and the gentle one keeps invitations."""
+    run("keys", str(file), "--host", "x.example")
+    keys = contests.load(file).keys
+    assert keys is not None
+    mixed_up = {
+        "empty": b"",
+        "no text": b"\xff\x00",
+        "key": keys.private_key.read_bytes(),
+        "authority": keys.ca.read_bytes(),
+    }
+    invitation = keys.invitation("main.left").read_bytes()
+    keys.certificate.write_bytes(mixed_up[what])
+    with pytest.raises(UserError, match=r"court\.pem is no certificate.*--host.*--renew"):
+        run("keys", str(file), "--host", "x.example")
+    assert keys.certificate.read_bytes() == mixed_up[what]
+    keys.certificate.unlink()
+    run("keys", str(file), "--host", "x.example")
+    assert keys.invitation("main.left").read_bytes() == invitation
+
+
 def test_show_names_the_invitations(file: Path) -> None:
     """The short line, without a token in it."""
     run("keys", str(file), "--host", "x.example")

@@ -305,7 +305,12 @@ def test_answers_about_empty_seats() -> None:
     wrong = stage.send(join(RIGHT, robot_file=b"name = 3"))
     assert isinstance(wrong, Refusal)
     assert (wrong.reason, len(wrong.mistakes) > 1) == ("Your files have mistakes.", True)
+    assert not wrong.again, "the same files never become right"
     assert stage.match.seats[RIGHT].team == "right"
+    on = Stage(overrides=QUICK).to(P.PLAYING)
+    on.match.seats[RIGHT].join = None
+    why = "The match is on (PLAYING): join when the next one opens."
+    assert on.send(join(RIGHT)) == Refusal(why, again=True)
     stage.decide(d.Abort())
     assert stage.send(join(RIGHT)) == Done("This match is over: you play in the next.")
 

@@ -36,6 +36,7 @@ duration_s = 60.0
 SECOND = """
 [court.second]
 arena = "games/tag"
+listen = ["0.0.0.0:7448"]
 connect = "court.example.org:7448"
 [court.second.seat.runner]
 token = "runner-token-of-second"
@@ -124,6 +125,53 @@ def test_a_wrong_entry_is_named(file: Path, old: str, new: str, said: str) -> No
         contests.load(file)
 
     assert str(file) in str(caught.value)
+
+
+TWO = """
+[court.main]
+arena = "othello"
+{main}
+referee.token = "referee-token-of-main"
+[court.second]
+arena = "othello"
+{second}
+referee.token = "referee-token-of-second"
+"""
+
+
+@pytest.mark.parametrize(
+    ("main", "second"),
+    [
+        ("", ""),
+        ('listen = ["0.0.0.0"]', ""),
+        ('listen = ["10.0.0.7:7450", "127.0.0.1"]', 'listen = ["[::]:7447"]'),
+        ('connect = "one.example"', ""),
+        ('connect = "one.example"', 'connect = "one.example:7448"'),
+    ],
+)
+def test_two_courts_at_one_port_are_named(file: Path, main: str, second: str) -> None:
+    """Only one of them could start: both are named, with a port that is free."""
+    file.write_text(TWO.format(main=main, second=second))
+    with pytest.raises(UserError, match=r"court\.second.*'main' listens at .*:7447 too.*:744[89]"):
+        contests.load(file)
+
+
+@pytest.mark.parametrize(
+    ("main", "second"),
+    [
+        ("", 'listen = ["127.0.0.1:7448"]'),
+        ('listen = ["127.0.0.1:0"]', 'listen = ["0.0.0.0:0"]'),
+        ('listen = ["10.0.0.7"]', 'listen = ["10.0.0.8"]'),
+        (
+            'listen = ["0.0.0.0"]\nconnect = "one.example"',
+            'listen = ["0.0.0.0"]\nconnect = "two.example"',
+        ),
+    ],
+)
+def test_courts_that_can_run_at_once_are_right(file: Path, main: str, second: str) -> None:
+    """Other ports, free ones, other addresses; or other machines, as `connect` says."""
+    file.write_text(TWO.format(main=main, second=second))
+    assert list(contests.load(file).courts) == ["main", "second"]
 
 
 def test_no_file_and_no_text_are_said(tmp_path: Path) -> None:

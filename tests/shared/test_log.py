@@ -1,6 +1,7 @@
 """The log of what runs for long: its lines, its silence elsewhere, and that it never waits."""
 
 import json
+import os
 import subprocess
 import sys
 from datetime import datetime
@@ -18,9 +19,14 @@ say.debug("not this")
 """
 
 
-def said(code: str) -> str:
+def said(code: str, encoding: str = "utf-8") -> str:
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+        [sys.executable, "-c", code],
+        capture_output=True,
+        encoding=encoding,
+        env=os.environ | {"PYTHONIOENCODING": encoding},
+        check=True,
+        timeout=60,
     )
     assert done.stderr == ""
     return done.stdout
@@ -47,6 +53,34 @@ def test_lines_for_a_person() -> None:
     first, second = said(SAY.format(json=False)).splitlines()
     assert first[8:] == " m-1 0:12.3  Ants flip c2r3."
     assert second[8:] == " m-1  3 slow beats."
+
+
+NAMES = """
+from lacoc_shared import log
+log.start({json})
+for text in ("Équipe", "チーム 🤖 takes the left seat.", "three"):
+    log.get(court="main").info(text)
+"""
+
+
+def test_what_a_terminal_can_not_show_ends_no_log() -> None:
+    """A team with a Japanese name at a terminal of Windows: its line has numbers, more follow."""
+    lines = said(NAMES.format(json=False), "cp1252").splitlines()
+    assert [line.split("  ")[1] for line in lines] == [
+        "Équipe",
+        r"\u30c1\u30fc\u30e0 \ud83e\udd16 takes the left seat.",
+        "three",
+    ]
+
+
+def test_what_a_pipe_can_not_encode_is_read_as_it_was() -> None:
+    """The numbers are those of JSON: a program has the name whole."""
+    lines = said(NAMES.format(json=True), "cp1252").splitlines()
+    assert [json.loads(line)["text"] for line in lines] == [
+        "Équipe",
+        "チーム 🤖 takes the left seat.",
+        "three",
+    ]
 
 
 NOBODY_READS = """

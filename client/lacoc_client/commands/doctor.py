@@ -1,7 +1,7 @@
 """`lacoc doctor`: is this machine ready, and is the court in reach?"""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -57,15 +57,22 @@ def doctor_command(
 ) -> None:
     """Look whether this machine is ready: packages, ports, graphics, clock, disk.
 
-    With --invitation, --connect or --contest also the link to a court: is it there, how long does
-    a request take, how many frames arrive. Every finding is ok, a note or a problem, with what to
-    do. The exit code is 0 unless there is a problem.
+    With --invitation, --connect or --contest also the link to a court, or to each court of the
+    contest: is it there, how long does a request take, how many frames arrive. With --court only
+    that one is looked at. Every finding is ok, a note or a problem, with what to do. The exit code
+    is 0 unless there is a problem.
     """
     plan = None if contest is None else contests.load(contest)
+    planned = [*plan.courts] if plan and court is None else [court]
+    asked = planned if connect is None else [court]
+    ways = [
+        entrance.spectator(invitation, contest, one, connect)
+        for one in (asked if plan or invitation or connect else ())
+    ]
     folder = recordings or (plan.recordings if plan else Path("recordings"))
-    findings = list(_look(plan, web, folder, seconds))
-    if any(given is not None for given in (invitation, contest, connect)):
-        findings += link(entrance.spectator(invitation, contest, court, connect), seconds)
+    findings = list(_look(plan, planned, web, folder, seconds))
+    for way in ways:
+        findings += link(way, seconds)
     if json:
         screen.print_json(findings)
     else:
@@ -74,15 +81,20 @@ def doctor_command(
         raise typer.Exit(NOT_READY)
 
 
-def _look(plan: Contest | None, web: str | None, folder: Path, seconds: float) -> Iterator[Finding]:
+def _look(
+    plan: Contest | None,
+    courts: Sequence[str | None],
+    web: str | None,
+    folder: Path,
+    seconds: float,
+) -> Iterator[Finding]:
     yield from doctor.packages()
     if plan is None:
-        yield doctor.court_port(*_host_port(contests.LOOPBACK), needed=False)
-    for name, court in plan.courts.items() if plan else ():
+        yield doctor.court_port(*_host_port(contests.LOOPBACK), None)
+    for name, entry in map(plan.court, courts) if plan else ():
         credentials = entrances.spectator_access(plan, name, None).credentials
-        for address in court.listen:
-            where = _host_port(address)
-            yield doctor.court_port(*where, needed=True, credentials=credentials)
+        for address in entry.listen:
+            yield doctor.court_port(*_host_port(address), name, credentials)
     yield doctor.web_port(*_host_port(web or _WEB), needed=web is not None)
     yield doctor.graphics()
     yield doctor.clock(seconds)

@@ -314,6 +314,10 @@ const CONTESTANTS: readonly Pattern[] = [
     "This court speaks version {#ours} of the protocol, your program version {#yours}: install the version of lacoc that the organiser uses.",
     "コートの通信方式は第 {#ours} 版、お使いのプログラムは第 {#yours} 版です。主催者と同じ版の lacoc を入れてください。",
   ],
+  [
+    "This request has come before, or a newer one has.",
+    "この要求、またはより新しい要求がすでに届いています。",
+  ],
   ["The join was not understood: {error}.", "参加の要求を読み取れませんでした：{error}"],
   ["The request was not understood: {error}.", "要求を読み取れませんでした：{error}"],
   [
@@ -321,6 +325,10 @@ const CONTESTANTS: readonly Pattern[] = [
     "このトークンでは{Seat}の席に着けません。主催者から渡された席とトークンを確かめてください。",
   ],
   ["Too many joins at once: wait a few seconds.", "参加の要求が多すぎます。数秒お待ちください。"],
+  [
+    "Ready and not ready too often: wait a few seconds.",
+    "準備完了とその取り消しが多すぎます。数秒お待ちください。",
+  ],
   [
     "A team's name has 1-{#most} printable characters; found {name}.",
     "チーム名は 1～{#most} 文字で、表示できる文字だけを使ってください（入力：{name}）。",
@@ -374,6 +382,7 @@ const CONTESTANTS: readonly Pattern[] = [
 const COUNTED: readonly Pattern[] = [
   ["bad bytes", "読み取れないデータ"],
   ["too long", "長すぎるデータ"],
+  ["stale", "古い画面への応答の繰り返し"],
   ["unknown session", "不明な接続"],
   ["not your seat", "別の席のもの"],
   ["bad seal", "署名の誤り"],

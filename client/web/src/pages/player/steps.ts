@@ -4,7 +4,7 @@ import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
 import { Phase, SeatFlag } from "../../core/wire";
 import { BEATS_PER_S, seatName, team } from "../../core/words";
-import { type MessageName, t } from "../../i18n";
+import { type MessageName, said, t } from "../../i18n";
 
 /** A line, and how much it matters. */
 export interface Step {
@@ -25,7 +25,10 @@ export function nextStep(court: Court, player: Player, alone: boolean): Step {
   const seat = frame?.seats[index];
   if (player.standing.value === "joining") return { text: t("next.rejoin"), tone: "wait" };
   if (!frame || !sheet || !seat) return { text: t("next.wait"), tone: "wait" };
-  if (!player.canSteer.value) return { text: t("next.lost"), tone: "warn" };
+  if (!player.canSteer.value) {
+    const why = player.court.seat.value?.reason;
+    return { text: why ? said(why) : t("next.lost"), tone: "warn" };
+  }
   const seconds = Math.ceil(seat.locked_ticks / BEATS_PER_S);
   switch (frame.phase) {
     case Phase.LOBBY:
