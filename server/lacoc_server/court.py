@@ -242,7 +242,7 @@ class Court:
         self._journal.close()
         if self._settings.recordings is not None:
             self._packing = [one for one in self._packing if one.poll() is None]
-            self._packing.append(pack_in_background(self._settings.recordings, self.match_id))
+            self._packing.append(pack_in_background(self._settings.recordings, [self.match_id]))
 
     def _say_health(self, now_s: float) -> None:
         pace, match = self._pace, self._journal.match

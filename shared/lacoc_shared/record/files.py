@@ -59,22 +59,28 @@ def record_paths(path: Path) -> list[Path]:
     return segment_paths(path.parent, name["match_id"]) if name else [path]
 
 
-def hold(file: BinaryIO) -> None:
-    """Mark an open segment as being written, until it is closed or its process ends."""
+def hold(file: BinaryIO) -> bool:
+    """Mark an open segment as being written or packed, until it is closed or its process ends.
+
+    Returns:
+        False if another process holds it.
+    """
     try:
         _lock(file)
+    except (BlockingIOError, PermissionError):
+        return False
     except OSError:  # a file system without locks: nobody can be told
-        return
+        return True
+    return True
 
 
 def is_held(path: Path) -> bool:
-    """Whether a running court writes a segment: it is not one that was left behind."""
-    with path.open("rb+") as file:
-        try:
-            _lock(file)
-        except OSError:
-            return True
-    return False
+    """Whether a running process writes or packs a segment: it was not left behind."""
+    try:
+        with path.open("rb+") as file:
+            return not hold(file)
+    except FileNotFoundError:  # packed at this moment
+        return True
 
 
 def _lock(file: BinaryIO) -> None:
