@@ -9,7 +9,6 @@ import hashlib
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -30,6 +29,7 @@ from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Advice, Decide, Input
 from lacoc_shared.messages import Health, HealthVerdict
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.matches import MatchName
 from lacoc_shared.record.pack import pack_in_background
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
@@ -211,9 +211,8 @@ class Court:
 
     def _open(self, number: int) -> Journal:
         settings = self._settings
-        stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
         setup = Setup(
-            match_id=f"{stamp}-{settings.name}-{number:03d}",
+            match_id=str(MatchName.now(settings.name, number)),
             court=settings.name,
             match=number,
             arena=settings.arena.name,
