@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_shared.record.matches import MatchName, court_matches, is_over
+from lacoc_shared.record.matches import MatchName, court_matches, is_over, unpacked
 from lacoc_shared.record.schema import Header
 from lacoc_shared.record.writer import RecordWriter
 
@@ -71,7 +71,7 @@ def test_a_court_has_its_own_matches_in_their_order(tmp_path: Path) -> None:
 def test_a_match_is_over_when_its_court_ended_it(
     tmp_path: Path, header: Callable[..., Header]
 ) -> None:
-    """Left and cut ones are not."""
+    """Left and cut ones are not; what is over and lies in segments is to be packed."""
     ids = [f"20260501-10000{number}-main-001" for number in range(4)]
     writers = [RecordWriter(tmp_path, header(match_id=match_id)) for match_id in ids[:3]]
     ended, left, cut = writers
@@ -87,3 +87,7 @@ def test_a_match_is_over_when_its_court_ended_it(
         False,
         False,
     ]
+    assert unpacked(tmp_path, "main") == ids[:1]
+    (tmp_path / f"{ids[0]}.mcap").touch()
+    left.path.unlink()
+    assert unpacked(tmp_path, "main") == ids[:1], "packing was interrupted before its end"

@@ -1,22 +1,34 @@
 """Which match a court goes on with: its own, and only one that it did not end."""
 
+import os
+import signal
+import sys
+import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import msgspec
 import pytest
+from running import WAIT_S, frame, phase, seated, served, until, write_contest
 from stage import LEFT, QUICK, RIGHT, decide, join, setup
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
+from lacoc_client.referee import RefereeClient
 from lacoc_server.journal import Journal
 from lacoc_server.match import Match
 from lacoc_server.recovery import Unfinished, unfinished
+from lacoc_server.replay import Verdict, verify
 from lacoc_server.world import World
 from lacoc_shared import decisions as d
+from lacoc_shared.contest import load
 from lacoc_shared.inputs import ReadySeat
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files, pack
+from lacoc_shared.record.matches import court_matches, is_over
 from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import open_client
 
 pytestmark = pytest.mark.slow
 
@@ -153,3 +165,132 @@ def test_a_match_that_a_court_took_up_is_not_taken_up_twice(tmp_path: Path) -> N
     assert unfinished(tmp_path, "main", OTHELLO) is None
     running.leave()
     assert unfinished(tmp_path, "main", OTHELLO) is not None
+
+
+FAILING = """
+import errno, os, runpy, subprocess, sys
+from lacoc_server.match import Match
+
+flag, what = sys.argv[1:3]
+beat, start = Match.beat, subprocess.Popen.__init__
+
+def failing_beat(self, inputs=()):
+    made = beat(self, inputs)
+    if os.path.exists(flag):
+        raise MemoryError("no memory for a beat")
+    return made
+
+def failing_start(self, *words, **options):
+    if os.path.exists(flag):
+        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+    start(self, *words, **options)
+
+if what == "beat":
+    Match.beat = failing_beat
+else:
+    subprocess.Popen.__init__ = failing_start
+sys.argv = sys.argv[5:]
+runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
+"""
+"""Runs the command that follows; a beat, or starting a process, fails while a file is there."""
+
+
+def failing(flag: Path, what: str) -> list[str]:
+    return [sys.executable, "-c", FAILING, str(flag), what]
+
+
+def packed(folder: Path, *numbers: str) -> list[Path]:
+    """Packed files of matches of these numbers, when there is nothing but them."""
+    end_s, wanted = time.monotonic() + WAIT_S, sorted(f"-{number}.mcap" for number in numbers)
+    while sorted(path.name[-9:] for path in folder.iterdir()) != wanted:
+        assert time.monotonic() < end_s, list(folder.iterdir())
+        time.sleep(0.05)
+    return sorted(folder.iterdir())
+
+
+def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
+    """As it outlives a kill: the next start goes on with it, halted; then it is packed whole."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    flag = tmp_path / "flag"
+    name, court = load(contest).court()
+    with ExitStack() as stack:
+        first = stack.enter_context(served(contest, folder, before=failing(flag, "beat")))
+        session = stack.enter_context(open_client([court.address()]))
+        controllers = seated(session, contest)
+        left = controllers[0]
+        until(controllers, lambda: phase(left) == Phase.READY)
+        referee = RefereeClient(session, name, court.referee.token)
+        referee.decide(d.Start(), "", "Kubota")
+        until(controllers, lambda: frame(left).clock_ticks > 20)
+        seen = frame(left)
+        flag.touch()
+        assert first.wait(WAIT_S) not in (0, -signal.SIGKILL)
+        flag.unlink()
+        assert [path.suffixes[-3:] for path in folder.iterdir()] == [[".000", ".live", ".mcap"]]
+
+        stack.enter_context(served(contest, folder))
+        until(controllers, lambda: phase(left) == Phase.HALTED)
+        assert frame(left).match == seen.match
+        assert frame(left).clock_ticks >= seen.clock_ticks
+        referee.decide(d.Abort(), "a test", "Kubota")
+    (record,) = packed(folder, "001")
+    *_, verdict = verify(Record.read(record))
+    assert isinstance(verdict, Verdict)
+    assert verdict.text == "same"
+
+
+def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
+    """What it could not pack then is packed when its next match ends, or when it starts again."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    flag = tmp_path / "flag"
+    name, court = load(contest).court()
+    with ExitStack() as stack:
+        process = stack.enter_context(served(contest, folder, before=failing(flag, "start")))
+        session = stack.enter_context(open_client([court.address()]))
+        controllers = seated(session, contest)
+        left = controllers[0]
+        until(controllers, lambda: phase(left) == Phase.READY)
+        referee = RefereeClient(session, name, court.referee.token)
+        flag.touch()
+        for number in (2, 3):
+            referee.decide(d.Abort(), "a test", "Kubota")
+            referee.decide(d.Next(), "", "Kubota")
+            until(controllers, lambda number=number: frame(left).match == number)
+        assert len(list(folder.glob("*.live.mcap"))) == 3
+        assert process.stdout is not None
+        process.send_signal(signal.SIGTERM)
+        said, _ = process.communicate(timeout=WAIT_S)
+        assert process.returncode == 0
+        assert "No record is packed now: [Errno 11] Resource temporarily unavailable" in said
+        assert len(list(folder.glob("*.live.mcap"))) == 3
+
+        flag.unlink()
+        stack.enter_context(served(contest, folder, before=failing(flag, "start")))
+        until(controllers, lambda: len(list(folder.glob("*[0-9].mcap"))) == 3)
+    records = packed(folder, "001", "002", "003", "001")
+    assert all(Record.read(path).cut == "" for path in records)
+
+
+def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:
+    """SIGTERM in PLAYING: it is packed, and the next start opens another, however early."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    name, court = load(contest).court()
+    with served(contest, folder) as first, open_client([court.address()]) as session:
+        controllers = seated(session, contest)
+        left = controllers[0]
+        until(controllers, lambda: phase(left) == Phase.READY)
+        RefereeClient(session, name, court.referee.token).decide(d.Start(), "", "Kubota")
+        until(controllers, lambda: phase(left) == Phase.PLAYING)
+        os.kill(first.pid, signal.SIGTERM)
+        until([], lambda: ended(folder))
+        first.kill()
+        first.wait()
+    with served(contest, folder):
+        assert unfinished(folder, "main", OTHELLO) is None
+    records = packed(folder, "001", "001")
+    assert [len(Record.read(path).headers) for path in records] == [1, 1]
+
+
+def ended(folder: Path) -> bool:
+    """Whether all matches of a folder are over."""
+    return all(is_over(*match) for match in court_matches(folder, "main").items())

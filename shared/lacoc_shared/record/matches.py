@@ -67,6 +67,15 @@ def is_over(name: MatchName, segments: Mapping[int, Path]) -> bool:
     return files.packed_path(newest.parent, str(name)).exists() or _is_finished(newest)
 
 
+def unpacked(folder: Path, court: str) -> list[str]:
+    """The ids of a court's matches that are over, and that nobody packs or has packed."""
+    return [
+        str(name)
+        for name, segments in court_matches(folder, court).items()
+        if segments and is_over(name, segments) and not any(map(files.is_held, segments.values()))
+    ]
+
+
 def _is_finished(segment: Path) -> bool:
     """Whether a segment has its end, which a court that is killed or fails does not write."""
     try:
