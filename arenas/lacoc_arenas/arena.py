@@ -99,6 +99,14 @@ class Arena:
         self.match = file.match
         self.seats = file.seat
 
+    def plays(self, recorded: str) -> bool:
+        """Whether a record's arena is this one, by the name that the record has.
+
+        A folder may have moved since: the one that the user named stands for any.
+        """
+        moved = self.folder is not None and recorded not in plugins.installed(_GROUP)
+        return moved or recorded == self.name
+
     def build_field(self, spec: Any) -> None:
         """Add floor, walls and markers to an `MjSpec`."""
         importlib.import_module(f"{self._module}.field").build(spec, self.game)

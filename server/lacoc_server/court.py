@@ -9,7 +9,6 @@ import hashlib
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -30,6 +29,7 @@ from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Advice, Decide, Input
 from lacoc_shared.messages import Health, HealthVerdict
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.matches import MatchName, unpacked
 from lacoc_shared.record.pack import pack_in_background
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
@@ -112,8 +112,12 @@ class Court:
         return self._journal.match.setup.match_id
 
     def run(self, stopping: Callable[[], bool]) -> None:
-        """Give the match its beats until `stopping` says so; then finish the record."""
+        """Give the match its beats until `stopping` says so; then finish the record.
+
+        An error in the loop ends the court, and not its match: that is for the next start.
+        """
         pace = self._pace
+        self._pack()
         try:
             while not stopping():
                 time.sleep(pace.wait_s(time.monotonic()))
@@ -122,10 +126,12 @@ class Court:
                 self._health.begin(now_s, pace.late_s, self._network.doors())
                 self._beat(now_s)
                 self.metrics.beat(time.monotonic() - now_s)
-        finally:
-            self._close()
-            for packing in self._packing:
-                packing.wait()
+        except BaseException:
+            self._journal.leave()
+            raise
+        self._close()
+        for packing in self._packing:
+            packing.wait()
 
     def _beat(self, now_s: float) -> None:
         try:
@@ -211,9 +217,8 @@ class Court:
 
     def _open(self, number: int) -> Journal:
         settings = self._settings
-        stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
         setup = Setup(
-            match_id=f"{stamp}-{settings.name}-{number:03d}",
+            match_id=str(MatchName.now(settings.name, number)),
             court=settings.name,
             match=number,
             arena=settings.arena.name,
@@ -238,11 +243,24 @@ class Court:
         return journal
 
     def _close(self) -> None:
-        """Finish the record of this match; it is packed in a process of its own."""
+        """Finish the record of this match."""
         self._journal.close()
-        if self._settings.recordings is not None:
-            self._packing = [one for one in self._packing if one.poll() is None]
-            self._packing.append(pack_in_background(self._settings.recordings, self.match_id))
+        self._pack()
+
+    def _pack(self) -> None:
+        """Pack the matches that are over, in a process of its own.
+
+        What can't be packed now waits for the next time: the end of a match or a court's start.
+        """
+        folder = self._settings.recordings
+        if folder is None:
+            return
+        self._packing = [one for one in self._packing if one.poll() is None]
+        try:
+            if match_ids := unpacked(folder, self._settings.name):
+                self._packing.append(pack_in_background(folder, match_ids))
+        except OSError as error:
+            self._log.not_packed(self.match_id, error)
 
     def _say_health(self, now_s: float) -> None:
         pace, match = self._pace, self._journal.match

@@ -49,6 +49,11 @@ class CourtLog:
             self._trouble = health.record_trouble
             say(self._trouble or "The record is written again.", kind="record")
 
+    def not_packed(self, match_id: str, error: OSError) -> None:
+        """Log that no record could be packed: nothing is lost by that."""
+        text = f"No record is packed now: {error}. The segments stay, and are packed later."
+        self._log.warning(text, match_id=match_id, kind="record")
+
 
 def _refused(health: Health) -> Iterator[tuple[tuple[str, str], int]]:
     for seat in health.seats:

@@ -102,9 +102,14 @@ class Journal:
         return "" if self.writer is None else self.writer.sync_trouble
 
     def close(self) -> None:
-        """Finish the record's segment."""
+        """Finish the record: the match is over, and nobody goes on with it."""
         if self.writer is not None:
             self.writer.close()
+
+    def leave(self) -> None:
+        """Let go of the record as it is: the next start of its court goes on with the match."""
+        if self.writer is not None:
+            self.writer.leave()
 
     def _new(self, frame: Frame) -> bool:
         """Whether a frame without physics says more than that time passes."""

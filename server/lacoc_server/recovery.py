@@ -3,13 +3,15 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from lacoc_arenas.arena import Arena
 from lacoc_server.match import Match
 from lacoc_server.replay import resume
 from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Decide, Input, KeySeat
 from lacoc_shared.messages import Event, HealthVerdict
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record.files import is_held, record_paths, segment_name
+from lacoc_shared.record.files import is_held
+from lacoc_shared.record.matches import MatchName, court_matches, is_over
 from lacoc_shared.record.reader import NoMatch, Record
 from lacoc_shared.seat import Phase
 
@@ -45,45 +47,60 @@ class Unfinished:
         return []
 
 
-def unfinished(folder: Path, court: str, arena: Path | None = None) -> Unfinished | None:
-    """Find the newest match of a court whose record was not finished; None if there is none.
+def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
+    """Find the newest match of a court, if its court did not end it; None if it did.
 
-    A record that a running court of this name writes right now was not left behind, nor one
-    without a header: its court was killed before it had opened.
+    A match that a running court of this name holds right now was not left behind, nor one without
+    a header: its court was killed before it had opened.
 
     Args:
         folder: of the records.
         court: the court's name.
-        arena: folder of the arena that the court plays, if it is not installed.
+        arena: what the court is to play.
 
     Raises:
         UserError: if there is one and it can't go on here; the message says why.
     """
-    for path in reversed(_left_behind(folder, court)):
+    for name, segments in reversed(court_matches(folder, court).items()):
+        if is_over(name, segments):
+            return None
+        if any(map(is_held, segments.values())):
+            continue
+        number = max(segments)
+        newest = segments[number]
         try:
-            record = Record.read(record_paths(path))
+            record = Record.read(segments.values())
+            _check_origin(record, name, arena)
             if record.gap:
                 raise UserError(record.cut)
-            match = resume(record, folder=arena)
+            match = resume(record, folder=arena.folder)
         except NoMatch as error:
-            if path.stat().st_size < _OPENING_BYTES:
+            if newest.stat().st_size < _OPENING_BYTES:
                 continue
-            raise _can_not_go_on(path, error) from None
+            raise _can_not_go_on(newest, error) from None
         except UserError as error:
-            raise _can_not_go_on(path, error) from None
-        return _as_left(record, match, segment_name(path)[1] + 1)
+            raise _can_not_go_on(newest, error) from None
+        return _as_left(record, match, number + 1)
     return None
 
 
-def _left_behind(folder: Path, court: str) -> list[Path]:
-    """Segments that no court writes, of matches that came after the last one that was packed."""
-    name = f"*-{court}-[0-9][0-9][0-9]"
-    packed = max((path.stem for path in folder.glob(f"{name}.mcap")), default="")
-    return [
-        path
-        for path in sorted(folder.glob(f"{name}.*.live.mcap"))
-        if segment_name(path)[0] > packed and not is_held(path)
-    ]
+def _check_origin(record: Record, name: MatchName, arena: Arena) -> None:
+    """See that a record is of the match that its files are named after, and of this arena.
+
+    Raises:
+        UserError: if it is not.
+    """
+    setup = record.header.setup
+    if (setup.match_id, setup.court) != (str(name), name.court):
+        raise UserError(
+            f"It is of match {setup.match_id!r:.80} of court {setup.court!r:.40}: give its files "
+            "their own names again."
+        )
+    if not arena.plays(setup.arena):
+        raise UserError(
+            f"It was played in arena {setup.arena!r:.80}, and this court is to play "
+            f"{arena.name!r:.80}: start the court with that arena to go on."
+        )
 
 
 def _can_not_go_on(path: Path, error: UserError) -> UserError:

@@ -190,6 +190,8 @@ def write_match(
         writer.result(result)
         if close:
             writer.close()
+        else:
+            writer.leave()
         return writer.path
 
     return write

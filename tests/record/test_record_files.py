@@ -272,64 +272,6 @@ def test_kill_9_loses_nothing_that_was_answered(
     assert record.cut
 
 
-def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) -> None:
-    """The packed file says what its segments said, indexed and smaller; then they are gone."""
-    path = write_match(tmp_path)
-    size, record = path.stat().st_size, Record.read(path)
-    pack.pack([path], tmp_path / "m.mcap")
-    assert [p.name for p in tmp_path.iterdir()] == ["m.mcap"]
-    assert Record.read(tmp_path / "m.mcap") == record
-    assert (tmp_path / "m.mcap").stat().st_size < size / 2
-    with (tmp_path / "m.mcap").open("rb") as file:
-        summary = make_reader(file, validate_crcs=True).get_summary()
-    assert summary is not None
-    assert summary.chunk_indexes[0].compression == "zstd"
-
-
-def test_packing_that_was_interrupted_is_repeated(tmp_path: Path, write_match: WriteMatch) -> None:
-    """A half-written packed file is no record; a finished one is kept and its segments go."""
-    path = write_match(tmp_path)
-    record, data = Record.read(path), path.read_bytes()
-    (tmp_path / "m.mcap.part").write_bytes(b"half")
-    pack.pack([path], tmp_path / "m.mcap")
-    path.write_bytes(data[:100])
-    pack.pack([path], tmp_path / "m.mcap")
-    assert Record.read(tmp_path / "m.mcap") == record
-    assert [p.name for p in tmp_path.iterdir()] == ["m.mcap"]
-
-
-def test_packing_that_fails_keeps_the_segments(tmp_path: Path, write_match: WriteMatch) -> None:
-    """On a full disk nothing is lost and nothing half-made is left."""
-    resource = pytest.importorskip("resource")
-    path = write_match(tmp_path)
-    data = path.read_bytes()
-    unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
-    try:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (500, unlimited[1]))
-        with pytest.raises(UserError, match=r"can't be packed: File too large\. Its segments"):
-            pack.pack([path], tmp_path / "m.mcap")
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
-    assert list(tmp_path.iterdir()) == [path]
-    assert path.read_bytes() == data
-
-
-@pytest.mark.slow
-def test_packing_in_the_background(tmp_path: Path, write_match: WriteMatch) -> None:
-    """A court packs in a process of its own; of a match without segments it says so."""
-    record = Record.read(write_match(tmp_path))
-    assert pack.pack_in_background(tmp_path, "m").wait(60) == 0
-    assert Record.read(tmp_path / "m.mcap") == record
-    again = subprocess.run(
-        [sys.executable, "-m", "lacoc_shared.record.pack", str(tmp_path), "m"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert again.returncode == 2
-    assert again.stderr == f"There are no segments of match m in {tmp_path}.\n"
-
-
 def test_a_restarted_court_goes_on_in_a_new_segment(
     tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:

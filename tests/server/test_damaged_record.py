@@ -47,6 +47,7 @@ INPUTS: dict[int, list[Input]] = {
     80: [key(RIGHT, X, 2)],
 }
 BEATS = 120
+OTHELLO = arenas.load("othello")
 
 
 def play(folder: Path, made: Setup, arena: Path | None = None) -> Path:
@@ -54,6 +55,7 @@ def play(folder: Path, made: Setup, arena: Path | None = None) -> Path:
     journal = Journal(Match(made, World, arena), folder)
     for number in range(BEATS):
         journal.beat(INPUTS.get(number, ()))
+    journal.leave()
     assert journal.writer is not None
     return journal.writer.path
 
@@ -105,7 +107,7 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
     path = segment(folder, left_behind[: round(share * len(left_behind))])
     found = verdict(path)
     assert found.text == "same"
-    left = unfinished(folder, "main")
+    left = unfinished(folder, "main", OTHELLO)
     assert left is not None
     assert left.match.beats + 1 == found.beats
     assert "has no end there" in left.cut
@@ -129,7 +131,7 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder:
         except UserError:
             told["verify"] += 1
         try:
-            left = unfinished(folder, "main")
+            left = unfinished(folder, "main", OTHELLO)
             told["start"] += left is None or left.match.beats < BEATS - 1
         except UserError:
             told["start"] += 1
@@ -145,7 +147,7 @@ def test_an_empty_last_segment_is_passed_over(size: int, left_behind: bytes, fol
     """A court was killed while it started again: the next one goes on all the same."""
     segment(folder, left_behind)
     segment(folder, left_behind[:size], 1)
-    left = unfinished(folder, "main")
+    left = unfinished(folder, "main", OTHELLO)
     assert left is not None
     assert (left.match.beats, left.segment) == (BEATS - 1, 2)
 
@@ -153,17 +155,17 @@ def test_an_empty_last_segment_is_passed_over(size: int, left_behind: bytes, fol
 def test_an_empty_first_segment_is_no_match(left_behind: bytes, folder: Path) -> None:
     """Killed while it opened: there is nothing to go on with."""
     segment(folder, left_behind[:700])
-    assert unfinished(folder, "main") is None
+    assert unfinished(folder, "main", OTHELLO) is None
 
 
 def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
     """Nobody goes on with a match of which a part is missing; what is before it can be had."""
     first = segment(folder, left_behind)
     header = msgspec.structs.replace(Record.read(first).header, segment=2, first_beat=200)
-    RecordWriter(folder, header).close()
+    RecordWriter(folder, header).leave()
     words = "Beats 120 to 199 are missing before"
     with pytest.raises(UserError, match=rf"{words}.*serve --fresh"):
-        unfinished(folder, "main")
+        unfinished(folder, "main", OTHELLO)
     for command in (["info"], ["export", "--events", "--out", str(folder / "out")]):
         done = CliRunner().invoke(replay_app, [*command, str(first)])
         assert done.exit_code == 0
@@ -183,7 +185,7 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
         (lambda data, at: data.replace(*other_model(data)), "damaged, or this is not the software"),
         (
             lambda data, at: with_header(data, at, setup=setup_of("/home/a/game")),
-            "There is no arena '/home/a/game'",
+            "was played in arena '/home/a/game', and this court is to play 'othello'",
         ),
     ],
 )
@@ -196,7 +198,7 @@ def test_a_record_of_another_version_is_refused(
     data = change(left_behind, folder)
     path = segment(folder, data)
     with pytest.raises(UserError) as refused:
-        unfinished(folder, "main")
+        unfinished(folder, "main", OTHELLO)
     assert words in str(refused.value)
     serve = ["serve", "--contest", str(contest), "--recordings", str(folder)]
     done = subprocess.run(
@@ -212,7 +214,7 @@ def test_a_record_of_another_version_is_refused(
     with served(contest, folder, "--fresh"):
         assert path.read_bytes() == data
     assert path.read_bytes() == data
-    assert unfinished(folder, "main") is None, "a match came after it"
+    assert unfinished(folder, "main", OTHELLO) is None, "a match came after it"
 
 
 def setup_of(arena: str) -> Setup:
@@ -226,7 +228,7 @@ def other_model(data: bytes) -> tuple[bytes, bytes]:
 
 
 def test_no_code_runs_because_a_record_names_it(tmp_path: Path, left_behind: bytes) -> None:
-    """Verify and a court's start refuse a folder that nobody named; --arena names one."""
+    """Verify and a court's start refuse a folder that nobody named."""
     game, folder = tmp_path / "game", tmp_path / "recordings"
     game.mkdir()
     folder.mkdir()
@@ -236,10 +238,8 @@ def test_no_code_runs_because_a_record_names_it(tmp_path: Path, left_behind: byt
     assert "code of a stranger" not in done.output
     assert isinstance(done.exception, UserError)
     assert "--arena FOLDER" in str(done.exception)
-    with pytest.raises(UserError, match="if you name the folder yourself"):
-        unfinished(folder, "main")
-    with pytest.raises(SystemExit, match="code of a stranger"):
-        unfinished(folder, "main", game)
+    with pytest.raises(UserError, match="was played in arena"):
+        unfinished(folder, "main", OTHELLO)
 
 
 def test_a_folder_that_the_user_names_plays_its_record(tmp_path: Path) -> None:
@@ -256,6 +256,6 @@ def test_a_folder_that_the_user_names_plays_its_record(tmp_path: Path) -> None:
     here.rename(there)
     done = CliRunner().invoke(verify_app, [str(path), "--arena", str(there)])
     assert done.stdout.startswith("same: 120 beats"), done.output
-    left = unfinished(path.parent, "main", there)
+    left = unfinished(path.parent, "main", arenas.load(str(there)))
     assert left is not None
     assert (left.match.beats, left.match.arena.folder) == (BEATS - 1, there)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from running import WAIT_S, frame, phase, seated, served, until, write_contest
 
+from lacoc_arenas import arena as arenas
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
@@ -148,10 +149,10 @@ def test_a_running_court_is_not_taken_over(contest: Path, tmp_path: Path) -> Non
     """The record of a court that lives was not left behind."""
     folder = tmp_path / "recordings"
     with served(contest, folder) as process:
-        assert unfinished(folder, "main") is None
+        assert unfinished(folder, "main", arenas.load("othello")) is None
         process.kill()
         process.wait()
-        left = unfinished(folder, "main")
+        left = unfinished(folder, "main", arenas.load("othello"))
     assert left is not None
     assert left.match.phase in (Phase.CREATED, Phase.LOBBY)  # killed before or after beat 0
     assert left.inputs == []
@@ -159,5 +160,5 @@ def test_a_running_court_is_not_taken_over(contest: Path, tmp_path: Path) -> Non
 
 def test_no_record_nothing_left(tmp_path: Path) -> None:
     """A folder that is empty, or not there yet, has no match to go on with."""
-    assert unfinished(tmp_path, "main") is None
-    assert unfinished(tmp_path / "none", "main") is None
+    assert unfinished(tmp_path, "main", arenas.load("othello")) is None
+    assert unfinished(tmp_path / "none", "main", arenas.load("othello")) is None

@@ -78,8 +78,9 @@ def test_another_arenas_match_is_not_gone_on_with(tmp_path: Path) -> None:
     )
     assert (done.returncode, done.stdout) == (2, "")
     said = " ".join(done.stderr.split())
-    assert f"Match {first['match_id']} was not finished, and it is othello, not practice." in said
-    assert "--fresh opens a new match" in said
+    assert f"{first['match_id']}.000.live.mcap was not finished" in said
+    assert "played in arena 'othello', and this court is to play 'practice'" in said
+    assert "--fresh' opens a new match" in said
 
 
 def test_a_token_that_was_replaced_in_the_contest_file_opens_nothing(tmp_path: Path) -> None:

@@ -78,18 +78,14 @@ class Held:
         self.open()
 
     def open(self) -> None:
-        left = unfinished(self.folder, "main") if self.folder else None
+        left = unfinished(self.folder, "main", self.ground) if self.folder else None
         self.network = Quiet(len(self.ground.seats))
         settings = CourtSettings("main", self.ground, {}, self.folder)
         self.court = Court(settings, self.network, left)  # type: ignore[arg-type]
 
     def kill(self) -> None:
         """As a kill leaves it: nothing more is written, and nobody holds the file."""
-        writer = self.court._journal.writer
-        assert writer is not None
-        writer._closing.set()
-        writer._syncer.join()
-        writer._file.close()
+        self.court._journal.leave()
 
     @property
     def match(self) -> Match:

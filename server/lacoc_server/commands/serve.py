@@ -17,7 +17,7 @@ from lacoc_server.entry import Admission
 from lacoc_server.inbox import Inbox
 from lacoc_server.network import CourtNetwork
 from lacoc_server.protection import protection
-from lacoc_server.recovery import Unfinished, unfinished
+from lacoc_server.recovery import unfinished
 from lacoc_shared import contest as contests
 from lacoc_shared import entrances, log, options, screen
 from lacoc_shared.address import endpoint
@@ -88,9 +88,8 @@ def serve_command(
     _check_seats(name, entry, loaded)
     keys = Keys(name)
     folder = recordings or plan.recordings
-    left = None if fresh else unfinished(folder, name, loaded.folder)
+    left = None if fresh else unfinished(folder, name, loaded)
     if left is not None:
-        _check_arena(left, loaded)
         loaded = left.match.arena
         screen.note(f"Going on with match {left.match.setup.match_id}. --fresh opens a new one.")
         if left.cut:
@@ -159,16 +158,6 @@ def _check_seats(name: str, entry: contests.Court, arena: Arena) -> None:
         raise UserError(
             f"Court {name!r} has tokens for {_names(there)}, but {arena.name} has the seats "
             f"{_names(wanted)}: mend [court.{name}.seat] in the contest file."
-        )
-
-
-def _check_arena(left: Unfinished, arena: Arena) -> None:
-    """The seats whose tokens are told must be those of the match that goes on."""
-    match = left.match
-    if match.arena.name != arena.name:
-        raise UserError(
-            f"Match {match.setup.match_id} was not finished, and it is {match.arena.name}, not "
-            f"{arena.name}. Serve {match.arena.name} to go on with it; --fresh opens a new match."
         )
 
 

@@ -22,24 +22,18 @@ def packed_path(folder: Path, match_id: str) -> Path:
     return folder / f"{match_id}.mcap"
 
 
-def segment_name(path: Path) -> tuple[str, int]:
-    """The match of a segment, and its number in it.
-
-    Raises:
-        ValueError: if the file has not the name of a segment.
-    """
+def segment_name(path: Path) -> tuple[str, int] | None:
+    """The match of a segment, and its number in it; None if the file has no segment's name."""
     name = _SEGMENT.fullmatch(path.name)
-    if name is None:
-        raise ValueError(path.name)
-    return name["match_id"], int(name["segment"])
+    return name and (name["match_id"], int(name["segment"]))
 
 
 def segment_paths(folder: Path, match_id: str) -> list[Path]:
     """The segments of a match that are there, in their order."""
     found = [
-        (int(name["segment"]), path)
+        (name[1], path)
         for path in folder.glob("*.live.mcap")
-        if (name := _SEGMENT.fullmatch(path.name)) and name["match_id"] == match_id
+        if (name := segment_name(path)) and name[0] == match_id
     ]
     return [path for _, path in sorted(found)]
 
@@ -55,26 +49,32 @@ def record_paths(path: Path) -> list[Path]:
     """
     if not path.is_file():
         raise UserError(f"There is no record {path}. Give the path of a .mcap file.")
-    name = _SEGMENT.fullmatch(path.name)
-    return segment_paths(path.parent, name["match_id"]) if name else [path]
+    name = segment_name(path)
+    return segment_paths(path.parent, name[0]) if name else [path]
 
 
-def hold(file: BinaryIO) -> None:
-    """Mark an open segment as being written, until it is closed or its process ends."""
+def hold(file: BinaryIO) -> bool:
+    """Mark an open segment as being written or packed, until it is closed or its process ends.
+
+    Returns:
+        False if another process holds it.
+    """
     try:
         _lock(file)
+    except (BlockingIOError, PermissionError):
+        return False
     except OSError:  # a file system without locks: nobody can be told
-        return
+        return True
+    return True
 
 
 def is_held(path: Path) -> bool:
-    """Whether a running court writes a segment: it is not one that was left behind."""
-    with path.open("rb+") as file:
-        try:
-            _lock(file)
-        except OSError:
-            return True
-    return False
+    """Whether a running process writes or packs a segment: it was not left behind."""
+    try:
+        with path.open("rb+") as file:
+            return not hold(file)
+    except FileNotFoundError:  # packed at this moment
+        return True
 
 
 def _lock(file: BinaryIO) -> None:

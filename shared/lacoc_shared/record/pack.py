@@ -1,13 +1,15 @@
 """Packs the segments of a match that is over into one compressed, indexed file.
 
-A court starts `python -m lacoc_shared.record.pack FOLDER MATCH_ID` beside itself: packing
+A court starts `python -m lacoc_shared.record.pack FOLDER MATCH_ID...` beside itself: packing
 takes longer than a beat.
 """
 
+import hashlib
 import os
 import subprocess
 import sys
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -24,27 +26,39 @@ from lacoc_shared.record.stream import walk
 def pack(segments: Sequence[Path], out: Path) -> None:
     """Make one file of the segments of a match, then remove them.
 
-    The file appears under its name when it is whole and on the disk, so a file that is there
-    already holds these segments: packing was interrupted after that, and only goes on.
+    The file appears under its name when it is whole and on the disk. If it is there already,
+    packing was interrupted after that, and only goes on. A segment is removed only when the file,
+    read again, has every message of it. Meanwhile all segments are held.
 
     Args:
         segments: the segments in their order.
         out: the packed file.
 
     Raises:
-        UserError: if a segment can't be read to its end or the file can't be written; all
-            segments stay.
+        UserError: if a segment is held or can't be read to its end, if the file can't be written
+            or holds anything else; all segments stay.
     """
     unfinished = out.with_name(f"{out.name}.part")
     try:
-        if not out.exists():
-            if cut := Record.read(segments).cut:  # what can't be read now must not be lost for ever
-                raise UserError(f"{out} was not packed, and its segments are kept. {cut}")
-            _write(segments, unfinished)
-            unfinished.rename(out)
-            files.sync_folder(out.parent)
-        for segment in segments:
-            segment.unlink()
+        with ExitStack() as held:
+            for segment in segments:
+                if not files.hold(held.enter_context(segment.open("rb+"))):
+                    raise UserError(
+                        f"{segment} is being written or packed by another process: it was left "
+                        "alone."
+                    )
+            if out.exists():
+                _compare(segments, out)
+            else:
+                # What can't be read now must not be lost for ever.
+                if cut := Record.read(segments).cut:
+                    raise UserError(f"{out} was not packed, and its segments are kept. {cut}")
+                _write(segments, unfinished)
+                _compare(segments, unfinished)
+                unfinished.rename(out)
+                files.sync_folder(out.parent)
+        for segment in segments:  # no longer open: Windows removes no file that is
+            segment.unlink(missing_ok=True)
     except OSError as error:
         unfinished.unlink(missing_ok=True)
         raise UserError(
@@ -53,13 +67,46 @@ def pack(segments: Sequence[Path], out: Path) -> None:
         ) from None
 
 
-def pack_in_background(folder: Path, match_id: str) -> subprocess.Popen[bytes]:
-    """Pack a match in a process of its own, which a Ctrl-C for this one does not stop."""
+def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Popen[bytes]:
+    """Pack matches in a process of its own, which a Ctrl-C for this one does not stop.
+
+    Raises:
+        OSError: if the system has no room for another process.
+    """
     return subprocess.Popen(
-        [sys.executable, "-m", __name__, str(folder), match_id],
+        [sys.executable, "-m", __name__, str(folder), *match_ids],
         stdin=subprocess.DEVNULL,
         start_new_session=True,
     )
+
+
+def _compare(segments: Sequence[Path], packed: Path) -> None:
+    """See that nothing is lost with the segments.
+
+    They may be the last ones of a match only: the others went before packing was interrupted.
+
+    Raises:
+        UserError: if the packed file lacks anything, or one of them is damaged.
+    """
+    (found, found_wrong), (wanted, wrong) = _messages([packed]), _messages(segments)
+    if found_wrong or wrong or found[max(0, len(found) - len(wanted)) :] != wanted:
+        raise UserError(
+            f"{packed} does not hold what the segments of its match hold, so all are kept. "
+            "Look at both with 'lacoc replay info', and move the one that you do not want."
+        )
+
+
+def _messages(paths: Sequence[Path]) -> tuple[list[bytes], str]:
+    """A hash of each message of some files, and what is wrong with the end of the last file."""
+    found: list[bytes] = []
+
+    def add(topic: str, beat: int, data: bytes, message: Any) -> None:
+        found.append(hashlib.blake2b(b"%s %d " % (topic.encode(), beat) + data).digest())
+
+    wrong = ""
+    for path in paths:
+        wrong = walk(path, add)
+    return found, wrong
 
 
 def _write(segments: Sequence[Path], path: Path) -> None:
@@ -84,19 +131,21 @@ def _write(segments: Sequence[Path], path: Path) -> None:
         os.fsync(file.fileno())
 
 
-def main(folder: str, match_id: str) -> int:
-    """Pack a match of a folder; the exit code says whether it worked."""
+def main(folder: str, *match_ids: str) -> int:
+    """Pack matches of a folder; the exit code says whether it worked."""
     if hasattr(os, "nice"):
         os.nice(10)  # the next match is running
-    segments = files.segment_paths(Path(folder), match_id)
-    try:
-        if not segments:
-            raise UserError(f"There are no segments of match {match_id} in {folder}.")
-        pack(segments, files.packed_path(Path(folder), match_id))
-    except UserError as error:
-        print(error, file=sys.stderr)
-        return 2
-    return 0
+    code = 0
+    for match_id in match_ids:
+        segments = files.segment_paths(Path(folder), match_id)
+        try:
+            if not segments:
+                raise UserError(f"There are no segments of match {match_id} in {folder}.")
+            pack(segments, files.packed_path(Path(folder), match_id))
+        except UserError as error:
+            print(error, file=sys.stderr)
+            code = 2
+    return code
 
 
 if __name__ == "__main__":

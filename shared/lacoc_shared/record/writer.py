@@ -147,10 +147,19 @@ class RecordWriter:
         self._write(_HEALTH, beat, codec.encode(verdict))
 
     def close(self) -> None:
-        """Write the summary and bring everything to the disk. Closing twice is once."""
+        """Write the summary and bring everything to the disk: the match is over.
+
+        Closing twice is once.
+        """
+        if not self._closing.is_set():
+            self._put(self._ending())
+            self._dirty = True
+        self.leave()
+
+    def leave(self) -> None:
+        """Bring everything to the disk, without an end: the match can go on in a new segment."""
         if self._closing.is_set():
             return
-        self._put(self._ending())
         self._closing.set()
         self._syncer.join()
         self._file.close()

@@ -1,0 +1,88 @@
+"""The matches of a court in a folder of records: their names, and which of them are over."""
+
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from mcap.writer import MCAP0_MAGIC
+
+from lacoc_shared.record import files
+
+_ID = re.compile(r"(?P<opened>[0-9]{8}-[0-9]{6})-(?P<court>.+)-(?P<number>[0-9]{3}|[1-9][0-9]{3,})")
+
+
+@dataclass(frozen=True, order=True)
+class MatchName:
+    """What a court's match is called: its match id says when, where and the how manieth.
+
+    Matches of one court are in the order in which they were opened.
+    """
+
+    opened: str
+    """Wall time, UTC, as in 20260501-100000."""
+    number: int
+    """Of the match at its court, from 1."""
+    court: str
+
+    def __str__(self) -> str:
+        return f"{self.opened}-{self.court}-{self.number:03d}"
+
+    @classmethod
+    def now(cls, court: str, number: int) -> "MatchName":
+        """Name a match that is opened now."""
+        return cls(datetime.now(UTC).strftime("%Y%m%d-%H%M%S"), number, court)
+
+    @classmethod
+    def parse(cls, match_id: str) -> "MatchName | None":
+        """Take a match id apart; None if no court made it."""
+        found = _ID.fullmatch(match_id)
+        return found and cls(found["opened"], int(found["number"]), found["court"])
+
+
+def court_matches(folder: Path, court: str) -> dict[MatchName, dict[int, Path]]:
+    """The matches of a court, the oldest first, each with its segments by number.
+
+    A match without segments is packed.
+    """
+    found: dict[MatchName, dict[int, Path]] = {}
+    for path in sorted(folder.glob("*.mcap")):
+        segment = files.segment_name(path)
+        name = MatchName.parse(path.stem if segment is None else segment[0])
+        if name is None or name.court != court:
+            continue
+        segments = found.setdefault(name, {})
+        if segment is not None:
+            segments[segment[1]] = path
+    return {name: dict(sorted(found[name].items())) for name in sorted(found)}
+
+
+def is_over(name: MatchName, segments: Mapping[int, Path]) -> bool:
+    """Whether a match was ended by its court: nobody goes on with it."""
+    if not segments:
+        return True
+    newest = segments[max(segments)]
+    return files.packed_path(newest.parent, str(name)).exists() or _is_finished(newest)
+
+
+def unpacked(folder: Path, court: str) -> list[str]:
+    """The ids of a court's matches that are over, and that nobody packs or has packed."""
+    return [
+        str(name)
+        for name, segments in court_matches(folder, court).items()
+        if segments and is_over(name, segments) and not any(map(files.is_held, segments.values()))
+    ]
+
+
+def _is_finished(segment: Path) -> bool:
+    """Whether a segment has its end, which a court that is killed or fails does not write."""
+    try:
+        with segment.open("rb") as file:
+            if file.seek(0, os.SEEK_END) < 2 * len(MCAP0_MAGIC):
+                return False
+            file.seek(-len(MCAP0_MAGIC), os.SEEK_END)
+            return file.read() == MCAP0_MAGIC
+    except FileNotFoundError:  # only packing removes a segment
+        return True

@@ -1,0 +1,93 @@
+"""What a court calls its matches, and which of a folder are its own."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from lacoc_shared.record.matches import MatchName, court_matches, is_over, unpacked
+from lacoc_shared.record.schema import Header
+from lacoc_shared.record.writer import RecordWriter
+
+
+@pytest.mark.parametrize(
+    ("match_id", "court", "number"),
+    [
+        ("20260501-100000-main-001", "main", 1),
+        ("20260501-100000-main-999", "main", 999),
+        ("20260501-100000-main-1000", "main", 1000),
+        ("20260501-100000-semi-final-012", "semi-final", 12),
+        ("20260501-100000-main-001-002", "main-001", 2),
+        ("20260501-100000-20260501-100000-a-003", "20260501-100000-a", 3),
+    ],
+)
+def test_a_name_is_read_as_it_was_made(match_id: str, court: str, number: int) -> None:
+    """Whatever a court's name has of hyphens and digits, and however many matches it held."""
+    name = MatchName("20260501-100000", number, court)
+    assert str(name) == match_id
+    assert MatchName.parse(match_id) == name
+
+
+@pytest.mark.parametrize(
+    "match_id",
+    ["", "m", "simulated-001", "20260501-100000-main", "20260501-100000-main-01", "main-001",
+     "20260501-100000-main-0001", "20260501-100000--001", "20260501-100000-main-001.part"],
+)  # fmt: skip
+def test_what_no_court_made_is_no_match_name(match_id: str) -> None:
+    """A file of another name in the folder is nobody's match."""
+    assert MatchName.parse(match_id) is None
+
+
+def test_a_match_that_is_opened_now_has_the_time_in_its_name() -> None:
+    """UTC, so that the order of names is the order of matches, also where the clocks change."""
+    before = datetime.now(UTC).replace(microsecond=0)
+    opened = datetime.strptime(MatchName.now("main", 1).opened, "%Y%m%d-%H%M%S")
+    assert before <= opened.replace(tzinfo=UTC) <= before + timedelta(seconds=60)
+
+
+def test_a_court_has_its_own_matches_in_their_order(tmp_path: Path) -> None:
+    """Not those of a court whose name ends in the same way; match 1000 comes after match 999."""
+    for name in (
+        "20260501-100000-final-1000.000.live.mcap",
+        "20260501-100000-final-1000.001.live.mcap",
+        "20260501-100000-final-999.000.live.mcap",
+        "20260501-090000-final-998.mcap",
+        "20260501-100000-semi-final-001.000.live.mcap",
+        "20260501-100001-semi-final-002.mcap",
+        "20260501-100001-final-1001.mcap.part",
+        "simulated-001.mcap",
+    ):
+        (tmp_path / name).touch()
+    found = court_matches(tmp_path, "final")
+    assert [(name.number, list(segments)) for name, segments in found.items()] == [
+        (998, []),
+        (999, [0]),
+        (1000, [0, 1]),
+    ]
+    assert court_matches(tmp_path / "none", "final") == {}
+
+
+def test_a_match_is_over_when_its_court_ended_it(
+    tmp_path: Path, header: Callable[..., Header]
+) -> None:
+    """Left and cut ones are not; what is over and lies in segments is to be packed."""
+    ids = [f"20260501-10000{number}-main-001" for number in range(4)]
+    writers = [RecordWriter(tmp_path, header(match_id=match_id)) for match_id in ids[:3]]
+    ended, left, cut = writers
+    ended.close()
+    left.leave()
+    cut.close()
+    cut.path.write_bytes(cut.path.read_bytes()[:-1])
+    (tmp_path / f"{ids[3]}.000.live.mcap").write_bytes(ended.path.read_bytes()[:8])
+    found = court_matches(tmp_path, "main")
+    assert [is_over(name, segments) for name, segments in found.items()] == [
+        True,
+        False,
+        False,
+        False,
+    ]
+    assert unpacked(tmp_path, "main") == ids[:1]
+    (tmp_path / f"{ids[0]}.mcap").touch()
+    left.path.unlink()
+    assert unpacked(tmp_path, "main") == ids[:1], "packing was interrupted before its end"

@@ -1,0 +1,173 @@
+"""Segments become one packed file, and go only when every message of them is in it."""
+
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcap.reader import make_reader
+
+from lacoc_shared import codec
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import files, pack
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import Header
+from lacoc_shared.record.writer import RecordWriter
+
+WriteMatch = Callable[..., Path]
+WriteSegments = Callable[[Path], list[Path]]
+
+
+@pytest.fixture
+def write_segments(
+    write_match: WriteMatch, header: Callable[..., Header], frame: Callable[..., Frame]
+) -> WriteSegments:
+    """Write a match whose court was killed after 40 beats and went on for one."""
+
+    def write(folder: Path) -> list[Path]:
+        first = write_match(folder, close=False)
+        second = RecordWriter(folder, header(segment=1, first_beat=40))
+        second.frame(40, codec.encode(frame(40)))
+        second.close()
+        return [first, second.path]
+
+    return write
+
+
+def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) -> None:
+    """The packed file says what its segments said, indexed and smaller; then they are gone."""
+    path = write_match(tmp_path)
+    size, record = path.stat().st_size, Record.read(path)
+    pack.pack([path], tmp_path / "m.mcap")
+    assert [p.name for p in tmp_path.iterdir()] == ["m.mcap"]
+    assert Record.read(tmp_path / "m.mcap") == record
+    assert (tmp_path / "m.mcap").stat().st_size < size / 2
+    with (tmp_path / "m.mcap").open("rb") as file:
+        summary = make_reader(file, validate_crcs=True).get_summary()
+    assert summary is not None
+    assert summary.chunk_indexes[0].compression == "zstd"
+
+
+def test_packing_that_was_interrupted_is_repeated(
+    tmp_path: Path, write_segments: WriteSegments
+) -> None:
+    """A half-written packed file is no record; a finished one is kept and its segments go."""
+    first, second = write_segments(tmp_path)
+    record, data = Record.read(first), second.read_bytes()
+    (tmp_path / "m.mcap.part").write_bytes(b"half")
+    pack.pack([first, second], tmp_path / "m.mcap")
+    second.write_bytes(data)
+    pack.pack([second], tmp_path / "m.mcap")
+    assert Record.read(tmp_path / "m.mcap") == record
+    assert [p.name for p in tmp_path.iterdir()] == ["m.mcap"]
+
+
+def test_packing_that_fails_keeps_the_segments(tmp_path: Path, write_match: WriteMatch) -> None:
+    """On a full disk nothing is lost and nothing half-made is left."""
+    resource = pytest.importorskip("resource")
+    path = write_match(tmp_path)
+    data = path.read_bytes()
+    unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (500, unlimited[1]))
+        with pytest.raises(UserError, match=r"can't be packed: File too large\. Its segments"):
+            pack.pack([path], tmp_path / "m.mcap")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes() == data
+
+
+@pytest.mark.slow
+def test_packing_in_the_background(tmp_path: Path, write_match: WriteMatch) -> None:
+    """A court packs in a process of its own; of a match without segments it says so."""
+    record = Record.read(write_match(tmp_path))
+    assert pack.pack_in_background(tmp_path, ["m"]).wait(60) == 0
+    assert Record.read(tmp_path / "m.mcap") == record
+    again = subprocess.run(
+        [sys.executable, "-m", "lacoc_shared.record.pack", str(tmp_path), "m"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert again.returncode == 2
+    assert again.stderr == f"There are no segments of match m in {tmp_path}.\n"
+
+
+def test_segments_that_the_packed_file_lacks_are_kept(
+    tmp_path: Path, write_match: WriteMatch, write_segments: WriteSegments
+) -> None:
+    """A match that went on while it was packed: no message is removed that is nowhere else."""
+    pack.pack([write_match(tmp_path)], tmp_path / "m.mcap")
+    segments = write_segments(tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    for some in (segments, segments[1:]):
+        with pytest.raises(
+            UserError, match=r"m\.mcap does not hold what the segments.*all are kept"
+        ):
+            pack.pack(some, tmp_path / "m.mcap")
+        assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize("victim", ["m.mcap", "m.000.live.mcap"])
+def test_damage_beside_a_packed_file_removes_nothing(
+    victim: str, tmp_path: Path, write_match: WriteMatch
+) -> None:
+    """Packing was interrupted, and a file is damaged since: both stay."""
+    path = write_match(tmp_path)
+    data = path.read_bytes()
+    pack.pack([path], tmp_path / "m.mcap")
+    path.write_bytes(data)
+    damaged = bytearray((tmp_path / victim).read_bytes())
+    damaged[len(damaged) // 2] ^= 1
+    (tmp_path / victim).write_bytes(damaged)
+    with pytest.raises(UserError, match="all are kept"):
+        pack.pack([path], tmp_path / "m.mcap")
+    assert {found.name for found in tmp_path.iterdir()} == {"m.mcap", "m.000.live.mcap"}
+
+
+def test_what_is_packed_is_held(
+    tmp_path: Path, write_segments: WriteSegments, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From before it is read until it goes: nobody takes it up, nobody packs it a second time."""
+    segments = write_segments(tmp_path)
+    held: list[bool] = []
+    write = pack._write
+
+    def watched(some: Sequence[Path], path: Path) -> Any:
+        held.extend(map(files.is_held, segments))
+        with pytest.raises(UserError, match="being written or packed by another process"):
+            pack.pack(segments, tmp_path / "m.mcap")
+        return write(some, path)
+
+    monkeypatch.setattr(pack, "_write", watched)
+    pack.pack(segments, tmp_path / "m.mcap")
+    assert held == [True, True]
+    assert [path.name for path in tmp_path.iterdir()] == ["m.mcap"]
+
+
+def test_what_is_being_written_is_not_packed(
+    tmp_path: Path, write_match: WriteMatch, header: Callable[..., Header]
+) -> None:
+    """A court has it: all segments stay, and there is no packed file."""
+    write_match(tmp_path, close=False)
+    writer = RecordWriter(tmp_path, header(segment=1, first_beat=40))
+    segments = files.segment_paths(tmp_path, "m")
+    with pytest.raises(UserError, match=r"m\.001\.live\.mcap is being written or packed"):
+        pack.pack(segments, tmp_path / "m.mcap")
+    writer.close()
+    assert list(tmp_path.glob("*")) == segments
+
+
+def test_one_match_that_can_not_be_packed_stops_no_other(
+    tmp_path: Path, header: Callable[..., Header], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each is packed by itself; the exit code says that one was not."""
+    for match_id in ("a", "b"):
+        RecordWriter(tmp_path, header(match_id=match_id)).close()
+    assert pack.main(str(tmp_path), "a", "none", "b") == 2
+    assert capsys.readouterr().err == f"There are no segments of match none in {tmp_path}.\n"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.mcap", "b.mcap"]

@@ -1,0 +1,296 @@
+"""Which match a court goes on with: its own, and only one that it did not end."""
+
+import os
+import signal
+import sys
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+import msgspec
+import pytest
+from running import WAIT_S, frame, phase, seated, served, until, write_contest
+from stage import LEFT, QUICK, RIGHT, decide, join, setup
+
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.arena import Arena
+from lacoc_client.referee import RefereeClient
+from lacoc_server.journal import Journal
+from lacoc_server.match import Match
+from lacoc_server.recovery import Unfinished, unfinished
+from lacoc_server.replay import Verdict, verify
+from lacoc_server.world import World
+from lacoc_shared import decisions as d
+from lacoc_shared.contest import load
+from lacoc_shared.inputs import ReadySeat
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record import files, pack
+from lacoc_shared.record.matches import court_matches, is_over
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import open_client
+
+pytestmark = pytest.mark.slow
+
+OTHELLO = arenas.load("othello", QUICK)
+TEN = "20260501-100000"
+"""Wall time of a match that comes before those of `LATER`."""
+LATER = "20260501-100500"
+
+
+def held(
+    folder: Path, court: str = "main", opened: str = TEN, number: int = 1, arena: str = "othello"
+) -> Journal:
+    """A match of a court in PLAYING, or in READY where nobody has to start it."""
+    made = msgspec.structs.replace(
+        setup(arena, QUICK), match_id=f"{opened}-{court}-{number:03d}", court=court, match=number
+    )
+    journal = Journal(Match(made, World), folder)
+    seats = range(len(journal.match.seats))
+    journal.beat([join(seat) for seat in seats])
+    if len(seats) == 2:
+        journal.beat([ReadySeat(LEFT, True), ReadySeat(RIGHT, True)])
+        journal.beat([decide(d.Start())])
+    for _ in range(50):
+        journal.beat()
+    return journal
+
+
+def killed(
+    folder: Path, court: str = "main", opened: str = TEN, number: int = 1, arena: str = "othello"
+) -> str:
+    """A match that was left by its court; returns its id."""
+    journal = held(folder, court, opened, number, arena)
+    journal.leave()
+    return journal.match.setup.match_id
+
+
+def taken_up(folder: Path, court: str, arena: Arena = OTHELLO) -> str | None:
+    left = unfinished(folder, court, arena)
+    return left and left.match.setup.match_id
+
+
+def test_a_court_does_not_take_up_the_match_of_another(tmp_path: Path) -> None:
+    """Its name may end in the same way."""
+    match_id = killed(tmp_path, "semi-final")
+    assert taken_up(tmp_path, "final") is None
+    assert taken_up(tmp_path, "semi-final") == match_id
+
+
+def test_the_packed_match_of_another_court_hides_none(tmp_path: Path) -> None:
+    """Nor does a court whose name begins or ends in the same way."""
+    match_id = killed(tmp_path, "final")
+    for court in ("semi-final", "final-b", "zoo"):
+        (tmp_path / f"{LATER}-{court}-002.mcap").touch()
+    assert taken_up(tmp_path, "final") == match_id
+    (tmp_path / f"{LATER}-final-001.mcap").touch()
+    assert taken_up(tmp_path, "final") is None, "a match came after it"
+
+
+def test_match_1000_goes_on(tmp_path: Path) -> None:
+    """The number of a match may have more than three digits; 1000 comes after 999."""
+    (tmp_path / f"{TEN}-main-999.mcap").touch()
+    match_id = killed(tmp_path, number=1000)
+    assert taken_up(tmp_path, "main") == match_id
+
+
+def test_a_renamed_record_is_told(tmp_path: Path) -> None:
+    """Its segments would go on under the name that is in it: refused, and nothing is changed."""
+    match_id = killed(tmp_path, "semi-final")
+    path = files.segment_path(tmp_path, match_id, 0)
+    path.rename(files.segment_path(tmp_path, f"{TEN}-final-001", 0))
+    words = rf"It is of match '{match_id}' of court 'semi-final': give its files.*--fresh"
+    with pytest.raises(UserError, match=words):
+        unfinished(tmp_path, "final", OTHELLO)
+
+
+@pytest.mark.parametrize(("there", "here"), [("othello", "practice"), ("practice", "othello")])
+def test_a_match_of_another_arena_is_refused(there: str, here: str, tmp_path: Path) -> None:
+    """Both courts are called main where nobody names them: neither takes over the other's."""
+    match_id = killed(tmp_path, arena=there)
+    path = files.segment_path(tmp_path, match_id, 0)
+    data = path.read_bytes()
+    words = rf"was played in arena '{there}', and this court is to play '{here}': start.*--fresh"
+    with pytest.raises(UserError, match=words):
+        unfinished(tmp_path, "main", arenas.load(here))
+    assert path.read_bytes() == data
+    assert taken_up(tmp_path, "main", arenas.load(there)) == match_id
+
+
+def test_a_match_that_its_court_ended_is_over(tmp_path: Path) -> None:
+    """Also while its segments wait to be packed, or could not be: docs/operations.md, SIGTERM."""
+    journal = held(tmp_path)
+    journal.close()
+    assert unfinished(tmp_path, "main", OTHELLO) is None
+    (segment,) = files.segment_paths(tmp_path, journal.match.setup.match_id)
+    whole = segment.read_bytes()
+    segment.write_bytes(whole[:-8])
+    left = unfinished(tmp_path, "main", OTHELLO)
+    assert left is not None, "a full disk did not take the end of it"
+    assert left.match.beats == journal.match.beats
+
+
+def test_a_match_that_went_on_loses_nothing_to_a_packer(tmp_path: Path) -> None:
+    """A packer that is late finds the segment that came after those it has."""
+    first = held(tmp_path)
+    first.leave()
+    match_id = first.match.setup.match_id
+    left = unfinished(tmp_path, "main", OTHELLO)
+    assert isinstance(left, Unfinished)
+    second = Journal(left.match, tmp_path, left.segment)
+    second.beat(left.inputs)
+    out = files.packed_path(tmp_path, match_id)
+    before = files.segment_paths(tmp_path, match_id)
+    for segments in (before, before[:1]):
+        with pytest.raises(UserError):
+            pack.pack(segments, out)
+    for _ in range(300):
+        second.beat()
+    second.beat([decide(d.Declare("left"))])
+    second.beat([decide(d.Official())])
+    second.close()
+    assert pack.main(str(tmp_path), match_id) == 0
+    record = Record.read(out)
+    assert record.last_beat == second.match.beats
+    assert record.result is not None
+    assert record.result.official == "left"
+
+
+def test_a_match_that_a_court_took_up_is_not_taken_up_twice(tmp_path: Path) -> None:
+    """Its first segment is held by nobody, its second by the running court."""
+    killed(tmp_path)
+    left = unfinished(tmp_path, "main", OTHELLO)
+    assert left is not None
+    running = Journal(left.match, tmp_path, left.segment)
+    assert unfinished(tmp_path, "main", OTHELLO) is None
+    running.leave()
+    assert unfinished(tmp_path, "main", OTHELLO) is not None
+
+
+FAILING = """
+import errno, os, runpy, subprocess, sys
+from lacoc_server.match import Match
+
+flag, what = sys.argv[1:3]
+beat, start = Match.beat, subprocess.Popen.__init__
+
+def failing_beat(self, inputs=()):
+    made = beat(self, inputs)
+    if os.path.exists(flag):
+        raise MemoryError("no memory for a beat")
+    return made
+
+def failing_start(self, *words, **options):
+    if os.path.exists(flag):
+        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+    start(self, *words, **options)
+
+if what == "beat":
+    Match.beat = failing_beat
+else:
+    subprocess.Popen.__init__ = failing_start
+sys.argv = sys.argv[5:]
+runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
+"""
+"""Runs the command that follows; a beat, or starting a process, fails while a file is there."""
+
+
+def failing(flag: Path, what: str) -> list[str]:
+    return [sys.executable, "-c", FAILING, str(flag), what]
+
+
+def packed(folder: Path, *numbers: str) -> list[Path]:
+    """Packed files of matches of these numbers, when there is nothing but them."""
+    end_s, wanted = time.monotonic() + WAIT_S, sorted(f"-{number}.mcap" for number in numbers)
+    while sorted(path.name[-9:] for path in folder.iterdir()) != wanted:
+        assert time.monotonic() < end_s, list(folder.iterdir())
+        time.sleep(0.05)
+    return sorted(folder.iterdir())
+
+
+def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
+    """As it outlives a kill: the next start goes on with it, halted; then it is packed whole."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    flag = tmp_path / "flag"
+    name, court = load(contest).court()
+    with ExitStack() as stack:
+        first = stack.enter_context(served(contest, folder, before=failing(flag, "beat")))
+        session = stack.enter_context(open_client([court.address()]))
+        controllers = seated(session, contest)
+        left = controllers[0]
+        until(controllers, lambda: phase(left) == Phase.READY)
+        referee = RefereeClient(session, name, court.referee.token)
+        referee.decide(d.Start(), "", "Kubota")
+        until(controllers, lambda: frame(left).clock_ticks > 20)
+        seen = frame(left)
+        flag.touch()
+        assert first.wait(WAIT_S) not in (0, -signal.SIGKILL)
+        flag.unlink()
+        assert [path.suffixes[-3:] for path in folder.iterdir()] == [[".000", ".live", ".mcap"]]
+
+        stack.enter_context(served(contest, folder))
+        until(controllers, lambda: phase(left) == Phase.HALTED)
+        assert frame(left).match == seen.match
+        assert frame(left).clock_ticks >= seen.clock_ticks
+        referee.decide(d.Abort(), "a test", "Kubota")
+    (record,) = packed(folder, "001")
+    *_, verdict = verify(Record.read(record))
+    assert isinstance(verdict, Verdict)
+    assert verdict.text == "same"
+
+
+def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
+    """What it could not pack then is packed when its next match ends, or when it starts again."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    flag = tmp_path / "flag"
+    name, court = load(contest).court()
+    with ExitStack() as stack:
+        process = stack.enter_context(served(contest, folder, before=failing(flag, "start")))
+        session = stack.enter_context(open_client([court.address()]))
+        controllers = seated(session, contest)
+        left = controllers[0]
+        until(controllers, lambda: phase(left) == Phase.READY)
+        referee = RefereeClient(session, name, court.referee.token)
+        flag.touch()
+        for number in (2, 3):
+            referee.decide(d.Abort(), "a test", "Kubota")
+            referee.decide(d.Next(), "", "Kubota")
+            until(controllers, lambda number=number: frame(left).match == number)
+        assert len(list(folder.glob("*.live.mcap"))) == 3
+        assert process.stdout is not None
+        process.send_signal(signal.SIGTERM)
+        said, _ = process.communicate(timeout=WAIT_S)
+        assert process.returncode == 0
+        assert "No record is packed now: [Errno 11] Resource temporarily unavailable" in said
+        assert len(list(folder.glob("*.live.mcap"))) == 3
+
+        flag.unlink()
+        stack.enter_context(served(contest, folder, before=failing(flag, "start")))
+        until(controllers, lambda: len(list(folder.glob("*[0-9].mcap"))) == 3)
+    records = packed(folder, "001", "002", "003", "001")
+    assert all(Record.read(path).cut == "" for path in records)
+
+
+def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:
+    """SIGTERM in PLAYING: it is packed, and the next start opens another, however early."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    name, court = load(contest).court()
+    with served(contest, folder) as first, open_client([court.address()]) as session:
+        controllers = seated(session, contest)
+        left = controllers[0]
+        until(controllers, lambda: phase(left) == Phase.READY)
+        RefereeClient(session, name, court.referee.token).decide(d.Start(), "", "Kubota")
+        until(controllers, lambda: phase(left) == Phase.PLAYING)
+        os.kill(first.pid, signal.SIGTERM)
+        until([], lambda: ended(folder))
+        first.kill()
+        first.wait()
+    with served(contest, folder):
+        assert unfinished(folder, "main", OTHELLO) is None
+    records = packed(folder, "001", "001")
+    assert [len(Record.read(path).headers) for path in records] == [1, 1]
+
+
+def ended(folder: Path) -> bool:
+    """Whether all matches of a folder are over."""
+    return all(is_over(*match) for match in court_matches(folder, "main").items())
