@@ -122,7 +122,7 @@ class Spectator:
         self._frames.wait(timeout_s)
 
     def take_events(self) -> list[Event]:
-        """Events that came since this was last called."""
+        """Events of this match and the one before that came since this was last called."""
         events, self._new_events = self._new_events, []
         return events
 
@@ -206,11 +206,20 @@ class Spectator:
     def _fetch_events(self, timeout_s: float) -> None:
         events = fetch(self._session, self.keys, self.keys.event, timeout_s=timeout_s)
         new = self._log.restore([(one, one) for one in understand(events, tuple[Event, ...])])
-        self._new_events = sorted(self._new_events + new, key=lambda event: event.number)
+        for event in new:
+            self._keep(event)
+        self._new_events.sort(key=lambda event: (event.match, event.number))
 
     def _take_in(self, event: Event) -> None:
         if self._log.add(event, event):
-            self._new_events.append(event)
+            self._keep(event)
+
+    def _keep(self, event: Event) -> None:
+        """Keep a new event until it is taken; of matches before the last one nobody wants any."""
+        if self._new_events and self._new_events[-1].match != event.match:
+            last = (event.match - 1, event.match)
+            self._new_events = [one for one in self._new_events if one.match in last]
+        self._new_events.append(event)
 
 
 _OTHER_SCENE = (

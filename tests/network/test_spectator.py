@@ -118,6 +118,17 @@ def test_another_version_of_the_protocol_is_a_sentence(court: CourtStub, session
         Spectator(session, "main")
 
 
+def test_events_that_nobody_takes_are_not_kept_for_ever(court: CourtStub, session: Session) -> None:
+    """A bot that plays for days looks at none: those of this match and the last are there."""
+    spectator = Spectator(session, "main")
+    for match in range(1, 6):
+        for number in (1, 2, 3):
+            court.network.publish_event(make_event(number, match))
+    until(lambda: spectator.wait_frame(1.0) and spectator.events[-1:] == (make_event(3, 5),))
+    kept = [(event.match, event.number) for event in spectator.take_events()]
+    assert kept == [(match, number) for match in (4, 5) for number in (1, 2, 3)]
+
+
 def test_a_message_that_goes_astray_ends_nothing(court: CourtStub, session: Session) -> None:
     """It is left out; the sheet says that the court speaks the same version still."""
     spectator = Spectator(session, "main")
