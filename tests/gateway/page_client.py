@@ -92,6 +92,10 @@ class PageClient:
         """Wait for a phase."""
         self.wait(lambda: self.frame is not None and self.frame.phase == phase)
 
+    def code(self) -> int | None:
+        """With which code the gateway closed the connection; None if it did not."""
+        return self.socket.protocol.close_code
+
     def own(self) -> SeatFrame:
         """The seat that this page holds."""
         assert self.frame is not None

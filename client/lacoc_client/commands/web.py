@@ -61,7 +61,10 @@ def web_command(
         ),
     ] = None,
     viewers: Annotated[
-        int, typer.Option(min=1, max=2000, help="More pages than this at once are sent away.")
+        int,
+        typer.Option(
+            min=1, max=2000, help="More pages than this at once that only watch are sent away."
+        ),
     ] = VIEWERS_MOST,
     browser: Annotated[
         bool, typer.Option("--open/--no-open", help="Open /watch in the browser.")

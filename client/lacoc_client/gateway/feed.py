@@ -123,6 +123,10 @@ class CourtFeed:
         """How many pages watch."""
         return len(self._viewers)
 
+    def others(self, viewer: Viewer) -> int:
+        """How many other pages watch that may do what this one may: act, or only watch."""
+        return sum(one.can_act == viewer.can_act for one in self._viewers if one is not viewer)
+
     @property
     def connected(self) -> bool:
         """Whether the court sends frames."""

@@ -10,7 +10,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.feed import CourtFeed
-from lacoc_client.gateway.home import Home
+from lacoc_client.gateway.home import ACTING_MOST, Home
 from lacoc_client.gateway.referees import Referees, as_referee
 from lacoc_client.gateway.seat import SeatThread
 from lacoc_client.gateway.threads import Threads
@@ -88,10 +88,22 @@ class Courts:
         """The feeds of all courts that were asked for; may be asked from any thread."""
         return [feed for feed, _ in list(self._feeds.values())]
 
-    @property
-    def viewers(self) -> int:
-        """How many pages watch."""
-        return sum(feed.viewers for feed in self.feeds)
+    def why_full(self, viewer: Viewer) -> str:
+        """Why there is no room for a page; "" if there is.
+
+        Who can act has the key: a hall of spectators, or whoever opens as many pages without it,
+        takes no place from them.
+        """
+        acts = viewer.can_act
+        most = ACTING_MOST if acts else self.home.viewers_most
+        if sum(feed.others(viewer) for feed in self.feeds) < most:
+            return ""
+        if acts:
+            return f"{most} pages with the key are open here already: close those nobody needs."
+        return (
+            f"This gateway shows the match to {most} pages already: "
+            "try again later, or watch the stream if there is one."
+        )
 
     async def close(self) -> None:
         """Close all connections."""
@@ -181,29 +193,21 @@ class Page:
         return True
 
     async def _watch(self, asked: wire.Watch) -> bool:
-        viewer, home = self._viewer, self._home
+        viewer = self._viewer
         viewer.can_act = asked.key is not None and hmac.compare_digest(
-            asked.key.encode("utf-8", "surrogatepass"), home.key.encode()
+            asked.key.encode("utf-8", "surrogatepass"), self._home.key.encode()
         )
         viewer.rate(USUAL_HZ if asked.hz is None else asked.hz)
-        if self._feed is None and self._courts.viewers >= home.viewers_most:
-            why = (
-                f"This gateway shows the match to {home.viewers_most} pages already: "
-                "try again later, or watch the stream if there is one."
-            )
+        if why := self._courts.why_full(viewer):
             self._courts.sent_away += 1
-            link = {"court": "", "connected": False, "silent_s": 0.0, "text": why, "log": 0}
-            viewer.send(wire.map_message(Kind.LINK, link))
             viewer.send(wire.refusal(asked.id, why))
             await self._websocket.close(TRY_LATER, "full")
             return False
         self._leave_court()
         try:
             self._feed, self._referees = self._courts.find(asked.court)
-        except UserError as error:
-            viewer.send(self._welcome(None))
-            link = {"court": "", "connected": False, "silent_s": 0.0, "text": str(error), "log": 0}
-            viewer.send(wire.map_message(Kind.LINK, link))
+        except UserError:
+            viewer.send(self._welcome(None))  # it says which courts there are
             raise
         viewer.send(self._welcome(self._feed.court))
         self._feed.add(viewer)

@@ -586,6 +586,10 @@ const GATEWAY: readonly Pattern[] = [
     "This gateway shows the match to {#n} pages already: try again later, or watch the stream if there is one.",
     "すでに {#n} ページが接続しています。後でもう一度試すか、配信をご覧ください。",
   ],
+  [
+    "{#n} pages with the key are open here already: close those nobody needs.",
+    "鍵の付いたページがすでに {#n} 個開いています。不要なページを閉じてください。",
+  ],
   ["Team {Seat}", "チーム {Seat}"],
   [
     "Nobody listens at {address}. Is the court running, and is this its port?",
