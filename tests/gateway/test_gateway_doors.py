@@ -19,6 +19,7 @@ from websockets.sync.client import connect
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.home import ACTING_MOST
 from lacoc_client.gateway.page import TRY_LATER
+from lacoc_client.gateway.wire import Kind
 from lacoc_shared.seat import Phase
 
 pytestmark = pytest.mark.slow
@@ -344,6 +345,30 @@ def test_pages_with_the_key_have_a_bound_too(venue: Venue) -> None:
     one_more.wait(one_more.closed.is_set)
     assert one_more.code() == TRY_LATER
     venue.page()
+
+
+def why_not(page: PageClient, number: int) -> str:
+    """Why something was refused; "" if it was not."""
+    try:
+        page.reply(number)
+    except Refused as refused:
+        return str(refused)
+    return ""
+
+
+def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
+    """A page may change its court, but 20 bytes don't draw the whole match as often as one likes.
+
+    It goes on as it was, and may ask again a second later.
+    """
+    with PageClient(open_venue.url, watch=False) as page:
+        said = [why_not(page, number) for number in [page.send("watch") for _ in range(100)]]
+        assert set(said) == {"", "Too many tries: wait a few seconds."}
+        assert 5 <= said.count("") <= 8
+        assert page.order.count(Kind.SCENE) <= said.count("")
+        page.wait(lambda: page.frame)
+        time.sleep(1.1)
+        page.ask("watch")
 
 
 def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:

@@ -40,6 +40,7 @@ SPEAKERS = (
     "arenas/lacoc_arenas/practice/rules.py",
     "client/lacoc_client/asking.py",
     "client/lacoc_client/controller.py",
+    "client/lacoc_client/gateway/courts.py",
     "client/lacoc_client/gateway/feed.py",
     "client/lacoc_client/gateway/page.py",
     "client/lacoc_client/gateway/referees.py",

@@ -10,6 +10,7 @@ from playwright.sync_api import Locator, Page, expect
 from show import violations
 from venue import REFEREE, TOKENS, Venue
 
+from lacoc_server.contest_keys import make_keys
 from lacoc_server.referee import _RULES
 from lacoc_shared.decisions import DECISIONS
 
@@ -253,6 +254,33 @@ def test_a_wrong_token_is_said_beside_the_field(court: Venue, referee: Referee) 
     assert page.locator("input[name=token]").get_attribute("aria-invalid") == "true"
     expect(page.locator("input[name=by]")).to_have_value("Kim")
     assert why(group(page, "Declare void")) == "enter with the referee's token first"
+    at_the_desk(page)
+
+
+@pytest.mark.parametrize("keys", [False, True])
+def test_a_token_that_was_replaced_is_not_shown_for_ever(
+    venue: Venue, referee: Referee, keys: bool
+) -> None:
+    """The tab's token is forgotten after one refusal, with the words of either kind of court."""
+    if keys:
+        venue.contest.write_text(venue.contest.read_text().replace("tcp/", ""))
+        make_keys(venue.contest, (), renew=False)
+    venue.court()
+    venue.web()
+    page = at_the_desk(referee())
+    page.evaluate(f"sessionStorage.setItem('lacoc-referee', '{'o' * 26}')")
+    shown: list[Any] = []
+
+    def heed(sent: bytes | str) -> None:
+        if "enter" in str(sent):
+            shown.append(sent)
+
+    page.on("websocket", lambda socket: socket.on("framesent", heed))
+    page.reload()
+    said = "does not take this token" if keys else "not a referee's token of this court"
+    expect(page.locator("#token-refused")).to_contain_text(said)
+    page.wait_for_timeout(5000)
+    assert len(shown) == 1
     at_the_desk(page)
 
 

@@ -5,11 +5,17 @@ import { type Message, type Mistake, type Request, readMessage, writeRequest } f
 
 /** The gateway, or the court behind it, said no. */
 export class Refused extends Error {
-  readonly mistakes: Mistake[];
-
-  constructor(message: string, mistakes: Mistake[] = []) {
+  /**
+   * @param message The reason.
+   * @param mistakes In files.
+   * @param tokenRefused Whether it is the token, and to show it again is of no use.
+   */
+  constructor(
+    message: string,
+    readonly mistakes: Mistake[] = [],
+    readonly tokenRefused = false,
+  ) {
     super(message);
-    this.mistakes = mistakes;
   }
 }
 
@@ -135,6 +141,6 @@ export class Connection {
     const waiting = this.waiting.get(reply.id);
     this.waiting.delete(reply.id);
     if (reply.ok) waiting?.resolve(reply.value);
-    else waiting?.reject(new Refused(reply.error, reply.mistakes ?? []));
+    else waiting?.reject(new Refused(reply.error, reply.mistakes, reply.token_refused));
   }
 }
