@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ from playwright.sync_api import Locator, Page, expect
 from show import violations
 from venue import REFEREE, TOKENS, Venue
 
+from lacoc_client.gateway.browser import unseen
 from lacoc_server.contest_keys import make_keys
 from lacoc_server.referee import _RULES
 from lacoc_shared.decisions import DECISIONS
@@ -292,6 +294,20 @@ def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     expect(page.locator(".health .verdict")).to_be_visible()
     log_has(page, "LOBBY.")
     expect(big(page)).to_have_attribute("aria-disabled", "true")
+
+
+def test_the_file_that_a_browser_is_given_leads_to_the_page(
+    court: Venue, open_page: OpenPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The key comes with it, and stands in the address no longer."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    page = open_page()
+    with unseen(f"{court.url}/referee#key={court.key}") as address:
+        assert address.startswith(tmp_path.as_uri())
+        page.goto(address)
+        at_the_desk(page)
+    assert page.url == f"{court.url}/referee"
+    assert court.key not in page.content()
 
 
 def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
