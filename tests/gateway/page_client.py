@@ -27,9 +27,10 @@ TIMEOUT_S = 20.0
 class Refused(Exception):
     """The gateway, or the court behind it, said no."""
 
-    def __init__(self, error: str, mistakes: list[dict[str, Any]]) -> None:
-        super().__init__(error)
-        self.mistakes = mistakes
+    def __init__(self, reply: dict[str, Any]) -> None:
+        super().__init__(reply["error"])
+        self.mistakes: list[dict[str, Any]] = reply["mistakes"]
+        self.is_the_token: bool = reply["token_refused"]
 
 
 class PageClient:
@@ -80,7 +81,7 @@ class PageClient:
         self.wait(lambda: number in self._replies)
         reply = self._replies.pop(number)
         if not reply["ok"]:
-            raise Refused(reply["error"], reply["mistakes"])
+            raise Refused(reply)
         return reply["value"]
 
     def wait(self, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:
@@ -91,6 +92,10 @@ class PageClient:
     def phase(self, phase: Phase) -> None:
         """Wait for a phase."""
         self.wait(lambda: self.frame is not None and self.frame.phase == phase)
+
+    def code(self) -> int | None:
+        """With which code the gateway closed the connection; None if it did not."""
+        return self.socket.protocol.close_code
 
     def own(self) -> SeatFrame:
         """The seat that this page holds."""

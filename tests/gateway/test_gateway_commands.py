@@ -1,5 +1,6 @@
 """Commands that open a page: what they print, what they fill in, how they end."""
 
+import contextlib
 import re
 import signal
 import subprocess
@@ -83,6 +84,67 @@ def test_play_fills_its_page_in(tmp_path: Path, stack: ExitStack) -> None:
         assert page.sheet.seats[0].keys == ((), (0, 1, 2, 3))
     assert play.ended() == 0
     assert "Traceback" not in play.said
+
+
+BROWSER = """#!/bin/sh
+exec >/dev/null 2>&1
+printf '%s' "$1" > "$0.opened"
+sleep 10
+exit 0
+"""
+
+
+def browse(folder: Path, home: Path) -> tuple[subprocess.Popen[str], str, str]:
+    """Start `lacoc play` with a browser that does nothing: it, its page's key, what was opened."""
+    browser = folder / "browser"
+    browser.write_text(BROWSER)
+    browser.chmod(0o755)
+    play = subprocess.Popen(
+        [*LACOC, "play", "--connect", "tcp/127.0.0.1:1"],
+        stdout=subprocess.PIPE,
+        stdin=subprocess.DEVNULL,
+        text=True,
+        cwd=folder,
+        env={**environment(), "BROWSER": f"{browser} %s", "HOME": str(home)},
+    )
+    assert play.stdout is not None
+    found = re.search(r"Opened http\S+#key=(\S+)", play.stdout.readline())
+    assert found is not None
+    return play, found[1], (folder / "browser.opened").read_text()
+
+
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="reads /proc")
+def test_the_key_stands_in_no_command_line(tmp_path: Path) -> None:
+    """Other users of a machine see what its browsers are told to open: a file they can't read."""
+    play, key, opened = browse(tmp_path, tmp_path)
+    try:
+        titles = b""
+        for process in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError):  # it has ended
+                titles += (process / "cmdline").read_bytes()
+        assert str(tmp_path / "browser").encode() in titles
+        assert key.encode() not in titles
+        file = Path(opened.removeprefix("file://"))
+        assert f"/play#key={key}" in file.read_text()
+        assert file.stat().st_mode & 0o777 == 0o600
+        assert file.parent.stat().st_mode & 0o777 == 0o700
+        # A browser in a sandbox sees neither /tmp nor hidden folders.
+        assert file.parent.parent == tmp_path
+        assert not file.parent.name.startswith(".")
+    finally:
+        play.send_signal(signal.SIGINT)
+        play.communicate(timeout=30)
+    assert play.returncode == 0
+    assert not file.parent.exists()
+
+
+def test_without_a_home_the_page_opens_all_the_same(tmp_path: Path) -> None:
+    """Where the file can't be written the browser gets the address itself."""
+    play, key, opened = browse(tmp_path, tmp_path / "nowhere")
+    play.send_signal(signal.SIGINT)
+    play.communicate(timeout=30)
+    assert opened.endswith(f"/play#key={key}")
+    assert play.returncode == 0
 
 
 def test_play_needs_no_seat_to_open(tmp_path: Path, stack: ExitStack) -> None:

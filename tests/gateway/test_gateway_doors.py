@@ -17,6 +17,9 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from lacoc_client.gateway import wire
+from lacoc_client.gateway.home import ACTING_MOST
+from lacoc_client.gateway.page import TRY_LATER
+from lacoc_client.gateway.wire import Kind
 from lacoc_shared.seat import Phase
 
 pytestmark = pytest.mark.slow
@@ -169,7 +172,7 @@ def test_an_unknown_court_is_said(open_venue: Venue) -> None:
         with pytest.raises(Refused, match="no court 'centre' here; there is main"):
             page.ask("watch", court="centre")
         assert page.welcome["courts"] == ["main"]
-        assert "centre" in page.link["text"]
+        assert page.welcome["court"] is None
         page.ask("watch")
         page.wait(lambda: page.frame)
 
@@ -304,7 +307,7 @@ def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
     with pytest.raises(Refused, match="2 pages already"):
         third.ask("watch")
     third.wait(third.closed.is_set)
-    assert "2 pages already" in third.link["text"]
+    assert third.code() == TRY_LATER
     second.close()
     deadline_s = time.monotonic() + 10
     while True:
@@ -315,6 +318,57 @@ def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
         except Refused:
             assert time.monotonic() < deadline_s
     first.ask("ping", t=1)
+
+
+def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
+    """Who has the key gets in however many watch; who drops the key counts as one who watches."""
+    venue.court()
+    venue.web("--viewers", "1")
+    venue.page()
+    contestant = venue.contestant("left")
+    contestant.close()
+    contestant = venue.contestant("left")
+    referee = venue.referee()
+    with pytest.raises(Refused, match="1 pages already"):
+        referee.ask("watch")
+    contestant.ask("watch", key=venue.key)  # again: the place it has
+
+
+def test_pages_with_the_key_have_a_bound_too(venue: Venue) -> None:
+    """A key that got about can't fill the gateway either; and takes no spectator's place."""
+    venue.web()
+    for _ in range(ACTING_MOST):
+        venue.page(venue.key, hz=1)
+    one_more = venue.page(watch=False)
+    with pytest.raises(Refused, match="100 pages with the key are open here"):
+        one_more.ask("watch", key=venue.key)
+    one_more.wait(one_more.closed.is_set)
+    assert one_more.code() == TRY_LATER
+    venue.page()
+
+
+def why_not(page: PageClient, number: int) -> str:
+    """Why something was refused; "" if it was not."""
+    try:
+        page.reply(number)
+    except Refused as refused:
+        return str(refused)
+    return ""
+
+
+def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
+    """A page may change its court, but 20 bytes don't draw the whole match as often as one likes.
+
+    It goes on as it was, and may ask again a second later.
+    """
+    with PageClient(open_venue.url, watch=False) as page:
+        said = [why_not(page, number) for number in [page.send("watch") for _ in range(100)]]
+        assert set(said) == {"", "Too many tries: wait a few seconds."}
+        assert 5 <= said.count("") <= 8
+        assert page.order.count(Kind.SCENE) <= said.count("")
+        page.wait(lambda: page.frame)
+        time.sleep(1.1)
+        page.ask("watch")
 
 
 def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from lacoc_client.controller import Hold
 from lacoc_client.event_log import KEPT, EventLog
 from lacoc_client.gateway import home, server, wire
+from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.page import Allowance
 from lacoc_client.gateway.site import PATHS
@@ -268,7 +269,7 @@ def test_browsers_without_a_screen_are_not_opened(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("sys.platform", "linux")
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
         monkeypatch.delenv(name, raising=False)
-    assert server.open_browser("http://127.0.0.1:1/") is False
+    assert open_browser("http://127.0.0.1:1/") is False
 
 
 @given(st.text(), st.text())

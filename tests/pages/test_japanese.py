@@ -40,6 +40,7 @@ SPEAKERS = (
     "arenas/lacoc_arenas/practice/rules.py",
     "client/lacoc_client/asking.py",
     "client/lacoc_client/controller.py",
+    "client/lacoc_client/gateway/courts.py",
     "client/lacoc_client/gateway/feed.py",
     "client/lacoc_client/gateway/page.py",
     "client/lacoc_client/gateway/referees.py",
@@ -56,6 +57,7 @@ SPEAKERS = (
     "server/lacoc_server/referee.py",
     "server/lacoc_server/staging.py",
     "server/lacoc_server/unjudged.py",
+    "shared/lacoc_shared/address.py",
     "shared/lacoc_shared/gait_reader.py",
     "shared/lacoc_shared/gait_text.py",
     "shared/lacoc_shared/gait_workbook.py",
@@ -93,7 +95,19 @@ PARTS = {
     "gait files",
     "leg 7, position_m",
     "mass_kg and masses_kg",
-    # Of an organiser's arena file, of a log and of a thread: no page shows them.
+    # Of an organiser's arena file, of a log and of a thread, of addresses that are wrong when a
+    # program is started: no page shows them.
+    "7 is not an address. It looks like 192.168.1.5, court.example.org:7447 or tcp/127.0.0.1:7447.",
+    "7 needs keys. An organiser makes them with 'lacoc contest keys' and names the contest file; "
+    "everybody else gets an invitation: --invitation FILE.",
+    "It is not possible to listen at 7: 7.",
+    "It is not possible to listen on 7: 7",
+    "Port 7 is in use: another program listens at 7. Stop it, or choose another port (0 takes a "
+    "free one).",
+    "Port 7 needs the administrator's rights; take one above 1023.",
+    "The contest has keys, and 7 is a plain address: write tls/7, or leave the protocol out.",
+    "The name 7 is not known on this machine; listen on 0.0.0.0 or a number.",
+    "This machine has no address 7. Listen on 0.0.0.0 to use all it has.",
     "Cannot read 7: 7.",
     "7 7 7 for 7 point7.",
     "disc_radius_m 7 is more than half of pitch_m 7: the discs overlap; make the radius smaller or "
@@ -114,7 +128,7 @@ PARTS = {
 NAMES = re.compile(
     r"Ants|Bees|Kim|Hexapod|planner|c\dr\d|corner\d|flag\d+|LocoTra-data|Loco-data|Num of Posture|"
     r"Key|lacoc|straight|MuJoCo|AngMin|Shift-JIS|advance|radius_m|Root|link|EX \(input\)|"
-    r"Judged|x86|N m|N m s/rad|kg m2|degrees/s"
+    r"Judged|x86|N m|N m s/rad|kg m2|degrees/s|contest keys|--(renew|host|invitation FILE)"
 )
 ENGLISH = re.compile(r"[A-Za-z']{2,} [A-Za-z']{2,}")
 

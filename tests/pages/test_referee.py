@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,6 +11,8 @@ from playwright.sync_api import Locator, Page, expect
 from show import violations
 from venue import REFEREE, TOKENS, Venue
 
+from lacoc_client.gateway.browser import unseen
+from lacoc_server.contest_keys import make_keys
 from lacoc_server.referee import _RULES
 from lacoc_shared.decisions import DECISIONS
 
@@ -256,6 +259,33 @@ def test_a_wrong_token_is_said_beside_the_field(court: Venue, referee: Referee) 
     at_the_desk(page)
 
 
+@pytest.mark.parametrize("keys", [False, True])
+def test_a_token_that_was_replaced_is_not_shown_for_ever(
+    venue: Venue, referee: Referee, keys: bool
+) -> None:
+    """The tab's token is forgotten after one refusal, with the words of either kind of court."""
+    if keys:
+        venue.contest.write_text(venue.contest.read_text().replace("tcp/", ""))
+        make_keys(venue.contest, (), renew=False)
+    venue.court()
+    venue.web()
+    page = at_the_desk(referee())
+    page.evaluate(f"sessionStorage.setItem('lacoc-referee', '{'o' * 26}')")
+    shown: list[Any] = []
+
+    def heed(sent: bytes | str) -> None:
+        if "enter" in str(sent):
+            shown.append(sent)
+
+    page.on("websocket", lambda socket: socket.on("framesent", heed))
+    page.reload()
+    said = "does not take this token" if keys else "not a referee's token of this court"
+    expect(page.locator("#token-refused")).to_contain_text(said)
+    page.wait_for_timeout(5000)
+    assert len(shown) == 1
+    at_the_desk(page)
+
+
 def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     """A link without its key shows everything and says how to get one that may act."""
     page = referee(key=False)
@@ -264,6 +294,20 @@ def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     expect(page.locator(".health .verdict")).to_be_visible()
     log_has(page, "LOBBY.")
     expect(big(page)).to_have_attribute("aria-disabled", "true")
+
+
+def test_the_file_that_a_browser_is_given_leads_to_the_page(
+    court: Venue, open_page: OpenPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The key comes with it, and stands in the address no longer."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    page = open_page()
+    with unseen(f"{court.url}/referee#key={court.key}") as address:
+        assert address.startswith(tmp_path.as_uri())
+        page.goto(address)
+        at_the_desk(page)
+    assert page.url == f"{court.url}/referee"
+    assert court.key not in page.content()
 
 
 def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:

@@ -1,10 +1,12 @@
 """A page for one person: a gateway on this machine alone, and the browser."""
 
+from contextlib import ExitStack
 from typing import Annotated
 
 import typer
 
 from lacoc_client.gateway import server
+from lacoc_client.gateway.browser import open_browser, unseen
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import Home
 from lacoc_shared import screen
@@ -44,11 +46,13 @@ def show_page(home: Home, path: str, browser: bool) -> None:
     check_pages()
     opened = server.listen(server.LOOPBACK)
     address = f"{server.url(opened)}{path}"
+    stack = ExitStack()
 
     def ready() -> None:
-        shown = browser and server.open_browser(address)
+        shown = browser and open_browser(stack.enter_context(unseen(address)))
         # Said in any case: a browser may open in a place where nobody looks.
         screen.show(f"{'Opened' if shown else 'Open'} {address}")
         screen.note("Keep this running while you are there; Ctrl-C ends it.")
 
-    server.run(home, opened, ready)
+    with stack:
+        server.run(home, opened, ready)

@@ -8,6 +8,7 @@ import typer
 
 from lacoc_client.commands import entrance
 from lacoc_client.gateway import server
+from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import VIEWERS_MOST, Home, lasting_key, new_key
 from lacoc_shared import contest as contests
@@ -61,7 +62,10 @@ def web_command(
         ),
     ] = None,
     viewers: Annotated[
-        int, typer.Option(min=1, max=2000, help="More pages than this at once are sent away.")
+        int,
+        typer.Option(
+            min=1, max=2000, help="More pages than this at once that only watch are sent away."
+        ),
     ] = VIEWERS_MOST,
     browser: Annotated[
         bool, typer.Option("--open/--no-open", help="Open /watch in the browser.")
@@ -89,7 +93,7 @@ def web_command(
 
     def ready() -> None:
         built = PageFiles().built
-        shown = browser and built and server.open_browser(f"{address}/watch")
+        shown = browser and built and open_browser(f"{address}/watch")
         if json:
             opened = {"kind": "open", "url": address, "key": home.key, "built": built}
             opened |= {"shown": shown, "metrics": None if exporter is None else exporter.url}

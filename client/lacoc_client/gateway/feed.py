@@ -91,6 +91,7 @@ class CourtFeed:
         self._frame_scene = self._sheet_scene = self._scene_hash = b""
         self._frame_s = time.monotonic()
         self._connected = False
+        """Whether it sends frames, of the version that this gateway speaks: only then pages do."""
         self._why = ""
         self._wrong_version = ""
         self._told = _Health(0, 0)
@@ -122,6 +123,10 @@ class CourtFeed:
     def viewers(self) -> int:
         """How many pages watch."""
         return len(self._viewers)
+
+    def others(self, viewer: Viewer) -> int:
+        """How many other pages watch that may do what this one may: act, or only watch."""
+        return sum(one.can_act == viewer.can_act for one in self._viewers if one is not viewer)
 
     @property
     def connected(self) -> bool:
@@ -191,8 +196,6 @@ class CourtFeed:
 
     def _come_back(self) -> None:
         """A frame after a silence: the court may be another one, so everything is sent again."""
-        if self._wrong_version:
-            return
         self._connected, self._why = True, ""
         self.log(f"Court {self.court} sends frames.", "link", connected=True)
         self._send(self._link())
@@ -204,7 +207,6 @@ class CourtFeed:
         text = ""
         if not self._connected:
             text = self._wrong_version or self._why
-            text = text or f"Waiting for court {self.court!r} at {self.access.connect}."
         return wire.map_message(
             Kind.LINK,
             {
@@ -264,10 +266,11 @@ class CourtFeed:
             return
         now_s = self._frame_s = time.monotonic()
         framed = self._frame = wire.message(Kind.FRAME, payload)
-        if not self._connected:
+        if not (self._connected or self._wrong_version):
             self._come_back()
-        for viewer in self._viewers:
-            viewer.offer(framed, now_s)
+        if self._connected:
+            for viewer in self._viewers:
+                viewer.offer(framed, now_s)
         if self._lacks_scene or self._lacks_sheet:
             self._catch_up()
 
@@ -342,7 +345,7 @@ class CourtFeed:
         try:
             self._take_sheet(payload)
         except BadMessage:
-            self._other_version()
+            self._other_version("another version")
 
     def _hear_sheet(self, payload: bytes) -> None:
         try:
@@ -352,11 +355,13 @@ class CourtFeed:
 
     def _take_sheet(self, payload: bytes) -> None:
         sheet = decode(payload, _Sheet, _MAX_BYTES)
-        self._wrong_version, self._doubt = "", False
-        if sheet.protocol != PROTOCOL:
-            self._other_version(sheet.protocol)
+        self._doubt = False
         self._sheet_scene, self.match_id = sheet.scene, sheet.match_id
         self._sheet_hash = message_hash(payload)
+        if sheet.protocol != PROTOCOL:
+            self._other_version(f"version {sheet.protocol}")
+            return
+        self._wrong_version = ""
         framed = wire.message(Kind.SHEET, payload)
         if framed != self._sheet:
             self._sheet = framed
@@ -370,6 +375,8 @@ class CourtFeed:
             return
         if self._lacks_events or self._lacks_sheet:
             self._catch_up()
+        if self._wrong_version:
+            return
         self._health = framed = wire.message(Kind.HEALTH, payload)
         for viewer in self._viewers:
             viewer.send_if_fast(framed)
@@ -380,13 +387,16 @@ class CourtFeed:
             self._doubt = True
             self._catch_up()
 
-    def _other_version(self, protocol: int | None = None) -> None:
-        speaks = "another version" if protocol is None else f"version {protocol}"
-        self._connected = False
-        self._wrong_version = (
+    def _other_version(self, speaks: str) -> None:
+        """Show nothing of the court until it has another sheet."""
+        wrong = (
             f"Court {self.court!r} speaks {speaks} of the protocol, this gateway version "
             f"{PROTOCOL}: install the version of lacoc that the court has."
         )
+        if wrong != self._wrong_version:
+            self._wrong_version, self._connected = wrong, False
+            self.log(wrong, "link", connected=False)
+            self._send(self._link())
 
     async def _ask(self, key: str) -> bytes:
         session = self.session

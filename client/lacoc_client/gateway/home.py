@@ -16,7 +16,9 @@ Kind = Literal["venue", "player", "practice"]
 _NO_FILES = SeatFiles()
 
 VIEWERS_MOST = 400
-"""More pages than this at once are sent away: 25 frames a second of 400 need 3 MB/s."""
+"""More pages than this that only watch are sent away: 25 frames a second of 400 need 3 MB/s."""
+ACTING_MOST = 100
+"""Pages that have the key, besides: several for each seat and referee of a large contest."""
 
 
 def new_key() -> str:

@@ -6,7 +6,7 @@ from prometheus_client import Metric
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
 from prometheus_client.registry import Collector
 
-from lacoc_client.gateway.page import Courts
+from lacoc_client.gateway.courts import Courts
 
 
 class GatewayMetrics(Collector):

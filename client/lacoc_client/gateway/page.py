@@ -8,12 +8,12 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from lacoc_client.asking import NoCourt
 from lacoc_client.gateway import wire
+from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.feed import CourtFeed
-from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.referees import Referees, as_referee
 from lacoc_client.gateway.seat import SeatThread
-from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import MOST_HZ, USUAL_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
@@ -31,8 +31,10 @@ GARBAGE = 1008
 
 _ASKS_HZ, _ASKS_BURST = 100.0, 200
 _TOKENS_HZ, _TOKENS_BURST = 1.0, 10
+_COURTS_HZ, _COURTS_BURST = 1.0, 5
 _AT_ONCE = 8
 _FIRST_S = 10.0
+_TOO_MUCH = "Too much at once: wait for the answers."
 
 
 class Allowance:
@@ -57,47 +59,6 @@ class Allowance:
         return self._left + (time.monotonic() - self._at_s) * self._hz < 1
 
 
-class Courts:
-    """The feeds of a gateway's courts and who referees there; made when first asked for."""
-
-    def __init__(self, home: Home, threads: Threads) -> None:
-        self.home = home
-        self.threads = threads
-        self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
-        self.sent_away = 0
-        """Pages that were too many."""
-
-    def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
-        """A court's feed, listening; without a name that of the first court.
-
-        Raises:
-            UserError: if this gateway has no such court.
-        """
-        courts = self.home.courts
-        name = name or next(iter(courts))
-        if name not in courts:
-            raise UserError(f"There is no court {name!r} here; there is {', '.join(courts)}.")
-        if name not in self._feeds:
-            feed = CourtFeed(courts[name], self.threads)
-            self._feeds[name] = (feed, Referees())
-            feed.start()
-        return self._feeds[name]
-
-    @property
-    def feeds(self) -> list[CourtFeed]:
-        """The feeds of all courts that were asked for; may be asked from any thread."""
-        return [feed for feed, _ in list(self._feeds.values())]
-
-    @property
-    def viewers(self) -> int:
-        """How many pages watch."""
-        return sum(feed.viewers for feed in self.feeds)
-
-    async def close(self) -> None:
-        """Close all connections."""
-        await asyncio.gather(*(feed.stop() for feed, _ in self._feeds.values()))
-
-
 class Page:
     """One page's connection.
 
@@ -119,6 +80,8 @@ class Page:
         self._asks = Allowance(_ASKS_HZ, _ASKS_BURST)
         self._tokens = Allowance(_TOKENS_HZ, _TOKENS_BURST)
         self._told = Allowance(_TOKENS_HZ, _TOKENS_BURST)
+        self._greetings = Allowance(_COURTS_HZ, _COURTS_BURST)
+        self._entering = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def serve(self) -> None:
@@ -171,7 +134,7 @@ class Page:
                 self._steer(asked)
             case wire.EnterAsk():
                 feed, referees = self._acting()
-                self._check_tokens()
+                _spend(self._tokens)
                 self._start(asked.id, self._enter(asked, feed, referees))
             case wire.TakeOver():
                 self._acting()[1].take_over(viewer)
@@ -181,29 +144,22 @@ class Page:
         return True
 
     async def _watch(self, asked: wire.Watch) -> bool:
-        viewer, home = self._viewer, self._home
+        _spend(self._greetings)  # some bytes ask for all that has happened in a match
+        viewer = self._viewer
         viewer.can_act = asked.key is not None and hmac.compare_digest(
-            asked.key.encode("utf-8", "surrogatepass"), home.key.encode()
+            asked.key.encode("utf-8", "surrogatepass"), self._home.key.encode()
         )
         viewer.rate(USUAL_HZ if asked.hz is None else asked.hz)
-        if self._feed is None and self._courts.viewers >= home.viewers_most:
-            why = (
-                f"This gateway shows the match to {home.viewers_most} pages already: "
-                "try again later, or watch the stream if there is one."
-            )
+        if why := self._courts.why_full(viewer):
             self._courts.sent_away += 1
-            link = {"court": "", "connected": False, "silent_s": 0.0, "text": why, "log": 0}
-            viewer.send(wire.map_message(Kind.LINK, link))
             viewer.send(wire.refusal(asked.id, why))
             await self._websocket.close(TRY_LATER, "full")
             return False
         self._leave_court()
         try:
             self._feed, self._referees = self._courts.find(asked.court)
-        except UserError as error:
-            viewer.send(self._welcome(None))
-            link = {"court": "", "connected": False, "silent_s": 0.0, "text": str(error), "log": 0}
-            viewer.send(wire.map_message(Kind.LINK, link))
+        except UserError:
+            viewer.send(self._welcome(None))  # it says which courts there are
             raise
         viewer.send(self._welcome(self._feed.court))
         self._feed.add(viewer)
@@ -243,14 +199,9 @@ class Page:
             )
         return self._feed, self._referees
 
-    def _check_tokens(self) -> None:
-        if self._tokens.spent:
-            raise UserError("Too many tries: wait a few seconds.")
-        self._tokens.take()
-
     def _join(self, asked: wire.JoinAsk) -> None:
         feed, _ = self._acting()
-        self._check_tokens()
+        _spend(self._tokens)
         access, name, files = self._entry(asked, feed)
         if self._seat is not None:
             self._seat.end()
@@ -307,11 +258,27 @@ class Page:
         if feed.session is None:
             raise UserError(f"Court {feed.court!r} is not there yet.")
         access = feed.access.of_referee(asked.token)
-        await self._courts.threads.run(lambda: as_referee(access, RefereeClient.enter))
+        # One at a time, so that a page with wrong tokens is one of those that wait, not many.
+        if self._entering.locked():
+            raise UserError(_TOO_MUCH)
+        async with self._entering:
+            await self._show_token(access, feed, referees)
         if referees is self._referees:  # it may have gone to another court meanwhile
             referees.enter(self._viewer, access, by)
             self._log(f"{by} sits down as a referee.", "referee", by=by)
         return {}
+
+    async def _show_token(self, access: Access, feed: CourtFeed, referees: Referees) -> None:
+        courts = self._courts
+        # A referee who comes back stands in no queue with those who try.
+        threads = courts.threads if referees.knows(access) else courts.strangers
+        try:
+            await threads.run(lambda: as_referee(access, RefereeClient.enter))
+        except NoCourt:
+            raise
+        except UserError as error:
+            # The court is there, as it sends frames to this gateway: so it is the token.
+            raise wire.TokenRefused(str(error)) if feed.connected else error from None
 
     async def _decide(self, asked: wire.DecideAsk, referees: Referees) -> Any:
         access, by = referees.acting(self._viewer)
@@ -325,7 +292,7 @@ class Page:
         """Answer later, and go on reading meanwhile."""
         if len(self._tasks) >= _AT_ONCE:
             work.close()
-            raise UserError("Too much at once: wait for the answers.")
+            raise UserError(_TOO_MUCH)
 
         async def answer() -> None:
             try:
@@ -382,6 +349,12 @@ class Page:
         self._leave_court()
         for task in self._tasks:
             task.cancel()
+
+
+def _spend(allowance: Allowance) -> None:
+    if allowance.spent:
+        raise UserError("Too many tries: wait a few seconds.")
+    allowance.take()
 
 
 def _in_loop(loop: asyncio.AbstractEventLoop, do: Callable[[], None]) -> None:

@@ -33,10 +33,16 @@ class Referees:
     def __init__(self) -> None:
         self._entered: dict[Viewer, tuple[Access, str]] = {}
         self._acting: Viewer | None = None
+        self._taken: set[Access] = set()
+
+    def knows(self, access: Access) -> bool:
+        """Whether the court has taken this token before."""
+        return access in self._taken
 
     def enter(self, viewer: Viewer, access: Access, by: str) -> None:
         """A page has shown a token; it acts if nobody does."""
         self._entered[viewer] = (access, by)
+        self._taken.add(access)
         self._act(self._acting or viewer)
 
     def take_over(self, viewer: Viewer) -> None:

@@ -1,13 +1,10 @@
-"""Runs a gateway: opens its port, serves until it is asked to end, opens a browser."""
+"""Runs a gateway: opens its port, and serves until it is asked to end."""
 
 import asyncio
 import contextlib
 import os
 import re
 import socket
-import sys
-import threading
-import webbrowser
 from collections.abc import Callable, Iterator
 
 import uvicorn
@@ -27,7 +24,6 @@ _LISTEN = re.compile(r"(?P<host>\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9_.-]+):(?P<port>[0-
 _LOOK_S = 0.1
 _ANY = ("0.0.0.0", "::")
 _PING_S, _GONE_S = 3.0, 20.0
-_BROWSER_S = 2.0
 _BACKLOG = 512  # a hall opens its pages at once
 
 
@@ -144,24 +140,3 @@ def run(home: Home, opened: socket.socket, ready: Callable[[], None]) -> None:
     with opened, stop_signals() as stopping:
         ready()
         serve(home, opened, stopping)
-
-
-def open_browser(address: str) -> bool:
-    """Show a page in this person's browser; False if there is none to be opened."""
-    if sys.platform.startswith("linux") and not any(
-        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
-    ):
-        return False  # a browser for terminals would take the terminal away
-    found: list[bool] = []
-
-    def open_it() -> None:
-        try:
-            found.append(webbrowser.open(address))
-        except (webbrowser.Error, OSError):
-            found.append(False)
-
-    # Some browsers are waited for until they are closed.
-    opening = threading.Thread(target=open_it, daemon=True)
-    opening.start()
-    opening.join(_BROWSER_S)
-    return not found or found[0]

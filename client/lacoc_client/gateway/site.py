@@ -11,12 +11,12 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
+from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.files import NOT_BUILT, PageFile, PageFiles, recording, recordings_in
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.metrics import GatewayMetrics
-from lacoc_client.gateway.page import Courts, Page
-from lacoc_client.gateway.threads import Threads
+from lacoc_client.gateway.page import Page
 
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay")
 """Each is the same file, which looks at its own path."""
@@ -32,8 +32,7 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         home: its settings.
         files: the built pages.
     """
-    threads = Threads()
-    courts = Courts(home, threads)
+    courts = Courts(home)
     if home.exporter is not None:
         home.exporter.registry.register(GatewayMetrics(courts))
 
@@ -42,7 +41,6 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         courts.find(None)
         yield
         await courts.close()
-        threads.close()
 
     async def index(request: Request) -> Response:
         file = await asyncio.to_thread(files.find, "index.html")

@@ -7,14 +7,16 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-_THREADS = 16
-
 
 class Threads:
-    """A few threads; who comes when all are busy waits for one."""
+    """A few threads; who comes when all are busy waits for one.
 
-    def __init__(self) -> None:
-        self._pool = ThreadPoolExecutor(_THREADS, thread_name_prefix="asks")
+    Args:
+        count: how many.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._pool = ThreadPoolExecutor(count, thread_name_prefix="asks")
 
     async def run(self, do: Callable[[], T]) -> T:
         """Run a function on one of the threads."""

@@ -13,7 +13,7 @@ from lacoc_shared.codec import BadMessage, encode
 from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
 from lacoc_shared.messages import SentFile
-from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.mistakes import FileRefused, UserError
 
 JOIN_BYTES = JOIN_MAX_BYTES
 """A longer message of a page closes its connection."""
@@ -22,6 +22,10 @@ REQUEST_BYTES = 4096
 
 
 FAULT = "The gateway has a fault; its window says more. Try again, or tell the organiser."
+
+
+class TokenRefused(UserError):
+    """A court does not take a referee's token: to show the same one again is of no use."""
 
 
 class Kind(IntEnum):
@@ -184,5 +188,6 @@ def refusal(to: int, error: Exception | str) -> bytes:
     if mistakes:
         text = "Your file has 1 mistake." if len(mistakes) == 1 else ""
         text = text or f"Your files have {len(mistakes)} mistakes."
-    body = {"id": to, "ok": False, "error": text, "mistakes": mistakes}
+    wrong = isinstance(error, TokenRefused)
+    body = {"id": to, "ok": False, "error": text, "mistakes": mistakes, "token_refused": wrong}
     return map_message(Kind.REPLY, body)

@@ -5,20 +5,27 @@ import { type Message, type Mistake, type Request, readMessage, writeRequest } f
 
 /** The gateway, or the court behind it, said no. */
 export class Refused extends Error {
-  readonly mistakes: Mistake[];
-
-  constructor(message: string, mistakes: Mistake[] = []) {
+  /**
+   * @param message The reason.
+   * @param mistakes In files.
+   * @param tokenRefused Whether it is the token, and to show it again is of no use.
+   */
+  constructor(
+    message: string,
+    readonly mistakes: Mistake[] = [],
+    readonly tokenRefused = false,
+  ) {
     super(message);
-    this.mistakes = mistakes;
   }
 }
 
-/** How the socket is; `attempt` counts those since it was open last. */
+/** How the socket is. */
 export interface SocketState {
   open: boolean;
+  /** Counts those since the page was greeted last: a gateway may open and send it away. */
   attempt: number;
-  /** `performance.now()` when it broke, or was first tried. */
-  sinceMs: number;
+  /** Why the gateway did not greet the page; "" if it did, or was not reached. */
+  refused: string;
 }
 
 interface Waiting {
@@ -28,12 +35,15 @@ interface Waiting {
 
 const RETRY_FIRST_MS = 250;
 const RETRY_MOST_MS = 3000;
+/** The gateway's code for "come again later" (docs/gateway.md), and how much later. */
+const TRY_LATER = 1013;
+const LATER_MS = 10_000;
 /** A gateway sends frames or at least a link message every second: so long a silence is a break. */
 const SILENCE_MS = 5000;
 const LOOK_MS = 1000;
 
 export class Connection {
-  readonly state = signal<SocketState>({ open: false, attempt: 0, sinceMs: performance.now() });
+  readonly state = signal<SocketState>({ open: false, attempt: 0, refused: "" });
   private socket: WebSocket | null = null;
   private lastId = 0;
   private heardMs = 0;
@@ -42,12 +52,12 @@ export class Connection {
 
   /**
    * @param url Of the WebSocket.
-   * @param opened Called on each opening, before anything is taken in: says what to watch.
+   * @param greet Called on each opening, before anything is taken in: says what to watch.
    * @param take Takes in a message that is not a reply.
    */
   constructor(
     private readonly url: string,
-    private readonly opened: () => void,
+    private readonly greet: () => Promise<unknown>,
     private readonly take: (message: Message, arrivedMs: number) => void,
   ) {
     this.open();
@@ -79,8 +89,8 @@ export class Connection {
     this.socket = socket;
     this.heardMs = performance.now();
     socket.onopen = () => {
-      this.state.value = { open: true, attempt: 0, sinceMs: performance.now() };
-      this.opened();
+      this.state.value = { ...this.state.value, open: true };
+      void this.begin(socket);
     };
     socket.onmessage = (event: MessageEvent<ArrayBuffer>) => {
       this.heardMs = performance.now();
@@ -88,24 +98,34 @@ export class Connection {
       if (message?.kind === "reply") this.settle(message.body);
       else if (message) this.take(message, this.heardMs);
     };
-    socket.onclose = () => this.lost(socket);
+    socket.onclose = ({ code }) => this.lost(socket, code === TRY_LATER);
   }
 
-  private lost(socket: WebSocket): void {
+  private async begin(socket: WebSocket): Promise<void> {
+    let { attempt } = this.state.value;
+    let refused = "";
+    try {
+      await this.greet();
+      attempt = 0;
+    } catch (error) {
+      refused = (error as Refused).message;
+    }
+    // What broke meanwhile was not refused.
+    if (socket === this.socket) this.state.value = { open: true, attempt, refused };
+  }
+
+  /** @param later Whether the gateway said so: then its reason stands until it is asked again. */
+  private lost(socket: WebSocket, later: boolean): void {
     if (socket !== this.socket) return;
     this.socket = null;
     for (const { reject } of this.waiting.values()) reject(new Refused("the connection broke"));
     this.waiting.clear();
     if (this.ended) return;
-    const { open, attempt, sinceMs } = this.state.value;
-    this.state.value = {
-      open: false,
-      attempt: attempt + 1,
-      sinceMs: open ? performance.now() : sinceMs,
-    };
+    const { attempt, refused } = this.state.value;
+    this.state.value = { open: false, attempt: attempt + 1, refused: later ? refused : "" };
+    const soon = Math.min(RETRY_MOST_MS, RETRY_FIRST_MS * 2 ** attempt);
     // Not all pages of a hall at the same moment.
-    const wait =
-      Math.min(RETRY_MOST_MS, RETRY_FIRST_MS * 2 ** attempt) * (0.7 + 0.6 * Math.random());
+    const wait = later ? LATER_MS * (1 + Math.random()) : soon * (0.7 + 0.6 * Math.random());
     setTimeout(() => this.open(), wait);
   }
 
@@ -114,13 +134,13 @@ export class Connection {
     const socket = this.socket;
     if (!socket || performance.now() - this.heardMs < SILENCE_MS) return;
     socket.close();
-    this.lost(socket);
+    this.lost(socket, false);
   }
 
   private settle(reply: (Message & { kind: "reply" })["body"]): void {
     const waiting = this.waiting.get(reply.id);
     this.waiting.delete(reply.id);
     if (reply.ok) waiting?.resolve(reply.value);
-    else waiting?.reject(new Refused(reply.error, reply.mistakes ?? []));
+    else waiting?.reject(new Refused(reply.error, reply.mistakes, reply.token_refused));
   }
 }

@@ -99,15 +99,14 @@ export class Court implements Match {
     return this.connection.ask<T>(what, fields);
   }
 
-  private watch(): void {
+  private watch(): Promise<unknown> {
     this.later(performance.now(), () => {
       this.log = null;
     });
     this.seat.value = null;
     this.referee.value = null;
     const fields = { court: setting("court") || null, hz: this.hz, key: runKey() };
-    // A refusal is in the link's text; a break is seen by the connection.
-    this.ask("watch", fields).catch(() => undefined);
+    return this.ask("watch", fields);
   }
 
   private receive(message: Message, arrivedMs: number): void {

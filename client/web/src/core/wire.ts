@@ -71,6 +71,8 @@ interface BadReply {
   ok: false;
   error: string;
   mistakes: Mistake[];
+  /** The court does not take this token: to show it again is of no use. */
+  token_refused: boolean;
 }
 
 /** A message from the gateway. */

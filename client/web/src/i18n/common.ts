@@ -34,8 +34,8 @@ export const common = {
   ],
   "link.connecting": ["Connecting …", "接続しています…"],
   "link.court": [
-    "Waiting for court {court}: no word for {seconds} s",
-    "コート {court} を待っています（{seconds} 秒間応答なし）",
+    "Waiting for court {court}: no word for {seconds} s …",
+    "コート {court} を待っています（{seconds} 秒間応答なし）…",
   ],
   "link.noCourt": ["Waiting for court {court} …", "コート {court} を待っています…"],
   "link.stale": ["The picture stands still: no news", "映像は停止しています（更新なし）"],

@@ -574,7 +574,6 @@ const GATEWAY: readonly Pattern[] = [
   ["version {#n}", "第 {#n} 版"],
   ["another version", "別の版"],
   ["Court {court} is not there yet.", "コート {court} はまだありません。"],
-  ["Waiting for court {court} at {address}.", "コート {court}（{address}）を待っています。"],
   ["This was not understood: {error}.", "要求を読み取れませんでした：{error}"],
   ["{#n} bytes, at most {#most} are read", "{#n} バイト（上限 {#most} バイト）"],
   ["Say first which court to watch.", "先にコートを指定してください。"],
@@ -597,6 +596,11 @@ const GATEWAY: readonly Pattern[] = [
     "This gateway shows the match to {#n} pages already: try again later, or watch the stream if there is one.",
     "すでに {#n} ページが接続しています。後でもう一度試すか、配信をご覧ください。",
   ],
+  [
+    "{#n} pages with the key are open here already: close those nobody needs.",
+    "鍵の付いたページがすでに {#n} 個開いています。不要なページを閉じてください。",
+  ],
+  ["no answer", "応答なし"],
   ["Team {Seat}", "チーム {Seat}"],
   [
     "Nobody listens at {address}. Is the court running, and is this its port?",
@@ -607,12 +611,48 @@ const GATEWAY: readonly Pattern[] = [
     "{address} の名前がこのネットワークで見つかりません。",
   ],
   [
-    "{address} can't be reached ({why}). Check the address, the network and firewalls.",
-    "{address} に接続できません（{why}）。アドレス、ネットワーク、ファイアウォールを確かめてください。",
+    "{address} can't be reached ({Why}). Check the address, the network and firewalls.",
+    "{address} に接続できません（{Why}）。アドレス、ネットワーク、ファイアウォールを確かめてください。",
   ],
   [
     "Something answers at {address}, but it does not let this program in. Is it a court, and of the same version?",
     "{address} は応答しますが接続できません。コートかどうか、同じ版かどうかを確かめてください。",
+  ],
+  [
+    "The name {name} is not known on this network. Check its spelling, or use the number (such as 192.168.1.5) instead.",
+    "{name} という名前がこのネットワークで見つかりません。つづりを確かめるか、番号（192.168.1.5 など）を使ってください。",
+  ],
+  [
+    "The court at {address} is the right one, but it does not take this token. Ask the organiser for the invitation that is valid now; a court that is full or of another version refuses in the same way.",
+    "{address} は正しいコートですが、このトークンを受け付けません。現在有効な招待を主催者から受け取ってください（満員のコートや版の異なるコートも同じように拒否します）。",
+  ],
+  [
+    "The court at {address} has keys: enter with the invitation that the organiser has for you (--invitation FILE), or with the contest file.",
+    "{address} のコートには鍵が必要です。主催者から受け取った招待（--invitation FILE）か、大会ファイルを使ってください。",
+  ],
+  [
+    "What answers at {address} has no keys, and your invitation is for a court that has. Is it the right port, and was the court started with its contest file?",
+    "{address} で応答するものには鍵がありませんが、招待は鍵のあるコートのものです。ポートが正しいか、コートが大会ファイルを使って起動されたか確かめてください。",
+  ],
+  [
+    "What answers at {address} can't prove that it is the court of your invitation ({reason}). Do not go on; ask the organiser whether the address is right and the invitation the newest.",
+    "{address} で応答するものが招待のコートだと確認できません（{reason}）。接続をやめ、アドレスが正しいか、招待が最新か、主催者に確かめてください。",
+  ],
+  [
+    "The certificate of the court at {address} is not made for the name {host}. Use the name in your invitation; an organiser adds one with 'lacoc contest keys --host {same}'.",
+    "{address} のコートの証明書は {host} という名前のものではありません。招待にある名前を使ってください（主催者は「lacoc contest keys --host {same}」で追加できます）。",
+  ],
+  [
+    "The certificate of the court at {address} is not valid yet: is this machine's clock right?",
+    "{address} のコートの証明書はまだ有効期間前です。このパソコンの時計が正しいか確かめてください。",
+  ],
+  [
+    "The certificate of the court at {address} has expired, or this machine's clock is wrong. An organiser makes new keys with 'lacoc contest keys --renew'.",
+    "{address} のコートの証明書は期限切れか、このパソコンの時計が違っています（主催者は「lacoc contest keys --renew」で鍵を作り直せます）。",
+  ],
+  [
+    "The certificate in the invitation is damaged: ask the organiser for it again.",
+    "招待の証明書が壊れています。主催者から受け取り直してください。",
   ],
 ];
 

@@ -193,12 +193,12 @@ function Panel() {
   );
 }
 
-/** Before the first frame. */
+/** Before the first frame; what is waited for stands in the banner. */
 function Waiting() {
   return (
     <div class="waiting">
       <h1>LACOC</h1>
-      <p class="muted">{waitsFor(court) || t("link.connecting")}</p>
+      {!waitsFor(court) && <p class="muted">{t("link.connecting")}</p>}
     </div>
   );
 }

@@ -1,18 +1,21 @@
 /** Says across the top what the page waits for; nothing while all is well. */
 
 import type { Court } from "../core/court";
-import { t } from "../i18n";
+import { said, t } from "../i18n";
 
 /** What the page waits for, in words; "" while all is well. */
 export function waitsFor(court: Court): string {
-  const { open, attempt } = court.connection.state.value;
+  const { open, attempt, refused } = court.connection.state.value;
+  if (refused) return said(refused);
   if (!open) return attempt > 1 ? t("link.page", { attempt }) : t("link.connecting");
   const link = court.link.value;
   if (link && !link.connected) {
     const seconds = Math.round(link.silent_s);
-    return seconds > 0 && court.begun.value
-      ? t("link.court", { court: link.court, seconds })
-      : t("link.noCourt", { court: link.court });
+    const waits =
+      seconds > 0 && court.begun.value
+        ? t("link.court", { court: link.court, seconds })
+        : t("link.noCourt", { court: link.court });
+    return link.text ? `${waits} ${said(link.text)}` : waits;
   }
   return court.begun.value && !court.live.value ? t("link.stale") : "";
 }

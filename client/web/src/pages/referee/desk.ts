@@ -17,8 +17,6 @@ import type { Draft } from "./drafts";
 
 const TOKEN = "lacoc-referee";
 const RETRY_MS = 1500;
-/** What the court says to a wrong token: then asking again is of no use. */
-const WRONG_TOKEN = "This is not a referee's token of this court.";
 
 /** Decisions that the court takes only with a reason (lacoc_server/referee.py). */
 export const NEED_A_REASON: ReadonlySet<DecisionName> = new Set<DecisionName>([
@@ -86,7 +84,7 @@ export class Desk {
       this.entered.value = true;
     } catch (error) {
       this.refused.value = reasonOf(error);
-      if (this.refused.value === WRONG_TOKEN) sessionStorage.removeItem(TOKEN);
+      if (error instanceof Refused && error.tokenRefused) sessionStorage.removeItem(TOKEN);
     } finally {
       this.busy.value = false;
     }
@@ -174,8 +172,7 @@ export class Desk {
 
   private async again(token: string): Promise<void> {
     await this.enter(token, this.by.peek());
-    const waiting = this.refused.peek();
-    if (this.entered.peek() || waiting === WRONG_TOKEN) return;
+    if (this.entered.peek() || sessionStorage.getItem(TOKEN) !== token) return;
     setTimeout(() => {
       const open = this.court.connection.state.peek().open;
       if (open && !this.entered.peek() && !this.busy.peek()) this.again(token);

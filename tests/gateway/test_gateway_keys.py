@@ -1,0 +1,59 @@
+"""Referees' tokens at a court with keys: a wrong one takes two seconds there to be refused."""
+
+import time
+
+import pytest
+from page_client import PageClient, Refused
+from venue import REFEREE, Venue
+
+from lacoc_server.contest_keys import make_keys
+
+pytestmark = pytest.mark.slow
+
+WRONG = "w" * 25
+START = {"decision": {"type": "start"}, "reason": ""}
+
+
+@pytest.fixture
+def keyed(venue: Venue) -> Venue:
+    """A contest with keys, its court in the lobby, and its gateway, which has found it."""
+    venue.contest.write_text(venue.contest.read_text().replace("tcp/", ""))
+    make_keys(venue.contest, (), renew=False)
+    venue.court()
+    venue.web()
+    page = venue.page()
+    page.wait(lambda: page.frame)
+    return venue
+
+
+def refused(page: PageClient, number: int) -> Refused:
+    with pytest.raises(Refused) as caught:
+        page.reply(number)
+    return caught.value
+
+
+def test_a_wrong_token_is_said_in_a_field(keyed: Venue) -> None:
+    """A page knows that asking again is of no use, whatever the words; only then."""
+    page = keyed.page(keyed.key)
+    wrong = refused(page, page.send("enter", token=WRONG, by="Kim"))
+    assert wrong.is_the_token
+    assert "does not take this token" in str(wrong)
+    assert not refused(page, page.send("enter", token=REFEREE, by=" ")).is_the_token
+    page.ask("enter", token=REFEREE, by="Kim")
+
+
+def test_wrong_tokens_delay_no_decision(keyed: Venue) -> None:
+    """Pages that try them wait for each other; who sits at the desk, or comes back, does not."""
+    referee = keyed.referee()
+    wrong = [keyed.page(keyed.key) for _ in range(12)]
+    tried = [(page, page.send("enter", token=WRONG, by="x")) for page in wrong for _ in range(8)]
+    time.sleep(0.2)
+    asked_s = time.monotonic()
+    assert "LOBBY" in str(refused(referee, referee.send("decide", **START)))
+    referee.close()
+    back = keyed.page(keyed.key)
+    back.ask("enter", token=REFEREE, by="Kim")
+    assert time.monotonic() - asked_s < 3
+    said = [str(refused(page, number)) for page, number in tried]
+    assert sum("does not take this token" in one for one in said) == len(wrong)
+    assert sum("Too much at once" in one for one in said) == len(wrong) * 7

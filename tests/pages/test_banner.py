@@ -1,0 +1,85 @@
+"""What a page says across its top while it has to wait: the gateway's own reasons, in words."""
+
+import re
+import time
+from typing import Any
+
+import pytest
+from chromium import OpenPage
+from court_stub import CourtStub
+from show import Show
+from venue import Venue
+
+pytestmark = pytest.mark.slow
+
+WAITS = {
+    "/watch": ".banner",
+    "/play": ".banner",
+    "/practice": ".banner",
+    "/referee": ".banner",
+    "/overlay": ".waits",
+}
+FULL = "This gateway shows the match to 1 pages already: try again later"
+
+
+def opened(open_page: OpenPage, venue: Venue, path: str, **options: Any) -> Show:
+    return Show(open_page(**options), venue.url, path, drawn=False)
+
+
+@pytest.mark.parametrize("path", WAITS)
+def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: str) -> None:
+    """No such court, and a court that is not there: the gateway's sentence, in both languages."""
+    venue.web()
+    show = opened(open_page, venue, f"{path}?court=centre")
+    show.sees(WAITS[path], "There is no court 'centre' here; there is main.")
+    show.page.close()
+    show = opened(open_page, venue, f"{path}?court=centre", locale="ja-JP")
+    show.sees(WAITS[path], "ここにコート 'centre' はありません（main があります）。")
+    show.page.close()
+    show = opened(open_page, venue, path)
+    show.sees(WAITS[path], "Waiting for court main")
+    show.sees(WAITS[path], f"Nobody listens at tcp/127.0.0.1:{venue.court_port}.")
+
+
+@pytest.mark.parametrize(
+    ("locale", "full"), [("en-GB", FULL), ("ja-JP", "すでに 1 ページが接続しています。")]
+)
+def test_a_full_hall_is_said_and_not_stormed(
+    venue: Venue, open_page: OpenPage, console: Any, locale: str, full: str
+) -> None:
+    """A page that is sent away says so, comes back after 10 to 20 s, and gets in by itself."""
+    console.expect("WebSocket")
+    venue.web("--viewers", "1")
+    first = venue.page()
+    page = open_page(locale=locale)
+    tried_s: list[float] = []
+    page.on("websocket", lambda _: tried_s.append(time.monotonic()))
+    show = Show(page, venue.url, "/watch", drawn=False)
+    show.sees(".banner", full)
+    first.close()
+    show.page.wait_for_timeout(5000)
+    show.sees(".banner", full)
+    assert len(tried_s) == 1
+    show.sees(".banner", "main")
+    assert len(tried_s) == 2
+    assert 9.5 < tried_s[1] - tried_s[0] < 25
+
+
+def test_a_court_of_another_version_is_said(venue: Venue, open_page: OpenPage) -> None:
+    """Nothing of it is shown as this version's, it is logged once, and the page recovers."""
+    with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
+        web = venue.web()
+        page = venue.page()
+        show = opened(open_page, venue, "/watch")
+        show.misses(".banner")
+        court.in_a_beat(lambda: court.show(court.scene, protocol=99))
+        show.sees(".banner", "Court 'main' speaks version 99 of the protocol, this gateway version")
+        frames = len(page.frames)
+        show.page.wait_for_timeout(2000)
+        assert len(page.frames) == frames
+        court.in_a_beat(lambda: court.show(court.scene))
+        show.misses(".banner")
+        page.wait(lambda: len(page.frames) > frames)
+        show.page.close()
+    web.close()
+    assert len(re.findall("speaks version 99", web.said)) == 1
