@@ -31,6 +31,7 @@ class Refused(Exception):
         super().__init__(reply["error"])
         self.mistakes: list[dict[str, Any]] = reply["mistakes"]
         self.is_the_token: bool = reply["token_refused"]
+        self.again: bool = reply["again"]
 
 
 class PageClient:

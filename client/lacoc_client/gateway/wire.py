@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import msgspec
 
+from lacoc_client.asking import NotNow
 from lacoc_shared.codec import BadMessage, encode
 from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
@@ -188,6 +189,12 @@ def refusal(to: int, error: Exception | str) -> bytes:
     if mistakes:
         text = "Your file has 1 mistake." if len(mistakes) == 1 else ""
         text = text or f"Your files have {len(mistakes)} mistakes."
-    wrong = isinstance(error, TokenRefused)
-    body = {"id": to, "ok": False, "error": text, "mistakes": mistakes, "token_refused": wrong}
+    body = {
+        "id": to,
+        "ok": False,
+        "error": text,
+        "mistakes": mistakes,
+        "token_refused": isinstance(error, TokenRefused),
+        "again": isinstance(error, NotNow),
+    }
     return map_message(Kind.REPLY, body)

@@ -1,21 +1,33 @@
 /** The WebSocket to the gateway: opens again for ever, and pairs requests with their replies. */
 
 import { signal } from "@preact/signals";
-import { type Message, type Mistake, type Request, readMessage, writeRequest } from "./wire";
+import {
+  type BadReply,
+  type Message,
+  type Mistake,
+  type Request,
+  readMessage,
+  writeRequest,
+} from "./wire";
 
 /** The gateway, or the court behind it, said no. */
 export class Refused extends Error {
+  /** In files. */
+  readonly mistakes: readonly Mistake[];
+  /** It is the token: to show it again is of no use. */
+  readonly tokenRefused: boolean;
+  /** The court can't take it now: the same may be taken later. */
+  readonly again: boolean;
+
   /**
    * @param message The reason.
-   * @param mistakes In files.
-   * @param tokenRefused Whether it is the token, and to show it again is of no use.
+   * @param reply The gateway's, where it is one.
    */
-  constructor(
-    message: string,
-    readonly mistakes: Mistake[] = [],
-    readonly tokenRefused = false,
-  ) {
+  constructor(message: string, reply: Partial<BadReply> = {}) {
     super(message);
+    this.mistakes = reply.mistakes ?? [];
+    this.tokenRefused = reply.token_refused ?? false;
+    this.again = reply.again ?? false;
   }
 }
 
@@ -141,6 +153,6 @@ export class Connection {
     const waiting = this.waiting.get(reply.id);
     this.waiting.delete(reply.id);
     if (reply.ok) waiting?.resolve(reply.value);
-    else waiting?.reject(new Refused(reply.error, reply.mistakes, reply.token_refused));
+    else waiting?.reject(new Refused(reply.error, reply));
   }
 }

@@ -307,7 +307,8 @@ export class Player {
   private async notJoined(wish: Wish, refused: Refused): Promise<void> {
     const broke = !this.court.connection.state.peek().open;
     const isFinal = refused.mistakes.length > 0 || /token|too large/i.test(refused.message);
-    if (broke || !(isFinal || this.first || ++this.tries >= MOST_TRIES)) {
+    const waits = refused.again || (!isFinal && ++this.tries < MOST_TRIES);
+    if (broke || (waits && !this.first)) {
       await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
       return; // asked again once there is a court
     }

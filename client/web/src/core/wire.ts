@@ -66,13 +66,15 @@ interface GoodReply {
   value: unknown;
 }
 
-interface BadReply {
+export interface BadReply {
   id: number;
   ok: false;
   error: string;
   mistakes: Mistake[];
   /** The court does not take this token: to show it again is of no use. */
   token_refused: boolean;
+  /** The court can't take it now: the same may be taken later. */
+  again: boolean;
 }
 
 /** A message from the gateway. */
