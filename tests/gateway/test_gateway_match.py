@@ -313,3 +313,23 @@ def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
         page.wait(lambda: "version 99" in page.link["text"])
         court.in_a_beat(lambda: court.show(court.scene))
         page.wait(lambda: page.link["connected"])
+
+
+def test_a_seat_that_can_not_be_had_now_may_be_asked_for_again(venue: Venue) -> None:
+    """The page keeps its wish: nothing is wrong with it. A wrong token is another matter."""
+    venue.court()
+    venue.web()
+    pages = [venue.page(venue.key) for _ in range(12)]
+    with pytest.raises(Refused) as wrong:
+        pages[0].ask("join", seat="right", token="a guess", name="Ants")
+    assert not wrong.value.again
+    asked = [page.send("join", seat="left", token=TOKENS["left"], name="Ants") for page in pages]
+    refused = []
+    for page, number in zip(pages, asked, strict=True):
+        try:
+            page.reply(number)
+        except Refused as error:
+            refused.append(error)
+    assert {(str(error), error.again) for error in refused} == {
+        ("Too many joins at once: wait a few seconds.", True)
+    }
