@@ -11,7 +11,7 @@ _PHASES = {
     Phase.LOBBY: "waiting for the teams",
     Phase.READY: "ready, waiting for the start",
     Phase.COUNTDOWN: "starts in {countdown_s:.0f} s",
-    Phase.HALTED: "halted by the referee",
+    Phase.HALTED: "halted; the referee resumes it",
     Phase.FINISHED: "over; the referee confirms the result",
     Phase.OFFICIAL: "the result is official",
     Phase.VOID: "the match is void",

@@ -407,7 +407,7 @@ def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None
     page.misses(".banner")
     page.misses(".pad.off")
     page.phase(Phase.HALTED)
-    page.is_told("Halted by the referee")
+    page.is_told("Halted: the referee resumes it")
     other.close()
 
     console.expect("WebSocket connection")

@@ -114,8 +114,8 @@ export const play = {
     "通信が途切れたため停止中。キーを押すと動きます",
   ],
   "next.halted": [
-    "Halted by the referee. Keep your seat",
-    "審判により中断中。そのままお待ちください",
+    "Halted: the referee resumes it. Keep your seat",
+    "中断中です。審判が再開するまで、そのままお待ちください",
   ],
   "next.finished": ["Over. The referee confirms the result", "終了。審判が結果を確認しています"],
   "next.official": [
