@@ -4,8 +4,10 @@ import json
 import os
 import subprocess
 import sys
+import threading
+from collections import deque
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -50,6 +52,18 @@ def read_line(process: subprocess.Popen[str]) -> Any:
     if not line:
         raise RuntimeError(f"{process.args!r} ended with {process.wait()}")
     return json.loads(line)
+
+
+def hush(process: subprocess.Popen[str]) -> None:
+    """Throw away whatever else a process says: nobody at a venue leaves a pipe full."""
+    assert process.stdout is not None
+    said = process.stdout
+
+    def read() -> None:
+        with suppress(ValueError):  # closed at the end
+            deque(said, maxlen=0)
+
+    threading.Thread(target=read, daemon=True).start()
 
 
 def ask(process: subprocess.Popen[str], word: str) -> Any:

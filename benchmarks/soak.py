@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import psutil
 
-from benchmarks.processes import LACOC, Opened, ask, court, read_line, started
+from benchmarks.processes import LACOC, Opened, ask, court, hush, read_line, started
 from lacoc_client.asking import NoCourt
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
@@ -129,6 +129,8 @@ def soak(
         gateway = stack.enter_context(started(LACOC, "web", "--json", *where))
         processes["gateway"] = gateway
         url = read_line(gateway)["url"]
+        for one in (opened.process, gateway):  # they log all visits and events
+            hush(one)
         most = ("--most", str(visitors_most))
         visitors = {
             way: stack.enter_context(started("benchmarks.visitors", way, address, *most))
