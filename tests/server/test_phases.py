@@ -369,6 +369,9 @@ def test_who_changes_their_mind_in_the_beat_of_start_is_not_begun_without(change
     assert isinstance(started, Refusal)
     assert "right" in started.reason
     assert stage.phase is P.LOBBY
+    stage.to_ready()
+    *_, started = stage.beat(LeaveSeat(LEFT), LeaveSeat(RIGHT), decide(d.Start())).outcomes
+    assert started == Refusal("start: nobody has joined left; nobody has joined right.")
 
 
 def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
