@@ -1,6 +1,8 @@
 """Messages to bytes and back, and what is refused on the way (docs/protocol.md)."""
 
 import hashlib
+import subprocess
+import sys
 
 import msgpack
 import pytest
@@ -87,3 +89,46 @@ def test_states_are_two_bits_the_first_lowest() -> None:
 def test_states_come_back_as_they_went(states: tuple[int, ...]) -> None:
     """No marker's state depends on how many there are."""
     assert unpack_states(pack_states(states), len(states)) == states
+
+
+FIRST_USE = """
+import sys, threading
+import msgspec
+from lacoc_shared.codec import decode, encode
+
+sys.setswitchinterval(1e-6)
+for _ in range(400):
+
+    class Inner(msgspec.Struct):
+        a: int = 0
+        b: tuple[int, ...] = ()
+
+    class Middle(msgspec.Struct):
+        x: tuple[Inner, ...] = ()
+        y: dict[str, Inner] = {}
+
+    class Outer(msgspec.Struct):
+        m: tuple[Middle, ...] = ()
+        n: Middle | None = None
+        o: Inner | None = None
+
+    data = encode(Outer((Middle((Inner(),), {"k": Inner()}),), Middle(), Inner()))
+    together = threading.Barrier(6)
+
+    def use():
+        together.wait()
+        decode(data, Outer)
+
+    threads = [threading.Thread(target=use) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+"""
+
+
+@pytest.mark.slow
+def test_a_message_that_many_threads_read_first_ends_no_process() -> None:
+    """A gateway's seats decode in threads of their own: two at a time once crashed it."""
+    done = subprocess.run([sys.executable, "-c", FIRST_USE], capture_output=True, timeout=120)
+    assert (done.returncode, done.stderr) == (0, b"")
