@@ -168,7 +168,10 @@ def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session)
     court.trouble = "The record can't be written: make room."
     with pytest.raises(NotNow, match="make room"):
         one.join()
+    still = one.wait_frame(5.0)
+    assert still
     court.trouble = ""
+    until(lambda: (frame := one.wait_frame(1.0)) and frame.beat > still.beat)  # it goes on
     for _ in range(5):
         one.join()
     with pytest.raises(NotNow, match="Too many joins"):
