@@ -5,9 +5,9 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from lacoc_shared.codec import unpack_states
 from lacoc_shared.gait import Level
 from lacoc_shared.kinematics import ROOT_FLOATS, euler_zyx, joints_per_seat, split_poses
+from lacoc_shared.marker_states import unpack_states
 from lacoc_shared.messages import MARKER_STATES, Event, Frame, SeatFrame, Sheet, SheetSeat
 from lacoc_shared.seat import BEAT_S, Phase, SeatFlag
 

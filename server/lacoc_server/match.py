@@ -22,7 +22,6 @@ from lacoc_server.physics import Fault, MakePhysics, Physics
 from lacoc_server.seat_state import Seat
 from lacoc_server.staging import Staging
 from lacoc_shared import __version__
-from lacoc_shared.codec import pack_states
 from lacoc_shared.inputs import (
     Advice,
     Decide,
@@ -34,6 +33,7 @@ from lacoc_shared.inputs import (
     ReadySeat,
     SilentSeat,
 )
+from lacoc_shared.marker_states import pack_states
 from lacoc_shared.messages import (
     PROTOCOL,
     DecisionReply,

@@ -56,16 +56,3 @@ def _new_decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
 def message_hash(message: bytes) -> bytes:
     """The 8 bytes by which frames, sheets and health name an encoded `Scene` or `Sheet`."""
     return hashlib.blake2b(message, digest_size=8).digest()
-
-
-def pack_states(states: tuple[int, ...]) -> bytes:
-    """Pack marker states, two bits each, the first in the lowest bits of the first byte."""
-    packed = bytearray((len(states) + 3) // 4)
-    for index, state in enumerate(states):
-        packed[index >> 2] |= state << (index & 3) * 2
-    return bytes(packed)
-
-
-def unpack_states(packed: bytes, count: int) -> tuple[int, ...]:
-    """Undo `pack_states`; `count` markers."""
-    return tuple(packed[index >> 2] >> (index & 3) * 2 & 3 for index in range(count))

@@ -76,7 +76,7 @@ CLIENT = "A client needs nothing of a court's"
         ("server/lacoc_server/match.py", "import lacoc_server.world", {PURE}),
         ("shared/lacoc_shared/gait.py", "import time", {PURE}),  # what the rules stand on, too
         ("server/lacoc_server/replay.py", "from mujoco import mj_step", {MUJOCO}),
-        ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),
+        ("shared/lacoc_shared/marker_states.py", "import zenoh", {ZENOH, PURE}),
         ("server/lacoc_server/replay.py", "import zenoh.ext", {ZENOH}),
         ("client/lacoc_client/__init__.py", "import lacoc_robots.model", {CLIENT}),
         ("client/lacoc_client/__init__.py", "import lacoc_arenas.othello.field", {CLIENT}),

@@ -16,9 +16,10 @@ from lacoc_server.match import Beat, Match, Outcome
 from lacoc_server.physics import Fault, MakePhysics
 from lacoc_server.world import World
 from lacoc_shared import decisions as d
-from lacoc_shared.codec import encode, unpack_states
+from lacoc_shared.codec import encode
 from lacoc_shared.gait import Level, Posture
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
+from lacoc_shared.marker_states import unpack_states
 from lacoc_shared.messages import MARKER_STATES, Event, Frame, Scene, SentFile
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import RESTART_KEY, Phase

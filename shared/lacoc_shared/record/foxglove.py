@@ -17,6 +17,7 @@ from mcap.writer import Writer
 
 from lacoc_shared import __version__, codec
 from lacoc_shared.kinematics import ForwardKinematics, joints_per_seat, multiply, rotate
+from lacoc_shared.marker_states import unpack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.foxglove_messages import (
@@ -164,7 +165,7 @@ class _Picture:
     def board(self, packed: bytes, time: Time) -> SceneUpdate:
         """All markers in their present states."""
         markers = self._sheet.markers
-        states = codec.unpack_states(packed, len(markers))
+        states = unpack_states(packed, len(markers))
         geoms: list[list[SceneGeom]] = [[] for _ in markers]
         for geom in self._scene.geoms:
             if geom.marker >= 0 and geom.state in (-1, states[geom.marker]):
