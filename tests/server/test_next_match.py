@@ -97,8 +97,8 @@ def phase_is(controller: Controller, phase: Phase) -> bool:
     return controller.view.frame is not None and controller.view.frame.phase == phase
 
 
-def test_the_next_match_takes_the_files_that_were_sent_in_this_one(room: Room) -> None:
-    """Rules 4: a match keeps the files that it began with; what is sent meanwhile is not lost."""
+def playing(room: Room) -> list[Controller]:
+    """Both seats of a match that is on."""
     players = [room.controller(seat) for seat in range(2)]
     for player in players:
         player.join()
@@ -106,6 +106,12 @@ def test_the_next_match_takes_the_files_that_were_sent_in_this_one(room: Room) -
     until(players, lambda: phase_is(players[0], Phase.READY))
     room.decide(Start())
     until(players, lambda: phase_is(players[0], Phase.PLAYING))
+    return players
+
+
+def test_the_next_match_takes_the_files_that_were_sent_in_this_one(room: Room) -> None:
+    """Rules 4: a match keeps the files that it began with; what is sent meanwhile is not lost."""
+    playing(room)
     left = room.controller(0, "quadruped")
     assert "the next takes your new ones" in "".join(left.join())
     assert sheet(left, 1).seats[0].robot == "Hexapod"
@@ -142,13 +148,7 @@ def test_who_was_silent_before_is_silent_in_the_next_match(room: Room) -> None:
 
 def test_who_left_in_play_and_came_back_is_heard(room: Room) -> None:
     """Rules 4: the seat stays theirs; nobody takes them for silent when they steer again."""
-    players = [room.controller(seat) for seat in range(2)]
-    for player in players:
-        player.join()
-        player.ready()
-    until(players, lambda: phase_is(players[0], Phase.READY))
-    room.decide(Start())
-    until(players, lambda: phase_is(players[0], Phase.PLAYING))
+    players = playing(room)
     players[0].leave()
     until(players[1:], lambda: seat_of(players[1], 0).flags & SeatFlag.SILENT)
     players[0].join()
