@@ -3,13 +3,11 @@
 from collections.abc import Iterator, Sequence
 from typing import Generic, TypeVar
 
+from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
 from lacoc_shared.seat import BEATS_PER_S
 
 T = TypeVar("T")
-
-KEPT = 2000
-"""Of a practice that goes on for days the newest, as many as the court lists."""
 
 
 class EventLog(Generic[T]):
@@ -76,7 +74,7 @@ class EventLog(Generic[T]):
             )
             self.number += 1
         self._known[event.number] = (event, kept)
-        if len(self._known) > KEPT:
+        if len(self._known) > EVENTS_LISTED:
             del self._known[min(self._known)]
             self._first = min(self._known)
         return True

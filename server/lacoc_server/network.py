@@ -5,6 +5,7 @@ beat, in the same order every time. What it may believe is the inbox's to say; a
 answered when the match has taken it in and the record is written. An outbox sends the rest.
 """
 
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import NamedTuple, Self
@@ -15,7 +16,7 @@ from lacoc_server.outbox import Outbox
 from lacoc_shared.access_rules import Protection
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
-from lacoc_shared.keyspace import ENTER, Keys
+from lacoc_shared.keyspace import ENTER, EVENTS_LISTED, Keys
 from lacoc_shared.messages import (
     DecisionReply,
     Done,
@@ -37,8 +38,6 @@ _DESK = 16
 _FETCH_DESK = 256  # a crowd may arrive at once
 _REQUESTS_PER_BEAT = 4  # that are refused; of one desk at most one enters a beat
 _FETCHES_PER_BEAT = 8
-_EVENTS_LISTED = 2000
-"""At most, and the newest: a reply has its limit, and a practice may go on for days."""
 
 
 _Judge = Callable[[Request], Input | Done | Refusal]
@@ -96,8 +95,8 @@ class CourtNetwork:
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
         self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
         self._log_desk = session.desk(keys.event, _FETCH_DESK)
-        self._log: list[Event] = []
-        """All events of the match."""
+        self._log: deque[Event] = deque(maxlen=EVENTS_LISTED)
+        """The events of the match."""
         self._sheet_bytes = self._scene_bytes = b""
         session.announce(keys.alive)
         self.locators = session.locators()
@@ -160,8 +159,8 @@ class CourtNetwork:
     def publish_event(self, event: Event) -> None:
         """Send an event, and keep it for those who come late or missed it."""
         if self._log and self._log[0].match != event.match:
-            self._log = []
-        self._log = [*self._log[1 - _EVENTS_LISTED :], event]
+            self._log.clear()
+        self._log.append(event)
         self._outbox.send(self._event, encode(event))
 
     def publish_sheet(self, sheet: Sheet) -> None:
@@ -210,7 +209,7 @@ class CourtNetwork:
             _serve(self._sheet_desk, lambda: self._sheet_bytes)
         if self._scene_bytes:
             _serve(self._scene_desk, lambda: self._scene_bytes)
-        _serve(self._log_desk, lambda: encode(self._log))
+        _serve(self._log_desk, lambda: encode(tuple(self._log)))
 
     def _let_in(self, desk: Desk, judge: _Judge) -> Iterator[Arrival]:
         for _ in range(_REQUESTS_PER_BEAT):

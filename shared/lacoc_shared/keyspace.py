@@ -13,6 +13,9 @@ ENTER = "enter"
 """In the place of a decision's name: the token is only shown."""
 DECISION_MAX_BYTES = 4096
 """A longer decision of a referee is not read."""
+EVENTS_LISTED = 2000
+"""A court lists, and a client keeps, at most so many events of a match, the newest: a reply has its
+limit, and a practice may go on for days."""
 JOIN_MAX_BYTES = 65_536
 """A longer join, with all its files, is not read."""
 

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lacoc_client.controller import Hold
-from lacoc_client.event_log import KEPT, EventLog
+from lacoc_client.event_log import EventLog
 from lacoc_client.gateway import home, server, wire
 from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.guard import Guard
@@ -23,6 +23,7 @@ from lacoc_client.gateway.site import PATHS
 from lacoc_client.gateway.viewer import Frames, Viewer
 from lacoc_shared.codec import BadMessage
 from lacoc_shared.contest import throwaway
+from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
 from lacoc_shared.mistakes import UserError
 
@@ -191,10 +192,10 @@ def test_the_courts_list_stands_for_the_log() -> None:
 def test_the_newest_of_a_very_long_log_are_kept() -> None:
     """Whoever comes late gets no more than the court would list, and nothing is missed by that."""
     log: EventLog[int] = EventLog()
-    for number in range(1, 3 * KEPT):
+    for number in range(1, 3 * EVENTS_LISTED):
         log.add(event(number, "a"), number)
-    assert list(log) == [*range(2 * KEPT, 3 * KEPT)]
-    assert not log.differs(1, 0, 3 * KEPT - 1)
+    assert list(log) == [*range(2 * EVENTS_LISTED, 3 * EVENTS_LISTED)]
+    assert not log.differs(1, 0, 3 * EVENTS_LISTED - 1)
     assert log.add(event(1, "next", match=2), 1)
     assert (list(log), log.differs(2, 0, 1)) == ([1], False)
 
