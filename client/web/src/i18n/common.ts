@@ -16,7 +16,7 @@ export const common = {
   "hint.countdown": ["Starts in {seconds}", "あと {seconds} 秒で開始"],
   "hint.leads": ["{team} leads by {points}", "{team} が {points} 点リード"],
   "hint.level": ["Level", "同点"],
-  "hint.halted": ["Halted; the referee resumes it", "中断中。審判が再開します"],
+  "hint.halted": ["The referee resumes it", "審判が再開します"],
   "hint.finished": ["Over: the referee confirms the result", "終了：審判が結果を確認しています"],
   "hint.wins": ["{team} wins", "{team} の勝ち"],
   "hint.draw": ["A draw", "引き分け"],
