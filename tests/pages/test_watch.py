@@ -106,7 +106,7 @@ def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
     show = Show(open_page(), venue.url, LOW)
     decide(referee, "fire alarm", type="halt")
     show.sees(".third.neutral", "fire alarm")
-    show.sees(".hint", "Halted")
+    show.sees(".score-bug .phase", "Halted")
     decide(referee, "fire alarm", type="abort")
     show.sees(".result h1", "The match is void")
     assert show.find(".result .won").count() == 0
