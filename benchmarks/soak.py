@@ -4,6 +4,9 @@ A real court, two bots, a gateway, spectators and pages that come and go, each k
 its own; this process referees. Between two matches, when all visitors have gone, each process
 is looked at: its memory, and its threads, files, sockets and children. Every record is
 simulated again (Linux only).
+
+While it warms up visitors rush: a process may hold what a crowd once needed, and not grow with
+each visit from then on.
 """
 
 import argparse
@@ -176,7 +179,7 @@ class _Run:
                 if ended:
                     break
                 for one in self._visitors.values():
-                    ask(one, "come")
+                    ask(one, "rush" if self._passed_s < warm_s else "come")
                 self._matches.append(self._match_id())
                 self._decide(Start(), Phase.READY)
                 self._until(Phase.FINISHED)

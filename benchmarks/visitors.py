@@ -4,7 +4,8 @@
 
 Direct ones are the project's own spectators, each with a session of its own; pages are
 WebSockets through a gateway. Each stays for a random while. A line "go" on standard input
-sends all away, "come" lets them come again; both are answered when it is so.
+sends all away, "come" lets them come again and "rush" lets many come for a short look; each is
+answered when it is so.
 """
 
 import argparse
@@ -21,7 +22,7 @@ from lacoc_client.spectator import Spectator
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.session import open_client
 
-STAY_S = 15.0
+STAY_S = {b"come": 15.0, b"rush": 2.0}
 """On average; some leave at once."""
 _PAUSE_S = 0.5
 _LOOK_S = 0.05
@@ -35,13 +36,14 @@ class _Door:
     def __init__(self, chance: random.Random) -> None:
         self.chance = chance
         self.open = asyncio.Event()
+        self.stay_s = 0.0
         self.inside = self.visits = self.frames = 0
         self.unanswered = 0
 
     async def stay(self) -> None:
         """As long as this visitor wants, or until all are sent away."""
         loop = asyncio.get_running_loop()
-        end_s = loop.time() + self.chance.expovariate(1 / STAY_S)
+        end_s = loop.time() + self.chance.expovariate(1 / self.stay_s)
         while self.open.is_set() and loop.time() < end_s:
             await asyncio.sleep(_LOOK_S)
 
@@ -106,7 +108,8 @@ async def main() -> None:
             visitors.create_task(door.come(visit, options.address)) for _ in range(options.most)
         ]
         while word := (await reader.readline()).strip():
-            if word == b"come":
+            if word in STAY_S:
+                door.stay_s = STAY_S[word]
                 door.open.set()
             else:
                 door.open.clear()

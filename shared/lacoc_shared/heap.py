@@ -8,13 +8,17 @@ import ctypes
 import sys
 from contextlib import suppress
 
-_M_ARENA_MAX = -8  # in malloc.h
+_M_MMAP_THRESHOLD, _M_ARENA_MAX = -3, -8  # in malloc.h
 _HEAPS = 2
+_BLOCK_BYTES = 1 << 20
+"""A larger block, such as a world of MuJoCo, is never part of a heap and goes back when it is free.
+Else the bound rises to the largest that was ever freed, and its place fills with small things."""
 
 
 def share() -> None:
     """Let the threads that will be started share few heaps."""
     _call("mallopt", _M_ARENA_MAX, _HEAPS)
+    _call("mallopt", _M_MMAP_THRESHOLD, _BLOCK_BYTES)
 
 
 def give_back() -> None:
