@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import msgspec
 
-from lacoc_server.allowance import Allowance
 from lacoc_server.links import Links
 from lacoc_server.sessions import Sessions, Why
 from lacoc_shared import codec, seal
+from lacoc_shared.allowance import Allowance
 from lacoc_shared.gait import Level
 from lacoc_shared.inputs import (
     HeardSeat,

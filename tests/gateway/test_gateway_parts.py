@@ -18,7 +18,6 @@ from lacoc_client.event_log import EventLog
 from lacoc_client.gateway import home, server, wire
 from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.guard import Guard
-from lacoc_client.gateway.page import Allowance
 from lacoc_client.gateway.site import PATHS
 from lacoc_client.gateway.viewer import Frames, Viewer
 from lacoc_shared.codec import BadMessage
@@ -210,13 +209,6 @@ def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
     assert log.differs(1, 0, 0)
     log.add(event(1, "b", match=2), "next 1")
     assert not log.differs(2, 0, 1)
-
-
-def test_an_allowance_is_spent_and_comes_back() -> None:
-    """A burst, then the rate."""
-    allowance = Allowance(1000.0, 5)
-    assert [allowance.take() for _ in range(4)] == [0.0] * 4
-    assert max(allowance.take() for _ in range(200)) > 0.1
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ class Courts:
         """
         acts = viewer.can_act
         most = ACTING_MOST if acts else self.home.viewers_most
-        if sum(feed.others(viewer) for feed in self.feeds) < most:
+        if sum(feed.audience.others(viewer) for feed in self.feeds) < most:
             return ""
         if acts:
             return f"{most} pages with the key are open here already: close those nobody needs."

@@ -5,19 +5,18 @@ import contextlib
 import time
 from collections.abc import Callable
 
-import msgspec
-
 from lacoc_client.asking import fetch, no_answer
-from lacoc_client.event_log import EventLog
 from lacoc_client.gateway import wire
+from lacoc_client.gateway.audience import Audience
+from lacoc_client.gateway.picture import CourtPicture
 from lacoc_client.gateway.threads import Threads
-from lacoc_client.gateway.viewer import Frames, Viewer
+from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared import log
 from lacoc_shared.access import Access
-from lacoc_shared.codec import BadMessage, decode, encode, message_hash
+from lacoc_shared.codec import BadMessage
 from lacoc_shared.keyspace import Keys
-from lacoc_shared.messages import PROTOCOL, Event
+from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.session import Mailbox, Session, open_client
 
@@ -30,34 +29,6 @@ _SAY_S = 1.0
 _RETRY_S = 1.0
 _WHY_S = 3.0
 _FETCH_AGAIN_S = 0.3
-_MAX_BYTES = 1 << 20
-
-
-class _Frame(msgspec.Struct, array_like=True):
-    """What the gateway needs to know of a frame; the rest goes on unread."""
-
-    match: int
-    beat: int
-    phase: int
-    countdown_beats: int
-    clock_ticks: int
-    seats: msgspec.Raw
-    markers: msgspec.Raw
-    poses: msgspec.Raw
-    scene: bytes
-
-
-class _Sheet(msgspec.Struct):
-    protocol: int
-    scene: bytes
-    match_id: str = ""
-
-
-class _Health(msgspec.Struct):
-    match: int
-    beat: int
-    events: int = 0
-    sheet: bytes = b""
 
 
 class CourtFeed:
@@ -77,28 +48,16 @@ class CourtFeed:
         """The connection; None until there was one."""
         self._keys = Keys(court)
         self._threads = threads
-        self._viewers: dict[Viewer, None] = {}
-        self._gone = Frames()
-        """What the pages got that have gone."""
-        self.match_id = ""
-        """The match that is on, as its record is named."""
+        self.audience = Audience()
+        """The pages that watch."""
+        self.picture = CourtPicture()
+        """What they see."""
         self._say = log.get(court=court)
-        self._log: EventLog[bytes] = EventLog()
-        self._frame: bytes | None = None
-        self._sheet: bytes | None = None
-        self._scene: bytes | None = None
-        self._health: bytes | None = None
-        self._frame_scene = self._sheet_scene = self._scene_hash = b""
         self._frame_s = time.monotonic()
         self._connected = False
         """Whether it sends frames, of the version that this gateway speaks: only then pages do."""
         self._why = ""
-        self._wrong_version = ""
-        self._told = _Health(0, 0)
-        """What the court said last of all that it sent."""
-        self._sheet_hash = b""
-        self._doubt = False
-        """Something made no sense: is this still a court of this version? Its sheet says."""
+        """Why it does not."""
         self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
         self._explained_s = 0.0
@@ -120,53 +79,25 @@ class CourtFeed:
             self.session.close()
 
     @property
-    def viewers(self) -> int:
-        """How many pages watch."""
-        return len(self._viewers)
-
-    def others(self, viewer: Viewer) -> int:
-        """How many other pages watch that may do what this one may: act, or only watch."""
-        return sum(one.can_act == viewer.can_act for one in self._viewers if one is not viewer)
-
-    @property
     def connected(self) -> bool:
         """Whether the court sends frames."""
         return self._connected
 
-    def frames(self) -> Frames:
-        """What became of the frames of all pages; may be asked from any thread."""
-        all_frames = [self._gone, *(viewer.frames for viewer in list(self._viewers))]
-        return Frames(
-            sum(frames.sent for frames in all_frames), sum(frames.dropped for frames in all_frames)
-        )
-
     def log(self, text: str, kind: str, **particulars: object) -> None:
         """Log something of this court."""
-        self._say.info(text, kind=kind, match_id=self.match_id, **particulars)
+        self._say.info(text, kind=kind, match_id=self.picture.match_id, **particulars)
 
     def add(self, viewer: Viewer) -> None:
         """Let a page watch; it gets all there is at once."""
-        viewer.send(self._link())
-        self._send_all(viewer)
-        self._viewers[viewer] = None
-
-    def remove(self, viewer: Viewer) -> None:
-        """Let a page go."""
-        if viewer in self._viewers:
-            del self._viewers[viewer]
-            self._gone.sent += viewer.frames.sent
-            self._gone.dropped += viewer.frames.dropped
-
-    def _send_all(self, viewer: Viewer) -> None:
-        for framed in (self._sheet, self._scene, *self._log, self._health):
-            if framed is not None:
-                viewer.send(framed)
-        if self._frame is not None and self._connected:  # never an old picture as a new one
-            viewer.send(self._frame)
-
-    def _send(self, framed: bytes) -> None:
-        for viewer in self._viewers:
+        for framed in (self._link(), *self._all()):
             viewer.send(framed)
+        self.audience.add(viewer)
+
+    def _all(self) -> tuple[bytes, ...]:
+        frame = self.picture.frame
+        if frame is None or not self._connected:  # never an old picture as a new one
+            return self.picture.all_but_frame()
+        return (*self.picture.all_but_frame(), frame)
 
     async def _run(self) -> None:
         while self.session is None:
@@ -177,7 +108,7 @@ class CourtFeed:
                 await self._subscribe(self.session)
             except UserError as error:
                 self._why = str(error)
-                self._send(self._link())
+                self.audience.send(self._link())
                 await asyncio.sleep(_RETRY_S)
         self._why, self._frame_s = "", time.monotonic()
         said_s = 0.0
@@ -189,7 +120,7 @@ class CourtFeed:
                 self.log(f"Court {self.court} is silent.", "link", connected=False)
             if not self._connected and (was or now_s - said_s >= _SAY_S):
                 said_s = now_s
-                self._send(self._link())
+                self.audience.send(self._link())
                 if silent:
                     self._explain(now_s)
             await asyncio.sleep(_LOOK_S)
@@ -198,15 +129,11 @@ class CourtFeed:
         """A frame after a silence: the court may be another one, so everything is sent again."""
         self._connected, self._why = True, ""
         self.log(f"Court {self.court} sends frames.", "link", connected=True)
-        self._send(self._link())
-        for viewer in self._viewers:
-            self._send_all(viewer)
+        self.audience.send(self._link(), *self._all())
 
     def _link(self) -> bytes:
         silent_s = max(0.0, time.monotonic() - self._frame_s)
-        text = ""
-        if not self._connected:
-            text = self._wrong_version or self._why
+        text = "" if self._connected else self._wrong_version or self._why
         return wire.map_message(
             Kind.LINK,
             {
@@ -214,7 +141,7 @@ class CourtFeed:
                 "connected": self._connected,
                 "silent_s": round(silent_s, 1),
                 "text": text,
-                "log": self._log.number,
+                "log": self.picture.log_number,
             },
         )
 
@@ -224,7 +151,6 @@ class CourtFeed:
         if self._wrong_version or not idle or now_s - self._explained_s < _WHY_S:
             return
         self._explained_s = now_s
-
         assert self.session is not None
         self._explaining = asyncio.get_running_loop().create_task(self._find_words(self.session))
 
@@ -260,92 +186,44 @@ class CourtFeed:
 
     def _take_frame(self, payload: bytes) -> None:
         try:
-            self._frame_scene = decode(payload, _Frame, _MAX_BYTES).scene
+            framed = self.picture.take_frame(payload)
         except BadMessage:
             self._stray()
             return
         now_s = self._frame_s = time.monotonic()
-        framed = self._frame = wire.message(Kind.FRAME, payload)
-        if not (self._connected or self._wrong_version):
+        if not (self._connected or self.picture.other_version):
             self._come_back()
         if self._connected:
-            for viewer in self._viewers:
-                viewer.offer(framed, now_s)
-        if self._lacks_scene or self._lacks_sheet:
+            self.audience.offer(framed, now_s)
+        if self.picture.lacks_scene or self.picture.lacks_sheet:
             self._catch_up()
 
     def _take_event(self, payload: bytes) -> None:
+        number = self.picture.log_number
         try:
-            event = decode(payload, Event, _MAX_BYTES)
+            framed = self.picture.take_event(payload)
         except BadMessage:
             self._stray()
             return
-        log = self._log.number
-        framed = wire.message(Kind.EVENT, payload)
-        if not self._log.add(event, framed):
-            return
-        if self._log.number == log:
-            self._send(framed)
-        else:
+        if self.picture.log_number != number:
+            self._send_log()
+        elif framed is not None:
+            self.audience.send(framed)
+
+    def _take_log(self, payload: bytes) -> None:
+        number = self.picture.log_number
+        self.picture.take_log(payload)
+        if self.picture.log_number != number:
             self._send_log()
 
     def _send_log(self) -> None:
-        self._send(self._link())  # its new number says that what was before is no more
-        for kept in self._log:
-            self._send(kept)
-
-    @property
-    def _lacks_events(self) -> bool:
-        return self._log.differs(self._told.match, self._told.beat, self._told.events)
-
-    @property
-    def _lacks_scene(self) -> bool:
-        return self._frame_scene != self._scene_hash
-
-    @property
-    def _lacks_sheet(self) -> bool:
-        other = self._told.sheet not in (b"", self._sheet_hash)
-        return self._doubt or other or self._frame_scene != self._sheet_scene
-
-    def _catch_up(self) -> None:
-        """Get what is new, was sent while this was away, or was dropped on a slow link."""
-        if self._restoring is None or self._restoring.done():
-            self._restoring = asyncio.get_running_loop().create_task(self._restore())
-
-    async def _restore(self) -> None:
-        while self._lacks_events or self._lacks_scene or self._lacks_sheet:
-            with contextlib.suppress(UserError, BadMessage):  # it went away just now
-                if self._lacks_events:
-                    self._take_log(await self._ask(self._keys.event))
-                if self._lacks_scene:
-                    self._take_scene(await self._ask(self._keys.scene))
-                if self._lacks_sheet:
-                    await self._fetch_sheet()
-            await asyncio.sleep(_FETCH_AGAIN_S)
-            if not self._connected:
-                return  # the next frame or health asks again
+        # The link's new number says that what was before is no more.
+        self.audience.send(self._link(), *self.picture.log)
 
     def _take_scene(self, payload: bytes) -> None:
-        found = message_hash(payload)
-        if found == self._frame_scene and found != self._scene_hash:
-            self._scene_hash = found
-            self._scene = wire.message(Kind.SCENE, found + payload)
-            self._send(self._scene)
-
-    def _take_log(self, payload: bytes) -> None:
-        events = decode(payload, tuple[Event, ...], _MAX_BYTES)
-        framed = [(event, wire.message(Kind.EVENT, encode(event))) for event in events]
-        log = self._log.number
-        self._log.restore(framed)
-        if self._log.number != log:
-            self._send_log()
-
-    async def _fetch_sheet(self) -> None:
-        payload = await self._ask(self._keys.sheet)
-        try:
-            self._take_sheet(payload)
-        except BadMessage:
-            self._other_version("another version")
+        framed = self.picture.take_scene(payload)
+        if framed is not None:
+            self.audience.send(framed)
 
     def _hear_sheet(self, payload: bytes) -> None:
         try:
@@ -354,49 +232,70 @@ class CourtFeed:
             self._stray()
 
     def _take_sheet(self, payload: bytes) -> None:
-        sheet = decode(payload, _Sheet, _MAX_BYTES)
-        self._doubt = False
-        self._sheet_scene, self.match_id = sheet.scene, sheet.match_id
-        self._sheet_hash = message_hash(payload)
-        if sheet.protocol != PROTOCOL:
-            self._other_version(f"version {sheet.protocol}")
-            return
-        self._wrong_version = ""
-        framed = wire.message(Kind.SHEET, payload)
-        if framed != self._sheet:
-            self._sheet = framed
-            self._send(framed)
+        before = self.picture.other_version
+        framed = self.picture.take_sheet(payload)
+        if framed is not None:
+            self.audience.send(framed)
+        self._look_at_version(before)
 
     def _take_health(self, payload: bytes) -> None:
         try:
-            self._told = decode(payload, _Health, _MAX_BYTES)
+            framed = self.picture.take_health(payload)
         except BadMessage:
             self._stray()
             return
-        if self._lacks_events or self._lacks_sheet:
+        if self.picture.lacks_events or self.picture.lacks_sheet:
             self._catch_up()
-        if self._wrong_version:
-            return
-        self._health = framed = wire.message(Kind.HEALTH, payload)
-        for viewer in self._viewers:
-            viewer.send_if_fast(framed)
+        if framed is not None:
+            self.audience.send_if_fast(framed)
 
     def _stray(self) -> None:
         """Something made no sense: the sheet says whether the court has another version."""
-        if not self._wrong_version:
-            self._doubt = True
+        if not self.picture.other_version:
+            self.picture.doubt()
             self._catch_up()
 
-    def _other_version(self, speaks: str) -> None:
-        """Show nothing of the court until it has another sheet."""
-        wrong = (
+    def _look_at_version(self, before: str) -> None:
+        """Show nothing of a court of another version until it has another sheet."""
+        if self.picture.other_version not in ("", before):
+            self._connected = False
+            self.log(self._wrong_version, "link", connected=False)
+            self.audience.send(self._link())
+
+    @property
+    def _wrong_version(self) -> str:
+        speaks = self.picture.other_version
+        return speaks and (
             f"Court {self.court!r} speaks {speaks} of the protocol, this gateway version "
             f"{PROTOCOL}: install the version of lacoc that the court has."
         )
-        if wrong != self._wrong_version:
-            self._wrong_version, self._connected = wrong, False
-            self.log(wrong, "link", connected=False)
-            self._send(self._link())
+
+    def _catch_up(self) -> None:
+        """Get what is new, was sent while this was away, or was dropped on a slow link."""
+        if self._restoring is None or self._restoring.done():
+            self._restoring = asyncio.get_running_loop().create_task(self._restore())
+
+    async def _restore(self) -> None:
+        picture = self.picture
+        while picture.lacks:
+            with contextlib.suppress(UserError, BadMessage):  # it went away just now
+                if picture.lacks_events:
+                    self._take_log(await self._ask(self._keys.event))
+                if picture.lacks_scene:
+                    self._take_scene(await self._ask(self._keys.scene))
+                if picture.lacks_sheet:
+                    await self._fetch_sheet()
+            await asyncio.sleep(_FETCH_AGAIN_S)
+            if not self._connected:
+                return  # the next frame or health asks again
+
+    async def _fetch_sheet(self) -> None:
+        payload, before = await self._ask(self._keys.sheet), self.picture.other_version
+        try:
+            self._take_sheet(payload)
+        except BadMessage:
+            self.picture.other_version = "another version"
+            self._look_at_version(before)
 
     async def _ask(self, key: str) -> bytes:
         session = self.session

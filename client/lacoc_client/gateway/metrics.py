@@ -39,8 +39,8 @@ class GatewayMetrics(Collector):
         for feed in self._courts.feeds:
             court = [feed.court]
             connected.add_metric(court, feed.connected)
-            viewers.add_metric(court, feed.viewers)
-            frames = feed.frames()
+            viewers.add_metric(court, len(feed.audience))
+            frames = feed.audience.frames()
             sent.add_metric(court, frames.sent)
             dropped.add_metric(court, frames.dropped)
         yield from (connected, viewers, sent, dropped)

@@ -1,0 +1,89 @@
+"""How what a page asks is answered: at once, later, or from another thread."""
+
+import asyncio
+import time
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from lacoc_client.gateway import wire
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_shared.allowance import Allowance
+from lacoc_shared.mistakes import FileRefused, UserError
+
+TOO_MUCH = "Too much at once: wait for the answers."
+
+_AT_ONCE = 8
+_LOGGED_HZ, _LOGGED_BURST = 1.0, 10
+
+
+class Answers:
+    """Sends replies and refusals; used from the event loop only.
+
+    Args:
+        viewer: the page.
+        log: logs a refusal.
+    """
+
+    def __init__(self, viewer: Viewer, log: Callable[[str, str], None]) -> None:
+        self._viewer = viewer
+        self._log = log
+        self._logged = Allowance(_LOGGED_HZ, _LOGGED_BURST)
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def reply(self, to: int, value: Any) -> None:
+        """Answer what was asked."""
+        self._viewer.send(wire.reply(to, value))
+
+    def refuse(self, to: int, error: Exception | str) -> None:
+        """Say why something was not done."""
+        self._viewer.send(wire.refusal(to, error))
+        # The sentences name no token; a page that asks for more of them is heard less often.
+        if self._logged.take(1, time.monotonic()):
+            self._log(f"Refused: {error}", "refused")
+
+    def later(self, to: int, work: Coroutine[Any, Any, Any]) -> None:
+        """Answer with what comes of some work, and go on reading meanwhile.
+
+        Raises:
+            UserError: if too much is going on already.
+        """
+        if len(self._tasks) >= _AT_ONCE:
+            work.close()
+            raise UserError(TOO_MUCH)
+        task = asyncio.get_running_loop().create_task(self._answer(to, work))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _answer(self, to: int, work: Coroutine[Any, Any, Any]) -> None:
+        try:
+            self.reply(to, await work)
+        except (UserError, FileRefused) as error:
+            self.refuse(to, error)
+        except Exception:  # a bug, but no page waits for ever
+            self.refuse(to, wire.FAULT)
+            raise
+
+    def from_thread(self, to: int) -> Callable[[Any, Exception | None], None]:
+        """Make a function that takes the answer on any thread."""
+        loop = asyncio.get_running_loop()
+
+        def answer(value: Any, error: Exception | None) -> None:
+            if error is None:
+                in_loop(loop, lambda: self.reply(to, value))
+            else:
+                in_loop(loop, lambda: self.refuse(to, error))
+
+        return answer
+
+    def stop(self) -> None:
+        """Nobody waits for an answer any more."""
+        for task in self._tasks:
+            task.cancel()
+
+
+def in_loop(loop: asyncio.AbstractEventLoop, do: Callable[[], None]) -> None:
+    """Do something on the event loop's thread, if the loop has not ended."""
+    try:
+        loop.call_soon_threadsafe(do)
+    except RuntimeError:
+        return

@@ -1,0 +1,119 @@
+"""The seat that one page holds."""
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+from lacoc_client.gateway import wire
+from lacoc_client.gateway.answers import Answers, in_loop
+from lacoc_client.gateway.home import Prefill
+from lacoc_client.gateway.seat import SeatThread
+from lacoc_client.gateway.viewer import MOST_HZ, Viewer
+from lacoc_client.gateway.wire import Kind
+from lacoc_client.seat_files import SeatFiles
+from lacoc_shared.access import Access
+from lacoc_shared.mistakes import UserError
+
+
+class PageSeat:
+    """Joins a seat, steers it and tells its page how it is; used from the event loop only.
+
+    Args:
+        viewer: the page.
+        answers: answers what it asks.
+        prefill: what it need not say.
+        log: logs something about the page: a sentence, its kind and particulars.
+    """
+
+    def __init__(
+        self,
+        viewer: Viewer,
+        answers: Answers,
+        prefill: Prefill | None,
+        log: Callable[..., None],
+    ) -> None:
+        self._viewer = viewer
+        self._answers = answers
+        self._prefill = prefill
+        self._log = log
+        self._thread: SeatThread | None = None
+        self._joins = 0
+        self._hold = ("", "")
+        """The seat and how it is held, as it was told last."""
+
+    def join(self, asked: wire.JoinAsk, watching: Access) -> None:
+        """Take a seat, instead of the one before if there is one.
+
+        Args:
+            asked: by the page.
+            watching: the way to the court, for somebody who watches.
+
+        Raises:
+            UserError: if there is no token.
+        """
+        access, name, files = self._entry(asked, watching)
+        self._end()
+        loop, viewer, joins = asyncio.get_running_loop(), self._viewer, self._joins
+        viewer.watch_closely()
+        viewer.at_least(MOST_HZ)
+
+        def tell(seat: dict[str, Any]) -> None:
+            in_loop(loop, lambda: self._tell(seat, joins))
+
+        self._thread = SeatThread(
+            access, name, files, viewer.unheard_s, tell, self._answers.from_thread(asked.id)
+        )
+
+    def steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk) -> None:
+        """Let the seat's controller do something.
+
+        Raises:
+            UserError: if there is no seat.
+        """
+        if self._thread is None:
+            raise UserError("This page holds no seat: join one first.")
+        do, answer = self._thread.do, self._answers.from_thread(asked.id)
+        match asked:
+            case wire.ReadyAsk(ready=ready):
+                do(lambda controller: {"text": controller.ready(ready)}, answer)
+            case wire.LeaveAsk():
+                do(lambda controller: {"text": controller.leave()}, answer)
+            case wire.KeyAsk(level=level, key=key):
+                do(lambda controller: {"seq": controller.press(level, key)}, answer)
+
+    def leave(self) -> None:
+        """The page goes: stop repeating now; the seat stays the contestant's."""
+        self._end()
+        if self._hold[0]:
+            self._log(f"The page of seat {self._hold[0]} has gone.", "seat", seat=self._hold[0])
+        self._hold = ("", "")
+
+    def _end(self) -> None:
+        if self._thread is not None:
+            self._thread.end()
+            self._thread = None
+        self._joins += 1
+
+    def _entry(self, asked: wire.JoinAsk, watching: Access) -> tuple[Access, str, SeatFiles]:
+        """The way to the seat and what it brings; what the page left open is prefilled."""
+        token, name = asked.token, asked.name
+        files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
+        prefill = self._prefill
+        if prefill is not None and (not token or not prefill.token):
+            own, theirs = files, prefill.files
+            if own.postures is None and own.locomotion is None:
+                files = SeatFiles(own.robot or theirs.robot, theirs.postures, theirs.locomotion)
+            token, name = token or prefill.token, name or prefill.name
+        if not token:
+            raise UserError("The token is missing: the organiser has it.")
+        return watching.of_seat(asked.seat, token), name or f"Team {asked.seat}", files
+
+    def _tell(self, seat: dict[str, Any], joins: int) -> None:
+        if joins != self._joins:
+            return  # of a seat that the page has no more
+        self._viewer.send(wire.map_message(Kind.SEAT, seat))
+        hold = (seat["seat"], seat["hold"])
+        if hold != self._hold:
+            self._hold = hold
+            because = f" ({seat['reason']})" if seat["reason"] else ""
+            self._log(f"Seat {hold[0]}: {hold[1]}{because}.", "seat", seat=hold[0], hold=hold[1])
