@@ -51,7 +51,8 @@ class Look(NamedTuple):
 
     at_s: float
     memory_bytes: int
-    """Its own, shared with nobody: what a leak grows."""
+    """What it wrote into, of no file: what a leak grows. Pages of libraries come and go with who
+    else has them."""
     threads: int
     files: int
     sockets: int
@@ -265,7 +266,7 @@ class _Run:
 
 
 def _look(process: psutil.Process, at_s: float) -> Look:
-    memory = process.memory_full_info().uss
+    memory = sum(part.anonymous for part in process.memory_maps())
     with process.oneshot():
         return Look(
             at_s,
