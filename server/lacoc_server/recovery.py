@@ -74,6 +74,7 @@ def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
             if record.gap:
                 raise UserError(record.cut)
             match = resume(record, folder=arena.folder)
+            _check_seats(match, arena)
         except NoMatch as error:
             if newest.stat().st_size < _OPENING_BYTES:
                 continue
@@ -100,6 +101,15 @@ def _check_origin(record: Record, name: MatchName, arena: Arena) -> None:
         raise UserError(
             f"It was played in arena {setup.arena!r:.80}, and this court is to play "
             f"{arena.name!r:.80}: start the court with that arena to go on."
+        )
+
+
+def _check_seats(match: Match, arena: Arena) -> None:
+    seats, wanted = ([seat.id for seat in of] for of in (match.arena.seats, arena.seats))
+    if seats != wanted:
+        raise UserError(
+            f"It has the seats {', '.join(seats)}, and this court is to have "
+            f"{', '.join(wanted)}: start the court with those seats to go on."
         )
 
 

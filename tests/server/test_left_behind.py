@@ -117,6 +117,15 @@ def test_a_match_of_another_arena_is_refused(there: str, here: str, tmp_path: Pa
     assert taken_up(tmp_path, "main", arenas.load(there)) == match_id
 
 
+def test_a_match_of_other_seats_is_refused(tmp_path: Path) -> None:
+    """Who holds a token of the court could not steer its robot."""
+    killed(tmp_path)
+    renamed = [seat | {"id": new} for seat, new in zip(OTHELLO.settings["seat"], "ab", strict=True)]
+    other = arenas.load("othello", arenas.merge(QUICK, {"seat": renamed}))
+    with pytest.raises(UserError, match=r"has the seats left, right, and this .* a, b: start"):
+        unfinished(tmp_path, "main", other)
+
+
 def test_a_match_that_its_court_ended_is_over(tmp_path: Path) -> None:
     """Also while its segments wait to be packed, or could not be: docs/operations.md, SIGTERM."""
     journal = held(tmp_path)

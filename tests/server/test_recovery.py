@@ -16,7 +16,7 @@ from lacoc_client.spectator import Spectator
 from lacoc_server.recovery import unfinished
 from lacoc_server.replay import Verdict, verify
 from lacoc_shared.contest import load
-from lacoc_shared.decisions import Resume, Start
+from lacoc_shared.decisions import Decision, Declare, Halt, Next, Official, Resume, Start
 from lacoc_shared.gait import Level
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
@@ -72,6 +72,43 @@ def test_a_killed_court_goes_on(contest: Path, tmp_path: Path) -> None:
     *_, verdict = verify(Record.read(packed[0]))
     assert isinstance(verdict, Verdict)
     assert verdict.text == "same"
+
+
+def test_settings_that_were_changed_count_from_the_next_match(
+    contest: Path, tmp_path: Path
+) -> None:
+    """The match that goes on is the one that was begun; the file's word is for those after it."""
+    folder = tmp_path / "recordings"
+    name, court = load(contest).court()
+    with ExitStack() as stack:
+        first = stack.enter_context(served(contest, folder))
+        session = stack.enter_context(open_client([court.address()]))
+        controllers = seated(session, contest)
+        left = controllers[0]
+        until(controllers, lambda: phase(left) == Phase.READY)
+        usual_s = left.view.sheet.duration_s
+        os.kill(first.pid, signal.SIGKILL)
+        first.wait()
+        text = contest.read_text()
+        contest.write_text(
+            text.replace("settings.match.", "settings.match.duration_s = 75.0\nsettings.match.", 1)
+        )
+        stack.enter_context(served(contest, folder))
+        referee = RefereeClient(session, name, court.referee.token)
+
+        def decide(decision: Decision, then: Phase) -> None:
+            referee.decide(decision, "a test", "Kubota")
+            until(controllers, lambda: phase(left) == then)
+
+        until(controllers, lambda: left.view.health and not left.view.health.decisions["start"])
+        assert left.view.sheet.duration_s == usual_s != 75.0
+        decide(Start(), Phase.PLAYING)
+        decide(Halt(), Phase.HALTED)
+        decide(Declare("draw"), Phase.FINISHED)
+        decide(Official(), Phase.OFFICIAL)
+        decide(Next(), Phase.LOBBY)
+        until(controllers, lambda: left.view.sheet.match == 2)
+        assert left.view.sheet.duration_s == 75.0
 
 
 def test_how_well_it_was_held_outlives_the_kill(contest: Path, tmp_path: Path) -> None:

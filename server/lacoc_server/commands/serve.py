@@ -89,16 +89,19 @@ def serve_command(
     keys = Keys(name)
     folder = recordings or plan.recordings
     left = None if fresh else unfinished(folder, name, loaded)
+    levels = {*loaded.match.open_levels}
     if left is not None:
-        loaded = left.match.arena
+        levels |= {*left.match.rules.open_levels}  # the match that is on has the last word
         screen.note(f"Going on with match {left.match.setup.match_id}. --fresh opens a new one.")
+        if left.match.setup.settings != loaded.settings:
+            screen.note("It keeps the settings that it was opened with; the next has the new ones.")
         if left.cut:
             screen.note(left.cut)
     admission = Admission(
         SentFile(*find_robot(plan.robot)),
         *sample_gait_files(plan.robot),
         Limits.of(plan.limits),
-        loaded.match.open_levels,
+        levels,
     )
     inbox = Inbox(
         keys,
