@@ -1,6 +1,8 @@
 """Whole matches by commands: bots, the referee, spectators, each a process as in a contest."""
 
 import json
+import os
+import signal
 import subprocess
 import time
 from pathlib import Path
@@ -195,6 +197,22 @@ def test_a_bot_ends_when_its_seat_is_taken(open_court: OpenCourt) -> None:
 
     assert first.returncode == 2
     assert "joined again from another window or machine" in out
+
+
+def test_a_bot_says_that_its_court_is_silent(open_court: OpenCourt) -> None:
+    """Once when it falls silent, and once when it is back."""
+    court = open_court("--arena", "othello")
+    bot = court.start("bot", "straight", *court.where("left"))
+    assert bot.stdout is not None
+    lines = iter(bot.stdout.readline, "")
+    assert any("holds seat left" in line for line in lines)
+    os.kill(court.process.pid, signal.SIGSTOP)
+    try:
+        said = next(line for line in lines if line.startswith("Link: "))
+    finally:
+        os.kill(court.process.pid, signal.SIGCONT)
+    assert "court silent for" in said
+    assert next(lines) == "The court is back.\n"
 
 
 def test_a_bot_leaves_when_it_is_asked_to_end(

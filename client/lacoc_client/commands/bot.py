@@ -107,6 +107,7 @@ def _brings(name: str, robot: str | None, gaits: list[Path]) -> tuple[SeatFiles,
 
 
 def _play(controller: Controller, player: BotPlayer, stopping: Callable[[], bool]) -> None:
+    well = True
     while not stopping():
         frame = controller.wait_frame(0.1)
         if frame is not None:
@@ -118,7 +119,13 @@ def _play(controller: Controller, player: BotPlayer, stopping: Callable[[], bool
                 screen.show(event.text)
         if controller.hold in (Hold.REPLACED, Hold.REFUSED):
             raise UserError(f"The seat is lost: {controller.reason}.")
-        if controller.view.silent_s(time.monotonic()) > _GONE_S:
+        now_s = time.monotonic()
+        link = controller.link(now_s)
+        if well == bool(link):
+            well = not link
+            waits = f"Link: {link}. The robot stands; when the court is back this goes on."
+            screen.note("The court is back." if well else waits)
+        if controller.view.silent_s(now_s) > _GONE_S:
             raise UserError(f"No word from the court for {_GONE_S:.0f} s.")
 
 
