@@ -1,4 +1,4 @@
-"""A contest's court as a process, and controllers that wait for what it does."""
+"""A contest's court as a process, and those who wait for what it does."""
 
 import json
 import socket
@@ -10,10 +10,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from lacoc_client.controller import Controller
+from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_shared.contest import load
+from lacoc_shared.decisions import Decision, Start
 from lacoc_shared.messages import Frame
-from lacoc_shared.session import Session
+from lacoc_shared.seat import Phase
+from lacoc_shared.session import Session, open_client
 
 WAIT_S = 30.0
 
@@ -64,19 +67,6 @@ def served(
         process.communicate(timeout=WAIT_S)
 
 
-def seated(session: Session, contest: Path) -> list[Controller]:
-    """Controllers of all seats, joined and ready."""
-    name, court = load(contest).court()
-    controllers = [
-        Controller(session, name, seat, holder.token, f"Team {seat}")
-        for seat, holder in court.seat.items()
-    ]
-    for controller in controllers:
-        controller.join()
-        controller.ready()
-    return controllers
-
-
 def until(clients: Iterable[Controller | Spectator], true: Callable[[], bool]) -> None:
     """Let clients do their work until something is true."""
     clients = list(clients)
@@ -96,3 +86,66 @@ def frame(controller: Controller) -> Frame:
 
 def phase(controller: Controller) -> int:
     return frame(controller).phase
+
+
+class Party:
+    """All contestants of a court, joined and ready, and its referee, in one session."""
+
+    def __init__(self, session: Session, contest: Path) -> None:
+        name, court = load(contest).court()
+        self.session = session
+        self.controllers = [
+            Controller(session, name, seat, holder.token, f"Team {seat}")
+            for seat, holder in court.seat.items()
+        ]
+        for controller in self.controllers:
+            controller.join()
+            controller.ready()
+        self.left = self.controllers[0]
+        self.referee = RefereeClient(session, name, court.referee.token)
+
+    @property
+    def view(self) -> Spectator:
+        """What one of them sees."""
+        return self.left.view
+
+    @property
+    def frame(self) -> Frame:
+        """The newest; waits for the first."""
+        return frame(self.left)
+
+    @property
+    def phase(self) -> int:
+        return phase(self.left)
+
+    @property
+    def trouble(self) -> str:
+        """What the court says of the disk of its record."""
+        return "" if self.view.health is None else self.view.health.record_trouble
+
+    def until(self, true: Callable[[], bool]) -> None:
+        """Let them do their work until something is true."""
+        until(self.controllers, true)
+
+    def reach(self, phase: Phase) -> None:
+        """Wait for a phase."""
+        self.until(lambda: self.phase == phase)
+
+    def decide(self, decision: Decision, then: Phase | None = None) -> None:
+        """Let the referee decide, and wait for what follows."""
+        self.referee.decide(decision, "a test", "Kubota")
+        if then is not None:
+            self.reach(then)
+
+    def play(self) -> None:
+        """Start the match."""
+        self.reach(Phase.READY)
+        self.decide(Start(), Phase.PLAYING)
+
+
+@contextmanager
+def party(contest: Path) -> Iterator[Party]:
+    """Those who belong to a contest's court, which runs."""
+    _, court = load(contest).court()
+    with open_client([court.address()]) as session:
+        yield Party(session, contest)

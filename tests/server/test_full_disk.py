@@ -10,20 +10,16 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from running import WAIT_S, frame, phase, seated, served, until, write_contest
+from running import WAIT_S, Party, party, served, write_contest
 
-from lacoc_client.controller import Controller
-from lacoc_client.referee import RefereeClient
 from lacoc_server.replay import Verdict, verify
 from lacoc_shared.codec import decode
-from lacoc_shared.contest import load
-from lacoc_shared.decisions import Abort, Halt, Next, Resume, Start
+from lacoc_shared.decisions import Abort, Halt, Next, Resume
 from lacoc_shared.gait import Level
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import open_client
 
 pytestmark = pytest.mark.slow
 
@@ -87,49 +83,39 @@ def read(folder: Path) -> Record:
     return Record.read(next(folder.glob("*.live.mcap")))
 
 
-def is_given(controller: Controller, reason: str) -> bool:
+def is_given(those: Party, reason: str) -> bool:
     """Whether a decision has this reason; an event comes after the frame of its beat."""
-    return any(reason in event.data.get("reason", "") for event in controller.view.events)
-
-
-def trouble(controller: Controller) -> str:
-    return "" if controller.view.health is None else controller.view.health.record_trouble
+    return any(reason in event.data.get("reason", "") for event in those.view.events)
 
 
 @pytest.mark.parametrize("disk_of", [limited, small])
 def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: Path) -> None:
     """Nobody is told what is not recorded; with room again the match goes on, halted."""
     contest = write_contest(tmp_path / "contest.toml")
-    name, court = load(contest).court()
     seen: dict[int, bytes] = {}
     with ExitStack() as stack:
         disk: Disk = stack.enter_context(disk_of(contest, tmp_path))  # type: ignore[arg-type]
-        session = stack.enter_context(open_client([court.address()]))
-        frames = session.mailbox(f"lacoc/{name}/frame", 10_000)
-        controllers = seated(session, contest)
-        left = controllers[0]
-        until(controllers, lambda: phase(left) == Phase.READY)
-        referee = RefereeClient(session, name, court.referee.token)
-        referee.decide(Start(), "", "Kubota")
-        until(controllers, lambda: phase(left) == Phase.PLAYING)
+        those = stack.enter_context(party(contest))
+        frames = those.session.mailbox("lacoc/main/frame", 10_000)
+        those.play()
 
         for _ in range(2):
-            seq = left.press(Level.LOCOMOTION, 2)
-            until(controllers, lambda seq=seq: frame(left).seats[0].applied_seq == seq)
+            seq = those.left.press(Level.LOCOMOTION, 2)
+            those.until(lambda seq=seq: those.frame.seats[0].applied_seq == seq)
             disk.fill()
-            until(controllers, lambda: "can't be written" in trouble(left))
-            stopped = frame(left).beat
-            lost = left.press(Level.LOCOMOTION, 1)
+            those.until(lambda: "can't be written" in those.trouble)
+            stopped = those.frame.beat
+            lost = those.left.press(Level.LOCOMOTION, 1)
             with pytest.raises(UserError, match=r"The record .* can't be written: .*Make room"):
-                referee.decide(Halt(), "", "Kubota")
+                those.decide(Halt())
             kept = tmp_path / "while-full"
             shutil.rmtree(kept, ignore_errors=True)
             shutil.copytree(disk.records, kept)
-            health = left.view.health
-            until(controllers, lambda health=health: left.view.health is not health)
-            assert frame(left).beat == stopped
-            assert frame(left).phase == Phase.PLAYING
-            assert frame(left).seats[0].applied_seq < lost
+            health = those.view.health
+            those.until(lambda health=health: those.view.health is not health)
+            assert those.frame.beat == stopped
+            assert those.phase == Phase.PLAYING
+            assert those.frame.seats[0].applied_seq < lost
             while (mail := frames.take()) is not None:
                 told = decode(mail.payload, Frame)
                 if told.phase == Phase.PLAYING:  # others are recorded where they change
@@ -139,12 +125,11 @@ def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: P
             assert [beat for beat, data in seen.items() if recorded.get(beat) != data] == []
 
             disk.make_room()
-            until(controllers, lambda: phase(left) == Phase.HALTED)
-            until(controllers, lambda: trouble(left) == "")
-            until(controllers, lambda: is_given(left, "can't be written"))
-            assert any(e.data.get("after") == "HALTED" for e in left.view.events[-3:])
-            referee.decide(Resume(), "", "Kubota")
-            until(controllers, lambda: phase(left) == Phase.PLAYING)
+            those.reach(Phase.HALTED)
+            those.until(lambda: those.trouble == "")
+            those.until(lambda: is_given(those, "can't be written"))
+            assert any(e.data.get("after") == "HALTED" for e in those.view.events[-3:])
+            those.decide(Resume(), Phase.PLAYING)
         kept = tmp_path / "kept"
         shutil.copytree(disk.records, kept)
     *_, verdict = verify(read(kept))
@@ -172,48 +157,34 @@ runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -> None:
     """The referee hears of it, and may go on: everybody but a power cut has the record."""
     contest, broken = write_contest(tmp_path / "contest.toml"), tmp_path / "broken"
-    name, court = load(contest).court()
     before = [sys.executable, "-c", SYNCING_FAILS, str(broken)]
-    with (
-        served(contest, tmp_path / "recordings", before=before),
-        open_client([court.address()]) as session,
-    ):
-        controllers = seated(session, contest)
-        left = controllers[0]
-        until(controllers, lambda: phase(left) == Phase.READY)
-        referee = RefereeClient(session, name, court.referee.token)
-        referee.decide(Start(), "", "Kubota")
-        until(controllers, lambda: phase(left) == Phase.PLAYING)
+    with served(contest, tmp_path / "recordings", before=before), party(contest) as those:
+        those.play()
         broken.touch()
-        until(controllers, lambda: phase(left) == Phase.HALTED)
+        those.reach(Phase.HALTED)
         said = "reports: Input/output error"
-        until(controllers, lambda: is_given(left, said))
-        until(controllers, lambda: said in trouble(left))
-        referee.decide(Resume(), "", "Kubota")
-        until(controllers, lambda: phase(left) == Phase.PLAYING)
-        resumed = frame(left).beat
+        those.until(lambda: is_given(those, said))
+        those.until(lambda: said in those.trouble)
+        those.decide(Resume(), Phase.PLAYING)
+        resumed = those.frame.beat
         # Two seconds, in which the disk was asked again and refused again.
-        until(controllers, lambda: frame(left).beat > resumed + 100)
-        assert phase(left) == Phase.PLAYING
+        those.until(lambda: those.frame.beat > resumed + 100)
+        assert those.phase == Phase.PLAYING
 
 
 def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
     """Where no file can be made, the match that is over stays, and it is said why."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
-    name, court = load(contest).court()
-    with served(contest, folder), open_client([court.address()]) as session:
-        controllers = seated(session, contest)
-        left = controllers[0]
-        referee = RefereeClient(session, name, court.referee.token)
-        referee.decide(Abort(), "a test", "Kubota")
+    with served(contest, folder), party(contest) as those:
+        those.decide(Abort())
         folder.rename(tmp_path / "elsewhere")
         folder.touch()
-        referee.decide(Next(), "", "Kubota")
-        until(controllers, lambda: "No record can be written to" in trouble(left))
-        assert (phase(left), frame(left).match) == (Phase.VOID, 1)
+        those.decide(Next())
+        those.until(lambda: "No record can be written to" in those.trouble)
+        assert (those.phase, those.frame.match) == (Phase.VOID, 1)
         folder.unlink()
-        until(controllers, lambda: (phase(left), frame(left).match) == (Phase.LOBBY, 2))
-        until(controllers, lambda: trouble(left) == "")
+        those.until(lambda: (those.phase, those.frame.match) == (Phase.LOBBY, 2))
+        those.until(lambda: those.trouble == "")
     assert [path.name[-9:] for path in folder.iterdir()] == ["-002.mcap"]
 
 

@@ -9,26 +9,23 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from running import WAIT_S, frame, phase, seated, served, until, write_contest
+from running import WAIT_S, party, served, until, write_contest
 from stage import LEFT, QUICK, RIGHT, decide, join, setup
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
-from lacoc_client.referee import RefereeClient
 from lacoc_server.journal import Journal
 from lacoc_server.match import Match
 from lacoc_server.recovery import Unfinished, unfinished
 from lacoc_server.replay import Verdict, verify
 from lacoc_server.world import World
 from lacoc_shared import decisions as d
-from lacoc_shared.contest import load
 from lacoc_shared.inputs import ReadySeat
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files, pack
 from lacoc_shared.record.matches import court_matches, is_over
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import open_client
 
 pytestmark = pytest.mark.slow
 
@@ -221,27 +218,22 @@ def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
     """As it outlives a kill: the next start goes on with it, halted; then it is packed whole."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     flag = tmp_path / "flag"
-    name, court = load(contest).court()
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder, before=failing(flag, "beat")))
-        session = stack.enter_context(open_client([court.address()]))
-        controllers = seated(session, contest)
-        left = controllers[0]
-        until(controllers, lambda: phase(left) == Phase.READY)
-        referee = RefereeClient(session, name, court.referee.token)
-        referee.decide(d.Start(), "", "Kubota")
-        until(controllers, lambda: frame(left).clock_ticks > 20)
-        seen = frame(left)
+        those = stack.enter_context(party(contest))
+        those.play()
+        those.until(lambda: those.frame.clock_ticks > 20)
+        seen = those.frame
         flag.touch()
         assert first.wait(WAIT_S) not in (0, -signal.SIGKILL)
         flag.unlink()
         assert [path.suffixes[-3:] for path in folder.iterdir()] == [[".000", ".live", ".mcap"]]
 
         stack.enter_context(served(contest, folder))
-        until(controllers, lambda: phase(left) == Phase.HALTED)
-        assert frame(left).match == seen.match
-        assert frame(left).clock_ticks >= seen.clock_ticks
-        referee.decide(d.Abort(), "a test", "Kubota")
+        those.reach(Phase.HALTED)
+        assert those.frame.match == seen.match
+        assert those.frame.clock_ticks >= seen.clock_ticks
+        those.decide(d.Abort())
     (record,) = packed(folder, "001")
     *_, verdict = verify(Record.read(record))
     assert isinstance(verdict, Verdict)
@@ -252,19 +244,15 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
     """What it could not pack then is packed when its next match ends, or when it starts again."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     flag = tmp_path / "flag"
-    name, court = load(contest).court()
     with ExitStack() as stack:
         process = stack.enter_context(served(contest, folder, before=failing(flag, "start")))
-        session = stack.enter_context(open_client([court.address()]))
-        controllers = seated(session, contest)
-        left = controllers[0]
-        until(controllers, lambda: phase(left) == Phase.READY)
-        referee = RefereeClient(session, name, court.referee.token)
+        those = stack.enter_context(party(contest))
+        those.reach(Phase.READY)
         flag.touch()
         for number in (2, 3):
-            referee.decide(d.Abort(), "a test", "Kubota")
-            referee.decide(d.Next(), "", "Kubota")
-            until(controllers, lambda number=number: frame(left).match == number)
+            those.decide(d.Abort())
+            those.decide(d.Next())
+            those.until(lambda number=number: those.frame.match == number)
         assert len(list(folder.glob("*.live.mcap"))) == 3
         assert process.stdout is not None
         process.send_signal(signal.SIGTERM)
@@ -275,7 +263,7 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
 
         flag.unlink()
         stack.enter_context(served(contest, folder, before=failing(flag, "start")))
-        until(controllers, lambda: len(list(folder.glob("*[0-9].mcap"))) == 3)
+        those.until(lambda: len(list(folder.glob("*[0-9].mcap"))) == 3)
     records = packed(folder, "001", "002", "003", "001")
     assert all(Record.read(path).cut == "" for path in records)
 
@@ -283,13 +271,8 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
 def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:
     """SIGTERM in PLAYING: it is packed, and the next start opens another, however early."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
-    name, court = load(contest).court()
-    with served(contest, folder) as first, open_client([court.address()]) as session:
-        controllers = seated(session, contest)
-        left = controllers[0]
-        until(controllers, lambda: phase(left) == Phase.READY)
-        RefereeClient(session, name, court.referee.token).decide(d.Start(), "", "Kubota")
-        until(controllers, lambda: phase(left) == Phase.PLAYING)
+    with served(contest, folder) as first, party(contest) as those:
+        those.play()
         os.kill(first.pid, signal.SIGTERM)
         until([], lambda: ended(folder))
         first.kill()

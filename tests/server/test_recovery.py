@@ -2,12 +2,13 @@
 
 import os
 import signal
+import subprocess
 import time
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from running import WAIT_S, frame, phase, seated, served, until, write_contest
+from running import WAIT_S, party, served, write_contest
 
 from lacoc_arenas import arena as arenas
 from lacoc_client.controller import Controller
@@ -16,7 +17,7 @@ from lacoc_client.spectator import Spectator
 from lacoc_server.recovery import unfinished
 from lacoc_server.replay import Verdict, verify
 from lacoc_shared.contest import load
-from lacoc_shared.decisions import Decision, Declare, Halt, Next, Official, Resume, Start
+from lacoc_shared.decisions import Declare, Halt, Next, Official, Resume, Start
 from lacoc_shared.gait import Level
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
@@ -30,128 +31,111 @@ def contest(tmp_path: Path) -> Path:
     return write_contest(tmp_path / "contest.toml")
 
 
-def test_a_killed_court_goes_on(contest: Path, tmp_path: Path) -> None:
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return tmp_path / "recordings"
+
+
+def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
     """Kill -9 in PLAYING: the match comes back HALTED with seats, clock and robots, and goes on."""
-    folder = tmp_path / "recordings"
-    name, court = load(contest).court()
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
-        session = stack.enter_context(open_client([court.address()]))
-        controllers = seated(session, contest)
-        left = controllers[0]
-        until(controllers, lambda: phase(left) == Phase.READY)
-        referee = RefereeClient(session, name, court.referee.token)
-        referee.decide(Start(), "", "Kubota")
-        until(controllers, lambda: phase(left) == Phase.PLAYING)
-        for controller in controllers:
+        those = stack.enter_context(party(contest))
+        those.play()
+        for controller in those.controllers:
             controller.press(Level.LOCOMOTION, 2)
-        until(controllers, lambda: frame(left).clock_ticks > 60)
-        os.kill(first.pid, signal.SIGKILL)
-        first.wait()
-        for controller in controllers:
+        those.until(lambda: those.frame.clock_ticks > 60)
+        kill(first)
+        for controller in those.controllers:
             controller.poll(time.monotonic())
-        seen = frame(left)
+        seen = those.frame
         applied = [seat.applied_seq for seat in seen.seats]
 
         stack.enter_context(served(contest, folder))
-        until(controllers, lambda: phase(left) == Phase.HALTED)
-        after = frame(left)
+        those.reach(Phase.HALTED)
+        after = those.frame
         assert after.clock_ticks >= seen.clock_ticks
         assert [seat.applied_seq for seat in after.seats] == applied
         if after.clock_ticks == seen.clock_ticks:  # else the last frame died with the court
             assert (after.poses, after.digest) == (seen.poses, seen.digest)
-        until(controllers, lambda: sum("is back" in e.text for e in left.view.events) == 2)
-        referee.decide(Resume(), "", "Kubota")
-        until(controllers, lambda: phase(left) == Phase.PLAYING)
-        seq = left.press(Level.LOCOMOTION, 1)
-        until(controllers, lambda: frame(left).seats[0].applied_seq == seq)
-    end_s = time.monotonic() + WAIT_S
-    while not (packed := list(folder.glob("*main-001.mcap"))):
-        assert time.monotonic() < end_s, "the record was not packed"
-        time.sleep(0.05)
-    *_, verdict = verify(Record.read(packed[0]))
-    assert isinstance(verdict, Verdict)
-    assert verdict.text == "same"
+        those.until(lambda: sum("is back" in event.text for event in those.view.events) == 2)
+        those.decide(Resume(), Phase.PLAYING)
+        seq = those.left.press(Level.LOCOMOTION, 1)
+        those.until(lambda: those.frame.seats[0].applied_seq == seq)
+    assert_same(packed(folder))
 
 
-def test_settings_that_were_changed_count_from_the_next_match(
-    contest: Path, tmp_path: Path
-) -> None:
+def test_settings_that_were_changed_count_from_the_next_match(contest: Path, folder: Path) -> None:
     """The match that goes on is the one that was begun; the file's word is for those after it."""
-    folder = tmp_path / "recordings"
-    name, court = load(contest).court()
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
-        session = stack.enter_context(open_client([court.address()]))
-        controllers = seated(session, contest)
-        left = controllers[0]
-        until(controllers, lambda: phase(left) == Phase.READY)
-        usual_s = left.view.sheet.duration_s
-        os.kill(first.pid, signal.SIGKILL)
-        first.wait()
-        text = contest.read_text()
-        contest.write_text(
-            text.replace("settings.match.", "settings.match.duration_s = 75.0\nsettings.match.", 1)
-        )
+        those = stack.enter_context(party(contest))
+        those.reach(Phase.READY)
+        usual_s = those.view.sheet.duration_s
+        kill(first)
+        lasts(contest, 75)
         stack.enter_context(served(contest, folder))
-        referee = RefereeClient(session, name, court.referee.token)
-
-        def decide(decision: Decision, then: Phase) -> None:
-            referee.decide(decision, "a test", "Kubota")
-            until(controllers, lambda: phase(left) == then)
-
-        until(controllers, lambda: left.view.health and not left.view.health.decisions["start"])
-        assert left.view.sheet.duration_s == usual_s != 75.0
-        decide(Start(), Phase.PLAYING)
-        decide(Halt(), Phase.HALTED)
-        decide(Declare("draw"), Phase.FINISHED)
-        decide(Official(), Phase.OFFICIAL)
-        decide(Next(), Phase.LOBBY)
-        until(controllers, lambda: left.view.sheet.match == 2)
-        assert left.view.sheet.duration_s == 75.0
+        those.until(lambda: those.view.health and not those.view.health.decisions["start"])
+        assert those.view.sheet.duration_s == usual_s != 75
+        those.decide(Start(), Phase.PLAYING)
+        those.decide(Halt(), Phase.HALTED)
+        those.decide(Declare("draw"), Phase.FINISHED)
+        those.decide(Official(), Phase.OFFICIAL)
+        those.decide(Next(), Phase.LOBBY)
+        those.until(lambda: those.view.sheet.match == 2)
+        assert those.view.sheet.duration_s == 75
 
 
-def test_how_well_it_was_held_outlives_the_kill(contest: Path, tmp_path: Path) -> None:
+def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> None:
     """Issue 4: what was measured before the kill counts; the referee is told "replay advised"."""
-    folder = tmp_path / "recordings"
-    contest.write_text(
-        "health.resumptions = 0\n"
-        + contest.read_text().replace(
-            "settings.match.", "settings.match.duration_s = 4\nsettings.match.", 1
-        )
-    )
-    name, court = load(contest).court()
+    lasts(contest, 4)
+    contest.write_text("health.resumptions = 0\n" + contest.read_text())
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
-        session = stack.enter_context(open_client([court.address()]))
-        controllers = seated(session, contest)
-        left = controllers[0]
-        until(controllers, lambda: phase(left) == Phase.READY)
-        referee = RefereeClient(session, name, court.referee.token)
-        referee.decide(Start(), "", "Kubota")
-        until(controllers, lambda: played(left) > 100)
-        before = left.view.health
-        os.kill(first.pid, signal.SIGKILL)
-        first.wait()
+        those = stack.enter_context(party(contest))
+        those.play()
+        those.until(lambda: played(those.left) > 100)
+        before = those.view.health
+        kill(first)
 
         stack.enter_context(served(contest, folder))
-        until(controllers, lambda: phase(left) == Phase.HALTED)
-        until(controllers, lambda: left.view.health is not before)
-        assert played(left) > 50  # what the last second measured died with the court
-        referee.decide(Resume(), "", "Kubota")
-        until(controllers, lambda: any(e.kind == "advice" for e in left.view.events))
-        assert phase(left) == Phase.FINISHED
-        told = next(event.text for event in left.view.events if event.kind == "advice")
+        those.reach(Phase.HALTED)
+        those.until(lambda: those.view.health is not before)
+        assert played(those.left) > 50  # what the last second measured died with the court
+        those.decide(Resume())
+        those.until(lambda: any(event.kind == "advice" for event in those.view.events))
+        assert those.phase == Phase.FINISHED
+        told = next(event.text for event in those.view.events if event.kind == "advice")
         assert "the court was started again 1 times, at most 0 may be" in told
-    end_s = time.monotonic() + WAIT_S
-    while not (packed := list(folder.glob("*main-001.mcap"))):
-        assert time.monotonic() < end_s, "the record was not packed"
-        time.sleep(0.05)
-    record = Record.read(packed[0])
+    record = packed(folder)
     assert record.health is not None
     assert record.health.resumptions == 1
     assert record.health.played_beats > 150
     assert all(seat.expected >= 20 for seat in record.health.seats)
+    assert_same(record)
+
+
+def kill(court: subprocess.Popen[str]) -> None:
+    os.kill(court.pid, signal.SIGKILL)
+    court.wait()
+
+
+def lasts(contest: Path, seconds: int) -> None:
+    """Give the contest's matches another length."""
+    setting = f"settings.match.duration_s = {seconds}\nsettings.match."
+    contest.write_text(contest.read_text().replace("settings.match.", setting, 1))
+
+
+def packed(folder: Path) -> Record:
+    """The first match's record, once it is packed."""
+    end_s = time.monotonic() + WAIT_S
+    while not (found := list(folder.glob("*main-001.mcap"))):
+        assert time.monotonic() < end_s, "the record was not packed"
+        time.sleep(0.05)
+    return Record.read(found[0])
+
+
+def assert_same(record: Record) -> None:
     *_, verdict = verify(record)
     assert isinstance(verdict, Verdict)
     assert verdict.text == "same"
@@ -163,9 +147,8 @@ def played(controller: Controller) -> int:
     return health.verdict.played_beats if health and health.verdict else 0
 
 
-def test_a_court_that_just_came_back_can_be_asked(contest: Path, tmp_path: Path) -> None:
+def test_a_court_that_just_came_back_can_be_asked(contest: Path, folder: Path) -> None:
     """Its first frame comes before the way to its desks is known: the client asks again."""
-    folder = tmp_path / "recordings"
     name, court = load(contest).court()
     with ExitStack() as stack:
         process = stack.enter_context(served(contest, folder))
@@ -182,9 +165,8 @@ def test_a_court_that_just_came_back_can_be_asked(contest: Path, tmp_path: Path)
             referee.enter()
 
 
-def test_a_running_court_is_not_taken_over(contest: Path, tmp_path: Path) -> None:
+def test_a_running_court_is_not_taken_over(contest: Path, folder: Path) -> None:
     """The record of a court that lives was not left behind."""
-    folder = tmp_path / "recordings"
     with served(contest, folder) as process:
         assert unfinished(folder, "main", arenas.load("othello")) is None
         process.kill()

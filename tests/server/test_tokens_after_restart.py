@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from running import WAIT_S, frame, phase, seated, served, until, write_contest
+from running import WAIT_S, frame, party, phase, served, until, write_contest
 
 from lacoc_client.controller import Controller
 from lacoc_shared.contest import load
@@ -87,8 +87,7 @@ def test_a_token_that_was_replaced_in_the_contest_file_opens_nothing(tmp_path: P
     """Docs, security: a lost token gets another; the match that goes on knows that one alone."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     name, court = load(contest).court()
-    with served(contest, folder) as process, open_client([court.address()]) as session:
-        seated(session, contest)
+    with served(contest, folder) as process, party(contest):
         process.kill()
         process.wait()
     contest.write_text(contest.read_text().replace("the token of left", "another token of left"))
