@@ -17,8 +17,7 @@ import { Icon, IconButton } from "../ui/icons";
 import { Countdown } from "../ui/opening";
 import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
-import { isNarrow, toggleFullscreen } from "../ui/screen";
-import { Settings } from "../ui/settings";
+import { isNarrow } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
 import { Thirds } from "../ui/thirds";
 import { Toasts, toast } from "../ui/toasts";
@@ -27,6 +26,7 @@ import { Chooser } from "./replay/chooser";
 import { ReplayLog } from "./replay/log";
 import { Player, SPEEDS } from "./replay/player";
 import { Cameras, cameraKeys } from "./watch/cameras";
+import { Corner, CornerSettings, cornerKeys } from "./watch/corner";
 import { cameraOfAddress, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 import "./replay/replay.css";
@@ -50,7 +50,6 @@ const state = signal<State>({ is: "choosing", trouble: null });
 const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("replay.panel", innerWidth >= WIDE_PX);
-const settings = signal(false);
 const dragging = signal(false);
 /** Counts what was opened, so that an older one that arrives late is not shown. */
 let opening = 0;
@@ -188,7 +187,9 @@ function Show({ player, server }: { player: Player; server: string | null }) {
         <ScoreBug match={recording} />
         <Hint match={recording} />
       </header>
-      <Corner player={player} server={server} />
+      <Corner panel={panel}>
+        <IconButton name="link" label={t("replay.share")} onClick={() => share(player, server)} />
+      </Corner>
       <div class="middle-stage">
         <Countdown match={recording} />
         <ResultCard match={recording} />
@@ -208,38 +209,8 @@ function Show({ player, server }: { player: Player; server: string | null }) {
           <ReplayLog player={player} />
         </aside>
       )}
-      {settings.value && (
-        <Settings
-          onClose={() => {
-            settings.value = false;
-          }}
-        />
-      )}
+      <CornerSettings />
     </main>
-  );
-}
-
-function Corner({ player, server }: { player: Player; server: string | null }) {
-  return (
-    <nav class="corner right" aria-label={t("watch.controls")}>
-      <IconButton name="link" label={t("replay.share")} onClick={() => share(player, server)} />
-      {!isNarrow.value && (
-        <IconButton
-          name="panel"
-          label={t("watch.panel")}
-          title={t("watch.panelKey")}
-          expanded={panel.value}
-          onClick={togglePanel}
-        />
-      )}
-      <IconButton
-        name="settings"
-        label={t("settings.title")}
-        title={t("watch.settingsKey")}
-        onClick={openSettings}
-      />
-      <IconButton name="full" label={t("watch.fullscreen")} onClick={toggleFullscreen} />
-    </nav>
   );
 }
 
@@ -348,14 +319,6 @@ function share(player: Player, server: string | null): void {
   );
 }
 
-function togglePanel(): void {
-  panel.value = !panel.value;
-}
-
-function openSettings(): void {
-  settings.value = true;
-}
-
 function shortcutsOf(player: Player): Record<string, () => void> {
   const { recording } = player;
   return {
@@ -374,8 +337,6 @@ function shortcutsOf(player: Player): Record<string, () => void> {
     NumpadSubtract: () => player.faster(-1),
     Equal: () => player.faster(1),
     NumpadAdd: () => player.faster(1),
-    KeyE: togglePanel,
-    KeyF: toggleFullscreen,
-    KeyS: openSettings,
+    ...cornerKeys(panel),
   };
 }

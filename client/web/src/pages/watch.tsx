@@ -10,16 +10,15 @@ import { t } from "../i18n";
 import { View } from "../scene/View";
 import { LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
-import { IconButton } from "../ui/icons";
 import { EventLog } from "../ui/log";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
-import { isNarrow, toggleFullscreen } from "../ui/screen";
-import { Settings } from "../ui/settings";
+import { isNarrow } from "../ui/screen";
 import { useShortcuts } from "../ui/shortcuts";
 import { Thirds } from "../ui/thirds";
 import { Cameras, cameraKeys } from "./watch/cameras";
+import { Corner, CornerSettings, cornerKeys } from "./watch/corner";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 
@@ -30,7 +29,6 @@ const court = new Court(amount("hz", HZ, 1, 50), 1000 * amount("delay", 0, 0, DE
 const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
-const settings = signal(false);
 const number = part(court, (frame) => frame.match, null as number | null);
 /** The match whose result was put away. */
 const putAway = signal<number | null>(null);
@@ -47,16 +45,8 @@ title.subscribe((text) => {
 
 const SHORTCUTS = {
   ...cameraKeys(camera, () => court.sheet.peek()),
-  KeyE: () => togglePanel(),
-  KeyF: () => toggleFullscreen(),
-  KeyS: () => {
-    settings.value = true;
-  },
+  ...cornerKeys(panel),
 };
-
-function togglePanel(): void {
-  panel.value = !panel.value;
-}
 
 export default function Watch() {
   useShortcuts(SHORTCUTS);
@@ -85,13 +75,7 @@ export default function Watch() {
       {hud && <Hud />}
       {hud && (isNarrow.value || panel.value) && <Panel />}
       <LinkBanner court={court} />
-      {settings.value && (
-        <Settings
-          onClose={() => {
-            settings.value = false;
-          }}
-        />
-      )}
+      <CornerSettings />
     </main>
   );
 }
@@ -105,24 +89,7 @@ function Hud() {
         <ScoreBug match={court} />
         <Hint match={court} />
       </header>
-      <nav class="corner right" aria-label={t("watch.controls")}>
-        {!isNarrow.value && (
-          <IconButton
-            name="panel"
-            label={t("watch.panel")}
-            title={t("watch.panelKey")}
-            expanded={panel.value}
-            onClick={togglePanel}
-          />
-        )}
-        <IconButton
-          name="settings"
-          label={t("settings.title")}
-          title={t("watch.settingsKey")}
-          onClick={SHORTCUTS.KeyS}
-        />
-        <IconButton name="full" label={t("watch.fullscreen")} onClick={toggleFullscreen} />
-      </nav>
+      <Corner panel={panel} />
       <div class="middle-stage">
         <Countdown match={court} />
         {putAway.value !== match && (
