@@ -7,6 +7,7 @@ from rich.text import Text
 
 from lacoc_client import words
 from lacoc_client.spectator import Spectator
+from lacoc_shared.log import log_clock
 from lacoc_shared.messages import Event, Frame, Sheet
 from lacoc_shared.seat import Phase
 
@@ -74,4 +75,4 @@ def status_line(frame: Frame, sheet: Sheet) -> Text:
 
 def event_columns(event: Event) -> tuple[Text, Text]:
     """When something happened, and what, as the log has it."""
-    return Text(f"{words.log_clock(event.clock_ticks):>7}  ", "dim"), Text(event.text)
+    return Text(f"{log_clock(event.clock_ticks):>7}  ", "dim"), Text(event.text)

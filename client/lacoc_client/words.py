@@ -24,12 +24,6 @@ def clock(ticks: int) -> str:
     return f"{seconds // 60}:{seconds % 60:02d}"
 
 
-def log_clock(ticks: int) -> str:
-    """The time played, as the log has it: "2:04.6"."""
-    tenths = max(0, ticks) * 10 // BEATS_PER_S
-    return f"{tenths // 600}:{tenths % 600 / 10:04.1f}"
-
-
 def match_clock(frame: Frame, sheet: Sheet) -> str:
     """The time that is left, or the time played where a match has no end."""
     if not sheet.duration_s:

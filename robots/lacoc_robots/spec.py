@@ -22,6 +22,7 @@ __all__ = ["Capsule", "LegSpec", "Limits", "Point", "RobotSpec", "read_robot"]
 LARGEST_FILE = 32 * 1024
 """Bytes; the same as for gaits (rules 2)."""
 
+_ROUNDING_KG = 1e-9  # what a sum of decimal masses may miss by
 _ROUNDING_M = 1e-6  # where a foot stands exactly on the floor
 
 
@@ -218,7 +219,7 @@ def _check_order(root: Entries, robot: RobotSpec) -> None:
 
 def _check_mass(root: Entries, robot: RobotSpec, limits: Limits) -> None:
     low_kg, high_kg = limits.mass_min_kg, limits.mass_max_kg
-    if robot.mass_kg < low_kg or robot.mass_kg > high_kg:
+    if robot.mass_kg < low_kg - _ROUNDING_KG or robot.mass_kg > high_kg + _ROUNDING_KG:
         root.note(
             "mass_kg and masses_kg",
             f"{robot.mass_kg:.3f} kg together",

@@ -29,6 +29,8 @@ class DriveState(msgspec.Struct, frozen=True):
     since the command."""
     angles: Posture
     """(joints,) commanded angles [rad], by joint id."""
+    stands: bool = False
+    """Nobody pressed the key: it is the first posture of its sequence, and stays."""
 
 
 class Drive:
@@ -61,8 +63,14 @@ class Drive:
         self._repeat = repeat
 
     def begin(self, level: Level) -> DriveState:
-        """The start posture, with key 0 standing at a level."""
-        return DriveState(level, 0, 0, 0, self._start)
+        """The start posture, from which it stands at a level."""
+        return DriveState(level, 0, 0, 0, self._start, stands=True)
+
+    def stand(self, state: DriveState) -> DriveState:
+        """Key 0 at the same level, of which only the first posture is taken (decision 15)."""
+        if state.stands:
+            return state
+        return DriveState(state.level, 0, 0, 0, state.angles, stands=True)
 
     def has(self, level: Level, digit: int) -> bool:
         """Whether a digit does something at a level."""
@@ -74,13 +82,16 @@ class Drive:
         A command is (level, digit): with `repeat`, the one that stands already changes nothing;
         without, it starts its sequence again.
         """
-        if self._repeat and (level, digit) == (state.level, state.digit):
+        stands_already = (level, digit) == (state.level, state.digit) and not state.stands
+        if self._repeat and stands_already:
             return state
         return DriveState(level, digit, 0, 0, state.angles)
 
     def tick(self, state: DriveState) -> DriveState:
         """Let one tick of 20 ms pass."""
         sequence = self._gait.sequence(state.level, state.digit) or (self._start,)
+        if state.stands:
+            sequence = sequence[:1]
         posture, ticks = state.posture, state.ticks
         if self._by_time:
             posture = self._index(ticks * BEAT_US // self._hold_us, len(sequence))
@@ -93,7 +104,7 @@ class Drive:
             ticks += 1
         elif angles is sequence[posture]:
             ticks = min(ticks + 1, self._rest_ticks)
-        return DriveState(state.level, state.digit, posture, ticks, angles)
+        return DriveState(state.level, state.digit, posture, ticks, angles, state.stands)
 
     def _index(self, count: int, length: int) -> int:
         return count % length if self._repeat else min(count, length - 1)

@@ -132,7 +132,10 @@ class MatchHealth:
             self._worst_late_s = max(self._worst_late_s, self._late_s)
         self._playing_since = self._now_s
         for seat, link, door in zip(self._match.seats, self._links, self._doors, strict=True):
-            link.count(seat.silent and not seat.left, door.heard)
+            if seat.left:  # nobody wants to hear of it
+                link.pause()
+            else:
+                link.count(seat.silent, door.heard)
 
     def verdict(self) -> HealthVerdict:
         """How well the match was held so far."""

@@ -103,6 +103,8 @@ class Match:
         self.phase = Phase.CREATED
         self.beats = -1
         """Number of the beat; the first is 0."""
+        self.entered_beat = 0
+        """When this phase began."""
         self.countdown_beats = 0
         self.ticks = 0
         """Ticks of PLAYING."""
@@ -132,6 +134,8 @@ class Match:
         self._events: list[Event] = []
         self._touch: Touch | None = None
         self._result_changed = False
+        self._told_result: tuple[str, tuple[int, ...]] | None = None
+        """Winner by the rules and score, as the log has them."""
         self._sheet_changed = True
 
     # What can be asked.
@@ -169,6 +173,11 @@ class Match:
         """Who wins by the rules if the match ends now: a seat's id, or "draw"."""
         seat = self.game.winner(self.history.state, self.scores())
         return "draw" if seat is None else self.seats[seat].id
+
+    @property
+    def time_is_up(self) -> bool:
+        """Whether the last tick has been played: no other one is (rules 4)."""
+        return 0 < self.duration_ticks <= self.clock_ticks
 
     def missing(self) -> list[str]:
         """Why the match can't be READY: everything at once, in words."""
@@ -293,6 +302,8 @@ class Match:
             self.begin_countdown()
         if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
             self.enter(Phase.PLAYING)
+        if self.phase is Phase.PLAYING and self.time_is_up:  # a referee moved the clock
+            self.finish("time is up")
         on = self.phase in (Phase.PLAYING, Phase.HALTED)  # a countdown leads to PLAYING
         if on and (why := contestant.unattended(self)):
             self.finish(why)
@@ -325,7 +336,7 @@ class Match:
             )
         if self.history.over:
             self.finish(self.history.over)
-        elif 0 < self.duration_ticks <= self.clock_ticks:
+        elif self.time_is_up:
             self.finish("time is up")
 
     def _fail(self, fault: Fault) -> None:
@@ -342,7 +353,7 @@ class Match:
     def enter(self, phase: Phase, **data: Any) -> None:
         """Change the phase."""
         assert phase in TRANSITIONS[self.phase], f"{self.phase.name} to {phase.name}"
-        before, self.phase = self.phase, phase
+        before, self.phase, self.entered_beat = self.phase, phase, self.beats
         self.tell(
             "phase",
             f"{phase.name}" + (f": {self.ended}." if phase is Phase.FINISHED else "."),
@@ -376,10 +387,18 @@ class Match:
         """End play."""
         self.ended = reason
         self.enter(Phase.FINISHED)
-        winner = self.winner()
-        scores = " : ".join(map(str, self.scores()))
+        self._told_result = None
+        self.tell_result()
+
+    def tell_result(self) -> None:
+        """Log who wins by the rules, as often as that or the score changes once play has ended."""
+        result = winner, scores = self.winner(), self.scores()
+        if self.phase is not Phase.FINISHED or result == self._told_result:
+            return
+        self._told_result = result
         word = "a draw" if winner == "draw" else f"{self._team(winner)} wins"
-        self.tell("result", f"By the rules: {word}, {scores}.", winner=winner, scores=self.scores())
+        text = f"By the rules: {word}, {' : '.join(map(str, scores))}."
+        self.tell("result", text, winner=winner, scores=scores)
 
     def tell(self, kind: str, text: str, seat: int = NOBODY, **data: Any) -> int:
         """Log an event; returns its number."""

@@ -80,6 +80,7 @@ def decide(match: Match, item: Decide) -> DecisionReply | Refusal:
         return Refusal(f"{name}: {illegal}")
     number = _log(match, item, name, text)
     rule.then(match, decision)
+    match.tell_result()
     return DecisionReply(beat=match.beats, event=number, text=text, scores=match.scores())
 
 
@@ -259,6 +260,7 @@ def _take_back(match: Match, item: Decide, decision: d.TakeBack) -> DecisionRepl
                 points=event.points,
             )
         _follow(match, fold.over)
+    match.tell_result()
     return DecisionReply(
         beat=match.beats, event=number, text=text, scores=match.scores(), changes=changes
     )
@@ -266,10 +268,9 @@ def _take_back(match: Match, item: Decide, decision: d.TakeBack) -> DecisionRepl
 
 def _follow(match: Match, over: str) -> None:
     """Let the phase follow from what the game is after a take-back."""
-    time_is_up = 0 < match.duration_ticks <= match.clock_ticks
     if match.phase is Phase.HALTED and over:
         match.finish(over)
-    elif match.phase is Phase.FINISHED and not (over or time_is_up or match.declared):
+    elif match.phase is Phase.FINISHED and not (over or match.time_is_up or match.declared):
         match.ended = ""
         match.enter(Phase.HALTED)
     elif match.phase is Phase.FINISHED and not match.declared:

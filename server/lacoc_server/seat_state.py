@@ -66,12 +66,12 @@ class Seat:
         self.state = self.drive.begin(level)
 
     def stand(self) -> None:
-        """Key 0 at the same level, as if pressed (silence, freeze)."""
+        """Key 0 at the same level, and no step further (silence, freeze)."""
         if self.drive and self.state:
-            self.state = self.drive.press(self.state, self.state.level, 0)
+            self.state = self.drive.stand(self.state)
 
     def restart(self) -> None:
-        """Go back to the start in this beat, key 0 standing at the same level (rules 4, [x])."""
+        """Go back to the start in this beat, and stand at the same level (rules 4, [x])."""
         self.restarting = True
         if self.drive and self.state:
             self.state = self.drive.begin(self.state.level)

@@ -11,6 +11,8 @@ from lacoc_shared.decisions import Decision, Next, Official, Restart, Resume
 from lacoc_shared.inputs import Decide, Input
 from lacoc_shared.seat import BEATS_PER_S, NOBODY, Phase
 
+_RESULT_BEATS = 10 * BEATS_PER_S
+"""How long two can read who has won, before the next match opens."""
 _RESUME_BEATS = BEATS_PER_S // 2
 """Play is resumed at most twice a second: a fault that comes back at once fills no log."""
 
@@ -26,7 +28,8 @@ def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
     if match.phase is Phase.FINISHED:
         return [_decide(Official())]
     if match.phase is Phase.OFFICIAL:
-        return [_decide(Next())]
+        is_read = len(match.seats) == 1 or match.beats - match.entered_beat >= _RESULT_BEATS
+        return [_decide(Next())] if is_read else []
     if match.phase is not Phase.HALTED or match.beats % _RESUME_BEATS:
         return []
     if any(one and not seat.silent for one, seat in zip(held(), match.seats, strict=True)):

@@ -20,6 +20,7 @@ import structlog
 from structlog.typing import FilteringBoundLogger
 
 from lacoc_shared import screen
+from lacoc_shared.seat import BEATS_PER_S
 
 _WAITING_MOST = 10_000
 """Lines that wait for a reader; what comes then is lost, and it is said how much."""
@@ -119,17 +120,17 @@ def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
     at = datetime.fromisoformat(line["timestamp"]).astimezone().strftime(_CLOCK)
     head = " ".join(filter(None, (at, line.get("match_id") or line.get("court"))))
     ticks = line.get("clock_ticks")
-    clock = "" if ticks is None else f" {match_clock(ticks)}"
+    clock = "" if ticks is None else f" {log_clock(ticks)}"
     if not screen.stdout.is_terminal or screen.stdout.no_color:
         return f"{head}{clock}  {line['text']}"
     tone = _PLAIN if level == "info" else _WARN
     return f"{_DIM}{head}{_PLAIN}{clock}  {tone}{line['text']}{_PLAIN}"
 
 
-def match_clock(ticks: int) -> str:
-    """Ticks of a match's clock as minutes and seconds."""
-    used_s = max(0, ticks) / 50
-    return f"{int(used_s // 60)}:{used_s % 60:04.1f}"
+def log_clock(ticks: int) -> str:
+    """Ticks of a match's clock, as the time that was played: "2:04.6"."""
+    tenths = max(0, ticks) * 10 // BEATS_PER_S
+    return f"{tenths // 600}:{tenths % 600 / 10:04.1f}"
 
 
 structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.CRITICAL))

@@ -39,6 +39,15 @@ def test_workshop_robot(hexapod: RobotSpec) -> None:
     assert [leg.accent for leg in hexapod.legs] == [True, False, False, False, False, True]
 
 
+def test_a_robot_of_exactly_3_kg() -> None:
+    """Rules 1, contest limits: a sum of decimal masses may miss the limit by a bit of binary."""
+    text = changed("mass_kg = 0.125", "mass_kg = 0.048")
+    heavy = text.replace("[0.055, 0.055, 0.055]", "[0.164, 0.164, 0.164]")
+    assert read_robot(heavy.encode(), "mine.toml").mass_kg == pytest.approx(3)
+    with pytest.raises(FileRefused, match="mass_kg"):
+        read_robot(heavy.replace("0.048", "0.049").encode(), "mine.toml")
+
+
 def test_start(hexapod: RobotSpec) -> None:
     """Workshop 4-3.2: the body's underside starts at LEG_L + LEG_R above the floor."""
     assert hexapod.start_height_m == pytest.approx(0.04 + 0.015)

@@ -198,10 +198,25 @@ def test_begin_is_the_start_posture_with_key_0() -> None:
     assert ticks(it, state, 5)[-1].angles == posture(24.0)
 
 
-def test_key_0_begins_with_its_first_posture_for_a_whole_hold() -> None:
-    """Rules 3, "time": key 0 at the start is a command like any other, from tick 1 on."""
-    it = drive((24.0, -24.0), (0.0,), advance="time", hold_s=0.04)
-    assert targets(it, it.begin(B), 6) == [0, 0, 1, 1, 0, 0]
+@pytest.mark.parametrize("advance", ["reached", "time"])
+def test_who_is_told_to_stand_takes_one_posture(advance: str) -> None:
+    """Rules 3 and 4: on key 0 a robot settles, also where key 0 is a sequence (decision 15)."""
+    it = drive((24.0, -24.0), (45.0, 0.0), advance=advance, hold_s=0.04)
+    walking = it.tick(it.press(it.begin(B), B, 1))
+    for state in (it.begin(B), it.stand(walking), it.stand(it.press(walking, B, 0))):
+        states = ticks(it, state, 60)
+        assert {(s.digit, s.posture) for s in states} == {(0, 0)}
+        assert states[-1].angles == posture(24.0)
+    assert it.stand(states[-1]) is states[-1]
+
+
+@pytest.mark.parametrize("repeat", [True, False])
+def test_key_0_of_who_stands_begins_its_sequence(repeat: bool) -> None:
+    """Rules 3, "time": a key 0 that is pressed is a command like any other, from its tick on."""
+    it = drive((24.0, -24.0, 0.0), (0.0,), advance="time", hold_s=0.04, repeat=repeat)
+    pressed = it.press(it.tick(it.begin(B)), B, 0)
+    assert targets(it, pressed, 6) == [0, 0, 1, 1, 2, 2]
+    assert (it.press(pressed, B, 0) is pressed) is repeat
 
 
 def test_which_keys_do_something() -> None:

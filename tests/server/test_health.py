@@ -21,7 +21,7 @@ from lacoc_server.simulate import player, simulate
 from lacoc_server.world import World
 from lacoc_shared.contest import HealthLimits
 from lacoc_shared.decisions import Declare, Halt, Resume, Start
-from lacoc_shared.inputs import Advice, HeardSeat, Input, ReadySeat, SilentSeat
+from lacoc_shared.inputs import Advice, HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import HealthVerdict, LinkVerdict
 from lacoc_shared.record.commands import app
 from lacoc_shared.record.export import result_json
@@ -157,6 +157,18 @@ def test_repeats_of_a_match_that_is_often_halted() -> None:
         held.beat(decide(Halt()))
         held.beat(decide(Resume()))
     assert held.left.expected == held.left.arrived == 60
+
+
+def test_who_left_is_missed_by_nobody() -> None:
+    """Rules 4: the robot of who leaves in play stands; that is no fault of a link."""
+    held = Held()
+    held.seconds(2)
+    expected = held.left.expected
+    held.beat(LeaveSeat(LEFT))
+    held.seconds(10, repeats=0)
+    assert held.left.expected <= expected + 10
+    assert not any("seat left" in text for text in held.verdict.advice)
+    assert any("repeats of seat right" in text for text in held.verdict.advice)
 
 
 def test_silences() -> None:

@@ -356,13 +356,42 @@ def test_clock_moves_the_end() -> None:
 
 
 def test_clock_past_the_end() -> None:
-    """Rules 4: the tick that is going on is played and judged, then it is over."""
+    """Rules 4, tick 9000 is the last: none is played after it, and a slip can be put right."""
     stage = stage_in(P.HALTED)
+    ticks = stage.match.ticks
     done(stage, d.Clock(3600.0))
     assert stage.phase is P.HALTED
     done(stage, d.Resume())
     stage.until(P.FINISHED, at_most=5)
-    assert stage.match.ticks == 4
+    assert (stage.match.ticks, stage.match.ended) == (ticks, "time is up")
+    stage = stage_in(P.PLAYING)
+    ticks = stage.match.ticks
+    done(stage, d.Clock(3600.0))
+    assert (stage.phase, stage.match.ticks) == (P.FINISHED, ticks)
+
+
+def test_what_changes_the_winner_is_told() -> None:
+    """Rules 4, the computed result: pages and the log have the newest, once for each change."""
+    stage = stage_in(P.FINISHED)
+
+    def told() -> list[tuple[str, tuple[int, ...]]]:
+        results = [e for beat in stage.beats for e in beat.events if e.kind == "result"]
+        return [(event.data["winner"], event.data["scores"]) for event in results]
+
+    before = told()
+    assert len(before) == 1
+    left, right = stage.match.scores()
+    done(stage, d.Adjust("right", 30))
+    number = stage.match.next_number - 2
+    done(stage, d.Adjust("left", 30))
+    done(stage, d.TakeBack(number))
+    done(stage, d.Declare("draw"))
+    done(stage, d.Official())
+    assert told()[1:] == [
+        ("right", (left, right + 30)),
+        (before[0][0], (left + 30, right + 30)),
+        ("left", (left + 30, right)),
+    ]
 
 
 def test_abort_is_void() -> None:

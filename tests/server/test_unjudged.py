@@ -166,6 +166,18 @@ def test_silence_keeps_a_halted_match_waiting_and_then_ends_it() -> None:
     assert reasons == ["FINISHED: nobody has been heard for 0.166667 minutes."]
 
 
+def test_two_have_time_to_read_who_has_won() -> None:
+    """Rules 4, OFFICIAL and next: the court's own decisions, ten seconds apart."""
+    rules = {"start": "ready", "countdown_s": 0.02, "duration_s": 0.2}
+    held = Held("othello", None, {"match": rules})
+    held.begin()
+    held.run(20)
+    assert held.match.phase is P.OFFICIAL
+    held.run(450)
+    assert (held.match.phase, held.match.setup.match) == (P.OFFICIAL, 1)
+    assert held.run(50).setup.match == 2
+
+
 def test_leaving_a_halted_match_ends_it() -> None:
     """Rules 4: when everybody has left, the match is over and the next opens, empty."""
     held = Held("practice")

@@ -26,6 +26,7 @@ from lacoc_client.stopping import stop_signals
 from lacoc_shared import options, screen
 from lacoc_shared.access import Access
 from lacoc_shared.decisions import DECISIONS, Decision
+from lacoc_shared.log import log_clock
 from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import Phase, SeatFlag
@@ -300,7 +301,7 @@ def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
         plain = event_dict(event, sheet)
         table.add_row(
             str(event.number),
-            words.log_clock(event.clock_ticks),
+            log_clock(event.clock_ticks),
             event.kind,
             Text(plain["seat"] or ""),
             Text(event.text),

@@ -15,7 +15,7 @@ from typing import IO, Annotated, Any
 import typer
 
 from lacoc_shared import screen
-from lacoc_shared.log import match_clock
+from lacoc_shared.log import log_clock
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 
@@ -151,7 +151,7 @@ def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bo
         if event["kind"] == "result":
             result = event["text"]
         if not quiet:
-            screen.show(f"{match_clock(event['clock_ticks'])}  {event['text']}")
+            screen.show(f"{log_clock(event['clock_ticks'])}  {event['text']}")
         if event["kind"] == "phase" and event["data"]["after"] in ("OFFICIAL", "VOID"):
             return result
 

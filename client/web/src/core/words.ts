@@ -2,7 +2,7 @@
 
 import { t } from "../i18n";
 import type { Match } from "./court";
-import { type Frame, Phase, SeatFlag, type SeatFrame, type Sheet } from "./wire";
+import { type Event, type Frame, Phase, SeatFlag, type SeatFrame, type Sheet } from "./wire";
 
 export const BEATS_PER_S = 50;
 
@@ -92,14 +92,18 @@ export function outcome(match: Match): string {
   return t("hint.wins", { team: team(sheet, index) });
 }
 
-/** The winner's seat id or "draw"; null while nothing is decided. */
+/** The winner's seat id or "draw", the referee's word before the rules'; null while it is open. */
 export function winnerOf(match: Match): string | null {
-  for (const event of match.events.value.toReversed()) {
-    const given = event.data.arguments as { winner?: string } | undefined;
-    if (event.data.decision === "declare") return given?.winner ?? null;
-    if (event.kind === "result") return String(event.data.winner);
-  }
-  return null;
+  const events = match.events.value;
+  const declared = events.findLast(({ data }) => data.decision === "declare")?.data.arguments;
+  const word = (declared as { winner?: string } | undefined)?.winner;
+  return word ?? byRules(events);
+}
+
+/** The winner by the rules alone. */
+export function byRules(events: readonly Event[]): string | null {
+  const result = events.findLast(({ kind }) => kind === "result");
+  return result ? String(result.data.winner) : null;
 }
 
 function missing(frame: Frame, sheet: Sheet): string {

@@ -4,7 +4,7 @@ import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/court";
 import { type Event, Phase, type Sheet } from "../core/wire";
-import { clock, team, winnerOf } from "../core/words";
+import { byRules, clock, team, winnerOf } from "../core/words";
 import { said, t } from "../i18n";
 import { SeatMark } from "./score";
 import "./result.css";
@@ -31,11 +31,17 @@ export function ResultCard({ match, onClose }: Props) {
   if (!SHOWN.has(phase) || !sheet || !frame || (!isVoid && winner === null)) return null;
   const events = match.events.value;
   const official = phase === Phase.OFFICIAL;
+  const declared = !isVoid && byRules(events) !== winner;
+  const kicker = isVoid
+    ? "result.void"
+    : official
+      ? "result.official"
+      : declared
+        ? "result.declared"
+        : "result.byRules";
   return (
     <section class="result" data-phase={phase} aria-label={t("result.title")} aria-live="polite">
-      <p class="kicker">
-        {t(isVoid ? "result.void" : official ? "result.official" : "result.byRules")}
-      </p>
+      <p class="kicker">{t(kicker)}</p>
       <h1>{isVoid ? t("hint.void") : title(sheet, winner)}</h1>
       {sheet.seats.length > 1 && (
         <div class="final">
@@ -55,7 +61,7 @@ export function ResultCard({ match, onClose }: Props) {
         </div>
       )}
       <p class="why">{why(events, clock(frame.clock_ticks))}</p>
-      {official && changed(events, winner) && <p class="why">{t("result.declared")}</p>}
+      {official && declared && <p class="why">{t("result.declared")}</p>}
       <p class="next">{t(phase === Phase.FINISHED ? "hint.finished" : "result.next")}</p>
       {onClose && (
         <button class="button quiet" type="button" onClick={onClose}>
@@ -77,10 +83,4 @@ function why(events: readonly Event[], time: string): string {
   const end = events.findLast(({ data }) => data.after === "FINISHED" || data.after === "VOID");
   const reason = /^FINISHED: (.*)\.$/s.exec(end?.text ?? "")?.[1];
   return reason ? t("result.ended", { reason: said(reason), time }) : t("result.time", { time });
-}
-
-/** Whether the referee's winner is another than the rules'. */
-function changed(events: readonly Event[], winner: string | null): boolean {
-  const computed = events.findLast(({ kind }) => kind === "result")?.data.winner;
-  return computed !== undefined && computed !== winner;
 }

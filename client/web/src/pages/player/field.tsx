@@ -160,7 +160,8 @@ function ResultCard({ court, player, onSave }: Props) {
           : isMine
             ? t("end.win")
             : t("end.lose", { team: team(sheet, winnerIndex) });
-  const points = Math.abs((scores[0] ?? 0) - (scores[1] ?? 0));
+  const [own = 0, other = 0] = winnerIndex === 1 ? scores.toReversed() : scores;
+  const points = own - other; // less than 0: declared, against the score
   const decided = phase !== Phase.VOID && winnerIndex >= 0 && points > 0;
   return (
     <section
