@@ -99,6 +99,42 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     left.close()
 
 
+def test_the_winner_is_whom_the_referee_says(venue: Venue, open_page: OpenPage) -> None:
+    """Rules 4: who was declared in a halt has won, before and after it is official."""
+    venue.court()
+    venue.web()
+    referee = playing(venue)
+    decide(referee, "a slip", type="adjust", seat="left", points=3)
+    show = Show(open_page(), venue.url, LOW)
+    decide(referee, "lights out", type="halt")
+    decide(referee, "a foul", type="declare", winner="right")
+    show.sees(".result .kicker", "Decided by the referee")
+    show.sees(".result h1", "Bees wins")
+    decide(referee, "", type="official")
+    show.sees(".result .kicker", "Official result")
+    show.sees(".result h1", "Bees wins")
+    show.sees(".result .side.won", "Bees")
+
+
+def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) -> None:
+    """Rules 4, adjust and take-back after the end: the card follows."""
+    venue.court()
+    venue.web()
+    referee = playing(venue)
+    show = Show(open_page(), venue.url, LOW)
+    decide(referee, "test", type="clock", seconds=3600)
+    show.sees(".result h1", "A draw")
+    number = decide(referee, "count again", type="adjust", seat="left", points=3)["event"]
+    show.sees(".result h1", "Ants wins")
+    show.sees(".result .kicker", "By the rules")
+    decide(referee, "a slip", type="take-back", event=number)
+    show.sees(".result h1", "A draw")
+    decide(referee, "count again", type="adjust", seat="right", points=1)
+    decide(referee, "", type="official")
+    show.sees(".result .kicker", "Official result")
+    show.sees(".result h1", "Bees wins")
+
+
 def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
     venue.court()
     venue.web()
