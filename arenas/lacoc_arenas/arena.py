@@ -18,6 +18,7 @@ from lacoc_arenas.game import AnyGame
 from lacoc_shared import plugins
 from lacoc_shared.gait import Level
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import Colour, Pattern
 from lacoc_shared.toml_text import BadToml, read_toml
 
 _GROUP = "lacoc.arenas"
@@ -50,11 +51,11 @@ class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class SeatSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A seat and how its robot looks unless the team says otherwise."""
+    """A seat and how its robot looks, unless the contest says how its team does."""
 
     id: Annotated[str, msgspec.Meta(pattern="^[a-z0-9]{1,16}$")]
-    colour: Annotated[str, msgspec.Meta(pattern="^#[0-9a-fA-F]{6}$")]
-    pattern: Literal["plain", "stripes", "dots"] = "plain"
+    colour: Colour
+    pattern: Pattern = "plain"
 
 
 class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -118,12 +119,17 @@ class Arena:
         return bots
 
 
-def load(name: str, overrides: Mapping[str, Any] | None = None) -> Arena:
+def load(
+    name: str,
+    overrides: Mapping[str, Any] | None = None,
+    looks: Mapping[str, Mapping[str, str]] | None = None,
+) -> Arena:
     """Load an installed arena, or one in a folder.
 
     Args:
         name: an installed name such as "othello", or a folder's path.
         overrides: nested entries that replace those of the arena's file.
+        looks: by seat, its team's own `colour` and `pattern` (rules 4).
 
     Raises:
         UserError: if there is no such arena or its file is wrong.
@@ -135,7 +141,10 @@ def load(name: str, overrides: Mapping[str, Any] | None = None) -> Arena:
     except (OSError, BadToml) as error:
         raise UserError(f"The arena file {path} can't be read: {error}.") from None
     folder = None if name in plugins.installed(_GROUP) else Path(name).expanduser().resolve()
-    return Arena(str(folder or name), merge(settings, overrides or {}), module, folder)
+    settings = merge(settings, overrides or {})
+    if looks:
+        settings["seat"] = [seat | looks.get(seat["id"], {}) for seat in settings["seat"]]
+    return Arena(str(folder or name), settings, module, folder)
 
 
 def from_settings(name: str, settings: dict[str, Any], folder: Path | None = None) -> Arena:

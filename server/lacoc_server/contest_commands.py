@@ -60,6 +60,7 @@ listen = ["0.0.0.0:7447"]          # 127.0.0.1:7447: this machine alone
 # input_delay = "equal"                # hold keys until both links have the same delay,
 # input_delay_max_ms = 400             # at most this
 
+# A seat may have its team's own look: colour = "#009e73", pattern = "plain", "stripes" or "dots".
 {seats}
 [court.{court}.referee]
 token = "{referee}"
@@ -188,7 +189,7 @@ def show(
 
 
 def _check_court(name: str, court: Court) -> None:
-    arena = arenas.load(court.arena, court.settings)
+    arena = arenas.load(court.arena, court.settings, court.looks)
     there = {seat.id for seat in arena.seats}
     if there != set(court.seat):
         raise UserError(

@@ -20,6 +20,7 @@ from lacoc_shared.key_folder import KeyFolder
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seal import new_token
+from lacoc_shared.seat import Colour, Pattern
 from lacoc_shared.toml_text import BadToml, read_toml
 
 T = TypeVar("T")
@@ -39,6 +40,14 @@ class Holder(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Who holds a seat, or the referee's place: whoever knows the token."""
 
     token: Token
+
+
+class SeatHolder(Holder, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Who holds a seat, and how its robot looks there."""
+
+    colour: Colour | None = None
+    """The team's own; None: the seat's, as the arena's file has it."""
+    pattern: Pattern | None = None
 
 
 _Amount = Annotated[float, msgspec.Meta(ge=0)]
@@ -74,7 +83,7 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Where the court listens."""
     connect: str = ""
     """Where others reach it; "": the first of `listen`."""
-    seat: dict[str, Holder] = {}
+    seat: dict[str, SeatHolder] = {}
     """By the arena's name of the seat."""
     referee: Holder
     settings: dict[str, Any] = {}
@@ -94,6 +103,15 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """Where others reach it; "" if it listens at every address and nothing says which."""
         found = address_host(self.connect or self.listen[0])
         return "" if found in ANY_HOST else found
+
+    @property
+    def looks(self) -> dict[str, dict[str, str]]:
+        """By seat, its team's own colour and pattern, if it has them."""
+        own = {
+            seat: (("colour", one.colour), ("pattern", one.pattern))
+            for seat, one in self.seat.items()
+        }
+        return {seat: {name: look for name, look in looks if look} for seat, looks in own.items()}
 
     def address(self, any_host: str = "127.0.0.1") -> str:
         """Where a client connects.
@@ -184,7 +202,7 @@ def throwaway(
     court = Court(
         arena=arena,
         listen=tuple(map(endpoint, listen)),
-        seat={seat: Holder(token=new_token()) for seat in seats},
+        seat={seat: SeatHolder(token=new_token()) for seat in seats},
         referee=Holder(token=new_token()),
     )
     return Contest(name="throw-away", courts={MAIN: court})
@@ -241,7 +259,7 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
     entries = _convert(table, dict[str, Any], where)
     seats = _convert(entries.get("seat", {}), dict[str, Any], f"{where}.seat")
     court = _convert({**entries, "seat": {}}, Court, where)
-    holders = {seat: _convert(seats[seat], Holder, f"{where}.seat.{seat}") for seat in seats}
+    holders = {seat: _convert(seats[seat], SeatHolder, f"{where}.seat.{seat}") for seat in seats}
     tokens = [court.referee.token, *(holder.token for holder in holders.values())]
     if len(set(tokens)) < len(tokens):
         raise _Wrong(f"[{where}]: two places have the same token; each needs its own.")

@@ -1,6 +1,14 @@
 """Seats, phases and the small numbers that frames carry."""
 
 from enum import IntEnum, IntFlag
+from typing import Annotated, Literal
+
+import msgspec
+
+Colour = Annotated[str, msgspec.Meta(pattern="^#[0-9a-fA-F]{6}$")]
+"""Of a team, as in "#0072b2"."""
+Pattern = Literal["plain", "stripes", "dots"]
+"""Of a team, for whom colours alone are not told apart."""
 
 
 class Phase(IntEnum):

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from lacoc_arenas import arena as arenas
 from lacoc_server.contest_commands import app
 from lacoc_shared import contest as contests
 from lacoc_shared.mistakes import UserError
@@ -48,6 +49,23 @@ def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> N
     assert stat.S_IMODE(file.stat().st_mode) == 0o600
     assert (tmp_path / "contest.1.toml").read_text() == first
     assert file.read_text() != first
+
+
+def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
+    """Rules 4: names, colours and patterns belong to the teams; the seat's are the default."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file))
+    text = file.read_text()
+    own = '[court.main.seat.right]\ncolour = "#009e73"\npattern = "dots"\n'
+    file.write_text(text.replace("[court.main.seat.right]\n", own))
+    assert "is right" in run("check", str(file))
+    court = contests.load(file).courts["main"]
+    left, right = arenas.load(court.arena, court.settings, court.looks).seats
+    assert (right.colour, right.pattern) == ("#009e73", "dots")
+    assert left == arenas.load(court.arena).seats[0]
+    file.write_text(text.replace("[court.main.seat.right]\n", own.replace("#009e73", "green")))
+    with pytest.raises(UserError, match=r"court\.main\.seat\.right"):
+        contests.load(file)
 
 
 def test_show_as_json(tmp_path: Path) -> None:

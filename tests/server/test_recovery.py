@@ -74,9 +74,12 @@ def test_settings_that_were_changed_count_from_the_next_match(contest: Path, fol
         usual_s = those.view.sheet.duration_s
         kill(first)
         lasts(contest, 75)
+        own = 'seat.left.colour = "#009e73"\nseat.left.token'
+        contest.write_text(contest.read_text().replace("seat.left.token", own))
         stack.enter_context(served(contest, folder))
         those.until(lambda: those.view.health and not those.view.health.decisions["start"])
         assert those.view.sheet.duration_s == usual_s != 75
+        assert those.view.sheet.seats[0].colour != "#009e73"
         those.decide(Start(), Phase.PLAYING)
         those.decide(Halt(), Phase.HALTED)
         those.decide(Declare("draw"), Phase.FINISHED)
@@ -84,6 +87,7 @@ def test_settings_that_were_changed_count_from_the_next_match(contest: Path, fol
         those.decide(Next(), Phase.LOBBY)
         those.until(lambda: those.view.sheet.match == 2)
         assert those.view.sheet.duration_s == 75
+        assert those.view.sheet.seats[0].colour == "#009e73"
 
 
 def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> None:

@@ -84,7 +84,7 @@ def serve_command(
     """
     plan, made_here = _contest(contest, arena, listen)
     name, entry = plan.court(court)
-    loaded = arenas.load(entry.arena, _overrides(entry.settings, seconds))
+    loaded = arenas.load(entry.arena, _overrides(entry.settings, seconds), entry.looks)
     _check_seats(name, entry, loaded)
     keys = Keys(name)
     folder = recordings or plan.recordings
