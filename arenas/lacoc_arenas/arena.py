@@ -6,6 +6,7 @@ entry (rules 1, "Where each number lives").
 """
 
 import importlib
+import importlib.util
 from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
@@ -22,6 +23,9 @@ from lacoc_shared.seat import Colour, Pattern
 from lacoc_shared.toml_text import BadToml, read_toml
 
 _GROUP = "lacoc.arenas"
+_FILE = "arena.toml"
+_PARTS = ("rules", "field", "bots")
+"""Modules of an arena, each imported where it is needed."""
 
 Seconds = Annotated[float, msgspec.Meta(ge=0, le=86_400)]
 
@@ -135,10 +139,13 @@ def load(
         UserError: if there is no such arena or its file is wrong.
     """
     module = plugins.package(_GROUP, "arena", name)
-    path = plugins.folder_of(module) / "arena.toml"
+    _require_whole(module)
+    path = plugins.folder_of(module) / _FILE
     try:
         settings = read_toml(path.read_bytes())
-    except (OSError, BadToml) as error:
+    except OSError as error:
+        raise UserError(f"The arena file {path} can't be read: {error.strerror}.") from None
+    except BadToml as error:
         raise UserError(f"The arena file {path} can't be read: {error}.") from None
     folder = None if name in plugins.installed(_GROUP) else Path(name).expanduser().resolve()
     settings = merge(settings, overrides or {})
@@ -160,7 +167,9 @@ def from_settings(name: str, settings: dict[str, Any], folder: Path | None = Non
         UserError: if the arena is not installed here, and no folder was named.
     """
     if folder is not None and name not in plugins.installed(_GROUP):
-        return Arena(name, settings, plugins.package_of_folder(folder), folder)
+        module = plugins.package_of_folder(folder)
+        _require_whole(module)
+        return Arena(name, settings, module, folder)
     try:
         module = plugins.installed_package(_GROUP, "arena", name)
     except UserError as error:
@@ -169,6 +178,29 @@ def from_settings(name: str, settings: dict[str, Any], folder: Path | None = Non
             "--arena FOLDER, if you trust it."
         ) from None
     return Arena(name, settings, module, None)
+
+
+def _require_whole(module: ModuleType) -> None:
+    """See that a package has all that an arena is made of.
+
+    Raises:
+        UserError: if it has not; the message says what is missing.
+    """
+    folder = plugins.folder_of(module)
+    missing = [] if (folder / _FILE).exists() else [_FILE]
+    missing += [
+        f"{part}.py"
+        for part in _PARTS
+        if importlib.util.find_spec(f"{module.__name__}.{part}") is None
+    ]
+    if missing:
+        needed = ", ".join(f"{part}.py" for part in _PARTS)
+        raise UserError(
+            f"The folder {folder} is no whole arena: it lacks {', '.join(missing)}. An arena needs "
+            f"{_FILE}, {needed}; begin with a copy of {Path(__file__).parent / 'othello'}. To "
+            "change numbers alone no folder is needed: write them into the contest file, below "
+            "[court.NAME.settings]."
+        )
 
 
 def merge(settings: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:

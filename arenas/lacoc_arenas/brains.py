@@ -7,6 +7,7 @@ from typing import Any
 
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.bot import BotFactory, Brain, Key
+from lacoc_arenas.checked_bot import broken, checked
 from lacoc_shared import plugins
 from lacoc_shared.codec import decode
 from lacoc_shared.gait import Level
@@ -29,9 +30,18 @@ def find(arena: Arena, name: str) -> BotFactory:
             a function `bot(sheet, seat)`; or "ghost:RECORD.mcap:SEAT", which presses the keys of
             a recorded match again.
 
+    Returns:
+        The bot. It raises UserError, with the line of its own code, if it breaks, or gives back
+        what is no key.
+
     Raises:
-        UserError: if there is no such bot; the message lists the ones there are.
+        UserError: if there is no such bot, and the message lists the ones there are; or if its
+            file has a mistake.
     """
+    return checked(name, _find(arena, name))
+
+
+def _find(arena: Arena, name: str) -> BotFactory:
     if name.startswith(GHOST):
         record, seat = open_ghost(name)
         return lambda sheet, index: ghost(record, seat)
@@ -109,7 +119,10 @@ def _from_file(path: Path) -> BotFactory:
     if spec is None or spec.loader is None or not path.exists():
         raise UserError(f"There is no bot file {path}.")
     module: Any = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:  # whatever a person's code may raise
+        raise broken(str(path), error, spec.origin) from error
     if not callable(getattr(module, "bot", None)):
         raise UserError(f"{path} has no function bot(sheet, seat).")
     factory: BotFactory = module.bot

@@ -48,6 +48,8 @@ def gather(robot: str | None, gaits: Sequence[Path]) -> SeatFiles:
 def as_text(files: SeatFiles) -> SeatFiles:
     """Turn workbooks into the text that they stand for: that is what a court reads.
 
+    Each keeps its name, by which mistakes are told to its contestant.
+
     Raises:
         FileRefused: with every mistake of every workbook.
     """
@@ -73,6 +75,23 @@ def gaits_in(folder: Path) -> list[Path]:
         for patterns in (_POSTURES, _LOCOMOTION)
     )
     return [max(paths, key=lambda path: path.stat().st_mtime) for paths in found if paths]
+
+
+def remarks(folder: Path, taken: Sequence[Path]) -> list[str]:
+    """What a contestant may not expect of the gait files taken from a folder, as sentences."""
+    said = [
+        f"{path.name} is not taken: a workbook has postures alone (level A, Loco-data.xlsx), and "
+        "sequences are text. Save its table as text with tabs: LocoTra-data.txt."
+        for path in sorted(folder.glob("LocoTra*.xlsx"))
+    ]
+    match taken:
+        case [postures, sequences] if sequences.stat().st_mtime < postures.stat().st_mtime:
+            said.append(
+                f"{sequences.name} is older than {postures.name}: the keys of level B have none of "
+                "what was changed there since. Convert again: "
+                f"lacoc gait convert {postures.name} {sequences.name}"
+            )
+    return said
 
 
 def _read(paths: Iterable[Path]) -> tuple[SentFile | None, SentFile | None]:
@@ -105,4 +124,4 @@ def _sent(path: Path, table: _Table) -> SentFile:
 
 def _text(name: str, table: _Table) -> SentFile:
     text = write_gait(table, leg_labels(table.joints // JOINTS_PER_LEG))
-    return SentFile(f"{Path(name).stem}.txt", text)
+    return SentFile(name, text)

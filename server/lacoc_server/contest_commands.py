@@ -133,7 +133,8 @@ def keys(
 ) -> None:
     """Encrypt a contest: make its keys, and an invitation for each person.
 
-    They go to the folder 'keys' beside the contest file, which gets an entry that says so. From
+    They go to the folder 'keys' beside the contest file, or to 'keys-FILE' where another contest's
+    are in 'keys'; the contest file gets an entry that says so. From
     then on its courts listen with TLS, and each person can do no more than their invitation says.
 
     Run again, it adds what is new (a court, a token, a host); invitations that were handed out
@@ -149,9 +150,10 @@ def keys(
     screen.show(f"Keys of {', '.join(made.hosts)}, valid until {made.ends}: {made.folder.path}")
     for access in made.invitations:
         screen.show(f"  {made.folder.invitation(access.user)}")
+    starts = [f"lacoc serve --contest {file} --court {name}" for name in contests.load(file).courts]
     screen.note(
         "Hand each person their invitation, and nothing else of that folder. Next: "
-        f"lacoc serve --contest {file}"
+        f"{', and '.join(starts)}"
     )
 
 

@@ -1,6 +1,7 @@
 """Makes a contest's keys and invitations beside its contest file."""
 
 import itertools
+import json
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -18,7 +19,7 @@ from lacoc_shared.toml_text import BadToml, read_toml
 
 _ALWAYS = ("localhost", "127.0.0.1", "::1")
 _TABLE = "[contest]"
-_ENTRY = "keys = \"keys\"  # folder, beside this file, of what 'lacoc contest keys' made"
+_FOLDER = "keys"
 
 
 class Made(NamedTuple):
@@ -102,14 +103,33 @@ def _with_entry(file: Path) -> tuple[bytes, Contest]:
 
 
 def _insert_entry(data: bytes, file: Path, *, must_have_table: bool) -> bytes:
+    folder = json.dumps(_free_folder(file), ensure_ascii=False)  # such a string is TOML's too
+    entry = f"keys = {folder}  # folder, beside this file, of what 'lacoc contest keys' made"
     lines = data.decode("utf-8-sig").splitlines(keepends=True)
     heads = [row for row, line in enumerate(lines) if "".join(line.split()).startswith(_TABLE)]
     if must_have_table and not heads:
-        raise UserError(f'Write  {_TABLE[1:-1]}.keys = "keys"  into {file}, and try again.')
+        raise UserError(f"Write  {_TABLE[1:-1]}.keys = {folder}  into {file}, and try again.")
     # Without such a table it becomes the last one: what stands before belongs to others.
     where = heads[0] + 1 if heads else len(lines)
-    lines[where:where] = [f"{_ENTRY}\n"] if heads else [f"\n{_TABLE}\n{_ENTRY}\n"]
+    lines[where:where] = [f"{entry}\n"] if heads else [f"\n{_TABLE}\n{entry}\n"]
     return "".join(lines).encode()
+
+
+def _free_folder(file: Path) -> str:
+    """A folder beside a contest file for its keys; one that is there belongs to another contest.
+
+    Raises:
+        UserError: if both names that it may have are taken.
+    """
+    names = (_FOLDER, f"{_FOLDER}-{file.stem}")
+    free = [name for name in names if not (file.resolve().parent / name).exists()]
+    if not free:
+        raise UserError(
+            f"{' and '.join(names)} beside {file} hold the keys of other contests, or of an older "
+            f'one: rename them; or, to go on with the keys of one, write  keys = "{names[0]}"  '
+            f"below [contest] in {file}."
+        )
+    return free[0]
 
 
 def _authority(folder: KeyFolder) -> Authority:

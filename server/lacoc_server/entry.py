@@ -13,9 +13,13 @@ from lacoc_shared.mistakes import FileRefused, Mistake
 
 DEFAULT_LIMITS = Limits()
 
+_SEQUENCES = (
+    "a LocoTra-data file (sequences for level B; "
+    "'lacoc gait convert Loco-data.xlsx LocoTra-data.txt' makes one)"
+)
 _TABLES: dict[Level, tuple[type[PostureTable] | type[LocomotionTable], str]] = {
     Level.POSTURE: (PostureTable, "a Loco-data file (postures for level A)"),
-    Level.LOCOMOTION: (LocomotionTable, "a LocoTra-data file (sequences for level B)"),
+    Level.LOCOMOTION: (LocomotionTable, _SEQUENCES),
 }
 
 

@@ -35,6 +35,7 @@ app = typer.Typer(
 
 _SAMPLE_KEYS_TEXT = ";".join(",".join(map(str, sequence)) for sequence in SAMPLE_KEYS)
 _KEYS = re.compile(r"\d(,\d)*(;\d(,\d)*)*", re.ASCII)
+_NAME_OF_A_FILE = "the name of a gait file (a pattern that fits none stays as it is typed)"
 _LIFTED = 0.1  # of a link's length above the lowest foot: 7 mm on the workshop's robot
 
 
@@ -73,6 +74,8 @@ def check(
             tables.append((file, read_gait_file(file, legs=legs)))
         except FileRefused as error:
             mistakes += error.mistakes
+        except UserError as error:  # one file that can't be opened hides none of the others
+            mistakes.append(Mistake(file=str(file), found=str(error), expected=_NAME_OF_A_FILE))
     if json:
         checked = [_checked(file, table) for file, table in tables]
         screen.print_json({"files": checked, "mistakes": mistakes})

@@ -37,11 +37,21 @@ MAX_MISTAKES = 1000
 
 _KEY = re.compile(r"(\d)\s*key", re.IGNORECASE | re.ASCII)
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
+POSTURES_HEADER = '"Num of Posture" and their number (Loco-data)'
+ANY_HEADER = (
+    '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)'
+)
+
 _LEGEND_LABELS = ("id of joint", "position")
 
 
 def read_cells(
-    rows: Iterable[Row], file: str, *, legs: Legs = None, range_deg: Range = RANGE_DEG
+    rows: Iterable[Row],
+    file: str,
+    *,
+    legs: Legs = None,
+    range_deg: Range = RANGE_DEG,
+    headers: str = ANY_HEADER,
 ) -> PostureTable | LocomotionTable:
     """Read a gait; which kind it is shows in the first row.
 
@@ -50,11 +60,12 @@ def read_cells(
         file: the file's name, for the mistakes.
         legs: the legs of the robot it must fit; None takes any robot of 4, 6 or 8 legs.
         range_deg: the range of the angles.
+        headers: what is expected in the first row of a file that has neither header.
 
     Raises:
         FileRefused: with every mistake, or the first `MAX_MISTAKES`.
     """
-    return _Reader(file, legs, range_deg).read(rows)
+    return _Reader(file, legs, range_deg, headers).read(rows)
 
 
 def _is_legend(cells: Sequence[str]) -> bool:
@@ -74,12 +85,13 @@ def _is_legend(cells: Sequence[str]) -> bool:
 class _Reader:
     """One reading of one file; collects its mistakes."""
 
-    def __init__(self, file: str, legs: Legs, range_deg: Range) -> None:
+    def __init__(self, file: str, legs: Legs, range_deg: Range, headers: str) -> None:
         self._file = file
         self._mistakes: list[Mistake] = []
         self._labels = None if legs is None or isinstance(legs, int) else tuple(legs)
         self._legs = legs if legs is None or isinstance(legs, int) else len(legs)
         self._range_deg = range_deg
+        self._headers = headers
 
     def read(self, rows: Iterable[Row]) -> PostureTable | LocomotionTable:
         filled = [Row(row.number, _trimmed(row.cells)) for row in rows]
@@ -130,8 +142,7 @@ class _Reader:
             row=row,
             column=1,
             found=shown(row.cells[0]),
-            expected='"Num of Posture" and their number (Loco-data), '
-            "or the number of keys alone (LocoTra-data)",
+            expected=self._headers,
         )
 
     def _postures(self, rows: list[Row]) -> PostureTable:

@@ -2,7 +2,7 @@
 
 import codecs
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from lacoc_shared.gait import LocomotionTable, PostureTable
 from lacoc_shared.gait_cells import (
@@ -24,6 +24,9 @@ _BOMS = (
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
+_PATH_BEGIN = b"time_s"
+"""How the header row of Pos-data.txt begins (rules 2)."""
+_CSV = "commas or semicolons between the cells (CSV)"
 _LINE_END = re.compile(r"\r\n|\r|\n")
 # A row without a tab: labels that hold spaces, quoted cells, and then what spaces part.
 _SPACED_CELL = re.compile(
@@ -46,12 +49,20 @@ def read_gait(
     Raises:
         FileRefused: with every mistake in the file; nothing is clamped or skipped.
     """
+    # First of all: it lies beside the gaits, and is soon longer than any of them.
+    if data.startswith(_PATH_BEGIN):
+        raise _refused(name, "the path of a robot (Pos-data)", "a gait (Loco-data or LocoTra-data)")
     lines = _LINE_END.split(narrow(_text(data, name)))
     filled = [(number, line) for number, line in enumerate(lines, start=1) if line.strip()]
     if len(filled) > _MAX_ROWS:
         raise _refused(name, f"{len(filled)} rows", f"a gait of at most {_MAX_ROWS} rows")
     rows = [Row(number, _cells(line)) for number, line in filled]
-    return read_cells(rows, name, legs=legs, range_deg=range_deg)
+    try:
+        return read_cells(rows, name, legs=legs, range_deg=range_deg)
+    except FileRefused:
+        if _is_csv(line for _, line in filled):
+            raise _refused(name, _CSV, "tabs: save it as text with tabs, or as .xlsx") from None
+        raise
 
 
 def write_gait(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> bytes:
@@ -104,6 +115,14 @@ def _decoded(data: bytes, encoding: str, name: str) -> str:
 def _cells(line: str) -> list[str]:
     cells = line.split("\t") if "\t" in line else _SPACED_CELL.findall(line)
     return [_unquoted(cell.strip()) for cell in cells]
+
+
+def _is_csv(lines: Iterable[str]) -> bool:
+    """Whether commas or semicolons part the cells: a decimal comma comes once a cell at most."""
+    lines = list(lines)
+    return not any("\t" in line for line in lines) and any(
+        line.count(",") + line.count(";") > len(_cells(line)) for line in lines
+    )
 
 
 def _unquoted(cell: str) -> str:

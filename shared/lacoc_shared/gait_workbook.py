@@ -20,7 +20,7 @@ from openpyxl.utils import get_column_letter
 
 from lacoc_shared.gait import LocomotionTable, PostureTable
 from lacoc_shared.gait_cells import RANGE_DEG, Row, narrow, number_text, posture_cells
-from lacoc_shared.gait_reader import Legs, Range, read_cells
+from lacoc_shared.gait_reader import POSTURES_HEADER, Legs, Range, read_cells
 from lacoc_shared.gait_sheets import INPUT_SHEET, MIRROR_SHEET, add_sheets
 from lacoc_shared.gait_text import read_gait
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError, printable
@@ -33,6 +33,13 @@ _MAX_ELEMENTS = 50_000  # XML elements in all of them; a table has two thousand
 _MAX_ROWS, _MAX_COLUMNS = 1000, 100  # what is looked at; a table has 14 rows, 25 columns
 _ZIP = b"PK\x03\x04"
 _COMPOUND_FILE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"  # .xls, or a workbook with a password
+_OTHERS = {
+    "content.xml": "an OpenDocument file, such as .ods",
+    "word/document.xml": "a Word document (.docx)",
+    "ppt/presentation.xml": "a presentation (.pptx)",
+    "xl/workbook.bin": "a binary workbook (.xlsb)",
+}
+"""The part by which another kind of document is known -> what that is."""
 _WANTED = "an .xlsx workbook without a password, as spreadsheet programs save it"
 
 
@@ -82,11 +89,15 @@ def read_workbook(
     except Exception:  # openpyxl meets a broken workbook with any error at all
         raise _refused(name, "a workbook that can't be read", _WANTED) from None
     try:
-        table = read_cells(rows, name, legs=legs, range_deg=range_deg)
+        table = read_cells(rows, name, legs=legs, range_deg=range_deg, headers=POSTURES_HEADER)
     except FileRefused as error:
         raise FileRefused([_at_cell(mistake, sheet) for mistake in error.mistakes]) from None
     if isinstance(table, LocomotionTable):
-        raise _refused(name, "sequences of postures", '"Num of Posture" in cell A1 (Loco-data)')
+        raise _refused(
+            name,
+            "sequences of postures",
+            '"Num of Posture" in cell A1 (Loco-data); sequences are a text file (LocoTra-data.txt)',
+        )
     return table
 
 
@@ -128,6 +139,9 @@ def _require_harmless(data: bytes, name: str) -> None:
             if any(part.flag_bits & 1 for part in parts):
                 raise _refused(name, "a file with a password", _WANTED)
             packed = {part.compress_type for part in parts}
+            for part in parts:
+                if (other := _OTHERS.get(part.filename)) is not None:
+                    raise _refused(name, other, "the table saved as .xlsx, or as text with tabs")
             if len(parts) > _MAX_PARTS or packed - {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
                 raise _refused(name, "a zip that is no workbook", _WANTED)
             counter = _ElementCounter()

@@ -297,12 +297,24 @@ def test_unknown_arena() -> None:
 
 
 def test_unreadable_file(tmp_path: Path) -> None:
-    """A folder with no file, or with one that is no TOML: the message names the file."""
-    with pytest.raises(UserError, match=r"arena\.toml can't be read"):
-        arena.load(str(tmp_path))
+    """A file that is no TOML: the message names it."""
+    for name in ("rules.py", "field.py", "bots.py"):
+        (tmp_path / name).touch()
     (tmp_path / "arena.toml").write_text("title =")
     with pytest.raises(UserError, match=r"arena\.toml can't be read: Invalid value"):
         arena.load(str(tmp_path))
+
+
+def test_a_folder_that_is_no_whole_arena(tmp_path: Path) -> None:
+    """One sentence: what the folder lacks, what it needs, and where numbers alone are changed."""
+    with pytest.raises(UserError, match=r"lacks arena\.toml, rules\.py, field\.py, bots\.py\. "):
+        arena.load(str(tmp_path))
+    (tmp_path / "arena.toml").write_text("title = ''")
+    (tmp_path / "bots.py").touch()
+    with pytest.raises(UserError, match=r"lacks rules\.py, field\.py\. .*\[court\.NAME\.settings"):
+        arena.load(str(tmp_path))
+    with pytest.raises(UserError, match=r"lacks rules\.py"):
+        arena.from_settings(str(tmp_path), {}, tmp_path)
 
 
 @pytest.mark.parametrize("name", INSTALLED)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_client.seat_files import SeatFiles, as_text, gaits_in, gather
+from lacoc_client.seat_files import SeatFiles, as_text, gaits_in, gather, remarks
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.gait import PostureTable
 from lacoc_shared.gait_cells import leg_labels
@@ -64,6 +64,25 @@ def test_files_saved_in_one_moment_go_by_their_names(tmp_path: Path) -> None:
     assert [path.name for path in gaits_in(tmp_path)] == ["Loco-data.txt", "LocoTra-data.txt"]
 
 
+def test_sequences_that_are_older_than_their_postures_are_told(tmp_path: Path) -> None:
+    """Workshop 4-1: who edits Loco-data.xlsx and plays level B hears that nothing changed there."""
+    table = write(tmp_path / "Loco-data.xlsx", b"", 1000)
+    sequences = write(tmp_path / "LocoTra-data.txt", b"", 1000)
+    assert remarks(tmp_path, [table, sequences]) == []
+
+    write(table, b"", 1001)
+    (remark,) = remarks(tmp_path, [table, sequences])
+    assert remark.endswith("lacoc gait convert Loco-data.xlsx LocoTra-data.txt")
+    assert remarks(tmp_path, [table]) == remarks(tmp_path, [sequences]) == []
+
+
+def test_a_workbook_of_sequences_is_named(tmp_path: Path) -> None:
+    """Rules 2: a workbook is Loco-data; another one is left out, and that is said."""
+    write(tmp_path / "LocoTra-data.xlsx", workbook())
+    (remark,) = remarks(tmp_path, gaits_in(tmp_path))
+    assert "LocoTra-data.xlsx is not taken" in remark
+
+
 def test_nothing_named_leaves_all_to_the_contest() -> None:
     """The contest's robot walks with its own sample gait."""
     assert gather(None, []) == SeatFiles()
@@ -88,11 +107,11 @@ def test_each_file_goes_to_its_level(tmp_path: Path) -> None:
 
 
 def test_a_workbook_goes_as_the_text_it_stands_for(tmp_path: Path) -> None:
-    """Rules 2: the workbook is read with no "Save as" step; a court reads text only."""
+    """Rules 2: no "Save as" step, a court reads text only; mistakes name the workbook."""
     files = gather(None, [write(tmp_path / "Loco-data.xlsx", workbook())])
 
     assert files.postures is not None
-    assert files.postures.name == "Loco-data.txt"
+    assert files.postures.name == "Loco-data.xlsx"
     assert read_gait(files.postures.data, "") == read_gait(POSTURES, "")
 
 
@@ -127,7 +146,7 @@ def test_a_workbook_travels_as_text() -> None:
     book = SentFile("Loco-data.xlsx", workbook())
     files = as_text(SeatFiles(postures=book, locomotion=SAMPLE.locomotion))
     assert files.postures is not None
-    assert files.postures.name == "Loco-data.txt"
+    assert files.postures.name == "Loco-data.xlsx"
     assert read_gait(files.postures.data, "a") == read_gait(POSTURES, "b")
     assert files.locomotion == SAMPLE.locomotion
 

@@ -10,6 +10,11 @@ NO_HEADER = (
     '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)'
 )
 
+CSV = (
+    "commas or semicolons between the cells (CSV)",
+    "tabs: save it as text with tabs, or as .xlsx",
+)
+
 
 def refused(data: bytes | str, **robot) -> list[Mistake]:
     """The mistakes for which a file is refused."""
@@ -90,6 +95,23 @@ def test_what_is_no_number(cell):
         pytest.param("", [(None, None, "an empty file", "a table of angles")], id="empty"),
         pytest.param(
             "\n \n\t\n", [(None, None, "an empty file", "a table of angles")], id="only blanks"
+        ),
+        pytest.param(
+            "time_s\tx_m\ty_m\n" + "0.02\t0.1\t0.2\n" * 9000,
+            [
+                (
+                    *(None, None),
+                    "the path of a robot (Pos-data)",
+                    "a gait (Loco-data or LocoTra-data)",
+                )
+            ],
+            id="Pos-data",
+        ),
+        pytest.param(
+            loco([posture(), posture("1 Key")]).replace("\t", ","), [(None, None, *CSV)], id="CSV"
+        ),
+        pytest.param(
+            loco([posture(j0="4,5")]).replace("\t", ";"), [(None, None, *CSV)], id="CSV with ;"
         ),
         pytest.param("hello world", [(1, 1, '"hello"', NO_HEADER)], id="another text"),
         pytest.param(

@@ -164,8 +164,14 @@ def test_sequences_are_not_for_workbooks():
         book.active.append(row)
     assert refused(saved(book))[0][5:] == (
         "sequences of postures",
-        '"Num of Posture" in cell A1 (Loco-data)',
+        '"Num of Posture" in cell A1 (Loco-data); sequences are a text file (LocoTra-data.txt)',
     )
+
+
+def test_a_workbook_is_not_told_to_be_a_text_file(sample):
+    """Rules 2: what begins LocoTra-data is no advice for a cell of a workbook."""
+    mistakes = refused(edited(sample, A1="Number"))
+    assert mistakes[0][5:] == ('"Number"', '"Num of Posture" and their number (Loco-data)')
 
 
 def test_other_sheets_are_named():
@@ -220,9 +226,19 @@ WANTED = "an .xlsx workbook without a password, as spreadsheet programs save it"
             "a workbook that unpacks to more than 8 MiB",
             "a table of angles",
         ),
+        (
+            zipped({"mimetype": b"", "content.xml": b""}),
+            "an OpenDocument file, such as .ods",
+            "the table saved as .xlsx, or as text with tabs",
+        ),
+        (
+            zipped({"word/document.xml": b""}),
+            "a Word document (.docx)",
+            "the table saved as .xlsx, or as text with tabs",
+        ),
         (bytes(MAX_BYTES + 1), "more than 1048576 bytes", "a workbook of at most 1 MiB"),
     ],
-    ids=["empty", "text", "cut", "old", "zip", "xml", "password", "bomb", "large"],
+    ids=["empty", "text", "cut", "old", "zip", "xml", "password", "bomb", "ods", "docx", "large"],
 )
 def test_what_is_no_workbook(data, found, expected):
     """Rules 2: other files are refused in words."""

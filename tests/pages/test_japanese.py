@@ -130,7 +130,8 @@ PARTS = {
 NAMES = re.compile(
     r"Ants|Bees|Kim|Hexapod|planner|c\dr\d|corner\d|flag\d+|LocoTra-data|Loco-data|Num of Posture|"
     r"Key|lacoc|straight|MuJoCo|AngMin|Shift-JIS|advance|radius_m|Root|link|EX \(input\)|"
-    r"Judged|x86|N m|N m s/rad|kg m2|degrees/s|contest keys|--(renew|host|invitation FILE)"
+    r"Judged|x86|N m|N m s/rad|kg m2|degrees/s|gait convert|"
+    r"contest keys|--(renew|host|invitation FILE)"
 )
 ENGLISH = re.compile(r"[A-Za-z']{2,} [A-Za-z']{2,}")
 

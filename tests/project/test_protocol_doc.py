@@ -1,5 +1,6 @@
 """docs/protocol.md says what the code says: every key, message and field, and no more."""
 
+import hashlib
 import re
 from pathlib import Path
 from typing import get_args
@@ -8,18 +9,20 @@ import msgspec
 import pytest
 
 from lacoc_shared import inputs, keyspace, messages
+from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.decisions import DECISIONS
 from lacoc_shared.mistakes import Mistake
+from lacoc_shared.record import schema
 from lacoc_shared.seat import No, Phase, SeatFlag
 
 PAGE = (Path(__file__).parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
 SECTIONS = dict(re.findall(r"^### (\w+)\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL))
 MESSAGES = {
     kind.__name__: kind
-    for kind in (*vars(messages).values(), Mistake)
+    for kind in (*vars(messages).values(), *vars(schema).values(), Mistake)
     if isinstance(kind, type)
     and issubclass(kind, msgspec.Struct)
-    and kind.__module__ in (messages.__name__, Mistake.__module__)
+    and kind.__module__ in (messages.__name__, schema.__name__, Mistake.__module__)
 }
 INPUTS = {str(kind.__struct_config__.tag): kind for kind in get_args(inputs.Input)}
 
@@ -82,6 +85,24 @@ def test_every_input_and_its_fields() -> None:
     """The table of inputs is that of `lacoc_shared.inputs`, in the same order."""
     expected = {name: fields(kind) for name, kind in INPUTS.items()}
     assert list(by_name(section("Inputs of the record")).items()) == list(expected.items())
+
+
+def test_every_topic_of_a_record_and_its_message() -> None:
+    """The table of topics is that of `lacoc_shared.record.schema`, in the same order."""
+    table = rows(section("The record"))
+    assert [row[0].strip("`") for row in table] == list(schema.KINDS)
+    for (_, cell, _), kind in zip(table, schema.KINDS.values(), strict=True):
+        name = kind.__name__ if isinstance(kind, type) else "inputs"
+        assert cell.startswith("no msgpack") if kind is None else f"[{name}](#" in cell
+    assert f"{schema.BEAT_NS:,} ns" in PAGE
+    assert f"profile `{schema.PROFILE}`, format {schema.FORMAT} (`FORMAT`)" in PAGE
+
+
+def test_a_scene_is_named_by_the_hash_that_the_page_says() -> None:
+    """Whoever keeps scenes by their hash makes the same one."""
+    assert "BLAKE2b of that digest size over the encoded [Scene]" in SECTIONS["Frame"]
+    encoded = encode(messages.Scene(bodies=(), geoms=()))
+    assert message_hash(encoded) == hashlib.blake2b(encoded, digest_size=8).digest()
 
 
 def test_every_key_expression() -> None:

@@ -8,6 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from lacoc_arenas import arena as arenas
+from lacoc_server.commands import serve
 from lacoc_server.contest_commands import app
 from lacoc_shared import contest as contests
 from lacoc_shared.mistakes import UserError
@@ -108,3 +109,14 @@ def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="Main Hall"):
         run("init", str(tmp_path / "contest.toml"), "--court", "Main Hall")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_court_says_where_it_is_open_and_not_that_its_match_is_new(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """The match may be one that goes on after a restart: said a line before."""
+    entry = contests.throwaway("othello").courts["main"]
+    at = ("tcp/127.0.0.1:7447",)
+    serve._open_doors("main", entry, "m-1", at, metrics=None, made_here=False, json=False)
+    said = capsys.readouterr().out
+    assert said == "Court main is open at tcp/127.0.0.1:7447: match m-1.\n"

@@ -93,6 +93,38 @@ def test_twice_keeps_what_was_handed_out(file: Path) -> None:
     assert names >= {"one.example", "two.example"}
 
 
+def test_two_contests_of_one_folder_have_keys_of_their_own(file: Path) -> None:
+    """The second takes nothing of the first, and a third contest of a taken name is refused."""
+    run("keys", str(file), "--host", "one.example")
+    first = contests.load(file).keys
+    assert first is not None
+    there = {path: path.read_bytes() for path in first.path.rglob("*") if path.is_file()}
+    other = file.with_name("two.toml")
+    run("init", str(other))
+    said = run("keys", str(other), "--host", "one.example")
+
+    keys = contests.load(other).keys
+    assert keys is not None
+    assert keys.path.name == "keys-two"
+    assert "handed out" not in said
+    assert {path: path.read_bytes() for path in there} == there
+    text = other.read_text().replace('keys = "keys-two"', "")
+    other.write_text(text)
+    with pytest.raises(UserError, match=r"keys and keys-two beside .* other contests"):
+        run("keys", str(other), "--host", "one.example")
+    assert other.read_text() == text
+
+
+def test_every_court_is_named_that_can_be_started_next(file: Path) -> None:
+    """With two courts in the file, serve needs the name of one."""
+    text = file.read_text()
+    second = text[text.index("[court.main]") :].replace("court.main", "court.two")
+    file.write_text(text + second.replace(":7447", ":7448"))
+    said = " ".join(run("keys", str(file), "--host", "one.example").split())
+    assert "contest.toml --court main, and lacoc serve --contest " in said
+    assert said.endswith("contest.toml --court two")
+
+
 def test_renew_keeps_the_old_with_a_number(file: Path) -> None:
     """Everything is new, nothing is gone."""
     keys = file.parent / "keys"

@@ -48,7 +48,7 @@ def test_one_gait_file_is_enough() -> None:
 
 def test_a_gait_needs_keys_at_an_open_level() -> None:
     """Rules 3: where only level B is open, postures alone would leave the robot standing."""
-    with pytest.raises(FileRefused, match="LocoTra-data"):
+    with pytest.raises(FileRefused, match=r"gait convert Loco-data\.xlsx LocoTra-data"):
         weigh_in(HEXAPOD.robot, HEXAPOD.postures, None, levels=(Level.LOCOMOTION,))
 
 
@@ -57,7 +57,8 @@ def test_the_files_are_not_swapped() -> None:
     found = [m.expected for m in mistakes_of(None, HEXAPOD.locomotion, HEXAPOD.postures)]
     assert found == [
         "a Loco-data file (postures for level A)",
-        "a LocoTra-data file (sequences for level B)",
+        "a LocoTra-data file (sequences for level B; "
+        "'lacoc gait convert Loco-data.xlsx LocoTra-data.txt' makes one)",
     ]
 
 

@@ -11,7 +11,7 @@ from rich.text import Text
 from lacoc_client.commands import entrance, pages
 from lacoc_client.controller import Controller
 from lacoc_client.gateway.home import Prefill, player_home
-from lacoc_client.seat_files import SeatFiles, gaits_in, gather
+from lacoc_client.seat_files import SeatFiles, gaits_in, gather, remarks
 from lacoc_client.stopping import stop_signals
 from lacoc_client.terminal_keys import open_keys
 from lacoc_client.terminal_play import TerminalPlay, keys_table
@@ -98,6 +98,8 @@ def choose_files(robot: str | None, gaits: list[Path]) -> SeatFiles:
     found = [] if gaits else gaits_in(Path())
     if found:
         screen.note(f"Taken from this folder: {', '.join(path.name for path in found)}.")
+    for remark in [] if gaits else remarks(Path(), found):
+        screen.warn(remark)
     return gather(robot, gaits or found)
 
 

@@ -186,7 +186,7 @@ def _open_doors(
             opened["referee"] = entry.referee.token
         screen.print_json(opened)
         return
-    screen.show(f"Court {name} opens match {match_id} at {', '.join(locators)}.")
+    screen.show(f"Court {name} is open at {', '.join(locators)}: match {match_id}.")
     if metrics is not None:
         screen.note(f"Metrics at {metrics}")
     if made_here:

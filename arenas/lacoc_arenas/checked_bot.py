@@ -1,0 +1,93 @@
+"""A bot whose mistakes are told as its author needs them: the line of their own code.
+
+Bots are mostly files that somebody is just writing. What such a bot raises or gives back is
+looked at here alone, so that it is told the same way headless and at a court.
+"""
+
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+from lacoc_arenas.bot import BotFactory, Brain, Key
+from lacoc_shared.messages import Frame, Sheet
+from lacoc_shared.mistakes import UserError, printable
+from lacoc_shared.seat import RESTART_KEY
+
+_A_BRAIN = "a function that takes a frame and returns a Key or None"
+_A_KEY = (
+    "a Key(level, key) with Level.POSTURE or Level.LOCOMOTION and a key from 0 to 9 "
+    f"({RESTART_KEY} for [x]), or None for no new key"
+)
+
+
+def checked(name: str, bot: BotFactory) -> BotFactory:
+    """The same bot, held to what every bot is.
+
+    Args:
+        name: how the person calls it.
+        bot: the function that makes a brain; it and its brains raise UserError from now on.
+    """
+
+    def make(sheet: Sheet, seat: int) -> Brain:
+        brain = _call(name, bot, sheet, seat)
+        if not callable(brain):
+            raise _gave_back(name, bot, brain, _A_BRAIN)
+
+        def see(frame: Frame) -> Key | None:
+            key: Key | None = _call(name, brain, frame)
+            if key is not None and not _is_key(key):
+                raise _gave_back(name, brain, key, _A_KEY)
+            return key
+
+        return see
+
+    return make
+
+
+def broken(name: str, error: Exception, file: str | None) -> UserError:
+    """What a bot raised, in a sentence, with the last line of its own code that led there.
+
+    Args:
+        name: how the person calls it.
+        error: what was raised.
+        file: the bot's file as tracebacks name it; None: none of its lines was reached.
+    """
+    calls = traceback.extract_tb(error.__traceback__)
+    lines = [call.lineno for call in calls if call.filename == file]
+    line = lines[-1] if lines else getattr(error, "lineno", None)  # a SyntaxError has its own
+    reason = error.msg if isinstance(error, SyntaxError) else error
+    place = "" if file is None or line is None else f" ({file}, line {line})"
+    return UserError(f"The bot {name} ended{place}: {type(error).__name__}: {reason}")
+
+
+def _call(name: str, function: Callable[..., Any], *arguments: object) -> Any:
+    try:
+        return function(*arguments)
+    except Exception as error:  # whatever a person's code may raise
+        called = error.__traceback__ and error.__traceback__.tb_next
+        if called is None:  # it does not take these arguments
+            raise UserError(
+                f"The bot {name}{_place(function)} can't be called: {error}. Expected bot(sheet, "
+                "seat), which returns brain(frame)."
+            ) from error
+        raise broken(name, error, called.tb_frame.f_code.co_filename) from error
+
+
+def _is_key(found: object) -> bool:
+    return (
+        isinstance(found, Key)
+        and found.level in (0, 1)
+        and isinstance(found.key, int)
+        and 0 <= found.key <= RESTART_KEY
+    )
+
+
+def _gave_back(name: str, function: object, found: object, expected: str) -> UserError:
+    shown = printable(repr(found), 80)
+    return UserError(f"The bot {name}{_place(function)} returned {shown}. Expected {expected}.")
+
+
+def _place(function: object) -> str:
+    """Where a function begins; nothing for another object that can be called."""
+    code = getattr(function, "__code__", None)
+    return "" if code is None else f" ({code.co_filename}, line {code.co_firstlineno})"
