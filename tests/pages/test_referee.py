@@ -322,7 +322,7 @@ def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
     assert why(seat(page, 0, "Say ready")) == "nobody has joined"
     assert why(seat(page, 1, "Freeze")) == "only in PLAYING or HALTED; the match is LOBBY"
     bubble = page.locator(".reason-bubble")
-    group(page, "Resume").focus()
+    group(page, "Halt").press("Tab")
     expect(bubble).to_have_text("only in HALTED; the match is LOBBY")
     group(page, "Resume").press("Enter")
     expect(bubble).to_be_visible()
@@ -355,6 +355,39 @@ def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
     phase(page, 1)
+
+
+def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
+    """The popover is closed while the pointer rests on one of its closed choices."""
+    page = at_the_desk(referee())
+    disc(page, "c2r2").click()
+    page.locator(".pick .states .act").first.hover()
+    bubble = page.locator(".reason-bubble")
+    expect(bubble).to_contain_text("the match is LOBBY")
+    page.keyboard.press("Escape")
+    expect(page.locator(".pick")).to_have_count(0)
+    expect(bubble).to_have_count(0)
+
+
+def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
+    """However it is left, a keyboard goes on where it was."""
+    page = at_the_desk(referee())
+    void = group(page, "Declare void")
+    dialog = page.get_by_role("dialog")
+    for leave in ("Cancel", "Close", "Escape"):
+        void.focus()
+        void.press("Enter")
+        expect(dialog).to_be_visible()
+        if leave == "Escape":
+            page.keyboard.press("Escape")
+        else:
+            dialog.get_by_role("button", name=leave).press("Enter")
+        expect(page.locator("dialog")).to_have_count(0)
+        expect(void).to_be_focused()
+    void.press("Enter")
+    confirm(page, "network")
+    phase(page, 8)
+    expect(void).to_be_focused()
 
 
 def test_which_decisions_need_a_reason() -> None:
