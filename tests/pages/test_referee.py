@@ -357,6 +357,34 @@ def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
     phase(page, 1)
 
 
+def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> None:
+    """Key by key, also where what stands there so far is no number or ends with a zero."""
+    page = at_the_desk(referee())
+    to_playing(page, court)
+    group(page, "Halt").click()
+    phase(page, 5)
+    group(page, "Other …").click()
+    field = page.locator("input[name=amount]")
+    shown: dict[str, str] = {}
+    field.click()
+    for typed in ("10.5", "1.05", "20.05", "-0.5", "-10.50"):
+        field.press("Control+a")
+        page.keyboard.type(typed)
+        expect(field).to_have_value(typed)
+        shown[typed] = page.locator(".shows").inner_text()
+    left, then = (60 * int(m) + int(s) for m, s in re.findall(r"(\d+):(\d\d)", shown["10.5"]))
+    assert then - left in (10, 11)
+    field.press("Control+a")
+    field.press("Delete")
+    expect(page.get_by_role("dialog")).to_contain_text("-3600 to 3600, not 0")
+    page.get_by_role("dialog").get_by_role("button", name="+30", exact=True).click()
+    expect(field).to_have_value("30")
+    field.press("Control+a")
+    page.keyboard.type("-10.50")
+    confirm(page, "rule")
+    log_has(page, "the clock moves by +10.5 s.")
+
+
 def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
     """The popover is closed while the pointer rests on one of its closed choices."""
     page = at_the_desk(referee())
