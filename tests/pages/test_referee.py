@@ -69,6 +69,12 @@ def big(page: Page) -> Locator:
     return page.locator(".big .act")
 
 
+def step(page: Page) -> None:
+    """Press the big button, once what it says has stood for a moment."""
+    expect(page.locator(".big.fresh")).to_have_count(0)
+    big(page).click()
+
+
 def phase(page: Page, number: int) -> None:
     """Wait for a phase."""
     expect(page.locator("main.referee")).to_have_attribute("data-phase", str(number))
@@ -123,7 +129,7 @@ def to_playing(page: Page, venue: Venue) -> None:
     venue.contestant("left", "Ants")
     venue.contestant("right", "Bees")
     phase(page, 2)
-    big(page).click()
+    step(page)
     phase(page, 4)
 
 
@@ -141,7 +147,7 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     log_has(page, "Replay advised: it ran at ")
     expect(other.locator(".match .advice h3")).to_have_text("再試合を推奨")
     expect(other.locator(".match .advice li").first).to_contain_text("実時間比")
-    big(page).click()  # advice only: the result is the referee's word
+    step(page)  # advice only: the result is the referee's word
     confirm(page)
     phase(page, 7)
     expect(advice).to_be_visible()
@@ -206,7 +212,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     page.locator("input[name=amount]").fill("-600")
     confirm(page, "rule")
     log_has(page, "the clock moves by +600 s.")
-    big(page).click()
+    step(page)
     log_has(page, "Referee Kim: play goes on in 3 s.")
     phase(page, 6)
     # After the end.
@@ -219,7 +225,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     confirm(page)
     phase(page, 7)
     log_has(page, "Referee Kim: the result is official: draw.")
-    big(page).click()
+    step(page)
     confirm(page)
     expect(page.locator(".top h1")).to_contain_text("Match 2")
     phase(page, 1)
@@ -385,6 +391,67 @@ def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> Non
     log_has(page, "the clock moves by +10.5 s.")
 
 
+def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> None:
+    """Nobody knows whether it was done: that is no "no", and the dialog does not offer it again."""
+    page = at_the_desk(referee())
+    to_playing(page, court)
+    group(page, "Halt").click()
+    phase(page, 5)
+    seat(page, 0, "Score ±").click()
+    page.locator("input[name=amount]").fill("3")
+    dialog = page.get_by_role("dialog")
+    dialog.locator("label.chip", has_text="rule").click()
+    reply = 9  # its kind, the first byte
+    dialog.locator("[type=submit]").evaluate(
+        "(button, reply) => { const { send } = WebSocket.prototype;"
+        " WebSocket.prototype.send = function (data) {"
+        " WebSocket.prototype.send = send; const take = this.onmessage;"
+        " this.onmessage = (event) => new Uint8Array(event.data)[0] === reply"
+        " ? this.close() : take.call(this, event);"
+        " this.send(data); };"
+        " button.click(); }",
+        reply,
+    )
+    answer = page.locator(".answer")
+    expect(answer).to_contain_text("No answer")
+    expect(answer).to_contain_text("look under Events whether it was done")
+    expect(page.locator(".toast.no")).to_have_count(0)
+    expect(dialog).to_have_count(0)
+    log_has(page, "Referee Kim: +3 for Ants. Reason: rule")
+    has_scores(page, 21, 18)
+    expect(page.locator(".acting.mine")).to_be_visible()
+
+
+def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
+    """Its second click was not meant for what the button says by then, nor for the same again."""
+    page = at_the_desk(referee())
+    court.contestant("left", "Ants")
+    court.contestant("right", "Bees")
+    phase(page, 2)
+    good = page.locator(".answer.yes")
+    big(page).evaluate("(button) => { button.click(); button.click(); }")
+    phase(page, 4)
+    expect(good).to_contain_text("Play begins")
+    page.keyboard.press("Control+Enter")
+    page.keyboard.press("Control+Enter")
+    phase(page, 5)
+    expect(page.locator(".big.fresh")).to_have_count(0)
+    expect(good).to_contain_text("Halted")
+    big(page).evaluate(
+        "(button) => { button.click(); new MutationObserver(() => button.click())"
+        ".observe(button, { attributeFilter: ['aria-label'] }); }"
+    )
+    phase(page, 4)
+    expect(good).to_contain_text("Play goes on")
+    expect(page.locator(".toast.no")).to_have_count(0)
+    group(page, "Halt").click()  # its meaning does not change: it is open at once
+    phase(page, 5)
+    group(page, "Resume").click()
+    group(page, "Halt").click()
+    log_has(page, "halted")
+    phase(page, 5)
+
+
 def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
     """The popover is closed while the pointer rests on one of its closed choices."""
     page = at_the_desk(referee())
@@ -495,7 +562,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     at_the_desk(page)
     ants, bees = venue.contestant("left", "Ants"), venue.contestant("right", "Bees")
     phase(page, 2)
-    big(page).click()
+    step(page)
     phase(page, 4)
     for robot in (ants, bees):
         robot.ask("key", level=1, key=2)

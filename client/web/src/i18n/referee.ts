@@ -46,6 +46,11 @@ export const referee = {
   "referee.lastAnswer": ["Last answer of the court", "コートの直近の応答"],
   "referee.done": ["Done", "完了"],
   "referee.no": ["No", "不可"],
+  "referee.noAnswer": ["No answer", "応答なし"],
+  "referee.unanswered": [
+    "The connection broke: look under Events whether it was done.",
+    "接続が切れました。実行されたかどうかは「イベント」で確認してください。",
+  ],
   "referee.missing": ["Missing for the start", "開始に必要なもの"],
   "referee.missingJoin": ["{seat}: nobody has joined", "{seat}：まだ誰も参加していません"],
   "referee.missingReady": ["{team} has not said ready", "{team} がまだ準備完了していません"],
