@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from chromium import WEB, OpenPage
 from playwright.sync_api import Locator, Page, expect
-from show import violations
+from show import decide, violations
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_client.gateway.browser import unseen
@@ -483,6 +483,44 @@ def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
     confirm(page, "network")
     phase(page, 8)
     expect(void).to_be_focused()
+
+
+def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) -> None:
+    """Score and winner, also where they change while the dialog is open."""
+    venue.court("--seconds", "1")
+    venue.web()
+    page = at_the_desk(referee())
+    to_playing(page, venue)
+    phase(page, 6)
+    step(page)
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text("18 : 18 · A draw")
+    other = venue.referee("Sato")
+    other.ask("take_over")
+    decide(other, "rule", type="adjust", seat="left", points=3)
+    expect(dialog).to_contain_text("21 : 18")
+    decide(other, "rule", type="declare", winner="right")
+    expect(dialog).to_contain_text("21 : 18 · Bees wins")
+
+
+def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
+    """The name that the record has for it stands for itself in no language."""
+    text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")
+    venue.contest.write_text(text, "utf-8")
+    venue.court()
+    venue.web()
+    page = at_the_desk(referee(query="?lang=ja"))
+    to_playing(page, venue)
+    step(page)
+    phase(page, 5)
+    for name, words in (("flag7", "フラッグ 7"), ("corner2", "コーナー 2")):
+        disc(page, name).click()
+        expect(page.locator("#pick-title")).to_contain_text(words)
+        expect(page.locator("#pick-title")).not_to_contain_text(name)
+        page.locator(".pick .states .act:not([aria-disabled])").first.click()
+        title = page.get_by_role("dialog").locator("h2")
+        expect(title).to_contain_text(f"{words} を")
+        page.keyboard.press("Escape")
 
 
 def test_which_decisions_need_a_reason() -> None:

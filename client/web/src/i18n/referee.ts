@@ -101,8 +101,8 @@ export const referee = {
   "decide.next": ["Next match", "次の試合へ"],
   "ask.confirm": ["Confirm", "決定"],
   "ask.official": [
-    "The result {scores} becomes final: nothing can be taken back afterwards.",
-    "{scores} で結果を確定します。以後、取り消しはできません。",
+    "The result becomes final: {result}. Nothing can be taken back afterwards.",
+    "次の結果を確定します：{result}。以後、取り消しはできません。",
   ],
   "ask.next": [
     "This match is closed and the next one opens with the same teams.",
@@ -163,9 +163,6 @@ export const referee = {
   "pick.state.down": ["down", "倒す"],
   "pick.state.now": ["it is that already", "すでにその状態です"],
   "pick.state.cannot": ["this can't lie down", "倒せません"],
-  "pick.disc": ["Disc {name}", "ディスク {name}"],
-  "pick.corner": ["{name}", "コーナー {name}"],
-  "pick.flag": ["{name}", "フラッグ {name}"],
   "pick.points": ["{points} points", "{points} 点"],
   "pick.is": ["now: {state}", "現在：{state}"],
   "pick.robot": ["Robot of {team}", "{team} のロボット"],
