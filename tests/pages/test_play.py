@@ -316,6 +316,9 @@ def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
         page.until(f"window.__lacoc.view?.camera === '{camera}'")
     other = playing(venue, page)
     page.until("document.activeElement.matches('.field3d')")
+    page.page.click(".leave")
+    page.page.get_by_role("dialog").get_by_role("button", name="Cancel").click()
+    page.until("document.activeElement.matches('.field3d')")
 
     page.page.evaluate("window.dispatchEvent(new Event('blur'))")
     page.sees(".curtain", "Click here to steer")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from chromium import WEB, OpenPage
 from playwright.sync_api import Locator, Page, expect
-from show import violations
+from show import decide, violations
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_client.gateway.browser import unseen
@@ -69,6 +69,12 @@ def big(page: Page) -> Locator:
     return page.locator(".big .act")
 
 
+def step(page: Page) -> None:
+    """Press the big button, once what it says has stood for a moment."""
+    expect(page.locator(".big.fresh")).to_have_count(0)
+    big(page).click()
+
+
 def phase(page: Page, number: int) -> None:
     """Wait for a phase."""
     expect(page.locator("main.referee")).to_have_attribute("data-phase", str(number))
@@ -123,7 +129,7 @@ def to_playing(page: Page, venue: Venue) -> None:
     venue.contestant("left", "Ants")
     venue.contestant("right", "Bees")
     phase(page, 2)
-    big(page).click()
+    step(page)
     phase(page, 4)
 
 
@@ -141,7 +147,7 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     log_has(page, "Replay advised: it ran at ")
     expect(other.locator(".match .advice h3")).to_have_text("再試合を推奨")
     expect(other.locator(".match .advice li").first).to_contain_text("実時間比")
-    big(page).click()  # advice only: the result is the referee's word
+    step(page)  # advice only: the result is the referee's word
     confirm(page)
     phase(page, 7)
     expect(advice).to_be_visible()
@@ -206,7 +212,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     page.locator("input[name=amount]").fill("-600")
     confirm(page, "rule")
     log_has(page, "the clock moves by +600 s.")
-    big(page).click()
+    step(page)
     log_has(page, "Referee Kim: play goes on in 3 s.")
     phase(page, 6)
     # After the end.
@@ -219,7 +225,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     confirm(page)
     phase(page, 7)
     log_has(page, "Referee Kim: the result is official: draw.")
-    big(page).click()
+    step(page)
     confirm(page)
     expect(page.locator(".top h1")).to_contain_text("Match 2")
     phase(page, 1)
@@ -322,7 +328,7 @@ def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
     assert why(seat(page, 0, "Say ready")) == "nobody has joined"
     assert why(seat(page, 1, "Freeze")) == "only in PLAYING or HALTED; the match is LOBBY"
     bubble = page.locator(".reason-bubble")
-    group(page, "Resume").focus()
+    group(page, "Halt").press("Tab")
     expect(bubble).to_have_text("only in HALTED; the match is LOBBY")
     group(page, "Resume").press("Enter")
     expect(bubble).to_be_visible()
@@ -355,6 +361,166 @@ def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
     phase(page, 1)
+
+
+def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> None:
+    """Key by key, also where what stands there so far is no number or ends with a zero."""
+    page = at_the_desk(referee())
+    to_playing(page, court)
+    group(page, "Halt").click()
+    phase(page, 5)
+    group(page, "Other …").click()
+    field = page.locator("input[name=amount]")
+    shown: dict[str, str] = {}
+    field.click()
+    for typed in ("10.5", "1.05", "20.05", "-0.5", "-10.50"):
+        field.press("Control+a")
+        page.keyboard.type(typed)
+        expect(field).to_have_value(typed)
+        shown[typed] = page.locator(".shows").inner_text()
+    left, then = (60 * int(m) + int(s) for m, s in re.findall(r"(\d+):(\d\d)", shown["10.5"]))
+    assert then - left in (10, 11)
+    field.press("Control+a")
+    field.press("Delete")
+    expect(page.get_by_role("dialog")).to_contain_text("-3600 to 3600, not 0")
+    page.get_by_role("dialog").get_by_role("button", name="+30", exact=True).click()
+    expect(field).to_have_value("30")
+    field.press("Control+a")
+    page.keyboard.type("-10.50")
+    confirm(page, "rule")
+    log_has(page, "the clock moves by +10.5 s.")
+
+
+def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> None:
+    """Nobody knows whether it was done: that is no "no", and the dialog does not offer it again."""
+    page = at_the_desk(referee())
+    to_playing(page, court)
+    group(page, "Halt").click()
+    phase(page, 5)
+    seat(page, 0, "Score ±").click()
+    page.locator("input[name=amount]").fill("3")
+    dialog = page.get_by_role("dialog")
+    dialog.locator("label.chip", has_text="rule").click()
+    reply = 9  # its kind, the first byte
+    dialog.locator("[type=submit]").evaluate(
+        "(button, reply) => { const { send } = WebSocket.prototype;"
+        " WebSocket.prototype.send = function (data) {"
+        " WebSocket.prototype.send = send; const take = this.onmessage;"
+        " this.onmessage = (event) => new Uint8Array(event.data)[0] === reply"
+        " ? this.close() : take.call(this, event);"
+        " this.send(data); };"
+        " button.click(); }",
+        reply,
+    )
+    answer = page.locator(".answer")
+    expect(answer).to_contain_text("No answer")
+    expect(answer).to_contain_text("look under Events whether it was done")
+    expect(page.locator(".toast.no")).to_have_count(0)
+    expect(dialog).to_have_count(0)
+    log_has(page, "Referee Kim: +3 for Ants. Reason: rule")
+    has_scores(page, 21, 18)
+    expect(page.locator(".acting.mine")).to_be_visible()
+
+
+def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
+    """Its second click was not meant for what the button says by then, nor for the same again."""
+    page = at_the_desk(referee())
+    court.contestant("left", "Ants")
+    court.contestant("right", "Bees")
+    phase(page, 2)
+    good = page.locator(".answer.yes")
+    big(page).evaluate("(button) => { button.click(); button.click(); }")
+    phase(page, 4)
+    expect(good).to_contain_text("Play begins")
+    page.keyboard.press("Control+Enter")
+    page.keyboard.press("Control+Enter")
+    phase(page, 5)
+    expect(page.locator(".big.fresh")).to_have_count(0)
+    expect(good).to_contain_text("Halted")
+    big(page).evaluate(
+        "(button) => { button.click(); new MutationObserver(() => button.click())"
+        ".observe(button, { attributeFilter: ['aria-label'] }); }"
+    )
+    phase(page, 4)
+    expect(good).to_contain_text("Play goes on")
+    expect(page.locator(".toast.no")).to_have_count(0)
+    group(page, "Halt").click()  # its meaning does not change: it is open at once
+    phase(page, 5)
+    group(page, "Resume").click()
+    group(page, "Halt").click()
+    log_has(page, "halted")
+    phase(page, 5)
+
+
+def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
+    """The popover is closed while the pointer rests on one of its closed choices."""
+    page = at_the_desk(referee())
+    disc(page, "c2r2").click()
+    page.locator(".pick .states .act").first.hover()
+    bubble = page.locator(".reason-bubble")
+    expect(bubble).to_contain_text("the match is LOBBY")
+    page.keyboard.press("Escape")
+    expect(page.locator(".pick")).to_have_count(0)
+    expect(bubble).to_have_count(0)
+
+
+def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
+    """However it is left, a keyboard goes on where it was."""
+    page = at_the_desk(referee())
+    void = group(page, "Declare void")
+    dialog = page.get_by_role("dialog")
+    for leave in ("Cancel", "Close", "Escape"):
+        void.focus()
+        void.press("Enter")
+        expect(dialog).to_be_visible()
+        if leave == "Escape":
+            page.keyboard.press("Escape")
+        else:
+            dialog.get_by_role("button", name=leave).press("Enter")
+        expect(page.locator("dialog")).to_have_count(0)
+        expect(void).to_be_focused()
+    void.press("Enter")
+    confirm(page, "network")
+    phase(page, 8)
+    expect(void).to_be_focused()
+
+
+def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) -> None:
+    """Score and winner, also where they change while the dialog is open."""
+    venue.court("--seconds", "1")
+    venue.web()
+    page = at_the_desk(referee())
+    to_playing(page, venue)
+    phase(page, 6)
+    step(page)
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text("18 : 18 · A draw")
+    other = venue.referee("Sato")
+    other.ask("take_over")
+    decide(other, "rule", type="adjust", seat="left", points=3)
+    expect(dialog).to_contain_text("21 : 18")
+    decide(other, "rule", type="declare", winner="right")
+    expect(dialog).to_contain_text("21 : 18 · Bees wins")
+
+
+def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
+    """The name that the record has for it stands for itself in no language."""
+    text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")
+    venue.contest.write_text(text, "utf-8")
+    venue.court()
+    venue.web()
+    page = at_the_desk(referee(query="?lang=ja"))
+    to_playing(page, venue)
+    step(page)
+    phase(page, 5)
+    for name, words in (("flag7", "フラッグ 7"), ("corner2", "コーナー 2")):
+        disc(page, name).click()
+        expect(page.locator("#pick-title")).to_contain_text(words)
+        expect(page.locator("#pick-title")).not_to_contain_text(name)
+        page.locator(".pick .states .act:not([aria-disabled])").first.click()
+        title = page.get_by_role("dialog").locator("h2")
+        expect(title).to_contain_text(f"{words} を")
+        page.keyboard.press("Escape")
 
 
 def test_which_decisions_need_a_reason() -> None:
@@ -434,7 +600,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     at_the_desk(page)
     ants, bees = venue.contestant("left", "Ants"), venue.contestant("right", "Bees")
     phase(page, 2)
-    big(page).click()
+    step(page)
     phase(page, 4)
     for robot in (ants, bees):
         robot.ask("key", level=1, key=2)

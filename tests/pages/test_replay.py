@@ -174,6 +174,11 @@ def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: Ope
     assert show.beat == first + 651
     show.press("ArrowLeft")
     assert show.beat == first + 401
+    for key in (".", "ArrowRight"):  # held: it goes on
+        show.page.keyboard.down(key)
+        show.page.keyboard.down(key)
+        show.page.keyboard.up(key)
+    assert show.beat == first + 903
     show.press("End")
     assert show.beat == last
     show.press("Home")

@@ -201,6 +201,12 @@ def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
     show.misses(".panel")
     panel.click()
     show.sees(".panel .board")
+    for _ in range(2):
+        show.page.keyboard.down("e")  # the second is the keyboard's own, of a key that is held
+    show.misses(".panel")
+    show.page.keyboard.up("e")
+    show.page.keyboard.press("e")
+    show.sees(".panel .board")
 
     show.page.keyboard.press("s")
     language = show.page.get_by_label("Language")

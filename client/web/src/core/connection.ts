@@ -31,6 +31,9 @@ export class Refused extends Error {
   }
 }
 
+/** The connection broke before the answer came: nobody here knows whether it was done. */
+export class Unanswered extends Refused {}
+
 /** How the socket is. */
 export interface SocketState {
   open: boolean;
@@ -130,7 +133,7 @@ export class Connection {
   private lost(socket: WebSocket, later: boolean): void {
     if (socket !== this.socket) return;
     this.socket = null;
-    for (const { reject } of this.waiting.values()) reject(new Refused("the connection broke"));
+    for (const { reject } of this.waiting.values()) reject(new Unanswered("the connection broke"));
     this.waiting.clear();
     if (this.ended) return;
     const { attempt, refused } = this.state.value;

@@ -46,6 +46,11 @@ export const referee = {
   "referee.lastAnswer": ["Last answer of the court", "コートの直近の応答"],
   "referee.done": ["Done", "完了"],
   "referee.no": ["No", "不可"],
+  "referee.noAnswer": ["No answer", "応答なし"],
+  "referee.unanswered": [
+    "The connection broke: look under Events whether it was done.",
+    "接続が切れました。実行されたかどうかは「イベント」で確認してください。",
+  ],
   "referee.missing": ["Missing for the start", "開始に必要なもの"],
   "referee.missingJoin": ["{seat}: nobody has joined", "{seat}：まだ誰も参加していません"],
   "referee.missingReady": ["{team} has not said ready", "{team} がまだ準備完了していません"],
@@ -96,8 +101,8 @@ export const referee = {
   "decide.next": ["Next match", "次の試合へ"],
   "ask.confirm": ["Confirm", "決定"],
   "ask.official": [
-    "The result {scores} becomes final: nothing can be taken back afterwards.",
-    "{scores} で結果を確定します。以後、取り消しはできません。",
+    "The result becomes final: {result}. Nothing can be taken back afterwards.",
+    "次の結果を確定します：{result}。以後、取り消しはできません。",
   ],
   "ask.next": [
     "This match is closed and the next one opens with the same teams.",
@@ -158,9 +163,6 @@ export const referee = {
   "pick.state.down": ["down", "倒す"],
   "pick.state.now": ["it is that already", "すでにその状態です"],
   "pick.state.cannot": ["this can't lie down", "倒せません"],
-  "pick.disc": ["Disc {name}", "ディスク {name}"],
-  "pick.corner": ["{name}", "コーナー {name}"],
-  "pick.flag": ["{name}", "フラッグ {name}"],
   "pick.points": ["{points} points", "{points} 点"],
   "pick.is": ["now: {state}", "現在：{state}"],
   "pick.robot": ["Robot of {team}", "{team} のロボット"],

@@ -13,13 +13,13 @@ import { Toasts, toast } from "../ui/toasts";
 import "./referee.css";
 import { Reasons } from "./referee/act";
 import { AskDialog } from "./referee/ask";
-import { Desk, nextStep } from "./referee/desk";
+import { Desk } from "./referee/desk";
 import * as drafts from "./referee/drafts";
 import { ActingBar, EnterCard } from "./referee/enter";
 import { FieldCard } from "./referee/field";
 import { HealthCard } from "./referee/health";
 import { LogCard, newestToTakeBack } from "./referee/logcard";
-import { MatchCard, takeStep } from "./referee/matchcard";
+import { MatchCard, takeNext } from "./referee/matchcard";
 import type { Picked } from "./referee/pick";
 import { Seats } from "./referee/seats";
 
@@ -157,7 +157,7 @@ function useShortcuts(pickRobot: (seat: number) => void, help: () => void): void
       // A dialog has its own keys, and a field its own undo.
       if (document.querySelector("dialog[open]")) return;
       const writing = (event.target as Element).matches?.("input:not([type=radio]), textarea");
-      if (event.key === "Enter") takeStep(desk, nextStep(desk.phase.value));
+      if (event.key === "Enter") takeNext(desk);
       else if (event.key === "/") help();
       else if (writing) return;
       else if (event.key === "ArrowLeft") pickRobot(0);

@@ -13,7 +13,12 @@ interface Props {
 export function Dialog({ title, onClose, children }: Props) {
   const element = useRef<HTMLDialogElement>(null);
   useEffect(() => {
+    const opener = document.activeElement as HTMLElement | null;
     element.current?.showModal();
+    // The browser gives the focus back where it closes the dialog, not where that is taken away.
+    return () => {
+      if (document.activeElement === document.body) opener?.focus();
+    };
   }, []);
   return (
     <dialog ref={element} onClose={onClose} aria-label={title}>

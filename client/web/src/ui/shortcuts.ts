@@ -4,6 +4,8 @@ import { useEffect } from "preact/hooks";
 
 type Keys = Record<string, (event: KeyboardEvent) => void>;
 
+/** Keys that go on while they are held: they step or skip. All others would switch to and fro. */
+const STEPS = /^(Comma|Period|Arrow)/;
 const ARROWS = /^(Arrow|Home|End|Page)/;
 
 /**
@@ -18,7 +20,7 @@ export function useShortcuts(keys: Keys): void {
       if (!act || event.ctrlKey || event.altKey || event.metaKey) return;
       if (takesKey(event)) return;
       event.preventDefault();
-      act(event);
+      if (!event.repeat || STEPS.test(event.code)) act(event);
     };
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);

@@ -40,7 +40,8 @@ export function Cockpit({ alone }: { alone: boolean }) {
 
   const close = () => {
     open.value = "";
-    field.current?.focus({ preventScroll: true });
+    // Once the dialog is gone: nothing beneath it takes the focus before.
+    requestAnimationFrame(() => field.current?.focus({ preventScroll: true }));
   };
   const nextView = () => {
     view.value = VIEWS[(VIEWS.indexOf(view.peek()) + 1) % VIEWS.length]!;

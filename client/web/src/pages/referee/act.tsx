@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
-import { useId } from "preact/hooks";
+import { useCallback, useEffect, useId } from "preact/hooks";
 
 interface Props {
   /** Why it can't be done now; "" if it can. */
@@ -14,6 +14,8 @@ interface Props {
 }
 
 interface Bubble {
+  /** The id of the reason that it shows. */
+  of: string;
   text: string;
   leftPx: number;
   topPx: number;
@@ -27,8 +29,13 @@ const ROOM_PX = 96;
 export function Act({ why, onAct, tone = "", label, children }: Props) {
   const id = useId();
   const show = (button: HTMLElement) => {
-    bubble.value = why ? placed(button, why) : null;
+    bubble.value = why ? { of: id, text: why, ...placed(button) } : null;
   };
+  const hide = useCallback(() => {
+    if (bubble.peek()?.of === id) bubble.value = null;
+  }, [id]);
+  // A button that goes away under the pointer tells nobody that it was left.
+  useEffect(() => hide, [hide]);
   return (
     <>
       <button
@@ -43,13 +50,12 @@ export function Act({ why, onAct, tone = "", label, children }: Props) {
           else onAct();
         }}
         onPointerEnter={(event) => show(event.currentTarget)}
-        onPointerLeave={() => {
-          bubble.value = null;
+        onPointerLeave={hide}
+        onFocus={(event) => {
+          // By keyboard: a dialog gives the focus back also where a pointer closed it.
+          if (event.currentTarget.matches(":focus-visible")) show(event.currentTarget);
         }}
-        onFocus={(event) => show(event.currentTarget)}
-        onBlur={() => {
-          bubble.value = null;
-        }}
+        onBlur={hide}
       >
         {children}
       </button>
@@ -78,12 +84,11 @@ export function Reasons() {
   );
 }
 
-function placed(button: HTMLElement, text: string): Bubble {
+function placed(button: HTMLElement): Omit<Bubble, "of" | "text"> {
   const box = button.getBoundingClientRect();
   const most = Math.max(8, innerWidth - WIDTH_PX - 8);
   const below = box.top < ROOM_PX;
   return {
-    text,
     leftPx: Math.min(most, Math.max(8, box.left)),
     topPx: below ? box.bottom + 6 : box.top - 6,
     below,

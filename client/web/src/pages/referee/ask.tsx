@@ -1,6 +1,6 @@
 /** The dialog before a decision: what it does, its number, its reason, and the confirmation. */
 
-import { useSignal } from "@preact/signals";
+import { type Signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { DecisionReply } from "../../core/wire";
 import { said, t } from "../../i18n";
@@ -20,7 +20,9 @@ export function AskDialog({ desk }: { desk: Desk }) {
 }
 
 function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
-  const amount = useSignal(draft.amount?.value ?? 0);
+  // As it is typed: a number that is put back while one types would lose its "10.", "0.0" or "-".
+  const typed = useSignal(String(draft.amount?.value ?? ""));
+  const amount = Number(typed.value);
   const chip = useSignal<Reason | null>(null);
   const words = useSignal("");
   const busy = useSignal(false);
@@ -32,12 +34,12 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
   const reason = needsReason ? reasonText(chip.value, words.value) : "";
   const why =
     desk.whyNot(draft.name) ||
-    (draft.amount && wrongAmount(draft.amount, amount.value)) ||
+    (draft.amount && wrongAmount(draft.amount, amount)) ||
     (needsReason && !reason ? t(chip.value ? "ask.needWords" : "ask.needReason") : "");
   const confirm = async () => {
     if (why || busy.value) return;
     busy.value = true;
-    refused.value = await desk.decide(draft.build(amount.value), reason);
+    refused.value = await desk.decide(draft.build(amount), reason);
     busy.value = false;
     if (!refused.value) close();
   };
@@ -52,7 +54,7 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
       >
         <p>{draft.text}</p>
         {draft.event !== undefined && <Preview desk={desk} event={draft.event} />}
-        {draft.amount && <AmountField amount={draft.amount} value={amount} />}
+        {draft.amount && <AmountField amount={draft.amount} typed={typed} />}
         {needsReason && (
           <fieldset class="reasons">
             <legend>{t("ask.reason")}</legend>
@@ -112,10 +114,12 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
 
 interface AmountProps {
   amount: NonNullable<Draft["amount"]>;
-  value: { value: number };
+  typed: Signal<string>;
 }
 
-function AmountField({ amount, value }: AmountProps) {
+function AmountField({ amount, typed }: AmountProps) {
+  const value = Number(typed.value);
+  const shows = wrongAmount(amount, value) ? "" : amount.shows(value);
   return (
     <div class="amount">
       <label class="field">
@@ -126,9 +130,9 @@ function AmountField({ amount, value }: AmountProps) {
           step={amount.whole ? 1 : "any"}
           min={amount.least}
           max={amount.most}
-          value={Number.isNaN(value.value) ? "" : value.value}
+          value={typed.value}
           onInput={(event) => {
-            value.value = event.currentTarget.valueAsNumber;
+            typed.value = event.currentTarget.value;
           }}
         />
       </label>
@@ -139,16 +143,14 @@ function AmountField({ amount, value }: AmountProps) {
             class="button small"
             type="button"
             onClick={() => {
-              value.value = usual;
+              typed.value = String(usual);
             }}
           >
             {amount.least < 0 && usual > 0 ? `+${usual}` : String(usual).replace("-", "−")}
           </button>
         ))}
       </div>
-      {!wrongAmount(amount, value.value) && amount.shows(value.value) && (
-        <output class="shows">{amount.shows(value.value)}</output>
-      )}
+      {shows && <output class="shows">{shows}</output>}
     </div>
   );
 }

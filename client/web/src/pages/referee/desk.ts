@@ -1,7 +1,7 @@
 /** The referee's desk: who sits at it, which decisions are open, and what became of each. */
 
 import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
-import { Refused } from "../../core/connection";
+import { Refused, Unanswered } from "../../core/connection";
 import { type Court, part, phaseOf } from "../../core/court";
 import { remembered } from "../../core/settings";
 import {
@@ -30,11 +30,17 @@ export const NEED_A_REASON: ReadonlySet<DecisionName> = new Set<DecisionName>([
   "declare",
 ]);
 
-/** The newest word of the court on a decision. */
+/** The newest word of the court on a decision: done, refused, or not heard. */
 export interface Answer {
-  good: boolean;
+  tone: "yes" | "no" | "plain";
   text: string;
 }
+
+/** A decision that begins, stops or goes on with play: taken without a question. */
+export type Step = "start" | "halt" | "resume";
+
+/** So long after a step a click may still be the second of a double one. */
+const SECOND_CLICK_MS = 700;
 
 export class Desk {
   /** Whether the court has taken this page's token. */
@@ -47,19 +53,33 @@ export class Desk {
   /** Whether this page may decide now. */
   readonly mine: ReadonlySignal<boolean>;
   readonly phase: ReadonlySignal<number>;
+  /** The sensible next decision. */
+  readonly next: ReadonlySignal<DecisionName>;
+  /** The next decision became another a moment ago: a click may have been meant for the last. */
+  readonly fresh = signal(true);
   /** What the open dialog asks for. */
   readonly draft = signal<Draft | null>(null);
   /** Match and beat in which the phase began. */
   private readonly since = signal<readonly [match: number, beat: number]>([0, 0]);
   private readonly flagsOf: ReadonlySignal<number>[] = [];
+  private justTaken: Step | null = null;
 
   constructor(readonly court: Court) {
     this.mine = computed(() => this.entered.value && court.referee.value?.mine === true);
     this.phase = phaseOf(court);
+    this.next = computed(() => nextStep(this.phase.value));
     const match = part(court, (frame) => frame.match, 0);
     effect(() => {
       this.phase.value; // counts from the frame that brings another phase
       this.since.value = [match.value, court.frame.peek()?.beat ?? 0];
+    });
+    effect(() => {
+      this.next.value; // counts from each change
+      this.fresh.value = true;
+      const timer = setTimeout(() => {
+        this.fresh.value = false;
+      }, SECOND_CLICK_MS);
+      return () => clearTimeout(timer);
     });
     effect(() => {
       if (!court.connection.state.value.open) this.entered.value = false;
@@ -99,27 +119,42 @@ export class Desk {
   async takeOver(): Promise<void> {
     try {
       await this.court.ask("take_over");
-      this.say(true, t("referee.youAct"));
+      this.say("yes", t("referee.youAct"));
     } catch (error) {
-      this.say(false, said(reasonOf(error)));
+      this.say("no", said(reasonOf(error)));
     }
   }
 
   /**
    * Decide.
    *
-   * @returns "" once it is done, else the court's reason in the reader's language.
+   * @returns Why it can be changed and asked again, in the reader's language; "" once it is done,
+   *   and where the answer was lost: to ask again could do it twice.
    */
   async decide(decision: Decision, reason: string): Promise<string> {
     try {
       const reply = await this.court.ask<DecisionReply>("decide", { decision, reason });
-      this.say(true, said(reply.text));
+      this.say("yes", said(reply.text));
       return "";
     } catch (error) {
+      if (error instanceof Unanswered) {
+        this.say("plain", t("referee.unanswered"));
+        return "";
+      }
       const why = said(reasonOf(error));
-      this.say(false, why);
+      this.say("no", why);
       return why;
     }
+  }
+
+  /** Take a step of the match; the second click of a double one does not take it again. */
+  async step(type: Step): Promise<void> {
+    if (this.justTaken === type) return;
+    this.justTaken = type;
+    await this.decide({ type }, "");
+    setTimeout(() => {
+      if (this.justTaken === type) this.justTaken = null;
+    }, SECOND_CLICK_MS);
   }
 
   /** What a take-back would do; nothing is changed. Rejects with `Refused`. */
@@ -167,7 +202,7 @@ export class Desk {
     const [match, beat] = this.since.value;
     const outdated = health.match !== match || health.beat < beat;
     const phase = this.phase.value;
-    return outdated && phase >= Phase.READY && nextStep(phase) === name ? "" : why;
+    return outdated && phase >= Phase.READY && this.next.value === name ? "" : why;
   }
 
   private async again(token: string): Promise<void> {
@@ -179,16 +214,16 @@ export class Desk {
     }, RETRY_MS);
   }
 
-  private say(good: boolean, text: string): void {
+  private say(tone: Answer["tone"], text: string): void {
     // The court's words stand within sentences elsewhere; here they begin one.
     const sentence = text.charAt(0).toUpperCase() + text.slice(1);
-    this.answer.value = { good, text: sentence };
-    toast(sentence, good ? "yes" : "no");
+    this.answer.value = { tone, text: sentence };
+    toast(sentence, tone);
   }
 }
 
 /** The sensible next decision of a phase. */
-export function nextStep(phase: number): DecisionName {
+function nextStep(phase: number): DecisionName {
   switch (phase) {
     case Phase.COUNTDOWN:
     case Phase.PLAYING:

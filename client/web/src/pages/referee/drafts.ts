@@ -2,8 +2,9 @@
 
 import type { Court } from "../../core/court";
 import type { Decision, DecisionName } from "../../core/wire";
-import { BEATS_PER_S, clock, clockTicks, seatName, team } from "../../core/words";
+import { BEATS_PER_S, clock, clockTicks, outcome, seatName, team } from "../../core/words";
 import { t } from "../../i18n";
+import { markerName } from "../../ui/thirds";
 
 /** A number that a decision needs. */
 interface Amount {
@@ -38,11 +39,14 @@ function names(court: Court, seat: number): { id: string; team: string } {
 }
 
 export function official(court: Court): Draft {
-  const scores = court.frame.value?.seats.map((seat) => seat.score).join(" : ") ?? "";
   return {
     name: "official",
     title: t("decide.official"),
-    text: t("ask.official", { scores }),
+    // Read as it is drawn: what becomes final is what stands there at that moment.
+    get text() {
+      const scores = court.frame.value?.seats.map((seat) => seat.score).join(" : ");
+      return t("ask.official", { result: [scores, outcome(court)].filter(Boolean).join(" · ") });
+    },
     confirm: t("decide.official"),
     final: true,
     build: () => ({ type: "official" }),
@@ -166,9 +170,10 @@ export function moveClock(court: Court, given: number): Draft {
 
 export function setMarker(court: Court, marker: number, state: string): Draft {
   const name = court.sheet.value?.markers[marker]?.name ?? "";
+  const title = { marker: markerTitle(court, marker), state: stateName(court, state) };
   return {
     name: "set",
-    title: t("ask.setTitle", { marker: name, state: stateName(court, state) }),
+    title: t("ask.setTitle", title),
     text: t("ask.set"),
     confirm: t("ask.confirm"),
     build: () => ({ type: "set", marker: name, state }),
@@ -184,6 +189,13 @@ export function takeBack(event: number): Draft {
     event,
     build: () => ({ type: "take-back", event }),
   };
+}
+
+/** A marker at the beginning of a line: "Corner 2"; what pages have no words for, with its kind. */
+export function markerTitle(court: Court, marker: number): string {
+  const { kind, name } = court.sheet.value?.markers[marker] ?? { kind: "", name: "" };
+  const words = markerName(name).trim();
+  return words === name ? `${kind} ${name}` : words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 /** A marker's state in words: a seat's is named with its team. */

@@ -7,19 +7,24 @@ import { seatName, team } from "../../core/words";
 import { type MessageName, t } from "../../i18n";
 import { Hint, PhaseWord, SeatMark } from "../../ui/score";
 import { Act } from "./act";
-import { type Desk, nextStep } from "./desk";
+import type { Answer, Desk, Step } from "./desk";
 import * as drafts from "./drafts";
 import { Advice } from "./health";
 
 const CLOCK_S = 10;
 const OVER = new Set<number>([Phase.FINISHED, Phase.OFFICIAL]);
 
-/** Take the next step of a phase: at once, or asked about where it is final. */
-export function takeStep(desk: Desk, name: DecisionName): void {
+/** Take the step that the big button and Ctrl+Enter stand for, unless they only just began to. */
+export function takeNext(desk: Desk): void {
+  if (!desk.fresh.value) takeStep(desk, desk.next.value);
+}
+
+/** Take a step of the match: at once, or asked about where it is final. */
+function takeStep(desk: Desk, name: DecisionName): void {
   if (desk.whyNot(name) || desk.draft.value) return;
   if (name === "official") desk.draft.value = drafts.official(desk.court);
   else if (name === "next") desk.draft.value = drafts.next();
-  else desk.decide({ type: name } as { type: "start" }, "");
+  else desk.step(name as Step);
 }
 
 export function MatchCard({ desk }: { desk: Desk }) {
@@ -46,14 +51,14 @@ export function MatchCard({ desk }: { desk: Desk }) {
 }
 
 function BigButton({ desk }: { desk: Desk }) {
-  const name = nextStep(desk.phase.value);
+  const name = desk.next.value;
   return (
-    <div class="big">
+    <div class={desk.fresh.value ? "big fresh" : "big"}>
       <Act
         why={desk.whyNot(name)}
         tone={`strong ${name}`}
         label={t(`decide.${name}` as MessageName)}
-        onAct={() => takeStep(desk, name)}
+        onAct={() => takeNext(desk)}
       >
         <span>{t(`decide.${name}` as MessageName)}</span>
         <kbd>Ctrl+Enter</kbd>
@@ -97,12 +102,22 @@ function ReplayAdvice({ desk }: { desk: Desk }) {
   return over && advice ? <Advice advice={advice} /> : null;
 }
 
+/** What stands before the court's words. */
+const ANSWERED = {
+  yes: ["✓", "referee.done"],
+  no: ["✕", "referee.no"],
+  plain: ["?", "referee.noAnswer"],
+} as const satisfies Record<Answer["tone"], readonly [mark: string, word: MessageName]>;
+
 function LastAnswer({ desk }: { desk: Desk }) {
   const answer = desk.answer.value;
   if (!answer) return null;
+  const [mark, word] = ANSWERED[answer.tone];
   return (
-    <p class={`answer ${answer.good ? "yes" : "no"}`} title={t("referee.lastAnswer")}>
-      <strong>{answer.good ? `✓ ${t("referee.done")}` : `✕ ${t("referee.no")}`}</strong>{" "}
+    <p class={`answer ${answer.tone}`} title={t("referee.lastAnswer")}>
+      <strong>
+        {mark} {t(word)}
+      </strong>{" "}
       {answer.text}
     </p>
   );

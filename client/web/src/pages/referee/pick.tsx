@@ -4,7 +4,7 @@ import { useLayoutEffect, useMemo, useRef } from "preact/hooks";
 import { markerStates } from "../../core/court";
 import { MARKER_STATES } from "../../core/wire";
 import { team } from "../../core/words";
-import { type MessageName, t } from "../../i18n";
+import { t } from "../../i18n";
 import { SeatMark } from "../../ui/score";
 import { Act } from "./act";
 import type { Desk } from "./desk";
@@ -90,7 +90,7 @@ function MarkerActs({ desk, marker, then }: { desk: Desk; marker: number; then: 
   return (
     <>
       <h2 id="pick-title">
-        {kindName(info.kind, info.name)}
+        {drafts.markerTitle(court, marker)}
         {info.points > 1 && (
           <span class="muted"> · {t("pick.points", { points: info.points })}</span>
         )}
@@ -120,11 +120,4 @@ function MarkerActs({ desk, marker, then }: { desk: Desk; marker: number; then: 
       </div>
     </>
   );
-}
-
-/** A marker's name with what it is, where the page knows the word. */
-export function kindName(kind: string, name: string): string {
-  return ["disc", "corner", "flag"].includes(kind)
-    ? t(`pick.${kind}` as MessageName, { name })
-    : `${kind} ${name}`;
 }
