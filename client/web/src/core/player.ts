@@ -5,6 +5,7 @@ import { Refused } from "./connection";
 import type { Court } from "./court";
 import { chosenFiles, MOST_BYTES } from "./files";
 import { PosData } from "./posdata";
+import { tab } from "./storage";
 import { type Frame, Phase, SeatFlag, type SeatFrame, type SentFile, sameBytes } from "./wire";
 
 /** The seat that this page wants to hold; it is asked for again after every break. */
@@ -322,8 +323,7 @@ export class Player {
 
   private keep(wish: Wish | null): void {
     this.wish.value = wish;
-    if (wish) sessionStorage.setItem(KEPT_AS, JSON.stringify(wish));
-    else sessionStorage.removeItem(KEPT_AS);
+    tab.write(KEPT_AS, wish && JSON.stringify(wish));
   }
 
   private see(frame: Frame): void {
@@ -395,7 +395,7 @@ function checkSizes(files: readonly (SentFile | null)[]): void {
 
 function kept(): Wish | null {
   try {
-    return JSON.parse(sessionStorage.getItem(KEPT_AS) ?? "null") as Wish | null;
+    return JSON.parse(tab.read(KEPT_AS) ?? "null") as Wish | null;
   } catch {
     return null;
   }
