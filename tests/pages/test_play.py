@@ -146,6 +146,38 @@ def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
     page.stands("seated")
 
 
+def test_tabs_of_one_browser_have_their_own_files(
+    venue: Venue, sit: Sit, tmp_path: Path, console: Any
+) -> None:
+    """Both teams may sit at one computer: a reload must not bring the other's gait."""
+    sample = sample_gait_files("hexapod").locomotion
+    assert sample is not None
+    left = opened(venue, sit)
+    right = sit(venue.url)
+    right.page = left.page.context.new_page()
+    console.watch(right.page)
+    right.open(key=venue.key)
+    for page, seat in ((left, "left"), (right, "right")):
+        page.sees(".entrance .seat")
+        page.misses(".files .name:not(.muted)")
+        file = tmp_path / f"{seat}.txt"
+        file.write_bytes(sample.data)
+        page.find("input[type=file]").set_input_files(file)
+        page.sees(".files li:nth-child(2)", file.name)
+        page.join(TOKENS[seat], seat.title(), seat)
+        page.stands("seated")
+    left.page.reload()
+    left.stands("seated")
+    left.page.click("text=Change files")
+    left.sees("dialog .files li:nth-child(2)", "left.txt")
+
+    left.page = left.page.context.new_page()  # the next team's
+    console.watch(left.page)
+    left.open(key=venue.key)
+    left.sees(".entrance .seat")
+    left.misses(".files .name:not(.muted)")
+
+
 def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """Issue 3, connect card: by the address, and from a list where there are several."""
     port = free_port()

@@ -1,7 +1,8 @@
-/** A contestant's files: told apart by what is in them, and kept in this browser. */
+/** A contestant's files: told apart by what is in them, and kept for this tab. */
 
 import { computed } from "@preact/signals";
 import { remembered } from "./settings";
+import { tab } from "./storage";
 import type { SentFile } from "./wire";
 
 /** What a file is for; the names of the join's fields. */
@@ -16,8 +17,12 @@ interface Kept {
   base64: string;
 }
 
-/** Kept as text: a reload must join with the very same bytes, or the seat is not ready any more. */
-const kept = remembered<Partial<Record<Slot, Kept>>>("files", {});
+/**
+ * Kept as text: a reload must join with the very same bytes, or the seat is not ready any more.
+ * Kept where the wish for the seat is: another tab may be the other team's, and who sits at this
+ * computer next has files of their own.
+ */
+const kept = remembered<Partial<Record<Slot, Kept>>>("files", {}, tab);
 
 /** The names of the chosen files. */
 export const chosenNames = computed<Record<Slot, string>>(() => ({
