@@ -546,6 +546,38 @@ def test_accessible(venue: Venue, sit: Sit) -> None:
     other.close()
 
 
+def test_pos_data_is_of_the_seat_that_is_held(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """Who changes seats before a match does not take the other robot's way along."""
+    page = seated(venue, sit)
+    for seat, other in (("left", "right"), ("right", "left")):
+        if seat == "right":
+            page.press("z")
+            page.download(lambda: page.page.click("text=Save and leave"), tmp_path)
+            page.page.click("text=Join a match")
+            page.join(TOKENS[seat], "Ants", seat)
+            page.stands("seated")
+        page.page.click("button.ready")
+        opponent = venue.contestant(other, "Bees")
+        page.phase(Phase.READY)
+        stood_on(opponent, beats=25)
+        if seat == "left":
+            opponent.ask("leave")
+            opponent.close()
+    page.press("z")
+    _, text = page.download(lambda: page.page.click("text=Only save"), tmp_path)
+    places_m = [float(row.split("\t")[1]) for row in text.splitlines()[1:]]
+    assert len(places_m) > 20
+    assert min(places_m) == pytest.approx(0.75, abs=0.02)  # column 5 (rules 5)
+
+
+def stood_on(page: PageClient, beats: int) -> None:
+    """Wait until the court has gone on for so long."""
+    page.wait(lambda: page.frame)
+    assert page.frame is not None
+    until = page.frame.beat + beats
+    page.wait(lambda: page.frame and page.frame.beat > until)
+
+
 def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
     """Rules 2: byte for byte the file that `lacoc replay export` makes of the same frames."""
     page = opened(venue, sit)
@@ -556,13 +588,39 @@ def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
         expected = PosData(seat, joints)
         for frame in frames:
             expected.add(frame)
-        sent = [base64.b64encode(encode(frame)).decode() for frame in frames]
-        text = page.page.evaluate(
-            """([seat, joints, frames]) => window.__lacoc.posData(seat, joints, frames.map(
-                (text) => Uint8Array.from(atob(text), (one) => one.charCodeAt(0))))""",
-            [seat, joints, sent],
-        )
-        assert text == expected.text()
+        shown = pos_data(page, seat, joints, frames)
+        assert shown["text"] == expected.text()
+        assert "saved from 0:02.0 on, when this page was loaded" in shown["says"]
+
+
+def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
+    """Practice may run all day: the page keeps so many rows, and says where they begin."""
+    frames = list(walk(random.Random(0), (12, 18)))
+    whole = PosData(1, (12, 18))
+    for frame in frames:
+        whole.add(frame)
+    header, *rows = whole.text().splitlines()
+    venue.web()
+    for locale, says in (("en-GB", "keeps the newest hour"), ("ja-JP", "最新の 1 時間")):
+        page = sit(venue.url, locale=locale)
+        page.open(key=venue.key)
+        page.until("Boolean(window.__lacoc?.posData)")
+        shown = pos_data(page, 1, (12, 18), frames, 100)
+        assert shown["text"].splitlines() == [header, *rows[-100:]]
+        assert says in shown["says"]
+        assert re.search(r" 0:\d\d\.\d ", shown["says"])
+
+
+def pos_data(page: Contestant, *args: Any) -> dict[str, str]:
+    """Pos-data.txt as the page writes it, and what it says of it."""
+    seat, joints, frames, *most = args
+    sent = [base64.b64encode(encode(frame)).decode() for frame in frames]
+    shown: dict[str, str] = page.page.evaluate(
+        """([seat, joints, frames, most]) => window.__lacoc.posData(seat, joints, frames.map(
+            (text) => Uint8Array.from(atob(text), (one) => one.charCodeAt(0))), most)""",
+        [seat, joints, sent, *(most or [180_000])],
+    )
+    return shown
 
 
 def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:

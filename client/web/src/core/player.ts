@@ -373,8 +373,11 @@ export class Player {
     const sheet = this.court.sheet.peek();
     if (!sheet || !frame.poses.length || !sameBytes(frame.scene, sheet.scene)) return;
     const joints = sheet.seats.map((seat) => 3 * seat.legs.length);
-    const isOther = this.data?.joints.some((count, seat) => count !== joints[seat]);
-    if (!this.data || this.dataMatch !== frame.match || isOther) {
+    const isOther =
+      this.dataMatch !== frame.match ||
+      this.data?.seat !== index ||
+      this.data.joints.some((count, seat) => count !== joints[seat]);
+    if (!this.data || isOther) {
       this.data = new PosData(index, joints);
       this.dataMatch = frame.match;
     }

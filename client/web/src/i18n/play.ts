@@ -187,6 +187,10 @@ export const play = {
     "Pos-data.txt, the way of your robot, is saved from {time} on, when this page was loaded. The record of the match has all of it.",
     "Pos-data.txt には、このページを読み込んだ {time} 以降の軌跡を保存します。試合の記録には最初からすべて残っています。",
   ],
+  "leave.dataNewest": [
+    "Pos-data.txt, the way of your robot, is saved from {time} on: this page keeps the newest hour.",
+    "Pos-data.txt には {time} 以降の軌跡を保存します（このページに残るのは最新の 1 時間です）。",
+  ],
   "leave.noData": [
     "There is no Pos-data.txt: this page has not seen your robot on the field.",
     "Pos-data.txt はありません（このページはまだフィールド上のロボットを記録していません）。",

@@ -152,11 +152,11 @@ function begin(alone: boolean): { court: Court; player: Player } {
   return { court, player };
 }
 
-/** For tests: Pos-data.txt of any frames. */
-function posData(seat: number, joints: number[], frames: Uint8Array[]): string {
-  const data = new PosData(seat, joints);
+/** For tests: Pos-data.txt of any frames, and what the page says of it. */
+function posData(seat: number, joints: number[], frames: Uint8Array[], most: number) {
+  const data = new PosData(seat, joints, most);
   for (const frame of frames) data.add(readFrame(frame));
-  return data.text();
+  return { text: data.parts().join(""), says: aboutData(data) };
 }
 
 function speak(word: Word): void {
@@ -176,7 +176,7 @@ function speak(word: Word): void {
 function saveData(player: Player): boolean {
   const { data } = player;
   if (!data?.length) return false;
-  download(POS_DATA, data.text());
+  download(POS_DATA, data.parts());
   toast(t("leave.saved"), "yes");
   return true;
 }
@@ -231,7 +231,6 @@ interface DialogProps {
 function Leave({ court, player, alone, onClose }: DialogProps) {
   const phase = court.frame.peek()?.phase ?? Phase.LOBBY;
   const hasData = Boolean(player.data?.length);
-  const since = player.data?.sinceTicks ?? 0;
   const inMatch = phase > Phase.READY && phase < Phase.OFFICIAL;
   const leave = async () => {
     saveData(player);
@@ -241,11 +240,7 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
   return (
     <Dialog title={t("leave.title")} onClose={onClose}>
       <p>{t(alone ? "leave.practice" : inMatch ? "leave.match" : "leave.lobby")}</p>
-      <p class="muted">
-        {since
-          ? t("leave.dataSince", { time: logClock(since) })
-          : t(hasData ? "leave.data" : "leave.noData")}
-      </p>
+      <p class="muted">{aboutData(player.data)}</p>
       <div class="row end">
         <button class="button" type="button" onClick={onClose}>
           {t("common.cancel")}
@@ -268,6 +263,14 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
       </div>
     </Dialog>
   );
+}
+
+/** What Pos-data.txt has: all, or from when on and why. */
+function aboutData(data: PosData | null): string {
+  if (!data?.length) return t("leave.noData");
+  const time = logClock(data.sinceTicks);
+  if (data.isCut) return t("leave.dataNewest", { time });
+  return data.sinceTicks ? t("leave.dataSince", { time }) : t("leave.data");
 }
 
 function Files({ court, player, alone, onClose }: DialogProps) {
