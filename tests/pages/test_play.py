@@ -178,6 +178,18 @@ def test_tabs_of_one_browser_have_their_own_files(
     left.misses(".files .name:not(.muted)")
 
 
+def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
+    """The tab's address may lead to another court later: there it sits down anew."""
+    page = opened(venue, sit)
+    page.sees(".entrance .seat")
+    wish = {"court": "side", "seat": "left", "token": "x", "name": "Ants"}
+    page.page.evaluate("(wish) => sessionStorage.setItem('lacoc.wish', wish)", json.dumps(wish))
+    page.page.reload()
+    page.stands("outside")
+    page.join(TOKENS["left"])
+    page.stands("seated")
+
+
 def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """Issue 3, connect card: by the address, and from a list where there are several."""
     port = free_port()

@@ -65,6 +65,8 @@ export class Player {
   private readonly wish = signal<Wish | null>(kept());
   /** Whether the wish was granted once: a break of it is to be mended without a word. */
   private readonly granted = signal(this.wish.peek() !== null);
+  /** The wish, unless it is known to be for another court: a tab's address may change. */
+  private readonly wishHere: ReadonlySignal<Wish | null>;
   private readonly greeted = signal(false);
   private readonly hasLeft = signal(false);
   private readonly chosenLevel = signal<number | null>(null);
@@ -89,9 +91,14 @@ export class Player {
     private readonly say: (word: Word) => void,
     private readonly alone: boolean,
   ) {
+    this.wishHere = computed(() => {
+      const wish = this.wish.value;
+      const welcome = court.welcome.value;
+      return !welcome || welcome.court === wish?.court ? wish : null;
+    });
     this.index = computed(() => (this.isHeld() ? (court.seat.value?.index ?? -1) : -1));
     this.standing = computed(() => this.stand());
-    this.isWaiting = computed(() => this.wish.value !== null && !this.granted.value);
+    this.isWaiting = computed(() => this.wishHere.value !== null && !this.granted.value);
     this.level = computed(() => this.levelNow());
     this.canSteer = computed(
       () =>
@@ -219,7 +226,7 @@ export class Player {
     if (this.isHeld()) return "seated";
     if (welcome && !welcome.can_act) return "watching";
     if (this.lostWhy.value) return "lost";
-    if (this.wish.value && this.granted.value) return "joining";
+    if (this.wishHere.value && this.granted.value) return "joining";
     return this.hasLeft.value ? "left" : "outside";
   }
 
@@ -243,11 +250,11 @@ export class Player {
     // Also after a break of the page, the gateway or the link; a court that was only restarted is
     // asked again by the gateway.
     effect(() => {
-      const wish = this.wish.value;
+      const wish = this.wishHere.value;
       const welcome = court.welcome.value;
       const link = court.link.value;
       if (!wish || !this.greeted.value || !welcome?.can_act || this.asking.value) return;
-      if (link?.connected && welcome.court === wish.court && !this.isHeld()) {
+      if (link?.connected && !this.isHeld()) {
         untracked(() => void this.ask(wish));
       }
     });
