@@ -185,6 +185,27 @@ def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
     assert {"1自動", "6平面図"} <= reached
 
 
+def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
+    """The page says so, and goes on saying it while it asks again and again."""
+    venue.court()
+    venue.web()
+    page = open_page()
+    sockets: list[Any] = []
+    page.on("websocket", lambda socket: sockets.append(socket))
+    show = Show(page, venue.url, "/watch?court=nope&lang=en", drawn=False)
+    show.sees(".banner", "nope")
+    page.evaluate(
+        """() => {
+          window.said = [];
+          new MutationObserver(() => window.said.push(document.body.innerText)).observe(
+            document.body, { childList: true, characterData: true, subtree: true });
+        }"""
+    )
+    show.until(lambda: len(sockets) > 2, "it does not ask again")
+    said = page.evaluate("window.said")
+    assert not [text for text in said if "Connecting" in text or "nope" not in text]
+
+
 def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
     """Upright: the picture, the cameras and the board below one another, nothing to the side."""
     venue.court()
