@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from contestant import Contestant, Sit, own_page
-from drop import drop
+from drop import drag_in, drop
 from page_client import PageClient
 from show import violations
 from venue import TOKENS, Venue, free_port
@@ -144,6 +144,40 @@ def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
     page.page.click("text=Use these files")
     page.misses("dialog")
     page.stands("seated")
+
+
+def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """A folder can't be read: the page says so, and takes what was dropped with it."""
+    page = opened(venue, sit)
+    page.sees(".entrance .seat")
+    folder = tmp_path / "gaits"
+    folder.mkdir()
+    mine = tmp_path / "mine.toml"
+    mine.write_text("name = 'My robot'")
+    drag_in(page.page, folder, mine)
+    page.is_toasted("gaits can't be read. Folders can't be dropped: drop the files in them.")
+    page.sees(".files li:has-text('Robot')", "mine.toml")
+
+
+def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """It never makes the browser leave the match; before one it is offered, in one it is not."""
+    page = seated(venue, sit, "--seconds", "120")
+    mine = tmp_path / "mine.toml"
+    mine.write_text("name = 'My robot'")
+    drag_in(page.page, mine)
+    page.sees("dialog .files li:has-text('Robot')", "mine.toml")
+    page.page.click("[aria-label='Take mine.toml away']")
+    page.press("Escape")
+    page.misses("dialog")
+    other = playing(venue, page)
+    drag_in(page.page, mine)
+    page.is_toasted("Files are chosen before a match.")
+    page.misses("dialog")
+    page.press("2")
+    page.key_stands(2)
+    assert page.page.url.startswith(f"{venue.url}/play")
+    assert len(page.page.context.pages) == 1
+    other.close()
 
 
 def test_tabs_of_one_browser_have_their_own_files(

@@ -72,6 +72,11 @@ export const play = {
   "files.given": ["from the command line: {names}", "起動時に指定：{names}"],
   "files.remove": ["Take {name} away", "{name} を外す"],
   "files.tooLarge": ["{name} is too large for a gait or a robot.", "{name} は大きすぎます。"],
+  "files.unreadable": [
+    "{name} can't be read. Folders can't be dropped: drop the files in them.",
+    "{name} を読み込めません。フォルダーではなく、中のファイルをドロップしてください。",
+  ],
+  "files.notNow": ["Files are chosen before a match.", "ファイルは試合の前に選びます。"],
   "files.change": ["Change files", "ファイルを変更"],
   "files.use": ["Use these files", "このファイルを使う"],
   "files.changeText": [

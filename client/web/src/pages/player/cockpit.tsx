@@ -13,11 +13,12 @@ import { logClock } from "../../core/words";
 import { type MessageName, said, t } from "../../i18n";
 import { LinkBanner } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
+import { useDrop } from "../../ui/drop";
 import { Settings } from "../../ui/settings";
 import { Toasts, toast } from "../../ui/toasts";
 import { Entrance } from "./card";
 import { Field, VIEWS, type ViewName } from "./field";
-import { FilePicker } from "./files";
+import { canChange, dragging, FilePicker, take } from "./files";
 import { Footer } from "./footer";
 import { useKeyboard, useWindowFocus } from "./keyboard";
 import { KeyTest } from "./keytest";
@@ -83,6 +84,16 @@ export function Cockpit({ alone }: { alone: boolean }) {
     },
     hasInputMethod,
   );
+  useDrop(dragging, (files) => {
+    const standing = player.standing.peek();
+    const isSeated = standing === "seated";
+    if (standing !== "outside" && !(isSeated && canChange(court))) {
+      toast(t("files.notNow"), "no");
+      return;
+    }
+    if (isSeated) open.value = "files";
+    void take(files);
+  });
   useAutoJoin(court, player, alone);
   useFieldFocus(court, player, field);
 
