@@ -9,7 +9,7 @@ from chromium import OpenPage
 from playwright.sync_api import expect
 from show import STALE, WAIT_MS, Show, decide, playing, violations
 from stand import pixels_of
-from venue import Venue
+from venue import Venue, free_port
 
 from lacoc_shared.seat import Phase
 
@@ -17,6 +17,7 @@ pytestmark = pytest.mark.slow
 
 LAPTOP = {"width": 1366, "height": 768}
 PHONE = {"width": 390, "height": 844}
+LONG = "W" * 24
 LOW = "/watch?q=low&cam=arena"
 
 
@@ -204,6 +205,43 @@ def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
     show.until(lambda: len(sockets) > 2, "it does not ask again")
     said = page.evaluate("window.said")
     assert not [text for text in said if "Connecting" in text or "nope" not in text]
+
+
+@pytest.mark.parametrize("width", [1000, 1280, 1366, 1440, 1920])
+def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: int) -> None:
+    """Brand, choice of court, score bug and buttons stand beside one another at any width."""
+    text = venue.contest.read_text()
+    side = text.replace("court.main", "court.second-court")
+    venue.contest.write_text(text + side.replace(str(venue.court_port), str(free_port())))
+    venue.court("--court", "main")
+    venue.web()
+    venue.contestant("left", LONG)
+    venue.contestant("right", "歩" * 24)
+    for query in ("", "&delay=2&lang=ja"):
+        page = open_page(viewport={"width": width, "height": 720})
+        show = Show(page, venue.url, f"/watch?q=low&cam=map&court=main{query}")
+        for _ in range(2):
+            show.sees(".score-bug [data-seat='1']", "歩")
+            boxes = [
+                show.find(selector).bounding_box()
+                for selector in (".brand", ".corner.left select", ".score-bug", ".corner.right")
+            ]
+            brand, choice, bug, buttons = [box for box in boxes if box is not None]
+            assert brand["y"] + brand["height"] <= choice["y"] or apart(brand, choice)
+            assert apart(brand, bug), (query, brand, bug)
+            assert apart(choice, bug), (query, choice, bug)
+            assert apart(bug, buttons), (query, bug, buttons)
+            for seat in range(2):
+                name = show.find(f".score-bug [data-seat='{seat}'] .name").bounding_box()
+                assert name is not None
+                assert name["width"] > 60
+            page.keyboard.press("e")  # with and without the panel
+        page.close()
+
+
+def apart(left: Any, right: Any) -> bool:
+    """Whether one box ends before the other begins."""
+    return bool(left["x"] + left["width"] <= right["x"])
 
 
 def test_a_phone(venue: Venue, open_page: OpenPage) -> None:

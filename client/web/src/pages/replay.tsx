@@ -177,16 +177,18 @@ function Show({ player, server }: { player: Player; server: string | null }) {
           label={t("watch.view")}
         />
       </div>
-      <div class="corner left">
-        <a class="button others" href="/replay" title={t("replay.others")}>
-          <Icon name="open" />
-          <span>{t("replay.others")}</span>
-        </a>
+      <div class="top">
+        <div class="corner left">
+          <a class="button others" href="/replay" title={t("replay.others")}>
+            <Icon name="open" />
+            <span>{t("replay.others")}</span>
+          </a>
+        </div>
+        <header class="head">
+          <ScoreBug match={recording} />
+          <Hint match={recording} />
+        </header>
       </div>
-      <header class="head">
-        <ScoreBug match={recording} />
-        <Hint match={recording} />
-      </header>
       <Corner panel={panel}>
         <IconButton name="link" label={t("replay.share")} onClick={() => share(player, server)} />
       </Corner>
