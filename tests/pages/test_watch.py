@@ -244,6 +244,41 @@ def apart(left: Any, right: Any) -> bool:
     return bool(left["x"] + left["width"] <= right["x"])
 
 
+def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
+    """A team's name and a referee's reason are as long as somebody types them."""
+    venue.court()
+    venue.web()
+    venue.contestant("left", LONG)
+    venue.contestant("right", "Bees")
+    referee = venue.referee()
+    referee.phase(Phase.READY)
+    decide(referee, type="start")
+    referee.phase(Phase.PLAYING)
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    decide(referee, "n" * 200, type="adjust", seat="left", points=2)
+    show.sees(".third .what", "nnn")
+    show.sees(".panel .log", "nnn")
+    for selector in (".panel .log", ".third .what", ".third"):
+        width, room = show.find(selector).first.evaluate("(at) => [at.scrollWidth, at.clientWidth]")
+        assert width <= room, selector
+    show.sees(".hint", LONG)
+    show.page.set_viewport_size(PHONE)
+    for selector in (".head .hint", ".score-bug .points"):
+        box = show.find(selector).last.bounding_box()
+        assert box is not None
+        assert box["x"] + box["width"] <= PHONE["width"], selector
+    show.page.set_viewport_size(LAPTOP)
+    mark = show.find(".view-tag b").first.bounding_box()
+    tag = show.find(".view-tag").first.bounding_box()
+    name = show.find(".view-tag span").first
+    assert mark is not None
+    assert tag is not None
+    assert mark["width"] == pytest.approx(20, abs=0.5)
+    assert tag["width"] <= 220
+    assert name.evaluate("(at) => at.scrollWidth > at.clientWidth")  # so it ends with dots
+    expect(name).to_have_css("text-overflow", "ellipsis")
+
+
 def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
     """Upright: the picture, the cameras and the board below one another, nothing to the side."""
     venue.court()
