@@ -384,6 +384,17 @@ def test_who_wants_less_motion_gets_it(venue: Venue, open_page: OpenPage) -> Non
     assert np.abs(eyes["reduce"]).max() == 0
 
 
+def test_who_wants_less_motion_sees_nothing_turn(venue: Venue, open_page: OpenPage) -> None:
+    """Also what would turn for ever comes to rest."""
+    venue.web()
+    page = open_page(reduced_motion="reduce")
+    page.goto(f"{venue.url}/play")
+    page.locator("main").evaluate(
+        "(main) => main.append(Object.assign(document.createElement('i'), {className: 'spinner'}))"
+    )
+    expect(page.locator(".spinner")).to_have_css("animation-iteration-count", "1")
+
+
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:
     """Done means 2: axe-core finds no serious violation."""
     pytest.importorskip("axe_core_python")
