@@ -279,6 +279,19 @@ def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
     expect(name).to_have_css("text-overflow", "ellipsis")
 
 
+def test_news_are_read_aloud_once(venue: Venue, open_page: OpenPage) -> None:
+    """An event stands in the log too, but a screen reader is told of it in one place."""
+    venue.court()
+    venue.web()
+    referee = playing(venue)
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    show.sees(".panel .log")
+    decide(referee, "a foul", type="adjust", seat="left", points=2)
+    show.sees(".third .what", "+2 for Ants")
+    show.sees(".panel .log", "+2 for Ants")
+    assert show.find("[aria-live]:not([aria-live=off])", has_text="+2 for Ants").count() == 1
+
+
 def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
     """Upright: the picture, the cameras and the board below one another, nothing to the side."""
     venue.court()

@@ -159,7 +159,7 @@ function Panel() {
     <aside class="panel" aria-label={t("watch.panel")}>
       <Board match={court} />
       <h2>{t("log.title")}</h2>
-      <EventLog match={court} />
+      <EventLog match={court} toldElsewhere />
     </aside>
   );
 }
