@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from contestant import Contestant, Sit, own_page
-from drop import drop
+from drop import drag_in, drop
 from page_client import PageClient
 from show import violations
 from venue import TOKENS, Venue, free_port
@@ -143,6 +143,84 @@ def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
     page.is_toasted("huge.txt is too large")
     page.page.click("text=Use these files")
     page.misses("dialog")
+    page.stands("seated")
+
+
+def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """A folder can't be read: the page says so, and takes what was dropped with it."""
+    page = opened(venue, sit)
+    page.sees(".entrance .seat")
+    folder = tmp_path / "gaits"
+    folder.mkdir()
+    mine = tmp_path / "mine.toml"
+    mine.write_text("name = 'My robot'")
+    drag_in(page.page, folder, mine)
+    page.is_toasted("gaits can't be read. Folders can't be dropped: drop the files in them.")
+    page.sees(".files li:has-text('Robot')", "mine.toml")
+
+
+def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """It never makes the browser leave the match; before one it is offered, in one it is not."""
+    page = seated(venue, sit, "--seconds", "120")
+    mine = tmp_path / "mine.toml"
+    mine.write_text("name = 'My robot'")
+    drag_in(page.page, mine)
+    page.sees("dialog .files li:has-text('Robot')", "mine.toml")
+    page.page.click("[aria-label='Take mine.toml away']")
+    page.press("Escape")
+    page.misses("dialog")
+    other = playing(venue, page)
+    drag_in(page.page, mine)
+    page.is_toasted("Files are chosen before a match.")
+    page.misses("dialog")
+    page.press("2")
+    page.key_stands(2)
+    assert page.page.url.startswith(f"{venue.url}/play")
+    assert len(page.page.context.pages) == 1
+    other.close()
+
+
+def test_tabs_of_one_browser_have_their_own_files(
+    venue: Venue, sit: Sit, tmp_path: Path, console: Any
+) -> None:
+    """Both teams may sit at one computer: a reload must not bring the other's gait."""
+    sample = sample_gait_files("hexapod").locomotion
+    assert sample is not None
+    left = opened(venue, sit)
+    right = sit(venue.url)
+    right.page = left.page.context.new_page()
+    console.watch(right.page)
+    right.open(key=venue.key)
+    for page, seat in ((left, "left"), (right, "right")):
+        page.sees(".entrance .seat")
+        page.misses(".files .name:not(.muted)")
+        file = tmp_path / f"{seat}.txt"
+        file.write_bytes(sample.data)
+        page.find("input[type=file]").set_input_files(file)
+        page.sees(".files li:nth-child(2)", file.name)
+        page.join(TOKENS[seat], seat.title(), seat)
+        page.stands("seated")
+    left.page.reload()
+    left.stands("seated")
+    left.page.click("text=Change files")
+    left.sees("dialog .files li:nth-child(2)", "left.txt")
+
+    left.page = left.page.context.new_page()  # the next team's
+    console.watch(left.page)
+    left.open(key=venue.key)
+    left.sees(".entrance .seat")
+    left.misses(".files .name:not(.muted)")
+
+
+def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
+    """The tab's address may lead to another court later: there it sits down anew."""
+    page = opened(venue, sit)
+    page.sees(".entrance .seat")
+    wish = {"court": "side", "seat": "left", "token": "x", "name": "Ants"}
+    page.page.evaluate("(wish) => sessionStorage.setItem('lacoc.wish', wish)", json.dumps(wish))
+    page.page.reload()
+    page.stands("outside")
+    page.join(TOKENS["left"])
     page.stands("seated")
 
 
@@ -517,6 +595,38 @@ def test_accessible(venue: Venue, sit: Sit) -> None:
     other.close()
 
 
+def test_pos_data_is_of_the_seat_that_is_held(venue: Venue, sit: Sit, tmp_path: Path) -> None:
+    """Who changes seats before a match does not take the other robot's way along."""
+    page = seated(venue, sit)
+    for seat, other in (("left", "right"), ("right", "left")):
+        if seat == "right":
+            page.press("z")
+            page.download(lambda: page.page.click("text=Save and leave"), tmp_path)
+            page.page.click("text=Join a match")
+            page.join(TOKENS[seat], "Ants", seat)
+            page.stands("seated")
+        page.page.click("button.ready")
+        opponent = venue.contestant(other, "Bees")
+        page.phase(Phase.READY)
+        stood_on(opponent, beats=25)
+        if seat == "left":
+            opponent.ask("leave")
+            opponent.close()
+    page.press("z")
+    _, text = page.download(lambda: page.page.click("text=Only save"), tmp_path)
+    places_m = [float(row.split("\t")[1]) for row in text.splitlines()[1:]]
+    assert len(places_m) > 20
+    assert min(places_m) == pytest.approx(0.75, abs=0.02)  # column 5 (rules 5)
+
+
+def stood_on(page: PageClient, beats: int) -> None:
+    """Wait until the court has gone on for so long."""
+    page.wait(lambda: page.frame)
+    assert page.frame is not None
+    until = page.frame.beat + beats
+    page.wait(lambda: page.frame and page.frame.beat > until)
+
+
 def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
     """Rules 2: byte for byte the file that `lacoc replay export` makes of the same frames."""
     page = opened(venue, sit)
@@ -527,13 +637,39 @@ def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
         expected = PosData(seat, joints)
         for frame in frames:
             expected.add(frame)
-        sent = [base64.b64encode(encode(frame)).decode() for frame in frames]
-        text = page.page.evaluate(
-            """([seat, joints, frames]) => window.__lacoc.posData(seat, joints, frames.map(
-                (text) => Uint8Array.from(atob(text), (one) => one.charCodeAt(0))))""",
-            [seat, joints, sent],
-        )
-        assert text == expected.text()
+        shown = pos_data(page, seat, joints, frames)
+        assert shown["text"] == expected.text()
+        assert "saved from 0:02.0 on, when this page was loaded" in shown["says"]
+
+
+def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
+    """Practice may run all day: the page keeps so many rows, and says where they begin."""
+    frames = list(walk(random.Random(0), (12, 18)))
+    whole = PosData(1, (12, 18))
+    for frame in frames:
+        whole.add(frame)
+    header, *rows = whole.text().splitlines()
+    venue.web()
+    for locale, says in (("en-GB", "keeps the newest hour"), ("ja-JP", "最新の 1 時間")):
+        page = sit(venue.url, locale=locale)
+        page.open(key=venue.key)
+        page.until("Boolean(window.__lacoc?.posData)")
+        shown = pos_data(page, 1, (12, 18), frames, 100)
+        assert shown["text"].splitlines() == [header, *rows[-100:]]
+        assert says in shown["says"]
+        assert re.search(r" 0:\d\d\.\d ", shown["says"])
+
+
+def pos_data(page: Contestant, *args: Any) -> dict[str, str]:
+    """Pos-data.txt as the page writes it, and what it says of it."""
+    seat, joints, frames, *most = args
+    sent = [base64.b64encode(encode(frame)).decode() for frame in frames]
+    shown: dict[str, str] = page.page.evaluate(
+        """([seat, joints, frames, most]) => window.__lacoc.posData(seat, joints, frames.map(
+            (text) => Uint8Array.from(atob(text), (one) => one.charCodeAt(0))), most)""",
+        [seat, joints, sent, *(most or [180_000])],
+    )
+    return shown
 
 
 def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:

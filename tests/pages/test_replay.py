@@ -286,6 +286,38 @@ def test_the_servers_list_and_the_address(
     missing.sees(".recordings")
 
 
+def test_a_recording_that_was_given_up_says_nothing_more(
+    library: Venue, open_page: OpenPage
+) -> None:
+    """Another one was opened meanwhile: the line is that one's."""
+    page = open_page(viewport=LAPTOP)
+    page.add_init_script(
+        """const get = window.fetch;
+        window.arriving = {};
+        window.fetch = (path) => {
+          const name = /^\\/recordings\\/(.+)$/.exec(path)?.[1];
+          if (!name) return get(path);
+          const body = new ReadableStream({ start: (one) => { window.arriving[name] = one; } });
+          return Promise.resolve(new Response(body, { headers: { "Content-Length": "1000" } }));
+        };"""
+    )
+    player = Player(page, library, drawn=False)
+    for name in ("b-flags", "a-discs"):
+        page.get_by_role("link", name=name).click()
+        player.sees("[role=status]", f"{name}.mcap")
+        if name == "b-flags":
+            page.go_back()
+            player.sees(".recordings")
+    for name, part in (("b-flags", "500"), ("a-discs", "300")):
+        arrive = f"window.arriving['{name}.mcap'].enqueue(new Uint8Array({part}))"
+        page.evaluate(arrive)
+    expect(page.locator("progress")).to_have_attribute("value", "0.3")
+    page.evaluate("window.arriving['b-flags.mcap'].enqueue(new Uint8Array(100))")
+    page.evaluate("new Promise((done) => setTimeout(done))")
+    player.sees("[role=status]", "a-discs.mcap")
+    expect(page.locator("progress")).to_have_attribute("value", "0.3")
+
+
 def test_files_of_this_machine(
     library: Venue, flags: Path, record: Record, open_page: OpenPage
 ) -> None:

@@ -322,6 +322,25 @@ def test_dragging_turns_the_camera_and_is_no_click(stand: Stand) -> None:
     assert np.allclose(stand.view("eye"), eye, atol=1e-6)
 
 
+def test_only_the_left_button_turns_the_camera(stand: Stand) -> None:
+    """The right one opens the browser's menu, which keeps its release to itself."""
+    stand.open("othello.bin", speed=0, q="low")
+    eye = stand.view("eye")
+    stand.page.mouse.move(400, 225)
+    stand.page.mouse.down(button="right")
+    stand.page.mouse.move(500, 235, steps=4)
+    stand.page.mouse.up(button="right")
+    stand.next_frames()
+    assert stand.view("eye") == eye
+
+    held = {"pointerId": 1, "button": 0, "buttons": 1, "clientX": 500, "clientY": 235}
+    mouse = {"pointerType": "mouse", "bubbles": True}
+    stand.page.dispatch_event(".view", "pointerdown", held | mouse)  # and its release is lost
+    stand.page.mouse.move(400, 225, steps=4)
+    stand.next_frames()
+    assert stand.view("eye") == eye
+
+
 def test_a_lost_context_comes_back(stand: Stand) -> None:
     """A graphics driver that restarts takes the picture with it, for a moment."""
     stand.open("othello.bin", speed=0, q="low")

@@ -9,7 +9,7 @@ from chromium import OpenPage
 from playwright.sync_api import expect
 from show import STALE, WAIT_MS, Show, decide, playing, violations
 from stand import pixels_of
-from venue import Venue
+from venue import Venue, free_port
 
 from lacoc_shared.seat import Phase
 
@@ -17,6 +17,7 @@ pytestmark = pytest.mark.slow
 
 LAPTOP = {"width": 1366, "height": 768}
 PHONE = {"width": 390, "height": 844}
+LONG = "W" * 24
 LOW = "/watch?q=low&cam=arena"
 
 
@@ -227,6 +228,112 @@ def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
     assert {"1自動", "6平面図"} <= reached
 
 
+def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
+    """The page says so, and goes on saying it while it asks again and again."""
+    venue.court()
+    venue.web()
+    page = open_page()
+    sockets: list[Any] = []
+    page.on("websocket", lambda socket: sockets.append(socket))
+    show = Show(page, venue.url, "/watch?court=nope&lang=en", drawn=False)
+    show.sees(".banner", "nope")
+    page.evaluate(
+        """() => {
+          window.said = [];
+          new MutationObserver(() => window.said.push(document.body.innerText)).observe(
+            document.body, { childList: true, characterData: true, subtree: true });
+        }"""
+    )
+    show.until(lambda: len(sockets) > 2, "it does not ask again")
+    said = page.evaluate("window.said")
+    assert not [text for text in said if "Connecting" in text or "nope" not in text]
+
+
+@pytest.mark.parametrize("width", [1000, 1280, 1366, 1440, 1920])
+def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: int) -> None:
+    """Brand, choice of court, score bug and buttons stand beside one another at any width."""
+    text = venue.contest.read_text()
+    side = text.replace("court.main", "court.second-court")
+    venue.contest.write_text(text + side.replace(str(venue.court_port), str(free_port())))
+    venue.court("--court", "main")
+    venue.web()
+    venue.contestant("left", LONG)
+    venue.contestant("right", "歩" * 24)
+    for query in ("", "&delay=2&lang=ja"):
+        page = open_page(viewport={"width": width, "height": 720})
+        show = Show(page, venue.url, f"/watch?q=low&cam=map&court=main{query}")
+        for _ in range(2):
+            show.sees(".score-bug [data-seat='1']", "歩")
+            boxes = [
+                show.find(selector).bounding_box()
+                for selector in (".brand", ".corner.left select", ".score-bug", ".corner.right")
+            ]
+            brand, choice, bug, buttons = [box for box in boxes if box is not None]
+            assert brand["y"] + brand["height"] <= choice["y"] or apart(brand, choice)
+            assert apart(brand, bug), (query, brand, bug)
+            assert apart(choice, bug), (query, choice, bug)
+            assert apart(bug, buttons), (query, bug, buttons)
+            for seat in range(2):
+                name = show.find(f".score-bug [data-seat='{seat}'] .name").bounding_box()
+                assert name is not None
+                assert name["width"] > 60
+            page.keyboard.press("e")  # with and without the panel
+        page.close()
+
+
+def apart(left: Any, right: Any) -> bool:
+    """Whether one box ends before the other begins."""
+    return bool(left["x"] + left["width"] <= right["x"])
+
+
+def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
+    """A team's name and a referee's reason are as long as somebody types them."""
+    venue.court()
+    venue.web()
+    venue.contestant("left", LONG)
+    venue.contestant("right", "Bees")
+    referee = venue.referee()
+    referee.phase(Phase.READY)
+    decide(referee, type="start")
+    referee.phase(Phase.PLAYING)
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    decide(referee, "n" * 200, type="adjust", seat="left", points=2)
+    show.sees(".third .what", "nnn")
+    show.sees(".panel .log", "nnn")
+    for selector in (".panel .log", ".third .what", ".third"):
+        width, room = show.find(selector).first.evaluate("(at) => [at.scrollWidth, at.clientWidth]")
+        assert width <= room, selector
+    show.sees(".hint", LONG)
+    show.page.set_viewport_size(PHONE)
+    for selector in (".head .hint", ".score-bug .points"):
+        box = show.find(selector).last.bounding_box()
+        assert box is not None
+        assert box["x"] + box["width"] <= PHONE["width"], selector
+    show.page.set_viewport_size(LAPTOP)
+    mark = show.find(".view-tag b").first.bounding_box()
+    tag = show.find(".view-tag").first.bounding_box()
+    name = show.find(".view-tag span").first
+    assert mark is not None
+    assert tag is not None
+    assert mark["width"] == pytest.approx(20, abs=0.5)
+    assert tag["width"] <= 220
+    assert name.evaluate("(at) => at.scrollWidth > at.clientWidth")  # so it ends with dots
+    expect(name).to_have_css("text-overflow", "ellipsis")
+
+
+def test_news_are_read_aloud_once(venue: Venue, open_page: OpenPage) -> None:
+    """An event stands in the log too, but a screen reader is told of it in one place."""
+    venue.court()
+    venue.web()
+    referee = playing(venue)
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    show.sees(".panel .log")
+    decide(referee, "a foul", type="adjust", seat="left", points=2)
+    show.sees(".third .what", "+2 for Ants")
+    show.sees(".panel .log", "+2 for Ants")
+    assert show.find("[aria-live]:not([aria-live=off])", has_text="+2 for Ants").count() == 1
+
+
 def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
     """Upright: the picture, the cameras and the board below one another, nothing to the side."""
     venue.court()
@@ -330,6 +437,17 @@ def test_who_wants_less_motion_gets_it(venue: Venue, open_page: OpenPage) -> Non
         show.page.close()
     assert np.abs(eyes["no-preference"]).max() > 1e-4
     assert np.abs(eyes["reduce"]).max() == 0
+
+
+def test_who_wants_less_motion_sees_nothing_turn(venue: Venue, open_page: OpenPage) -> None:
+    """Also what would turn for ever comes to rest."""
+    venue.web()
+    page = open_page(reduced_motion="reduce")
+    page.goto(f"{venue.url}/play")
+    page.locator("main").evaluate(
+        "(main) => main.append(Object.assign(document.createElement('i'), {className: 'spinner'}))"
+    )
+    expect(page.locator(".spinner")).to_have_css("animation-iteration-count", "1")
 
 
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:

@@ -1,5 +1,8 @@
 /** What the page's address says. */
 
+import { tab } from "./storage";
+
+const KEY = "lacoc-key";
 const query = new URLSearchParams(location.search);
 
 /** A setting of the address: `?q=low`. */
@@ -26,11 +29,11 @@ export function amount(name: string, otherwise: number, least: number, most: num
 export function runKey(): string | null {
   const found = new URLSearchParams(location.hash.slice(1)).get("key");
   if (found) {
-    sessionStorage.setItem("lacoc-key", found);
+    tab.write(KEY, found);
     history.replaceState(null, "", location.pathname + location.search);
     return found;
   }
-  return sessionStorage.getItem("lacoc-key");
+  return tab.read(KEY);
 }
 
 /** Where the gateway's WebSocket is. */

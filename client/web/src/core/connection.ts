@@ -39,7 +39,7 @@ export interface SocketState {
   open: boolean;
   /** Counts those since the page was greeted last: a gateway may open and send it away. */
   attempt: number;
-  /** Why the gateway did not greet the page; "" if it did, or was not reached. */
+  /** Why the gateway did not greet the page; "" if it did. Holds until it does. */
   refused: string;
 }
 
@@ -129,7 +129,7 @@ export class Connection {
     if (socket === this.socket) this.state.value = { open: true, attempt, refused };
   }
 
-  /** @param later Whether the gateway said so: then its reason stands until it is asked again. */
+  /** @param later Whether the gateway said that the page should come again later. */
   private lost(socket: WebSocket, later: boolean): void {
     if (socket !== this.socket) return;
     this.socket = null;
@@ -137,7 +137,7 @@ export class Connection {
     this.waiting.clear();
     if (this.ended) return;
     const { attempt, refused } = this.state.value;
-    this.state.value = { open: false, attempt: attempt + 1, refused: later ? refused : "" };
+    this.state.value = { open: false, attempt: attempt + 1, refused };
     const soon = Math.min(RETRY_MOST_MS, RETRY_FIRST_MS * 2 ** attempt);
     // Not all pages of a hall at the same moment.
     const wait = later ? LATER_MS * (1 + Math.random()) : soon * (0.7 + 0.6 * Math.random());

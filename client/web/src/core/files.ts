@@ -1,7 +1,8 @@
-/** A contestant's files: told apart by what is in them, and kept in this browser. */
+/** A contestant's files: told apart by what is in them, and kept for this tab. */
 
 import { computed } from "@preact/signals";
 import { remembered } from "./settings";
+import { tab } from "./storage";
 import type { SentFile } from "./wire";
 
 /** What a file is for; the names of the join's fields. */
@@ -16,8 +17,12 @@ interface Kept {
   base64: string;
 }
 
-/** Kept as text: a reload must join with the very same bytes, or the seat is not ready any more. */
-const kept = remembered<Partial<Record<Slot, Kept>>>("files", {});
+/**
+ * Kept as text: a reload must join with the very same bytes, or the seat is not ready any more.
+ * Kept where the wish for the seat is: another tab may be the other team's, and who sits at this
+ * computer next has files of their own.
+ */
+const kept = remembered<Partial<Record<Slot, Kept>>>("files", {}, tab);
 
 /** The names of the chosen files. */
 export const chosenNames = computed<Record<Slot, string>>(() => ({
@@ -85,10 +90,10 @@ function fromBase64(text: string): Uint8Array {
   return Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
 }
 
-/** Hand a file to the person. */
-export function download(name: string, text: string): void {
+/** Hand a file, in its parts, to the person. */
+export function download(name: string, parts: string[]): void {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  link.href = URL.createObjectURL(new Blob(parts, { type: "text/plain" }));
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);

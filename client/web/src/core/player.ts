@@ -5,6 +5,7 @@ import { Refused } from "./connection";
 import type { Court } from "./court";
 import { chosenFiles, MOST_BYTES } from "./files";
 import { PosData } from "./posdata";
+import { tab } from "./storage";
 import { type Frame, Phase, SeatFlag, type SeatFrame, type SentFile, sameBytes } from "./wire";
 
 /** The seat that this page wants to hold; it is asked for again after every break. */
@@ -64,6 +65,8 @@ export class Player {
   private readonly wish = signal<Wish | null>(kept());
   /** Whether the wish was granted once: a break of it is to be mended without a word. */
   private readonly granted = signal(this.wish.peek() !== null);
+  /** The wish, unless it is known to be for another court: a tab's address may change. */
+  private readonly wishHere: ReadonlySignal<Wish | null>;
   private readonly greeted = signal(false);
   private readonly hasLeft = signal(false);
   private readonly chosenLevel = signal<number | null>(null);
@@ -88,9 +91,14 @@ export class Player {
     private readonly say: (word: Word) => void,
     private readonly alone: boolean,
   ) {
+    this.wishHere = computed(() => {
+      const wish = this.wish.value;
+      const welcome = court.welcome.value;
+      return !welcome || welcome.court === wish?.court ? wish : null;
+    });
     this.index = computed(() => (this.isHeld() ? (court.seat.value?.index ?? -1) : -1));
     this.standing = computed(() => this.stand());
-    this.isWaiting = computed(() => this.wish.value !== null && !this.granted.value);
+    this.isWaiting = computed(() => this.wishHere.value !== null && !this.granted.value);
     this.level = computed(() => this.levelNow());
     this.canSteer = computed(
       () =>
@@ -218,7 +226,7 @@ export class Player {
     if (this.isHeld()) return "seated";
     if (welcome && !welcome.can_act) return "watching";
     if (this.lostWhy.value) return "lost";
-    if (this.wish.value && this.granted.value) return "joining";
+    if (this.wishHere.value && this.granted.value) return "joining";
     return this.hasLeft.value ? "left" : "outside";
   }
 
@@ -242,11 +250,11 @@ export class Player {
     // Also after a break of the page, the gateway or the link; a court that was only restarted is
     // asked again by the gateway.
     effect(() => {
-      const wish = this.wish.value;
+      const wish = this.wishHere.value;
       const welcome = court.welcome.value;
       const link = court.link.value;
       if (!wish || !this.greeted.value || !welcome?.can_act || this.asking.value) return;
-      if (link?.connected && welcome.court === wish.court && !this.isHeld()) {
+      if (link?.connected && !this.isHeld()) {
         untracked(() => void this.ask(wish));
       }
     });
@@ -322,8 +330,7 @@ export class Player {
 
   private keep(wish: Wish | null): void {
     this.wish.value = wish;
-    if (wish) sessionStorage.setItem(KEPT_AS, JSON.stringify(wish));
-    else sessionStorage.removeItem(KEPT_AS);
+    tab.write(KEPT_AS, wish && JSON.stringify(wish));
   }
 
   private see(frame: Frame): void {
@@ -373,8 +380,11 @@ export class Player {
     const sheet = this.court.sheet.peek();
     if (!sheet || !frame.poses.length || !sameBytes(frame.scene, sheet.scene)) return;
     const joints = sheet.seats.map((seat) => 3 * seat.legs.length);
-    const isOther = this.data?.joints.some((count, seat) => count !== joints[seat]);
-    if (!this.data || this.dataMatch !== frame.match || isOther) {
+    const isOther =
+      this.dataMatch !== frame.match ||
+      this.data?.seat !== index ||
+      this.data.joints.some((count, seat) => count !== joints[seat]);
+    if (!this.data || isOther) {
       this.data = new PosData(index, joints);
       this.dataMatch = frame.match;
     }
@@ -395,7 +405,7 @@ function checkSizes(files: readonly (SentFile | null)[]): void {
 
 function kept(): Wish | null {
   try {
-    return JSON.parse(sessionStorage.getItem(KEPT_AS) ?? "null") as Wish | null;
+    return JSON.parse(tab.read(KEPT_AS) ?? "null") as Wish | null;
   } catch {
     return null;
   }

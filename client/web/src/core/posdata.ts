@@ -13,30 +13,50 @@ const FLOAT_BYTES = 4;
 const BEAT_S = 0.02;
 const DEGREES = 180 / Math.PI;
 
-interface Row {
-  tick: number;
-  pose: Float32Array;
-}
+/** What one page keeps: of longer practice the newest hour. */
+const MOST_ROWS = 3600 / BEAT_S;
+const FIRST_ROWS = 1024;
+/** A whole file as one text would be tens of megabytes. */
+const ROWS_A_PART = 1000;
 
 /** Collects the ticks of one seat's robot. */
 export class PosData {
-  private readonly rows: Row[] = [];
+  /** Whether rows before these were forgotten. */
+  isCut = false;
+  private readonly width: number;
+  /** A ring: row `begin` is the oldest. The numbers of a row stand in a row of each of these. */
+  private poses: Float32Array;
+  private ticks: Uint32Array;
+  private clocks: Uint32Array;
+  private begin = 0;
+  private count = 0;
   private last: Frame | null = null;
   private tick = 0;
-  /** The clock at the first row: not 0 if what came before was not seen, as before a reload. */
-  sinceTicks = 0;
 
   /**
    * @param seat Index of the seat.
    * @param joints Number of joints of each seat's robot, as in the frames to come.
+   * @param most How many rows to keep.
    */
   constructor(
-    private readonly seat: number,
+    readonly seat: number,
     readonly joints: readonly number[],
-  ) {}
+    private readonly most = MOST_ROWS,
+  ) {
+    const rows = Math.min(FIRST_ROWS, most);
+    this.width = ROOT_FLOATS + (joints[seat] ?? 0);
+    this.poses = new Float32Array(rows * this.width);
+    this.ticks = new Uint32Array(rows);
+    this.clocks = new Uint32Array(rows);
+  }
 
   get length(): number {
-    return this.rows.length;
+    return this.count;
+  }
+
+  /** The clock at the first row: not 0 if what came before was not seen, as before a reload. */
+  get sinceTicks(): number {
+    return this.count ? this.clocks[this.begin]! : 0;
   }
 
   /** Add a frame: a row if physics ran in its beat. One that comes too late is left out. */
@@ -47,30 +67,58 @@ export class PosData {
     if (!physicsRan(frame, last)) return;
     const pose = this.poseOf(frame);
     if (!pose) return;
-    if (!this.rows.length) this.sinceTicks = frame.clock_ticks;
-    else if (last) {
+    if (this.count && last) {
       // Frames may be lost on the way; while physics runs every beat is a tick.
       this.tick += isPhysics(last.phase) ? frame.beat - last.beat : 1;
     }
-    this.rows.push({ tick: this.tick, pose });
+    const row = this.nextRow();
+    this.poses.set(pose, row * this.width);
+    this.ticks[row] = this.tick;
+    this.clocks[row] = frame.clock_ticks;
   }
 
-  /** The file: tab-separated, one header row, one row for each tick. */
-  text(): string {
+  /** The file, in parts: tab-separated, one header row, one row for each tick. */
+  parts(): string[] {
     const joints = this.joints[this.seat] ?? 0;
     const names = Array.from({ length: joints }, (_, joint) => `j${joint}_deg`);
     const header = ["time_s", "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg", ...names];
-    const lines = [header.join("\t")];
-    for (const { tick, pose } of this.rows) {
-      const angles = [...eulerZyx(pose), ...pose.subarray(ROOT_FLOATS)];
-      const values = [
-        tick * BEAT_S,
-        ...pose.subarray(0, 3),
-        ...angles.map((angle) => angle * DEGREES),
-      ];
-      lines.push(values.map(sixDecimals).join("\t"));
+    const parts = [`${header.join("\t")}\n`];
+    for (let from = 0; from < this.count; from += ROWS_A_PART) {
+      const to = Math.min(this.count, from + ROWS_A_PART);
+      let part = "";
+      for (let index = from; index < to; index++) part += `${this.line(index)}\n`;
+      parts.push(part);
     }
-    return `${lines.join("\n")}\n`;
+    return parts;
+  }
+
+  private line(index: number): string {
+    const row = (this.begin + index) % this.ticks.length;
+    const pose = this.poses.subarray(row * this.width, (row + 1) * this.width);
+    const angles = [...eulerZyx(pose), ...pose.subarray(ROOT_FLOATS)];
+    const values = [
+      this.ticks[row]! * BEAT_S,
+      ...pose.subarray(0, 3),
+      ...angles.map((angle) => angle * DEGREES),
+    ];
+    return values.map(sixDecimals).join("\t");
+  }
+
+  /** Where the next row belongs: behind the others, in the place of the oldest once all are used. */
+  private nextRow(): number {
+    const room = this.ticks.length;
+    if (this.count < room) return this.count++;
+    if (room < this.most) {
+      const more = Math.min(2 * room, this.most);
+      this.poses = grown(this.poses, more * this.width);
+      this.ticks = grown(this.ticks, more);
+      this.clocks = grown(this.clocks, more);
+      return this.count++;
+    }
+    const oldest = this.begin;
+    this.begin = (oldest + 1) % room;
+    this.isCut = true;
+    return oldest;
   }
 
   /** This seat's part of the poses; null if the frame is of other robots. */
@@ -80,6 +128,12 @@ export class PosData {
     if (frame.poses.length !== sizes.reduce((sum, size) => sum + size, 0)) return null;
     return floats(frame.poses.subarray(start, start + sizes[this.seat]!));
   }
+}
+
+function grown<T extends Float32Array | Uint32Array>(numbers: T, length: number): T {
+  const longer = new (numbers.constructor as new (length: number) => T)(length);
+  longer.set(numbers);
+  return longer;
 }
 
 function isPhysics(phase: number): boolean {

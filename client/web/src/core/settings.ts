@@ -1,28 +1,23 @@
 /** What a person has chosen, kept in this browser. */
 
 import { effect, type Signal, signal } from "@preact/signals";
+import { browser, type Kept } from "./storage";
 
 const PREFIX = "lacoc.";
 
 /** A signal that is remembered; `otherwise` until something was chosen. */
-export function remembered<T>(name: string, otherwise: T): Signal<T> {
-  const kept = signal<T>(read(name, otherwise));
-  effect(() => {
-    try {
-      localStorage.setItem(PREFIX + name, JSON.stringify(kept.value));
-    } catch {
-      // A browser that keeps nothing still plays.
-    }
-  });
+export function remembered<T>(name: string, otherwise: T, where: Kept = browser): Signal<T> {
+  const kept = signal<T>(read(name, otherwise, where));
+  effect(() => where.write(PREFIX + name, JSON.stringify(kept.value)));
   return kept;
 }
 
-function read<T>(name: string, otherwise: T): T {
+function read<T>(name: string, otherwise: T, where: Kept): T {
   try {
-    const text = localStorage.getItem(PREFIX + name);
+    const text = where.read(PREFIX + name);
     return text === null ? otherwise : (JSON.parse(text) as T);
   } catch {
-    return otherwise;
+    return otherwise; // nothing that this page wrote
   }
 }
 

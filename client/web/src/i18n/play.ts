@@ -72,6 +72,11 @@ export const play = {
   "files.given": ["from the command line: {names}", "起動時に指定：{names}"],
   "files.remove": ["Take {name} away", "{name} を外す"],
   "files.tooLarge": ["{name} is too large for a gait or a robot.", "{name} は大きすぎます。"],
+  "files.unreadable": [
+    "{name} can't be read. Folders can't be dropped: drop the files in them.",
+    "{name} を読み込めません。フォルダーではなく、中のファイルをドロップしてください。",
+  ],
+  "files.notNow": ["Files are chosen before a match.", "ファイルは試合の前に選びます。"],
   "files.change": ["Change files", "ファイルを変更"],
   "files.use": ["Use these files", "このファイルを使う"],
   "files.changeText": [
@@ -186,6 +191,10 @@ export const play = {
   "leave.dataSince": [
     "Pos-data.txt, the way of your robot, is saved from {time} on, when this page was loaded. The record of the match has all of it.",
     "Pos-data.txt には、このページを読み込んだ {time} 以降の軌跡を保存します。試合の記録には最初からすべて残っています。",
+  ],
+  "leave.dataNewest": [
+    "Pos-data.txt, the way of your robot, is saved from {time} on: this page keeps the newest hour.",
+    "Pos-data.txt には {time} 以降の軌跡を保存します（このページに残るのは最新の 1 時間です）。",
   ],
   "leave.noData": [
     "There is no Pos-data.txt: this page has not seen your robot on the field.",

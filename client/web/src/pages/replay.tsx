@@ -60,11 +60,16 @@ effect(() => {
   window.__replay = now.is === "open" ? now.player : undefined;
 });
 
-async function show(get: () => Promise<RecordFile[]>, server: string | null, beat: number | null) {
+/** @param get Gets the files; is told how to ask whether they are still wanted. */
+async function show(
+  get: (fresh: () => boolean) => Promise<RecordFile[]>,
+  server: string | null,
+  beat: number | null,
+) {
   const mine = ++opening;
   const fresh = () => mine === opening;
   try {
-    const files = await get();
+    const files = await get(fresh);
     if (!fresh()) return;
     state.value = { is: "loading", name: "", part: 1 };
     const recording = new Recording(await readBeside(files));
@@ -93,10 +98,11 @@ function seatTitle(recording: Recording, index: number): string {
 function openServer(name: string, beat: number | null, push: boolean): void {
   if (push) history.pushState(null, "", `?file=${encodeURIComponent(name)}`);
   state.value = { is: "loading", name, part: 0 };
-  const progress = (part: number) => {
-    if (state.value.is === "loading") state.value = { is: "loading", name, part };
-  };
-  void show(() => fetched(name, progress), name, beat);
+  const get = (fresh: () => boolean) =>
+    fetched(name, (part) => {
+      if (fresh()) state.value = { is: "loading", name, part };
+    });
+  void show(get, name, beat);
 }
 
 function openFiles(files: readonly File[]): void {
@@ -177,16 +183,18 @@ function Show({ player, server }: { player: Player; server: string | null }) {
           label={t("watch.view")}
         />
       </div>
-      <div class="corner left">
-        <a class="button others" href="/replay" title={t("replay.others")}>
-          <Icon name="open" />
-          <span>{t("replay.others")}</span>
-        </a>
+      <div class="top">
+        <div class="corner left">
+          <a class="button others" href="/replay" title={t("replay.others")}>
+            <Icon name="open" />
+            <span>{t("replay.others")}</span>
+          </a>
+        </div>
+        <header class="head">
+          <ScoreBug match={recording} />
+          <Hint match={recording} />
+        </header>
       </div>
-      <header class="head">
-        <ScoreBug match={recording} />
-        <Hint match={recording} />
-      </header>
       <Corner panel={panel}>
         <IconButton name="link" label={t("replay.share")} onClick={() => share(player, server)} />
       </Corner>

@@ -84,11 +84,13 @@ function Hud() {
   const match = number.value;
   return (
     <>
-      <Brand />
-      <header class="head">
-        <ScoreBug match={court} />
-        <Hint match={court} />
-      </header>
+      <div class="top">
+        <Brand />
+        <header class="head">
+          <ScoreBug match={court} />
+          <Hint match={court} />
+        </header>
+      </div>
       <Corner panel={panel} />
       <div class="middle-stage">
         <Countdown match={court} />
@@ -125,8 +127,10 @@ function Brand() {
       <a class="brand" href="/">
         <b>LACOC</b>
         <small>
-          {sheet ? `${sheet.title} · ${t("watch.match", { number: sheet.match })}` : ""}
-          {delay > 0 && ` · ${t("watch.delayed", { seconds: delay })}`}
+          {sheet && `${sheet.title} · `}
+          {sheet && <span>{t("watch.match", { number: sheet.match })}</span>}
+          {sheet && delay > 0 && " · "}
+          {delay > 0 && <span>{t("watch.delayed", { seconds: delay })}</span>}
         </small>
       </a>
       {courts.length > 1 && (
@@ -155,7 +159,7 @@ function Panel() {
     <aside class="panel" aria-label={t("watch.panel")}>
       <Board match={court} />
       <h2>{t("log.title")}</h2>
-      <EventLog match={court} />
+      <EventLog match={court} toldElsewhere />
     </aside>
   );
 }

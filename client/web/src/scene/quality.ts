@@ -1,5 +1,7 @@
 /** How finely to draw: as finely as this machine can, at an even pace. */
 
+import { browser } from "../core/storage";
+
 export type Fineness = "low" | "high";
 
 /** A page feels slow beyond this. */
@@ -65,27 +67,15 @@ export function rendererName(gl: WebGL2RenderingContext): string {
 export function firstFineness(canvas: HTMLCanvasElement): Fineness | "none" {
   const gl = canvas.getContext("webgl2");
   if (!gl) return "none";
-  const isSlow = drawsInSoftware(gl) || kept() === rendererName(gl);
+  const isSlow = drawsInSoftware(gl) || browser.read(KEPT) === rendererName(gl);
   // Browsers allow only some contexts at a time.
   gl.getExtension("WEBGL_lose_context")?.loseContext();
   return isSlow ? "low" : "high";
 }
 
-function kept(): string | null {
-  try {
-    return localStorage.getItem(KEPT);
-  } catch {
-    return null;
-  }
-}
-
 /** Remember that this machine is slow. */
 export function rememberSlow(gl: WebGL2RenderingContext): void {
-  try {
-    localStorage.setItem(KEPT, rendererName(gl));
-  } catch {
-    // It is measured again next time.
-  }
+  browser.write(KEPT, rendererName(gl));
 }
 
 /** Whether frames take too long for what is drawn. */

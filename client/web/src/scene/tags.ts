@@ -32,7 +32,9 @@ export class Tags {
       mark.dataset.pattern = seat.pattern;
       mark.style.backgroundColor = seat.colour;
       mark.style.color = luma(rgb(seat.colour)) > 0.5 ? "#16100a" : "#fff";
-      tag.append(mark, seat.team || seat.id);
+      const name = document.createElement("span");
+      name.textContent = seat.team || seat.id;
+      tag.append(mark, name);
       return tag;
     });
     this.layer.replaceChildren(...this.tags);

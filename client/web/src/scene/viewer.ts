@@ -444,6 +444,7 @@ export class Viewer {
       return { x: event.clientX - box.left, y: event.clientY - box.top };
     };
     host.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
       held.set(event.pointerId, at(event));
       if (held.size === 1) moved = 0;
       spread = 0;
@@ -451,6 +452,8 @@ export class Viewer {
     host.addEventListener("pointermove", (event) => {
       const now = at(event);
       if (event.pointerType !== "touch") this.pointer = now;
+      // A menu or another window may have kept the release to itself.
+      if (!(event.buttons & 1)) held.delete(event.pointerId);
       const was = held.get(event.pointerId);
       if (!was) return;
       held.set(event.pointerId, now);

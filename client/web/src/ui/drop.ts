@@ -11,7 +11,7 @@ import { useEffect } from "preact/hooks";
 export function useDrop(dragging: Signal<boolean>, take: (files: readonly File[]) => void): void {
   useEffect(() => {
     const over = (event: DragEvent) => {
-      if (!event.dataTransfer?.types.includes("Files")) return;
+      if (!bringsFiles(event)) return;
       event.preventDefault();
       dragging.value = true;
     };
@@ -19,6 +19,7 @@ export function useDrop(dragging: Signal<boolean>, take: (files: readonly File[]
       if (event.relatedTarget === null) dragging.value = false;
     };
     const drop = (event: DragEvent) => {
+      if (!bringsFiles(event)) return;
       event.preventDefault();
       dragging.value = false;
       take([...(event.dataTransfer?.files ?? [])]);
@@ -32,4 +33,9 @@ export function useDrop(dragging: Signal<boolean>, take: (files: readonly File[]
       removeEventListener("drop", drop);
     };
   }, []);
+}
+
+/** Not so a word that is dragged into a field. */
+function bringsFiles(event: DragEvent): boolean {
+  return event.dataTransfer?.types.includes("Files") ?? false;
 }

@@ -14,13 +14,15 @@ interface Props {
   only?: (event: Event) => boolean;
   /** What stands behind an event, such as a button. */
   extra?: (event: Event) => ComponentChildren;
+  /** Whether another part of the page tells what is new: a screen reader should hear it once. */
+  toldElsewhere?: boolean;
 }
 
-export function EventLog({ match, most = 200, only, extra }: Props) {
+export function EventLog({ match, most = 200, only, extra, toldElsewhere }: Props) {
   const events = match.events.value.filter((event) => !only || only(event)).slice(-most);
   if (!events.length) return <p class="muted">{t("log.empty")}</p>;
   return (
-    <ol class="log" aria-live="polite">
+    <ol class="log" aria-live={toldElsewhere ? "off" : "polite"}>
       {events.toReversed().map((event) => (
         <li key={event.number} data-kind={event.kind}>
           <time>{logClock(event.clock_ticks)}</time>

@@ -13,11 +13,12 @@ import { logClock } from "../../core/words";
 import { type MessageName, said, t } from "../../i18n";
 import { LinkBanner } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
+import { useDrop } from "../../ui/drop";
 import { Settings } from "../../ui/settings";
 import { Toasts, toast } from "../../ui/toasts";
 import { Entrance } from "./card";
 import { Field, VIEWS, type ViewName } from "./field";
-import { FilePicker } from "./files";
+import { canChange, dragging, FilePicker, take } from "./files";
 import { Footer } from "./footer";
 import { useKeyboard, useWindowFocus } from "./keyboard";
 import { KeyTest } from "./keytest";
@@ -84,6 +85,16 @@ export function Cockpit({ alone }: { alone: boolean }) {
     },
     hasInputMethod,
   );
+  useDrop(dragging, (files) => {
+    const standing = player.standing.peek();
+    const isSeated = standing === "seated";
+    if (standing !== "outside" && !(isSeated && canChange(court))) {
+      toast(t("files.notNow"), "no");
+      return;
+    }
+    if (isSeated) open.value = "files";
+    void take(files);
+  });
   useAutoJoin(court, player, alone);
   useFieldFocus(court, player, field);
 
@@ -153,11 +164,11 @@ function begin(alone: boolean): { court: Court; player: Player } {
   return { court, player };
 }
 
-/** For tests: Pos-data.txt of any frames. */
-function posData(seat: number, joints: number[], frames: Uint8Array[]): string {
-  const data = new PosData(seat, joints);
+/** For tests: Pos-data.txt of any frames, and what the page says of it. */
+function posData(seat: number, joints: number[], frames: Uint8Array[], most: number) {
+  const data = new PosData(seat, joints, most);
   for (const frame of frames) data.add(readFrame(frame));
-  return data.text();
+  return { text: data.parts().join(""), says: aboutData(data) };
 }
 
 function speak(word: Word): void {
@@ -177,7 +188,7 @@ function speak(word: Word): void {
 function saveData(player: Player): boolean {
   const { data } = player;
   if (!data?.length) return false;
-  download(POS_DATA, data.text());
+  download(POS_DATA, data.parts());
   toast(t("leave.saved"), "yes");
   return true;
 }
@@ -232,7 +243,6 @@ interface DialogProps {
 function Leave({ court, player, alone, onClose }: DialogProps) {
   const phase = court.frame.peek()?.phase ?? Phase.LOBBY;
   const hasData = Boolean(player.data?.length);
-  const since = player.data?.sinceTicks ?? 0;
   const inMatch = phase > Phase.READY && phase < Phase.OFFICIAL;
   const leave = async () => {
     saveData(player);
@@ -242,11 +252,7 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
   return (
     <Dialog title={t("leave.title")} onClose={onClose}>
       <p>{t(alone ? "leave.practice" : inMatch ? "leave.match" : "leave.lobby")}</p>
-      <p class="muted">
-        {since
-          ? t("leave.dataSince", { time: logClock(since) })
-          : t(hasData ? "leave.data" : "leave.noData")}
-      </p>
+      <p class="muted">{aboutData(player.data)}</p>
       <div class="row end">
         <button class="button" type="button" onClick={onClose}>
           {t("common.cancel")}
@@ -269,6 +275,14 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
       </div>
     </Dialog>
   );
+}
+
+/** What Pos-data.txt has: all, or from when on and why. */
+function aboutData(data: PosData | null): string {
+  if (!data?.length) return t("leave.noData");
+  const time = logClock(data.sinceTicks);
+  if (data.isCut) return t("leave.dataNewest", { time });
+  return data.sinceTicks ? t("leave.dataSince", { time }) : t("leave.data");
 }
 
 function Files({ court, player, alone, onClose }: DialogProps) {

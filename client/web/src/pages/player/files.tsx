@@ -1,15 +1,36 @@
 /** The robot and gait files: dropped or picked, sorted by what is in them. */
 
-import { useSignal } from "@preact/signals";
+import { signal } from "@preact/signals";
 import { useId } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { choose, chosenNames, forget, MOST_BYTES, SLOTS, type Slot } from "../../core/files";
+import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
-import { useDrop } from "../../ui/drop";
 import { toast } from "../../ui/toasts";
 
+/** Whether files are dragged over the page. */
+export const dragging = signal(false);
+
+/** Whether a seat's files can be changed now: a match keeps those that it began with. */
+export function canChange(court: Court): boolean {
+  const phase = court.frame.value?.phase ?? 0;
+  const isOn = phase >= Phase.COUNTDOWN && phase <= Phase.HALTED;
+  return !(isOn && (court.sheet.value?.duration_s ?? 0) > 0);
+}
+
+/** Keep files, each in its slot. */
+export async function take(files: Iterable<File>): Promise<void> {
+  for (const file of files) {
+    if (file.size > MOST_BYTES) {
+      toast(t("files.tooLarge", { name: file.name }), "no");
+      continue;
+    }
+    // A folder seems to be a file until it is read.
+    await choose(file).catch(() => toast(t("files.unreadable", { name: file.name }), "no"));
+  }
+}
+
 export function FilePicker({ court, alone }: { court: Court; alone: boolean }) {
-  const isOver = useSignal(false);
   const input = useId();
   const levels = court.sheet.value?.levels ?? [0, 1];
   const given = court.welcome.value?.prefill?.files ?? [];
@@ -21,15 +42,8 @@ export function FilePicker({ court, alone }: { court: Court; alone: boolean }) {
       chosenNames.value[slot] ||
       levels.includes(slot === "postures" ? 0 : 1),
   );
-  const take = async (files: Iterable<File>) => {
-    for (const file of files) {
-      if (file.size > MOST_BYTES) toast(t("files.tooLarge", { name: file.name }), "no");
-      else await choose(file);
-    }
-  };
-  useDrop(isOver, (files) => void take(files));
   return (
-    <div class={`files${isOver.value ? " over" : ""}`}>
+    <div class={`files${dragging.value ? " over" : ""}`}>
       <p class="drop">
         {t("files.drop")}{" "}
         <label class="link" for={input}>

@@ -3,9 +3,9 @@
 import { useComputed } from "@preact/signals";
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
-import { Phase } from "../../core/wire";
 import { seatName, team } from "../../core/words";
 import { t } from "../../i18n";
+import { canChange } from "./files";
 
 interface Props {
   court: Court;
@@ -18,10 +18,7 @@ export function Footer({ court, player, onFiles, onSettings }: Props) {
   const sheet = court.sheet.value;
   const index = player.index.value;
   const seat = sheet?.seats[index];
-  const isPlaying = useComputed(() => {
-    const phase = court.frame.value?.phase ?? 0;
-    return phase >= Phase.COUNTDOWN && phase <= Phase.HALTED && (sheet?.duration_s ?? 0) > 0;
-  }).value;
+  const isOpen = useComputed(() => canChange(court)).value;
   const trip = player.tripMs.value;
   const health = court.live.value ? court.health.value : null;
   const link = health?.seats[index]?.round_trip_p50_ms ?? null;
@@ -65,7 +62,7 @@ export function Footer({ court, player, onFiles, onSettings }: Props) {
       <p class={`link-state${isLinked ? " good" : ""}`}>
         {t(isLinked ? "foot.linked" : "foot.broken")}
       </p>
-      <button class="button quiet small" type="button" disabled={isPlaying} onClick={onFiles}>
+      <button class="button quiet small" type="button" disabled={!isOpen} onClick={onFiles}>
         {t("files.change")}
       </button>
       <button class="button quiet small" type="button" onClick={onSettings}>

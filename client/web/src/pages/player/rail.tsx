@@ -37,7 +37,12 @@ export function Rail(props: Props) {
       </div>
       {!alone && (
         <div class="events">
-          <EventLog match={court} most={30} only={(event) => !QUIET.has(event.kind)} />
+          <EventLog
+            match={court}
+            most={30}
+            only={(event) => !QUIET.has(event.kind)}
+            toldElsewhere
+          />
         </div>
       )}
     </aside>

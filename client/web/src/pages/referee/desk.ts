@@ -4,6 +4,7 @@ import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Refused, Unanswered } from "../../core/connection";
 import { type Court, part, phaseOf } from "../../core/court";
 import { remembered } from "../../core/settings";
+import { tab } from "../../core/storage";
 import {
   type Decision,
   type DecisionName,
@@ -86,7 +87,7 @@ export class Desk {
     });
     // A new connection, also after a reload, sits down again with the tab's token.
     effect(() => {
-      const token = sessionStorage.getItem(TOKEN);
+      const token = tab.read(TOKEN);
       const known = court.welcome.value?.can_act && court.referee.value;
       const away = !this.entered.peek() && !this.busy.peek();
       if (known && token && this.by.peek() && away) this.again(token);
@@ -100,11 +101,11 @@ export class Desk {
     this.by.value = by;
     try {
       await this.court.ask("enter", { token, by });
-      sessionStorage.setItem(TOKEN, token);
+      tab.write(TOKEN, token);
       this.entered.value = true;
     } catch (error) {
       this.refused.value = reasonOf(error);
-      if (error instanceof Refused && error.tokenRefused) sessionStorage.removeItem(TOKEN);
+      if (error instanceof Refused && error.tokenRefused) tab.write(TOKEN, null);
     } finally {
       this.busy.value = false;
     }
@@ -112,7 +113,7 @@ export class Desk {
 
   /** Leave the desk: the token is forgotten. */
   leave(): void {
-    sessionStorage.removeItem(TOKEN);
+    tab.write(TOKEN, null);
     location.reload();
   }
 
@@ -207,7 +208,7 @@ export class Desk {
 
   private async again(token: string): Promise<void> {
     await this.enter(token, this.by.peek());
-    if (this.entered.peek() || sessionStorage.getItem(TOKEN) !== token) return;
+    if (this.entered.peek() || tab.read(TOKEN) !== token) return;
     setTimeout(() => {
       const open = this.court.connection.state.peek().open;
       if (open && !this.entered.peek() && !this.busy.peek()) this.again(token);

@@ -1,0 +1,62 @@
+"""A browser that keeps nothing: all pages work in it, until they are closed."""
+
+from typing import Any
+
+import pytest
+from chromium import OpenPage
+from contestant import Sit
+from show import Show
+from venue import REFEREE, TOKENS, Venue
+
+pytestmark = pytest.mark.slow
+
+DENIED = """for (const name of ["sessionStorage", "localStorage"])
+  Object.defineProperty(window, name, {
+    get() { throw new DOMException(`${name}: access is denied`, "SecurityError"); },
+  });"""
+
+
+def test_who_shows_needs_no_storage(venue: Venue, open_page: OpenPage) -> None:
+    """As where cookies are blocked: reading the storage itself fails."""
+    venue.court()
+    venue.web()
+    for path in ("/watch", "/overlay"):
+        page = open_page()
+        page.add_init_script(DENIED)
+        show = Show(page, venue.url, f"{path}?q=low&cam=map")
+        show.sees(".score-bug")
+        page.close()
+    for path in ("/", "/replay"):
+        page = open_page()
+        page.add_init_script(DENIED)
+        Show(page, venue.url, path, drawn=False).sees("h1")
+        page.close()
+
+
+def test_who_acts_needs_no_storage(venue: Venue, sit: Sit, console: Any) -> None:
+    """Key and seat live as long as the page: also through a break of its connection."""
+    venue.court()
+    web = venue.web()
+    page = sit(venue.url)
+    page.page.add_init_script(DENIED)
+    page.open(key=venue.key)
+    page.join(TOKENS["left"])
+    page.stands("seated")
+
+    desk = sit(venue.url)
+    desk.page.add_init_script(DENIED)
+    desk.open("/referee", venue.key)
+    desk.page.fill("input[name=by]", "Kim")
+    desk.page.fill("input[name=token]", REFEREE)
+    desk.page.click(".enter button[type=submit]")
+    desk.sees(".acting.mine")
+
+    console.expect("WebSocket connection")
+    web.kill()
+    page.sees(".banner", "Trying again")
+    venue.web()
+    page.misses(".banner")
+    page.stands("seated")
+    page.sees(".link-state.good")
+    desk.misses(".banner")
+    desk.sees(".acting.mine")
