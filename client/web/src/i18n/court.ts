@@ -404,24 +404,15 @@ const GAITS: readonly Pattern[] = [
     '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)',
     "「Num of Posture」とその数（Loco-data）、またはキーの数だけの行（LocoTra-data）",
   ],
-  [
-    '"Num of Posture" and their number (Loco-data)',
-    "「Num of Posture」とその数（Loco-data）",
-  ],
+  ['"Num of Posture" and their number (Loco-data)', "「Num of Posture」とその数（Loco-data）"],
   ["a gait (Loco-data or LocoTra-data)", "歩容（Loco-data または LocoTra-data）"],
   ["the path of a robot (Pos-data)", "ロボットの軌跡（Pos-data）"],
   [
     "tabs: save it as text with tabs, or as .xlsx",
     "タブ区切り（タブ区切りのテキストか .xlsx で保存してください）",
   ],
-  [
-    "commas or semicolons between the cells (CSV)",
-    "コンマまたはセミコロンで区切られたセル（CSV）",
-  ],
-  [
-    "the table saved as .xlsx, or as text with tabs",
-    ".xlsx かタブ区切りのテキストで保存した表",
-  ],
+  ["commas or semicolons between the cells (CSV)", "コンマまたはセミコロンで区切られたセル（CSV）"],
+  ["the table saved as .xlsx, or as text with tabs", ".xlsx かタブ区切りのテキストで保存した表"],
   ["an OpenDocument file, such as .ods", ".ods などの OpenDocument ファイル"],
   ["a Word document (.docx)", "Word 文書（.docx）"],
   ["a presentation (.pptx)", "プレゼンテーション（.pptx）"],
