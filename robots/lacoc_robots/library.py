@@ -46,12 +46,29 @@ def sample_gait_files(name_or_path: str) -> GaitFiles:
     Raises:
         UserError: if there is no such robot, or a file can't be read.
     """
-    folder = _robot_file(name_or_path).parent
+    return gait_files_in(robot_folder(name_or_path))
+
+
+def gait_files_in(folder: Path) -> GaitFiles:
+    """Read the gait files of a folder; None for one that is not there.
+
+    Raises:
+        UserError: if a file can't be read.
+    """
     postures, locomotion = (
         SentFile(file.name, _content(file)) if file.exists() else None
         for file in (folder / "Loco-data.txt", folder / "LocoTra-data.txt")
     )
     return GaitFiles(postures, locomotion)
+
+
+def robot_folder(name_or_path: str) -> Path:
+    """The folder of a robot's file, where its gait files are looked for.
+
+    Raises:
+        UserError: if there is no such robot.
+    """
+    return _robot_file(name_or_path).parent
 
 
 def installed_robots() -> tuple[str, ...]:

@@ -4,10 +4,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
+
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
 from lacoc_arenas.bot import BotFactory
-from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.library import find_robot, gait_files_in, robot_folder, sample_gait_files
 from lacoc_server.journal import Journal
 from lacoc_server.match import Beat, Match
 from lacoc_server.world import World
@@ -18,6 +20,11 @@ from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.record.pack import pack
 from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
+
+_BROUGHT = "@"
+"""Between a bot and the folder of what it steers."""
+_Files = tuple[SentFile, SentFile | None, SentFile | None]
+"""Robot, postures (level A), locomotion (level B)."""
 
 SETTLE_BEATS = BEATS_PER_S
 """Robots stand in READY for this long before the start."""
@@ -47,22 +54,62 @@ def player(
     Args:
         arena: the arena.
         seat: index of the seat.
-        bot: as `brains.find` takes it.
-        robot: an installed robot or a file, with its sample gait; a ghost brings its own.
-        team: name of the team; None: the bot's.
+        bot: as `brains.find` takes it; with "@FOLDER" after it the bot steers what lies there: the
+            gait files, and `robot.toml` if there is one.
+        robot: an installed robot or a file, with the gait beside it; a ghost brings its own.
+        team: name of the team; None: the folder's, or the bot's.
         late_ticks: see `Player`.
 
     Raises:
-        UserError: if there is no such bot, robot or record.
+        UserError: if there is no such bot, robot, folder, gait or record.
     """
     if bot.startswith(brains.GHOST):
         was = brains.ghost_join(*brains.open_ghost(bot))
         files = (was.robot, was.postures, was.locomotion)
         team = team or f"{was.team}'s ghost"
     else:
-        files = (SentFile(*find_robot(robot)), *sample_gait_files(robot))
+        bot, brought, folder = bot.partition(_BROUGHT)
+        files = _of_folder(arena, Path(folder), robot) if brought else _of_robot(arena, robot)
+        team = team or Path(folder).resolve().name if brought else team
     join = JoinSeat(seat, team or Path(bot).stem, *files, token_hash="")
     return Player(join, brains.find(arena, bot), late_ticks)
+
+
+def _of_robot(arena: arenas.Arena, robot: str) -> _Files:
+    files = (SentFile(*find_robot(robot)), *sample_gait_files(robot))
+    _require_gait(arena, files, robot_folder(robot))
+    return files
+
+
+def _of_folder(arena: arenas.Arena, folder: Path, robot: str) -> _Files:
+    """What somebody handed in; each file is named with its folder, as mistakes list them all."""
+    folder = folder.expanduser().resolve()
+    if not folder.is_dir():
+        raise UserError(f"There is no folder {folder}: after the @ comes a folder with gait files.")
+    own = folder / "robot.toml"
+    files = (SentFile(*find_robot(str(own) if own.exists() else robot)), *gait_files_in(folder))
+    _require_gait(arena, files, folder)
+    sent, postures, locomotion = (
+        file and msgspec.structs.replace(file, name=f"{folder.name}/{file.name}") for file in files
+    )
+    assert sent is not None
+    return sent, postures, locomotion
+
+
+def _require_gait(arena: arenas.Arena, files: _Files, folder: Path) -> None:
+    """See that there is a gait file for a level that is open.
+
+    Raises:
+        UserError: if there is none; it says where it is looked for.
+    """
+    levels = arena.match.open_levels
+    if not any(files[1 + level] for level in levels):
+        wanted = " or ".join(("Loco-data.txt", "LocoTra-data.txt")[level] for level in levels)
+        raise UserError(
+            f"There is no {wanted} in {folder}, where the gait is looked for: beside the robot "
+            "file, or in the folder after the @. 'lacoc gait convert Loco-data.xlsx "
+            "LocoTra-data.txt' makes one of a workbook."
+        )
 
 
 def simulate(

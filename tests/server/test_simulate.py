@@ -6,6 +6,8 @@ import pytest
 from stage import join, setup
 
 from lacoc_arenas import arena as arenas
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.commands.simulate import simulate_command
 from lacoc_server.match import Match
 from lacoc_server.simulate import SETTLE_BEATS, Player, player, simulate
 from lacoc_server.world import World
@@ -110,3 +112,53 @@ def test_a_record_is_never_overwritten(tmp_path: Path) -> None:
         play(tmp_path)
     assert there.read_bytes() == b"yesterday's match"
     assert list(tmp_path.iterdir()) == [there]
+
+
+def handed_in(folder: Path, locomotion: bytes | None) -> Path:
+    """What a student handed in."""
+    folder.mkdir()
+    if locomotion is not None:
+        (folder / "LocoTra-data.txt").write_bytes(locomotion)
+    return folder
+
+
+def sample() -> bytes:
+    files = sample_gait_files("hexapod")
+    assert files.locomotion is not None
+    return files.locomotion.data
+
+
+def test_a_bot_steers_what_lies_in_a_folder(tmp_path: Path) -> None:
+    """README, for teachers: gaits meet without anybody at the keyboard; a robot file goes along."""
+    anna = handed_in(tmp_path / "anna", sample().replace(b"45", b"40"))
+    one = player(OTHELLO, 0, f"straight@{anna}")
+    assert (one.join.team, one.join.robot.name) == ("anna", "anna/robot.toml")
+    assert one.join.locomotion is not None
+    assert one.join.locomotion.data == (anna / "LocoTra-data.txt").read_bytes()
+    result = simulate(setup("othello", SHORT), [one, player(OTHELLO, 1, "straight")])
+    assert result.teams == ("anna", "straight")
+
+    (anna / "robot.toml").write_bytes(find_robot("long-legs")[1])
+    assert player(OTHELLO, 0, f"straight@{anna}").join.robot.data == find_robot("long-legs")[1]
+
+
+def test_where_a_gait_is_looked_for_is_said(tmp_path: Path) -> None:
+    """Beside the robot file, or in the folder; and how to make it of a workbook."""
+    empty = handed_in(tmp_path / "empty", None)
+    (empty / "mine.toml").write_bytes(find_robot("hexapod")[1])
+    for word, robot in ((f"straight@{empty}", "hexapod"), ("straight", str(empty / "mine.toml"))):
+        with pytest.raises(UserError, match=r"no LocoTra-data\.txt in .*empty.* gait convert"):
+            player(OTHELLO, 0, word, robot)
+    with pytest.raises(UserError, match=r"There is no folder .*nobody"):
+        player(OTHELLO, 0, "straight@nobody")
+
+
+def test_everybody_s_mistakes_are_listed_before_anything_begins(tmp_path: Path) -> None:
+    """Each file with its folder: they all have the same name."""
+    wrong = b"1\n1\n5"
+    names = [f"straight@{handed_in(tmp_path / name, wrong)}" for name in ("anna", "ben", "chie")]
+    with pytest.raises(FileRefused) as refused:
+        simulate_command(names, seconds=1.0)
+    assert {mistake.file for mistake in refused.value.mistakes} == {
+        f"{name}/LocoTra-data.txt" for name in ("anna", "ben", "chie")
+    }

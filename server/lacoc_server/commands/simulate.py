@@ -13,10 +13,11 @@ import typer
 from rich.table import Table
 
 from lacoc_arenas import arena as arenas
+from lacoc_server.entry import weigh_in
 from lacoc_server.simulate import player, simulate
 from lacoc_shared import options, screen
 from lacoc_shared.messages import Frame
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.seat import BEATS_PER_S
 
@@ -44,14 +45,19 @@ def simulate_command(
         list[str],
         typer.Argument(
             help="Who plays: bots of the arena (such as 'straight' and 'planner'), your_bot.py, or "
-            "'ghost:RECORD.mcap:left'. Two play one match; more play everybody against everybody."
+            "'ghost:RECORD.mcap:left'. 'planner@FOLDER' steers the gait of that folder. Two play "
+            "one match; more play everybody against everybody."
         ),
     ],
     arena: Annotated[
         str, typer.Option(envvar="LACOC_ARENA", help="The game, or the path of an arena's folder.")
     ] = "othello",
     robot: Annotated[
-        str, typer.Option(help="Robot of the bots: an installed one or a robot file.")
+        str,
+        typer.Option(
+            help="Robot of the bots: an installed one, or a robot file with LocoTra-data.txt "
+            "beside it."
+        ),
     ] = "hexapod",
     seconds: Annotated[
         float | None, typer.Option(help="Length of a match, if not the arena's.", min=0.1)
@@ -72,14 +78,16 @@ def simulate_command(
 ) -> None:
     """Play matches of bots or ghosts headless, and print the results.
 
+    'planner@anna' lets the bot planner steer what lies in the folder anna: LocoTra-data.txt, and
+    robot.toml if there is one. Bots take key 0 for stand, 1 left, 2 forward, 3 right.
+
     The same physics and rules as at a court: a match that is simulated is bit for bit the match
     that would have been played.
     """
     overrides = {"match": {"duration_s": seconds}} if seconds else {}
     loaded = arenas.load(arena, overrides)
     pairs = _pairs(players, len(loaded.seats), both_sides)
-    for name in dict.fromkeys(players):
-        player(loaded, 0, name, robot)  # a wrong name is said before anything begins
+    _weigh_in(loaded, players, robot)
     work = [
         _Job(
             f"simulated-{number:03d}",
@@ -101,6 +109,24 @@ def simulate_command(
         screen.show(_table(results, [seat.id for seat in loaded.seats]))
         if len(work) > 1 and len(loaded.seats) > 1:
             screen.show(_standings(results, work))
+
+
+def _weigh_in(arena: arenas.Arena, players: Sequence[str], robot: str) -> None:
+    """See that everybody can play, before anything begins.
+
+    Raises:
+        UserError: if somebody is not there.
+        FileRefused: with every mistake of everybody's files.
+    """
+    mistakes: list[Mistake] = []
+    for name in dict.fromkeys(players):
+        join = player(arena, 0, name, robot).join
+        try:
+            weigh_in(join.robot, join.postures, join.locomotion, levels=arena.match.open_levels)
+        except FileRefused as refused:
+            mistakes += refused.mistakes
+    if mistakes:
+        raise FileRefused(mistakes)
 
 
 def _first_number(record: Path | None) -> int:
