@@ -69,16 +69,17 @@ def check(
     """Say what the keys of a gait do, or list every mistake in the file."""
     tables: list[tuple[Path, PostureTable | LocomotionTable]] = []
     mistakes: list[Mistake] = []
+    notes: list[str] = []
     for file in files:
         try:
-            tables.append((file, read_gait_file(file, legs=legs)))
+            tables.append((file, read_gait_file(file, legs=legs, notes=notes)))
         except FileRefused as error:
             mistakes += error.mistakes
         except UserError as error:  # one file that can't be opened hides none of the others
             mistakes.append(Mistake(file=str(file), found=str(error), expected=_NAME_OF_A_FILE))
     if json:
         checked = [_checked(file, table) for file, table in tables]
-        screen.print_json({"files": checked, "mistakes": mistakes})
+        screen.print_json({"files": checked, "mistakes": mistakes, "notes": notes})
         if mistakes:
             raise typer.Exit(2)
         return
@@ -87,6 +88,8 @@ def check(
         robot = f"{table.joints // JOINTS_PER_LEG} legs"
         screen.show(Text(f"{file.name}: right. Level {level}, {robot}.", style="bold"))
         screen.show(_summary(table))
+    for note in notes:
+        screen.warn(note)
     if mistakes:
         raise FileRefused(mistakes)
 

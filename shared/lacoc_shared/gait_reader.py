@@ -52,6 +52,7 @@ def read_cells(
     legs: Legs = None,
     range_deg: Range = RANGE_DEG,
     headers: str = ANY_HEADER,
+    notes: list[str] | None = None,
 ) -> PostureTable | LocomotionTable:
     """Read a gait; which kind it is shows in the first row.
 
@@ -61,11 +62,16 @@ def read_cells(
         legs: the legs of the robot it must fit; None takes any robot of 4, 6 or 8 legs.
         range_deg: the range of the angles.
         headers: what is expected in the first row of a file that has neither header.
+        notes: takes what is no mistake, but may not be meant.
 
     Raises:
         FileRefused: with every mistake, or the first `MAX_MISTAKES`.
     """
-    return _Reader(file, legs, range_deg, headers).read(rows)
+    reader = _Reader(file, legs, range_deg, headers)
+    table = reader.read(rows)
+    if notes is not None:
+        notes += reader.notes
+    return table
 
 
 def _is_legend(cells: Sequence[str]) -> bool:
@@ -92,6 +98,7 @@ class _Reader:
         self._legs = legs if legs is None or isinstance(legs, int) else len(legs)
         self._range_deg = range_deg
         self._headers = headers
+        self.notes: list[str] = []
 
     def read(self, rows: Iterable[Row]) -> PostureTable | LocomotionTable:
         filled = [Row(row.number, _trimmed(row.cells)) for row in rows]
@@ -156,8 +163,9 @@ class _Reader:
             self._missing_header(rows[0])
             if not _KEY.fullmatch(rows[0].cells[0]):
                 body.pop(0)
+        legend = []
         while body and _is_legend(body[-1].cells):
-            body.pop()
+            legend.append(body.pop())
         if announced is not None and announced != len(body):
             self._add(
                 row=rows[0],
@@ -166,6 +174,8 @@ class _Reader:
                 expected="as many rows as announced",
             )
         joints = self._joints(body, first=1)
+        for row in legend:
+            self._compare_labels(row, joints)
         postures: dict[int, Posture] = {}
         row_of: dict[int, int] = {}
         for row in body:
@@ -287,7 +297,7 @@ class _Reader:
         if value is not None and low <= value <= high:
             return angle_of(value)
         legs = joints // JOINTS_PER_LEG
-        labels = self._labels if self._labels and self._legs == legs else leg_labels(legs)
+        labels = self._labels_of(legs)
         self._add(
             row=row,
             column=column,
@@ -297,6 +307,23 @@ class _Reader:
             expected=f"an angle from {number_text(low)} to {number_text(high)} degrees",
         )
         return 0.0
+
+    def _labels_of(self, legs: int) -> Sequence[str]:
+        return self._labels if self._labels and self._legs == legs else leg_labels(legs)
+
+    def _compare_labels(self, row: Row, joints: int) -> None:
+        """Note a leg's label over another leg's joint: the columns count, whatever they say."""
+        labels = self._labels_of(joints // JOINTS_PER_LEG)
+        for joint, cell in enumerate(row.cells[1 : joints + 1]):
+            label = labels[leg_and_level(joint, len(labels))[0]]
+            if "".join(cell.split()).upper() not in {*labels} - {label}:
+                continue
+            self.notes.append(
+                f"{self._file}, row {row.number}, column {joint + 2}: the legend says {cell}, and "
+                f"joint {joint} is a joint of leg {label}. The order of the columns counts, not "
+                "the legend."
+            )
+            return  # one shows what is meant; exchanged labels come in dozens
 
     def _limits_deg(self, joint: int, joints: int) -> tuple[float, float]:
         if isinstance(self._range_deg, int | float):

@@ -35,7 +35,12 @@ _SPACED_CELL = re.compile(
 
 
 def read_gait(
-    data: bytes, name: str, *, legs: Legs = None, range_deg: Range = RANGE_DEG
+    data: bytes,
+    name: str,
+    *,
+    legs: Legs = None,
+    range_deg: Range = RANGE_DEG,
+    notes: list[str] | None = None,
 ) -> PostureTable | LocomotionTable:
     """Read Loco-data or LocoTra-data text; which of the two shows in its first cell.
 
@@ -45,6 +50,7 @@ def read_gait(
         legs: the robot that it must fit: the labels of its legs in order, or their
             number. None takes a gait for any robot with 4, 6 or 8 legs.
         range_deg: range of the angles: one bound for all, or (lowest, highest) of each joint.
+        notes: takes what is no mistake, but may not be meant.
 
     Raises:
         FileRefused: with every mistake in the file; nothing is clamped or skipped.
@@ -58,7 +64,7 @@ def read_gait(
         raise _refused(name, f"{len(filled)} rows", f"a gait of at most {_MAX_ROWS} rows")
     rows = [Row(number, _cells(line)) for number, line in filled]
     try:
-        return read_cells(rows, name, legs=legs, range_deg=range_deg)
+        return read_cells(rows, name, legs=legs, range_deg=range_deg, notes=notes)
     except FileRefused:
         if _is_csv(line for _, line in filled):
             raise _refused(name, _CSV, "tabs: save it as text with tabs, or as .xlsx") from None

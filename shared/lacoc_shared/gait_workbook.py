@@ -44,7 +44,11 @@ _WANTED = "an .xlsx workbook without a password, as spreadsheet programs save it
 
 
 def read_gait_file(
-    path: Path, *, legs: Legs = None, range_deg: Range = RANGE_DEG
+    path: Path,
+    *,
+    legs: Legs = None,
+    range_deg: Range = RANGE_DEG,
+    notes: list[str] | None = None,
 ) -> PostureTable | LocomotionTable:
     """Read any gait file: text or workbook, told apart by what is in it, not by its name.
 
@@ -52,6 +56,7 @@ def read_gait_file(
         path: the file.
         legs: the robot that it must fit; see `gait_text.read_gait`.
         range_deg: range of the angles; see `gait_text.read_gait`.
+        notes: takes what is no mistake, but may not be meant.
 
     Raises:
         FileRefused: with every mistake in the file.
@@ -63,11 +68,16 @@ def read_gait_file(
     except OSError as error:
         raise UserError(f"Cannot read {path}: {error.strerror or error}.") from error
     read = read_workbook if data.startswith((_ZIP, _COMPOUND_FILE)) else read_gait
-    return read(data, path.name, legs=legs, range_deg=range_deg)
+    return read(data, path.name, legs=legs, range_deg=range_deg, notes=notes)
 
 
 def read_workbook(
-    data: bytes, name: str, *, legs: Legs = None, range_deg: Range = RANGE_DEG
+    data: bytes,
+    name: str,
+    *,
+    legs: Legs = None,
+    range_deg: Range = RANGE_DEG,
+    notes: list[str] | None = None,
 ) -> PostureTable:
     """Read a Loco-data workbook: the values of its sheet "EX (input)".
 
@@ -76,6 +86,7 @@ def read_workbook(
         name: the file's name, for the mistakes.
         legs: the robot that it must fit; see `gait_text.read_gait`.
         range_deg: range of the angles; see `gait_text.read_gait`.
+        notes: takes what is no mistake, but may not be meant.
 
     Raises:
         FileRefused: with every mistake in the file; each names its cell.
@@ -89,7 +100,9 @@ def read_workbook(
     except Exception:  # openpyxl meets a broken workbook with any error at all
         raise _refused(name, "a workbook that can't be read", _WANTED) from None
     try:
-        table = read_cells(rows, name, legs=legs, range_deg=range_deg, headers=POSTURES_HEADER)
+        table = read_cells(
+            rows, name, legs=legs, range_deg=range_deg, headers=POSTURES_HEADER, notes=notes
+        )
     except FileRefused as error:
         raise FileRefused([_at_cell(mistake, sheet) for mistake in error.mistakes]) from None
     if isinstance(table, LocomotionTable):

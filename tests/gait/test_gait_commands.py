@@ -80,6 +80,20 @@ def test_check_shows_right_files_beside_wrong_ones(lacoc, folder):
     assert "bad.txt" in err
 
 
+@pytest.mark.parametrize("kind", ["Loco-data.txt", "Loco-data.xlsx"])
+def test_check_notes_labels_that_are_exchanged(lacoc, tmp_path, workshop, kind):
+    """Rules 2: no refusal, the legend may be absent; but legs called otherwise are told."""
+    exchanged = ("L,F", "R,C", "R,B", "L,B", "L,C", "R,F")
+    write = write_workbook if kind.endswith("xlsx") else write_gait
+    (tmp_path / kind).write_bytes(write(workshop, exchanged))
+    code, out, err = lacoc("gait", "check", tmp_path / kind)
+    assert (code, f"{kind}: right" in out) == (0, True)
+    assert " ".join(err.split()) == (
+        f"Note: {kind}, row 12, column 2: the legend says L,F, and joint 0 is a joint of leg R,F. "
+        "The order of the columns counts, not the legend."
+    )
+
+
 def test_check_for_a_robot(lacoc, folder):
     """Rules 2: with --legs, a gait for another robot is a mistake."""
     assert lacoc("gait", "check", folder / "Loco-data.txt", "--legs", 6)[0] == 0
@@ -123,6 +137,7 @@ def test_check_json(lacoc, folder):
                 "expected": "an angle from -150 to 150 degrees",
             }
         ],
+        "notes": [],
     }
     assert lacoc("gait", "check", "--json", folder / "Loco-data.xlsx")[0] == 0
 

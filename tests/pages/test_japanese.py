@@ -126,6 +126,9 @@ PARTS = {
     "Refused: 7",
     "Seat 7: 77.",
     "The page of seat 7 has gone.",
+    # 'lacoc gait check' alone tells it.
+    "7, row 7, column 7: the legend says 7, and joint 7 is a joint of leg 7. The order of the "
+    "columns counts, not the legend.",
 }
 NAMES = re.compile(
     r"Ants|Bees|Kim|Hexapod|planner|c\dr\d|corner\d|flag\d+|LocoTra-data|Loco-data|Num of Posture|"
