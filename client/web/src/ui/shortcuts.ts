@@ -4,7 +4,7 @@ import { useEffect } from "preact/hooks";
 
 type Keys = Record<string, (event: KeyboardEvent) => void>;
 
-/** Keys that go on while they are held: they step or skip. All others would switch to and fro. */
+/** Keys that go on while they are held: they step or skip. All others would switch back and forth. */
 const STEPS = /^(Comma|Period|Arrow)/;
 const ARROWS = /^(Arrow|Home|End|Page)/;
 
