@@ -109,6 +109,10 @@ class Player(Show):
         name = "window.__replay?.recording.record.header.match_id"
         self.until(lambda: self.page.evaluate(name) == match_id, "it was not opened")
         self.page.evaluate("window.__replay.pause()")
+        self.sees(".transport")
+        # Keys are listened to once it has been painted.
+        painted = "new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))"
+        self.page.evaluate(painted)
 
     def seek(self, beat: int) -> None:
         """Go to a beat, and wait until it is drawn."""
