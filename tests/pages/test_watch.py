@@ -100,6 +100,22 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     left.close()
 
 
+def test_a_team_is_shown_in_its_own_look(venue: Venue, open_page: OpenPage) -> None:
+    """Rules 4: colours and patterns belong to the teams; score, board and field have them."""
+    own = '[court.main.seat.right]\ncolour = "#cc3366"\npattern = "dots"\n'
+    text = venue.contest.read_text()
+    venue.contest.write_text(text.replace("[court.main.seat.right]\n", own))
+    venue.court()
+    venue.web()
+    playing(venue)
+    show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
+    mark = show.find(".score-bug .team[data-seat='1'] .seat-mark")
+    expect(mark).to_have_attribute("data-pattern", "dots")
+    expect(mark).to_have_css("background-color", "rgb(204, 51, 102)")
+    expect(show.find(".board defs pattern")).to_have_count(2)
+    expect(show.find(".board defs circle")).to_have_count(1)
+
+
 def test_the_winner_is_whom_the_referee_says(venue: Venue, open_page: OpenPage) -> None:
     """Rules 4: who was declared in a halt has won, before and after it is official."""
     venue.court()

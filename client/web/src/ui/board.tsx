@@ -20,6 +20,7 @@ const LOOK_MS = 80;
 const ROBOT_M = 0.1;
 /** Else a flag's letter can't be read. */
 const LEAST_MARKER_M = 0.05;
+const SHADE = "rgb(0 0 0 / 30%)";
 const NEUTRAL = "#5d6674";
 const DOWN = "#3b424d";
 
@@ -46,16 +47,20 @@ export function Board({ match, onPick, picked }: Props) {
         onKeyDown={onPick && moveFocus}
       >
         <defs>
-          <pattern
-            id="stripes"
-            width="0.05"
-            height="0.05"
-            patternUnits="userSpaceOnUse"
-            patternTransform="rotate(45)"
-          >
-            <rect width="0.05" height="0.05" fill="var(--seat-1)" />
-            <rect width="0.02" height="0.05" fill="rgb(0 0 0 / 30%)" />
-          </pattern>
+          {sheet.seats.map(({ pattern }, index) => (
+            <pattern
+              key={index}
+              id={lookOf(index)}
+              width="0.05"
+              height="0.05"
+              patternUnits="userSpaceOnUse"
+              patternTransform="rotate(45)"
+            >
+              <rect width="0.05" height="0.05" fill={`var(--seat-${index})`} />
+              {pattern === "stripes" && <rect width="0.02" height="0.05" fill={SHADE} />}
+              {pattern === "dots" && <circle cx="0.025" cy="0.025" r="0.012" fill={SHADE} />}
+            </pattern>
+          ))}
         </defs>
         <rect x={box[0]} y={box[1]} width={box[2]} height={box[3]} fill="#1b2533" />
         {sheet.markers.map((marker, index) => (
@@ -134,6 +139,11 @@ function centre(element: Element): [number, number] {
   return [box.x + box.width / 2, box.y + box.height / 2];
 }
 
+/** Names a seat's colour with its pattern. */
+function lookOf(seat: number): string {
+  return `seat-look-${seat}`;
+}
+
 interface MarkerProps {
   marker: MarkerInfo;
   state: number;
@@ -145,13 +155,7 @@ function Marker({ marker, state, sheet, picked }: MarkerProps) {
   const radius = Math.max(LEAST_MARKER_M, marker.radius_m);
   const seat = state > 0 && state <= sheet.seats.length ? state - 1 : null;
   const fill =
-    seat === null
-      ? MARKER_STATES[state] === "down"
-        ? DOWN
-        : NEUTRAL
-      : seat === 1
-        ? "url(#stripes)"
-        : "var(--seat-0)";
+    seat === null ? (MARKER_STATES[state] === "down" ? DOWN : NEUTRAL) : `url(#${lookOf(seat)})`;
   const text =
     seat !== null
       ? sheet.seats[seat]!.id.slice(0, 1).toUpperCase()
