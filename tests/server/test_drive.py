@@ -205,7 +205,7 @@ def test_who_is_told_to_stand_takes_one_posture(advance: str) -> None:
     walking = it.tick(it.press(it.begin(B), B, 1))
     for state in (it.begin(B), it.stand(walking), it.stand(it.press(walking, B, 0))):
         states = ticks(it, state, 60)
-        assert {(s.digit, s.posture) for s in states} == {(0, 0)}
+        assert {(s.level, s.digit, s.posture) for s in states} == {(B, 0, 0)}
         assert states[-1].angles == posture(24.0)
     assert it.stand(states[-1]) is states[-1]
 
