@@ -30,6 +30,7 @@ from lacoc_client.asking import NoCourt
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_shared.decisions import Decision, Next, Official, Start
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 from lacoc_shared.seat import Phase
 from lacoc_shared.session import open_client
@@ -217,15 +218,22 @@ class _Run:
         raise TimeoutError(f"The court says nothing; {phase.name} was waited for.")
 
     def _decide(self, decision: Decision, phase: Phase) -> None:
-        """Decide what ends a phase; a machine that is too busy to answer in time is asked again."""
+        """Decide what ends a phase.
+
+        A machine that is too busy to answer or to show it in time is asked again; it refuses what
+        it has done after all.
+        """
+        refused: UserError | None = None
         for _ in range(_TRIES):
             try:
                 self._referee.decide(decision, "a soak", "soak")
             except NoCourt:
                 self._unanswered += 1
+            except UserError as error:
+                refused = error
             if self._ended(phase):
                 return
-        raise TimeoutError(f"{phase.name} does not end.")
+        raise TimeoutError(f"{phase.name} does not end.") from refused
 
     def _ended(self, phase: Phase) -> bool:
         """Whether a phase ends within a second."""

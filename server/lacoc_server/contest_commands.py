@@ -134,8 +134,8 @@ def keys(
     """Encrypt a contest: make its keys, and an invitation for each person.
 
     They go to the folder 'keys' beside the contest file, or to 'keys-FILE' where another contest's
-    are in 'keys'; the contest file gets an entry that says so. From
-    then on its courts listen with TLS, and each person can do no more than their invitation says.
+    are in 'keys'; the contest file gets an entry that says so. From then on its courts listen
+    with TLS, and each person can do no more than their invitation says.
 
     Run again, it adds what is new (a court, a token, a host); invitations that were handed out
     stay valid. Courts that run take the new keys when they are started again.

@@ -82,8 +82,8 @@ class Drive:
         A command is (level, digit): with `repeat`, the one that stands already changes nothing;
         without, it starts its sequence again.
         """
-        stands_already = (level, digit) == (state.level, state.digit) and not state.stands
-        if self._repeat and stands_already:
+        was_pressed = (level, digit) == (state.level, state.digit) and not state.stands
+        if self._repeat and was_pressed:
             return state
         return DriveState(level, digit, 0, 0, state.angles)
 

@@ -392,8 +392,10 @@ class Match:
 
     def tell_result(self) -> None:
         """Log who wins by the rules, as often as that or the score changes once play has ended."""
+        if self.phase is not Phase.FINISHED:
+            return
         result = winner, scores = self.winner(), self.scores()
-        if self.phase is not Phase.FINISHED or result == self._told_result:
+        if result == self._told_result:
             return
         self._told_result = result
         word = "a draw" if winner == "draw" else f"{self._team(winner)} wins"

@@ -49,6 +49,12 @@ class SeatHolder(Holder, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The team's own; None: the seat's, as the arena's file has it."""
     pattern: Pattern | None = None
 
+    @property
+    def look(self) -> dict[str, str]:
+        """What of these is the team's own."""
+        both = {"colour": self.colour, "pattern": self.pattern}
+        return {name: own for name, own in both.items() if own}
+
 
 _Amount = Annotated[float, msgspec.Meta(ge=0)]
 _Percent = Annotated[float, msgspec.Meta(ge=0, le=100)]
@@ -107,11 +113,7 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     @property
     def looks(self) -> dict[str, dict[str, str]]:
         """By seat, its team's own colour and pattern, if it has them."""
-        own = {
-            seat: (("colour", one.colour), ("pattern", one.pattern))
-            for seat, one in self.seat.items()
-        }
-        return {seat: {name: look for name, look in looks if look} for seat, looks in own.items()}
+        return {seat: holder.look for seat, holder in self.seat.items()}
 
     def address(self, any_host: str = "127.0.0.1") -> str:
         """Where a client connects.

@@ -94,6 +94,10 @@ class PageClient:
         """Wait for a phase."""
         self.wait(lambda: self.frame is not None and self.frame.phase == phase)
 
+    def wait_own(self, condition: Callable[[SeatFrame], Any]) -> None:
+        """Wait until something is true of the seat that this page holds."""
+        self.wait(lambda: self.frame is not None and condition(self.own()))
+
     def code(self) -> int | None:
         """With which code the gateway closed the connection; None if it did not."""
         return self.socket.protocol.close_code

@@ -168,7 +168,7 @@ def test_practice_has_a_court_of_its_own(tmp_path: Path) -> None:
         page.ask("ready", ready=True)
         page.phase(Phase.PLAYING)
         seq = page.ask("key", level=0, key=1)["seq"]
-        page.wait(lambda: page.own().applied_seq >= seq)
+        page.wait_own(lambda own: own.applied_seq >= seq)
     assert practice.ended() == 0
     assert [path.suffix for path in (tmp_path / "kept").iterdir()] == [".mcap"]
 

@@ -405,7 +405,7 @@ def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
             assert left.frame is not None
             pressed = left.frame.beat
             seq = left.ask("key", level=1, key=digit)["seq"]
-            left.wait(lambda seq=seq: left.own().applied_seq >= seq)  # type: ignore[misc]
+            left.wait_own(lambda own, seq=seq: own.applied_seq >= seq)  # type: ignore[misc]
             waits_beats.append(left.frame.beat - pressed)
     assert sorted(waits_beats)[len(waits_beats) // 2] < 8
     assert max(waits_beats) < BEATS_PER_S

@@ -38,11 +38,11 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
     began_m = x_of(left.frame, 0, robot_bytes)
     for page in (left, right):
         seq = page.ask("key", **FORWARD)["seq"]
-        page.wait(lambda page=page, seq=seq: page.own().applied_seq >= seq)
+        page.wait_own(lambda own, seq=seq: own.applied_seq >= seq)
     with pytest.raises(Refused, match="holds no seat"):
         referee.ask("key", **FORWARD)
     refused = left.ask("key", level=0, key=1)["seq"]
-    left.wait(lambda: left.own().refused_seq >= refused)
+    left.wait_own(lambda own: own.refused_seq >= refused)
 
     late = venue.page()
     assert late.order[:4] == [Kind.WELCOME, Kind.LINK, Kind.SHEET, Kind.SCENE]
@@ -76,7 +76,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     venue.web()
     left, _, referee = started(venue)
     left.ask("key", **FORWARD)
-    left.wait(lambda: left.own().key == 2)
+    left.wait_own(lambda own: own.key == 2)
     gone_s = time.monotonic()
     left.close()
     referee.wait(lambda: any(event.kind == "silent" for event in referee.events), 5)
@@ -86,7 +86,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     back = venue.page(venue.key)
     back.ask("join", seat="left", token=TOKENS["left"], name="Ants")
     seq = back.ask("key", **FORWARD)["seq"]
-    back.wait(lambda: back.own().applied_seq >= seq and back.own().key == 2)
+    back.wait_own(lambda own: own.applied_seq >= seq and own.key == 2)
     assert not back.own().flags & SeatFlag.SILENT
 
 
@@ -96,7 +96,7 @@ def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
     venue.web()
     left, _, referee = started(venue)
     left.ask("key", **FORWARD)
-    left.wait(lambda: left.own().key == 2)
+    left.wait_own(lambda own: own.key == 2)
     left.socket.socket.settimeout(None)
     left.socket.protocol.receive_data = lambda data: None  # type: ignore[method-assign]
     referee.wait(lambda: any(event.kind == "silent" for event in referee.events), 6)
@@ -108,7 +108,7 @@ def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
     venue.web()
     left, _, referee = started(venue)
     left.ask("key", **FORWARD)
-    left.wait(lambda: left.own().key == 2)
+    left.wait_own(lambda own: own.key == 2)
     left.close()
     back = venue.page(venue.key)
     back.ask("join", seat="left", token=TOKENS["left"], name="Ants")
@@ -185,7 +185,7 @@ def test_a_killed_court_comes_back(venue: Venue) -> None:
     referee.ask("decide", decision={"type": "resume"}, reason="the court is back")
     left.phase(Phase.PLAYING)
     seq = left.ask("key", **FORWARD)["seq"]
-    left.wait(lambda: left.own().applied_seq >= seq)
+    left.wait_own(lambda own: own.applied_seq >= seq)
 
 
 def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
@@ -252,7 +252,7 @@ def test_a_restarted_gateway_knows_its_pages_again(venue: Venue) -> None:
     back = venue.page(key)
     back.ask("join", seat="left", token=TOKENS["left"], name="Ants")
     seq = back.ask("key", **FORWARD)["seq"]
-    back.wait(lambda: back.own().applied_seq >= seq)
+    back.wait_own(lambda own: own.applied_seq >= seq)
     assert [event.number for event in back.events] == [*range(1, len(back.events) + 1)]
 
 

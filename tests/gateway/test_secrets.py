@@ -140,7 +140,7 @@ def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
     referee.ask("decide", decision={"type": "start"}, reason="")
     contestant.phase(Phase.PLAYING)
     contestant.ask("key", level=1, key=2)
-    contestant.wait(lambda: contestant.own().applied_seq)
+    contestant.wait_own(lambda own: own.applied_seq)
 
     own = Controller(keyed.session("right"), "main", "right", TOKENS["right"], "Right")
     own.join()  # takes the seat from the page: so a session's secret is known here
