@@ -1,8 +1,9 @@
 """A court: the loop that gives a match its beats, and the only reader of a clock.
 
-One thread; only an outbox sends beside it. Each beat takes what arrived, lets the match have
-it, records, and only then answers and publishes: what anybody was told is on disk (design.md,
-"One beat"). Where the disk does not take it, the court waits: no beat passes until it does.
+One thread; only an outbox sends beside it, and an archive puts away the records of matches that
+are over. Each beat takes what arrived, lets the match have it, records, and only then answers and
+publishes: what anybody was told is on disk (design.md, "One beat"). Where the disk does not take
+it, the court waits: no beat passes until it does.
 """
 
 import hashlib
@@ -10,10 +11,11 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from lacoc_arenas.arena import Arena
 from lacoc_server import unjudged
+from lacoc_server.archive import Archive
 from lacoc_server.court_log import CourtLog
 from lacoc_server.health import MatchHealth
 from lacoc_server.journal import Journal
@@ -29,8 +31,7 @@ from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Advice, Decide, Input
 from lacoc_shared.messages import Health, HealthVerdict
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record.matches import MatchName, unpacked
-from lacoc_shared.record.pack import pack_in_background
+from lacoc_shared.record.matches import MatchName
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
 
@@ -85,7 +86,9 @@ class Court:
         self.metrics = CourtMetrics(settings.name)
         """Its numbers, for who watches courts."""
         self._scene = b""
-        self._packing: list[Any] = []
+        self._archive: Archive | None = None
+        if settings.recordings is not None:
+            self._archive = Archive(settings.recordings, settings.name, self._log)
         self._pace = Pace(time.monotonic(), settings.speed, _offset_s(network.locators))
         self._inputs: list[Input] = []
         """The court's own, for the next beat."""
@@ -117,7 +120,8 @@ class Court:
         An error in the loop ends the court, and not its match: that is for the next start.
         """
         pace = self._pace
-        self._pack()
+        if self._archive is not None:
+            self._archive.pack(self.match_id)
         try:
             while not stopping():
                 time.sleep(pace.wait_s(time.monotonic()))
@@ -130,8 +134,8 @@ class Court:
             self._journal.leave()
             raise
         self._close()
-        for packing in self._packing:
-            packing.wait()
+        if self._archive is not None:
+            self._archive.close()
 
     def _beat(self, now_s: float) -> None:
         try:
@@ -244,23 +248,8 @@ class Court:
 
     def _close(self) -> None:
         """Finish the record of this match."""
-        self._journal.close()
-        self._pack()
-
-    def _pack(self) -> None:
-        """Pack the matches that are over, in a process of its own.
-
-        What can't be packed now waits for the next time: the end of a match or a court's start.
-        """
-        folder = self._settings.recordings
-        if folder is None:
-            return
-        self._packing = [one for one in self._packing if one.poll() is None]
-        try:
-            if match_ids := unpacked(folder, self._settings.name):
-                self._packing.append(pack_in_background(folder, match_ids))
-        except OSError as error:
-            self._log.not_packed(self.match_id, error)
+        if self._archive is not None and self._journal.writer is not None:
+            self._archive.take(self.match_id, self._journal.writer)
 
     def _say_health(self, now_s: float) -> None:
         pace, match = self._pace, self._journal.match

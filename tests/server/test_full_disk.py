@@ -6,12 +6,14 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 from running import WAIT_S, Party, party, served, write_contest
 
+from lacoc_server.inbox import SILENT_AFTER_S
 from lacoc_server.replay import Verdict, verify
 from lacoc_shared.codec import decode
 from lacoc_shared.decisions import Abort, Halt, Next, Resume
@@ -19,7 +21,7 @@ from lacoc_shared.gait import Level
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
-from lacoc_shared.seat import Phase
+from lacoc_shared.seat import BEATS_PER_S, Phase
 
 pytestmark = pytest.mark.slow
 
@@ -137,27 +139,34 @@ def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: P
     assert verdict.text == "same"
 
 
-SYNCING_FAILS = """
-import os, runpy, sys
+SYNC = """
+import os, runpy, sys, time
 
-flag, fsync = sys.argv[1], os.fsync
+flag, what, fsync = sys.argv[1], sys.argv[2], os.fsync
 
-def failing(descriptor):
+def sync(descriptor):
     if os.path.exists(flag):
-        raise OSError(5, "Input/output error")
+        if what == "fails":
+            raise OSError(5, "Input/output error")
+        time.sleep(float(what))
     fsync(descriptor)
 
-os.fsync = failing
-sys.argv = sys.argv[4:]
+os.fsync = sync
+sys.argv = sys.argv[5:]
 runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 """
-"""Runs the command that follows; the disk keeps nothing while a file is there."""
+"""Runs the command that follows; while a file is there the disk fails, or takes some seconds."""
+
+
+def sync(flag: Path, what: str) -> list[str]:
+    """What stands before a court's command."""
+    return [sys.executable, "-c", SYNC, str(flag), what]
 
 
 def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -> None:
     """The referee hears of it, and may go on: everybody but a power cut has the record."""
     contest, broken = write_contest(tmp_path / "contest.toml"), tmp_path / "broken"
-    before = [sys.executable, "-c", SYNCING_FAILS, str(broken)]
+    before = sync(broken, "fails")
     with served(contest, tmp_path / "recordings", before=before), party(contest) as those:
         those.play()
         broken.touch()
@@ -186,6 +195,25 @@ def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
         those.until(lambda: (those.phase, those.frame.match) == (Phase.LOBBY, 2))
         those.until(lambda: those.trouble == "")
     assert [path.name[-9:] for path in folder.iterdir()] == ["-002.mcap"]
+
+
+def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
+    """The court stays in sight while the record of the match before goes to the disk."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    slow = tmp_path / "slow"
+    slow.touch()
+    with served(contest, folder, before=sync(slow, "4")), party(contest) as those:
+        frames = those.session.mailbox("lacoc/main/frame", 10_000)
+        those.decide(Abort())
+        those.decide(Next())
+        those.until(lambda: (those.phase, those.frame.match) == (Phase.LOBBY, 2))
+        those.until(lambda: those.frame.beat > BEATS_PER_S)
+        arrivals_s = []
+        while (mail := frames.take()) is not None:
+            arrivals_s.append(mail.arrived_s)
+        assert max(later - one for one, later in pairwise(arrivals_s)) < SILENT_AFTER_S
+    assert sorted(path.name[-9:] for path in folder.iterdir()) == ["-001.mcap", "-002.mcap"]
+    assert [Record.read(path).cut for path in folder.iterdir()] == ["", ""]
 
 
 def test_a_court_does_not_open_on_a_full_disk(tmp_path: Path) -> None:

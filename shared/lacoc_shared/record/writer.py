@@ -87,6 +87,7 @@ class RecordWriter:
                 "name another folder."
             )
         self._dirty = True
+        self._ended = False
         self._closing = threading.Event()
         self._syncer = threading.Thread(target=self._sync, name="record sync", daemon=True)
         self._syncer.start()
@@ -146,18 +147,21 @@ class RecordWriter:
         """Write how well the match was held so far; a later one replaces it."""
         self._write(_HEALTH, beat, codec.encode(verdict))
 
-    def close(self) -> None:
-        """Write the summary and bring everything to the disk: the match is over.
-
-        Closing twice is once.
-        """
-        if not self._closing.is_set():
+    def end(self) -> None:
+        """Write the summary: the match is over. Ending twice is once."""
+        if not self._ended:
+            self._ended = True
             self._put(self._ending())
             self._dirty = True
+
+    def close(self) -> None:
+        """End, and wait until the disk has everything. Closing twice is once."""
+        if not self._closing.is_set():
+            self.end()
         self.leave()
 
     def leave(self) -> None:
-        """Bring everything to the disk, without an end: the match can go on in a new segment."""
+        """Wait until the disk has everything. A match without an end goes on in a new segment."""
         if self._closing.is_set():
             return
         self._closing.set()
