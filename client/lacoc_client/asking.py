@@ -9,7 +9,7 @@ from lacoc_shared import codec
 from lacoc_shared.keyspace import EVERY_COURT, Keys
 from lacoc_shared.messages import PROTOCOL, Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
-from lacoc_shared.session import NoReply, Refused, Session
+from lacoc_shared.session import NoReply, Refused, Session, TooLate
 
 T = TypeVar("T")
 
@@ -23,6 +23,10 @@ _MAX_BYTES = 1 << 20
 
 class NoCourt(UserError):
     """No court of that name answers."""
+
+
+class NoAnswer(NoCourt):
+    """The court was asked, and its answer is missing: it may have done it all the same."""
 
 
 class NotNow(UserError):
@@ -48,7 +52,8 @@ def ask(
         timeout_s: how long to wait.
 
     Raises:
-        NoCourt: if nobody answers; the message says which courts there are.
+        NoAnswer: if the court was asked, and does not answer.
+        NoCourt: if there is none to ask; the message says which courts there are.
         FileRefused: if the court found mistakes in files.
         NotNow: if the court refuses for now; the message is its reason.
         UserError: if it refuses for good.
@@ -65,15 +70,19 @@ def fetch(
     again, as long as nobody can have taken the request in.
     """
     end_s = time.monotonic() + _COMING_BACK_S
+    reached: tuple[str, ...] = ()
     while True:
-        asked = session.routers()
+        reached = reached or session.routers()
         try:
             return session.ask(key, payload, timeout_s)
-        except NoReply:
-            lost = asked and session.routers() != asked
-            if lost or time.monotonic() >= end_s:
-                raise NoCourt(no_answer(session, keys.court)) from None
+        except NoReply as silence:
+            # Zenoh gives up what was asked some milliseconds before it says that a link broke.
             time.sleep(_AGAIN_S)
+            lost = reached and session.routers() != reached
+            if lost or isinstance(silence, TooLate):
+                raise NoAnswer(no_answer(session, keys.court)) from None
+            if time.monotonic() >= end_s:
+                raise NoCourt(no_answer(session, keys.court)) from None
         except Refused as refused:
             refusal = understand(refused.payload, Refusal)
             if refusal.mistakes:

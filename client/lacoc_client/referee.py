@@ -38,6 +38,7 @@ class RefereeClient:
             by: who decides, for the record.
 
         Raises:
+            NoAnswer: if nobody here knows whether it was done: the log of events does.
             UserError: if the court refuses it; the message is its reason.
         """
         name = str(type(decision).__struct_config__.tag)

@@ -39,7 +39,9 @@ _KEY = re.compile(r"(\d)\s*key", re.IGNORECASE | re.ASCII)
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
 
 POSTURES_HEADER = '"Num of Posture" and their number (Loco-data)'
-ANY_HEADER = f"{POSTURES_HEADER}, or the number of keys alone (LocoTra-data)"
+ANY_HEADER = (
+    '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)'
+)
 
 _LEGEND_LABELS = ("id of joint", "position")
 

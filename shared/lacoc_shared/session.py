@@ -14,7 +14,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -32,6 +32,10 @@ _OTHER_FILES = 200
 
 class NoReply(Exception):
     """Nobody answered: no such court, not allowed to ask, or too late."""
+
+
+class TooLate(NoReply):
+    """Somebody was asked and did not answer in time: it may be done all the same."""
 
 
 class Refused(Exception):
@@ -152,10 +156,14 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Close the connection and all that was declared with it."""
+        """Close the connection and all that was declared with it.
+
+        Takes ten seconds where somebody's cable was pulled a moment ago.
+        """
         atexit.unregister(self.close)
         if not self._session.is_closed():
-            self._session.close()  # type: ignore[no-untyped-call]
+            with suppress(zenoh.ZError):  # it waits in vain to say goodbye on a dead link
+                self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str) -> Publisher:
         """Declare that this session sends under a key expression."""
@@ -187,7 +195,8 @@ class Session:
         """Send a request and wait for its answer.
 
         Raises:
-            NoReply: if nobody answered in time (or is allowed to).
+            TooLate: if no answer came in time.
+            NoReply: if nobody was asked (or is allowed to answer), or the link broke.
             Refused: if the answer is an error.
         """
         replies = self._session.get(
@@ -198,8 +207,9 @@ class Session:
                 return reply.ok.payload.to_bytes()
             assert reply.err is not None
             error = reply.err.payload.to_bytes()
-            if error != b"Timeout":  # Zenoh's own word
-                raise Refused(error)
+            if error == b"Timeout":  # Zenoh's own word
+                raise TooLate(key)
+            raise Refused(error)
         raise NoReply(key)
 
     def routers(self) -> tuple[str, ...]:

@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 from court_process import CourtProcess, OpenCourt
 
+from lacoc_client.asking import NoAnswer
+from lacoc_client.referee import RefereeClient
 from lacoc_shared import cli
 from lacoc_shared.decisions import DECISIONS
 
@@ -115,6 +117,23 @@ def test_ready_for_a_contestant_who_cannot(
     code, out, _ = referee.run("log")
     assert "ready for Slow Hands. Reason: a test" in out
     assert person.poll() is None
+
+
+def test_a_waiting_referee_does_nothing_twice(
+    open_court: OpenCourt, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A decision whose answer is missing may have been done: it is not asked again."""
+    court = open_court("--arena", "othello")
+    decide, asked = RefereeClient.decide, []
+
+    def lose_the_answer(*args: Any) -> None:
+        asked.append(decide(*args))
+        raise NoAnswer("Court 'main' does not answer.")
+
+    monkeypatch.setattr(RefereeClient, "decide", lose_the_answer)
+    said = Referee(court, capsys).refused("abort", "--wait", "20", "--reason", "a test")
+    assert "abort: 'lacoc referee log' says if it was done." in said
+    assert len(asked) == 1
 
 
 def test_a_waiting_referee_gives_up_in_time(

@@ -32,6 +32,7 @@ class Refused(Exception):
         self.mistakes: list[dict[str, Any]] = reply["mistakes"]
         self.is_the_token: bool = reply["token_refused"]
         self.again: bool = reply["again"]
+        self.unanswered: bool = reply["unanswered"]
 
 
 class PageClient:

@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import re
 import socket
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, get_args
 
@@ -13,6 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lacoc_client.asking import NoAnswer, NoCourt, NotNow
 from lacoc_client.controller import Hold
 from lacoc_client.event_log import EventLog
 from lacoc_client.gateway import home, server, wire
@@ -81,6 +83,23 @@ def test_no_map_of_a_page_breaks_the_reader(fields: dict[str, Any]) -> None:
     with contextlib.suppress(BadMessage):
         wire.read(data)
     wire.read_id(data)
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (UserError("no"), set()),
+        (NotNow("later"), {"again"}),
+        (NoCourt("nobody"), set()),
+        (NoAnswer("perhaps"), {"unanswered"}),
+        (wire.TokenRefused("no"), {"token_refused"}),
+    ],
+)
+def test_a_refusal_says_what_a_page_can_do(error: UserError, told: set[str]) -> None:
+    """Ask again, ask never again, or look whether it was done."""
+    body = msgpack.unpackb(wire.refusal(7, error)[3:])
+    assert {name for name, value in body.items() if value is True} == told
+    assert (body["id"], body["error"]) == (7, str(error))
 
 
 @pytest.mark.parametrize("size", [0, 1, 124, 125, 126, 65_534, 65_535, 70_000])
@@ -245,7 +264,8 @@ def test_small_messages_do_not_wait_for_the_one_before() -> None:
                 writer.close()
                 return bool(await found)
 
-    assert asyncio.run(asked())
+    with ThreadPoolExecutor(1) as aside:  # a test of pages before this one has a loop here
+        assert aside.submit(asyncio.run, asked()).result()
 
 
 def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:

@@ -12,7 +12,7 @@ from court_stub import until
 from lacoc_shared import address
 from lacoc_shared.keyspace import COMMAND_MAX_BYTES
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import NoReply, Refused, Session, open_client, open_court
+from lacoc_shared.session import NoReply, Refused, Session, TooLate, open_client, open_court
 
 
 @pytest.fixture
@@ -88,12 +88,13 @@ def test_an_unknown_name_is_said_at_once() -> None:
 
 
 def test_requests_are_answered_refused_or_in_vain(router: Session) -> None:
-    """No reply is an error of its own; a refusal carries its payload."""
+    """No reply is an error of its own, and too late another; a refusal carries its payload."""
     desk = router.desk("lacoc/main/sheet", 1)
     with open_client(router.locators()) as client:
-        with pytest.raises(NoReply):
+        with pytest.raises(NoReply) as nobody:
             client.ask("lacoc/main/scene")
-        with pytest.raises(NoReply):
+        assert not isinstance(nobody.value, TooLate)
+        with pytest.raises(TooLate):
             client.ask("lacoc/main/sheet", timeout_s=0.05)
         until(desk.take)
     with pytest.raises(NoReply):

@@ -432,8 +432,10 @@ def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
     big(page).evaluate("(button) => { button.click(); button.click(); }")
     phase(page, 4)
     expect(good).to_contain_text("Play begins")
-    page.keyboard.press("Control+Enter")
-    page.keyboard.press("Control+Enter")
+    page.evaluate(  # on a busy machine two of the driver's presses are a second apart
+        "() => { for (const _ of [1, 2]) dispatchEvent(new KeyboardEvent("
+        "'keydown', { key: 'Enter', code: 'Enter', ctrlKey: true, cancelable: true })); }"
+    )
     phase(page, 5)
     expect(page.locator(".big.fresh")).to_have_count(0)
     expect(good).to_contain_text("Halted")
@@ -447,8 +449,8 @@ def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
     group(page, "Halt").click()  # its meaning does not change: it is open at once
     phase(page, 5)
     group(page, "Resume").click()
+    phase(page, 4)
     group(page, "Halt").click()
-    log_has(page, "halted")
     phase(page, 5)
 
 

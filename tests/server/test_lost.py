@@ -7,22 +7,24 @@ What is counted is counted in beats of the court, so that a busy machine changes
 import os
 import signal
 import subprocess
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
+from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
-from running import WAIT_S, free_port, served, until, write_contest
+from hall import LATE_BEATS, Hall
+from real_cable import pull_a_real_cable
+from running import WAIT_S, free_port
 from slow_link import SlowLink
 
+from lacoc_client.asking import NoAnswer, ask
 from lacoc_client.controller import Controller, Hold
-from lacoc_client.referee import RefereeClient
-from lacoc_client.spectator import Spectator
-from lacoc_shared.contest import Contest, load
-from lacoc_shared.decisions import Declare, Halt, Resume, Start
+from lacoc_shared.decisions import Adjust, Declare, Halt, Start
 from lacoc_shared.inputs import SilentSeat
-from lacoc_shared.messages import Frame, Health, SeatFrame
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.messages import DecisionReply, DecisionRequest
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
@@ -30,114 +32,12 @@ from lacoc_shared.session import open_client
 
 pytestmark = pytest.mark.slow
 
-LATE_BEATS = 10
-"""A court that was held up takes five beats at once; a beat or two are on their way."""
+LINK_S = 3.0
+"""A link that says nothing for so long may be given up."""
 WATCHED_BEATS = 600
 """Longer than the ten seconds after which a connection that says nothing is given up."""
 WAITED_MS = 2000.0
 """A court that waits for a frozen watcher is this late; a busy machine is not."""
-
-
-class Hall:
-    """A court, someone who watches it, and a referee; contestants come as processes."""
-
-    def __init__(self, folder: Path, stack: ExitStack, host: str = "127.0.0.1") -> None:
-        self.folder = folder
-        self._stack = stack
-        self.contest = write_contest(folder / "contest.toml")
-        self.contest.write_text(
-            self.contest.read_text().replace("127.0.0.1", host).replace("= 0.2", "= 2.0")
-        )
-        self.plan: Contest = load(self.contest)
-        name, self.court = self.plan.court()
-        self.process = stack.enter_context(served(self.contest, folder / "recordings"))
-        session = stack.enter_context(open_client([self.court.address()]))
-        self.view = Spectator(session, name)
-        self.referee = RefereeClient(session, name, self.court.referee.token)
-
-    def lacoc(self, *words: str, before: tuple[str, ...] = ()) -> subprocess.Popen[bytes]:
-        """Start a command; it ends with the test."""
-        process = subprocess.Popen(
-            [*before, sys.executable, "-m", "lacoc_shared", *words],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            cwd=self.folder,
-        )
-        self._stack.callback(_end, process)
-        return process
-
-    def bot(
-        self, seat: str, connect: str = "", before: tuple[str, ...] = ()
-    ) -> subprocess.Popen[bytes]:
-        """A contestant's program, which presses a key every half second."""
-        (self.folder / "walker.py").write_text(
-            "from lacoc_arenas.bot import Key\nfrom lacoc_shared.gait import Level\n"
-            "def bot(sheet, seat):\n"
-            "    return lambda f: Key(Level.LOCOMOTION, 2 + f.clock_ticks // 25 % 2)\n"
-        )
-        where = ("--connect", connect or self.court.address(), "--court", "main")
-        token = self.court.seat[seat].token
-        words = ("bot", "walker.py", *where, "--seat", seat, "--token", token, "--name", seat)
-        return self.lacoc(*words, before=before)
-
-    def until(self, true: Callable[[], bool]) -> None:
-        """Watch until something is true."""
-        until([self.view], true)
-
-    def phase(self, phase: Phase) -> None:
-        self.until(lambda: self.view.frame is not None and self.view.frame.phase == phase)
-
-    def play(self) -> None:
-        """Start the match, or go on with it."""
-        self.until(lambda: self.frame.phase in (Phase.READY, Phase.HALTED))
-        halted = self.frame.phase == Phase.HALTED
-        self.referee.decide(Resume() if halted else Start(), "", "Kubota")
-        self.phase(Phase.PLAYING)
-
-    @property
-    def frame(self) -> Frame:
-        self.until(lambda: self.view.frame is not None)
-        assert self.view.frame is not None
-        return self.view.frame
-
-    @property
-    def left(self) -> SeatFrame:
-        return self.frame.seats[0]
-
-    def walks(self, seat: int = 0) -> None:
-        """Wait for a new key of a seat that takes effect."""
-        before = self.frame.seats[seat].applied_seq
-        self.until(lambda: self.frame.seats[seat].applied_seq > before)
-
-    def stands_after(self, lose: Callable[[], object]) -> int:
-        """Lose the left seat; how many beats later it is shown that it stands.
-
-        Frames show the seat grey in the beat in which it stands, and health says the same.
-        """
-        self.view.poll()
-        lost = self.frame.beat
-        lose()
-        self.until(lambda: bool(self.left.flags & SeatFlag.SILENT))
-        assert self.left.key == 0
-        told = self.frame.beat
-        self.until(lambda: (self.health.seats[0].heard_ms or 0) > 1000)
-        assert self.health.beat - lost <= 2 * BEATS_PER_S
-        silences = [e for e in self.view.events if e.kind == "silent" and e.beat >= lost]
-        assert [event.seat for event in silences] == [0]
-        return min(told, silences[0].beat) - lost
-
-    @property
-    def health(self) -> Health:
-        self.until(lambda: self.view.health is not None)
-        assert self.view.health is not None
-        return self.view.health
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    process.send_signal(signal.SIGCONT)
-    process.kill()
-    process.wait(WAIT_S)
 
 
 @pytest.fixture
@@ -221,6 +121,29 @@ def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
     assert SilentSeat(0) in record.inputs[told.beat]
 
 
+@pytest.mark.parametrize("answer_s", [1.0, 10.0])
+def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
+    hall: Hall, answer_s: float
+) -> None:
+    """Too late, or lost with the link: the referee hears that, and not that it was refused."""
+    hall.bot("left")
+    hall.bot("right")
+    hall.play()
+    keys, decision = Keys("main"), Adjust(seat="left", points=3)
+    token = hall.court.referee.token
+    request = DecisionRequest(token=token, by="Kubota", reason="a test", decision=decision)
+    os.kill(hall.process.pid, signal.SIGSTOP)
+    try:
+        with pytest.raises(NoAnswer):
+            ask(hall.session, keys, keys.decision("adjust"), request, DecisionReply, answer_s)
+    finally:
+        os.kill(hall.process.pid, signal.SIGCONT)
+    hall.walks()
+    hall.walks(1)
+    done = sum("+3" in event.text for event in hall.view.events)
+    assert done == 1 if answer_s < LINK_S else done <= 1
+
+
 def test_a_pulled_cable(hall: Hall) -> None:
     """Nothing comes through and nobody is told; in again, and also after the link was given up."""
     with SlowLink(hall.court.address()) as link:
@@ -250,45 +173,14 @@ def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
         assert not any(event.kind == "silent" for event in hall.view.events)
 
 
-@contextmanager
-def cable() -> Iterator[tuple[str, tuple[str, ...], Callable[[str], None]]]:
-    """Another machine's network, a cable to it: our address, how to run there, up or down."""
-    name = f"lacoc{os.getpid()}"
-    near, far = f"a{name}"[:15], f"b{name}"[:15]
-    net = f"10.213.{os.getpid() % 250}."
-
-    def ip(*words: str) -> None:
-        subprocess.run(["ip", *words], check=True, capture_output=True)
-
-    try:
-        ip("netns", "add", name)
-    except (OSError, subprocess.CalledProcessError):
-        pytest.skip("this user may not make network namespaces")
-    try:
-        ip("link", "add", near, "type", "veth", "peer", "name", far, "netns", name)
-        ip("address", "add", f"{net}1/24", "dev", near)
-        ip("link", "set", near, "up")
-        ip("-n", name, "address", "add", f"{net}2/24", "dev", far)
-        ip("-n", name, "link", "set", far, "up")
-        inside = ("ip", "netns", "exec", name)
-        yield f"{net}1", inside, lambda state: ip("link", "set", near, state)
-    finally:
-        subprocess.run(["ip", "netns", "delete", name], check=False, capture_output=True)
-
-
 def test_a_real_cable(tmp_path: Path) -> None:
-    """The kernel's own link goes down, and comes up again."""
-    with cable() as (host, there, cable_is), ExitStack() as stack:
-        hall = Hall(tmp_path, stack, host)
-        hall.bot("left", before=there)
-        hall.bot("right")
-        hall.play()
-        hall.walks()
-        assert hall.stands_after(lambda: cable_is("down")) <= BEATS_PER_S + LATE_BEATS
-        hall.walks(1)
-        cable_is("up")
-        hall.until(lambda: not hall.left.flags & SeatFlag.SILENT)
-        hall.walks()
+    """The kernel's own link goes down, and comes up again.
+
+    In a process with a network of its own: a browser gives up what it loads when one comes.
+    """
+    with ProcessPoolExecutor(1, get_context("spawn")) as apart:
+        if not apart.submit(pull_a_real_cable, tmp_path).result():
+            pytest.skip("this user may not make network namespaces")
 
 
 def frames_of(hall: Hall) -> int:

@@ -17,6 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_client import words
+from lacoc_client.asking import NoAnswer
 from lacoc_client.commands import entrance
 from lacoc_client.line_view import event_columns
 from lacoc_client.plain import event_dict, frame_dict
@@ -212,16 +213,17 @@ def _decide(
     access = entrance.referee(**where)
     with open_client([access.connect], credentials=access.credentials) as session:
         referee = RefereeClient(session, access.court, access.token)
-        if wait is None:
-            reply = referee.decide(decision, reason, by or _default_name())
-        else:
-            reply = _decide_when_legal(
-                session,
-                access,
-                wait,
-                name,
-                lambda: referee.decide(decision, reason, by or _default_name()),
-            )
+
+        def decide() -> DecisionReply:
+            return referee.decide(decision, reason, by or _default_name())
+
+        try:
+            if wait is None:
+                reply = decide()
+            else:
+                reply = _decide_when_legal(session, access, wait, name, decide)
+        except NoAnswer as error:
+            raise UserError(f"{error} {name}: 'lacoc referee log' says if it was done.") from None
     if json:
         screen.print_json(reply)
     else:
@@ -256,6 +258,8 @@ def _decide_when_legal(
             if not reason:
                 try:
                     return decide()
+                except NoAnswer:  # asked again, it could be done twice
+                    raise
                 except UserError as error:
                     refused = error
         if time.monotonic() >= deadline_s:

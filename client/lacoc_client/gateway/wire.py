@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import msgspec
 
-from lacoc_client.asking import NotNow
+from lacoc_client.asking import NoAnswer, NotNow
 from lacoc_shared.codec import BadMessage, encode
 from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
@@ -196,5 +196,6 @@ def refusal(to: int, error: Exception | str) -> bytes:
         "mistakes": mistakes,
         "token_refused": isinstance(error, TokenRefused),
         "again": isinstance(error, NotNow),
+        "unanswered": isinstance(error, NoAnswer),
     }
     return map_message(Kind.REPLY, body)

@@ -31,7 +31,7 @@ export class Refused extends Error {
   }
 }
 
-/** The connection broke before the answer came: nobody here knows whether it was done. */
+/** The answer is missing, here or at the gateway: nobody here knows whether it was done. */
 export class Unanswered extends Refused {}
 
 /** How the socket is. */
@@ -156,6 +156,6 @@ export class Connection {
     const waiting = this.waiting.get(reply.id);
     this.waiting.delete(reply.id);
     if (reply.ok) waiting?.resolve(reply.value);
-    else waiting?.reject(new Refused(reply.error, reply));
+    else waiting?.reject(new (reply.unanswered ? Unanswered : Refused)(reply.error, reply));
   }
 }

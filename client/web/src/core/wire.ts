@@ -75,6 +75,8 @@ export interface BadReply {
   token_refused: boolean;
   /** The court can't take it now: the same may be taken later. */
   again: boolean;
+  /** The court was asked, and its answer is missing: it may have done it. */
+  unanswered: boolean;
 }
 
 /** A message from the gateway. */

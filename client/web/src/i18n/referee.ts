@@ -48,8 +48,8 @@ export const referee = {
   "referee.no": ["No", "不可"],
   "referee.noAnswer": ["No answer", "応答なし"],
   "referee.unanswered": [
-    "The connection broke: look under Events whether it was done.",
-    "接続が切れました。実行されたかどうかは「イベント」で確認してください。",
+    "No answer came: look under Events whether it was done.",
+    "応答がありませんでした。実行されたかどうかは「イベント」で確認してください。",
   ],
   "referee.missing": ["Missing for the start", "開始に必要なもの"],
   "referee.missingJoin": ["{seat}: nobody has joined", "{seat}：まだ誰も参加していません"],

@@ -1,0 +1,123 @@
+"""A court, someone who watches it, and a referee; contestants come and get lost."""
+
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+
+from running import WAIT_S, served, until, write_contest
+
+from lacoc_client.referee import RefereeClient
+from lacoc_client.spectator import Spectator
+from lacoc_shared.contest import Contest, load
+from lacoc_shared.decisions import Resume, Start
+from lacoc_shared.messages import Frame, Health, SeatFrame
+from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
+from lacoc_shared.session import open_client
+
+LATE_BEATS = 10
+"""A court that was held up takes five beats at once; a beat or two are on their way."""
+
+
+class Hall:
+    """A court, someone who watches it, and a referee; contestants come as processes."""
+
+    def __init__(self, folder: Path, stack: ExitStack, host: str = "127.0.0.1") -> None:
+        self.folder = folder
+        self._stack = stack
+        self.contest = write_contest(folder / "contest.toml")
+        self.contest.write_text(
+            self.contest.read_text().replace("127.0.0.1", host).replace("= 0.2", "= 2.0")
+        )
+        self.plan: Contest = load(self.contest)
+        name, self.court = self.plan.court()
+        self.process = stack.enter_context(served(self.contest, folder / "recordings"))
+        self.session = stack.enter_context(open_client([self.court.address()]))
+        self.view = Spectator(self.session, name)
+        self.referee = RefereeClient(self.session, name, self.court.referee.token)
+
+    def lacoc(self, *words: str, before: tuple[str, ...] = ()) -> subprocess.Popen[bytes]:
+        """Start a command; it ends with the test."""
+        process = subprocess.Popen(
+            [*before, sys.executable, "-m", "lacoc_shared", *words],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            cwd=self.folder,
+        )
+        self._stack.callback(_end, process)
+        return process
+
+    def bot(
+        self, seat: str, connect: str = "", before: tuple[str, ...] = ()
+    ) -> subprocess.Popen[bytes]:
+        """A contestant's program, which presses a key every half second."""
+        (self.folder / "walker.py").write_text(
+            "from lacoc_arenas.bot import Key\nfrom lacoc_shared.gait import Level\n"
+            "def bot(sheet, seat):\n"
+            "    return lambda f: Key(Level.LOCOMOTION, 2 + f.clock_ticks // 25 % 2)\n"
+        )
+        where = ("--connect", connect or self.court.address(), "--court", "main")
+        token = self.court.seat[seat].token
+        words = ("bot", "walker.py", *where, "--seat", seat, "--token", token, "--name", seat)
+        return self.lacoc(*words, before=before)
+
+    def until(self, true: Callable[[], bool]) -> None:
+        """Watch until something is true."""
+        until([self.view], true)
+
+    def phase(self, phase: Phase) -> None:
+        self.until(lambda: self.view.frame is not None and self.view.frame.phase == phase)
+
+    def play(self) -> None:
+        """Start the match, or go on with it."""
+        self.until(lambda: self.frame.phase in (Phase.READY, Phase.HALTED))
+        halted = self.frame.phase == Phase.HALTED
+        self.referee.decide(Resume() if halted else Start(), "", "Kubota")
+        self.phase(Phase.PLAYING)
+
+    @property
+    def frame(self) -> Frame:
+        self.until(lambda: self.view.frame is not None)
+        assert self.view.frame is not None
+        return self.view.frame
+
+    @property
+    def left(self) -> SeatFrame:
+        return self.frame.seats[0]
+
+    def walks(self, seat: int = 0) -> None:
+        """Wait for a new key of a seat that takes effect."""
+        before = self.frame.seats[seat].applied_seq
+        self.until(lambda: self.frame.seats[seat].applied_seq > before)
+
+    def stands_after(self, lose: Callable[[], object]) -> int:
+        """Lose the left seat; how many beats later it is shown that it stands.
+
+        Frames show the seat grey in the beat in which it stands, and health says the same.
+        """
+        self.view.poll()
+        lost = self.frame.beat
+        lose()
+        self.until(lambda: bool(self.left.flags & SeatFlag.SILENT))
+        assert self.left.key == 0
+        told = self.frame.beat
+        self.until(lambda: (self.health.seats[0].heard_ms or 0) > 1000)
+        assert self.health.beat - lost <= 2 * BEATS_PER_S
+        silences = [e for e in self.view.events if e.kind == "silent" and e.beat >= lost]
+        assert [event.seat for event in silences] == [0]
+        return min(told, silences[0].beat) - lost
+
+    @property
+    def health(self) -> Health:
+        self.until(lambda: self.view.health is not None)
+        assert self.view.health is not None
+        return self.view.health
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.send_signal(signal.SIGCONT)
+    process.kill()
+    process.wait(WAIT_S)

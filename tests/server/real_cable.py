@@ -1,0 +1,65 @@
+"""A cable of the kernel's own between two machines that are networks of this one (Linux, root)."""
+
+import ctypes
+import os
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+from hall import LATE_BEATS, Hall
+from running import WAIT_S
+
+from lacoc_shared.seat import BEATS_PER_S, SeatFlag
+
+CLONE_NEWNET = 0x40000000
+"""In linux/sched.h."""
+
+
+def ip(*words: str) -> None:
+    """Change the network."""
+    subprocess.run(["ip", *words], check=True, capture_output=True)
+
+
+@contextmanager
+def cable() -> Iterator[tuple[str, tuple[str, ...], Callable[[str], None]]]:
+    """Another machine's network, a cable to it: our address, how to run there, up or down."""
+    name = f"lacoc{os.getpid()}"
+    ip("netns", "add", name)
+    try:
+        ip("link", "add", "near", "type", "veth", "peer", "name", "far", "netns", name)
+        ip("address", "add", "10.213.0.1/24", "dev", "near")
+        ip("link", "set", "near", "up")
+        ip("-n", name, "address", "add", "10.213.0.2/24", "dev", "far")
+        ip("-n", name, "link", "set", "far", "up")
+        inside = ("ip", "netns", "exec", name)
+        yield "10.213.0.1", inside, lambda state: ip("link", "set", "near", state)
+    finally:
+        subprocess.run(["ip", "netns", "delete", name], check=False, capture_output=True)
+
+
+def pull_a_real_cable(folder: Path) -> bool:
+    """A match over a cable that goes down, up and down; its court ends with the cable down.
+
+    Returns:
+        False if this user may make no networks.
+    """
+    if ctypes.CDLL(None).unshare(CLONE_NEWNET):
+        return False
+    ip("link", "set", "lo", "up")
+    with cable() as (host, there, cable_is), ExitStack() as stack:
+        hall = Hall(folder, stack, host)
+        hall.bot("left", before=there)
+        hall.bot("right")
+        hall.play()
+        hall.walks()
+        assert hall.stands_after(lambda: cable_is("down")) <= BEATS_PER_S + LATE_BEATS
+        hall.walks(1)
+        cable_is("up")
+        hall.until(lambda: not hall.left.flags & SeatFlag.SILENT)
+        hall.walks()
+        cable_is("down")
+        hall.walks(1)
+        hall.process.terminate()
+        assert hall.process.wait(WAIT_S) == 0
+    return True
