@@ -4,9 +4,10 @@ import asyncio
 import contextlib
 import re
 import socket
+from collections.abc import Callable, Coroutine
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 import msgpack
 import msgspec
@@ -17,18 +18,29 @@ from hypothesis import strategies as st
 from lacoc_client.asking import NoAnswer, NoCourt, NotNow
 from lacoc_client.controller import Hold
 from lacoc_client.event_log import EventLog
-from lacoc_client.gateway import home, server, wire
+from lacoc_client.gateway import home, page_seat, server, wire
+from lacoc_client.gateway.answers import Answers
 from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.guard import Guard
+from lacoc_client.gateway.page_seat import PageSeat
 from lacoc_client.gateway.site import PATHS
 from lacoc_client.gateway.viewer import Frames, Viewer
+from lacoc_shared.access import Access
 from lacoc_shared.codec import BadMessage
 from lacoc_shared.contest import throwaway
 from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
 from lacoc_shared.mistakes import UserError
 
+T = TypeVar("T")
+
 PAGE = (Path(__file__).parents[2] / "docs" / "gateway.md").read_text(encoding="utf-8")
+
+
+def asyncio_run(do: Callable[[], Coroutine[Any, Any, T]]) -> T:
+    """Run on a thread: tests of pages may have left a loop in this one."""
+    with ThreadPoolExecutor(1) as aside:
+        return aside.submit(lambda: asyncio.run(do())).result()
 
 
 def rows(title: str) -> list[list[str]]:
@@ -129,6 +141,9 @@ class Wire:
     def write(self, framed: bytes) -> None:
         self.written.append(framed)
 
+    def watch_closely(self) -> None:
+        return
+
 
 def test_a_viewer_has_one_slot() -> None:
     """While a page does not keep up, the newest frame takes the place of the one before."""
@@ -160,6 +175,35 @@ def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
     for beat in range(500):
         viewer.offer(b"%d" % beat, 100 + beat * 0.02 + (beat * 7 % 5 - 2) * 0.002)
     assert len(socket.written) == pytest.approx(expected, rel=0.02, abs=1)
+
+
+def test_a_page_hears_nothing_of_the_seat_it_had_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A thread that ends may still have something to tell: "replaced" was said of the new seat."""
+    tells: list[Any] = []
+
+    class Thread:
+        def __init__(self, *args: Any) -> None:
+            tells.append(args[4])
+
+        def end(self) -> None:
+            return
+
+    async def told() -> list[str]:
+        socket = Wire()
+        viewer = Viewer(socket)  # type: ignore[arg-type]
+        seat = PageSeat(viewer, Answers(viewer, print), None, lambda *_, **__: None)
+        for _ in range(2):
+            seat.join(
+                wire.JoinAsk(id=1, seat="left", token="one"),
+                Access(court="main", connect="127.0.0.1:1"),
+            )
+        for tell, hold in zip(tells, ("replaced", "held"), strict=True):
+            tell({"seat": "left", "hold": hold, "reason": ""})
+        await asyncio.sleep(0)  # what threads tell goes through the loop
+        return [msgpack.unpackb(framed[3:])["hold"] for framed in socket.written]
+
+    monkeypatch.setattr(page_seat, "SeatThread", Thread)
+    assert asyncio_run(told) == ["held"]
 
 
 def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:
@@ -264,8 +308,7 @@ def test_small_messages_do_not_wait_for_the_one_before() -> None:
                 writer.close()
                 return bool(await found)
 
-    with ThreadPoolExecutor(1) as aside:  # a test of pages before this one has a loop here
-        assert aside.submit(asyncio.run, asked()).result()
+    assert asyncio_run(asked)
 
 
 def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
