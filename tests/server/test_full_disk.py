@@ -216,6 +216,23 @@ def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
     assert [Record.read(path).cut for path in folder.iterdir()] == ["", ""]
 
 
+def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) -> None:
+    """That match is over all the same; the next start goes on with the one after it."""
+    contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
+    slow = tmp_path / "slow"
+    slow.touch()
+    with served(contest, folder, before=sync(slow, "60")) as court, party(contest) as those:
+        those.decide(Abort())
+        those.decide(Next())
+        those.until(lambda: (those.phase, those.frame.match) == (Phase.LOBBY, 2))
+        court.kill()
+    with served(contest, folder), party(contest) as those:
+        assert those.frame.match == 2
+        those.reach(Phase.READY)
+    assert sorted(path.name[-9:] for path in folder.iterdir()) == ["-001.mcap", "-002.mcap"]
+    assert [Record.read(path).cut for path in folder.iterdir()] == ["", ""]
+
+
 def test_a_court_does_not_open_on_a_full_disk(tmp_path: Path) -> None:
     """It says why, and leaves no empty record."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
