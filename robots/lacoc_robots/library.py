@@ -15,6 +15,10 @@ from lacoc_shared.mistakes import UserError
 GROUP = "lacoc.robots"
 
 
+GAIT_NAMES = ("Loco-data.txt", "LocoTra-data.txt")
+"""What the gait files of a folder are called, by level (rules 2)."""
+
+
 class GaitFiles(NamedTuple):
     """The gait files that lie beside a robot file."""
 
@@ -56,8 +60,8 @@ def gait_files_in(folder: Path) -> GaitFiles:
         UserError: if a file can't be read.
     """
     postures, locomotion = (
-        SentFile(file.name, _content(file)) if file.exists() else None
-        for file in (folder / "Loco-data.txt", folder / "LocoTra-data.txt")
+        SentFile(name, _content(folder / name)) if (folder / name).exists() else None
+        for name in GAIT_NAMES
     )
     return GaitFiles(postures, locomotion)
 

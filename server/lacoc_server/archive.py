@@ -17,12 +17,12 @@ class Archive:
     """Where the records of a court go.
 
     Args:
-        folder: where they lie.
+        folder: where they lie; None: nothing is recorded.
         court: whose they are.
         log: told when no record can be packed.
     """
 
-    def __init__(self, folder: Path, court: str, log: CourtLog) -> None:
+    def __init__(self, folder: Path | None, court: str, log: CourtLog) -> None:
         self._folder = folder
         self._court = court
         self._log = log
@@ -33,8 +33,10 @@ class Archive:
         """Pack what an earlier court left; `match_id` is the match that is on."""
         self._aside.submit(self._pack, match_id)
 
-    def take(self, match_id: str, writer: RecordWriter) -> None:
+    def take(self, match_id: str, writer: RecordWriter | None) -> None:
         """Finish the record of a match that is over; its end is written at once."""
+        if writer is None:
+            return
         writer.end()
         self._aside.submit(self._put_away, match_id, writer)
 
@@ -56,6 +58,8 @@ class Archive:
 
         What can't be packed now waits for the next time: the end of a match or a court's start.
         """
+        if self._folder is None:
+            return
         self._packing = [one for one in self._packing if one.poll() is None]
         try:
             if match_ids := unpacked(self._folder, self._court):

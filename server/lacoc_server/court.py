@@ -86,9 +86,7 @@ class Court:
         self.metrics = CourtMetrics(settings.name)
         """Its numbers, for who watches courts."""
         self._scene = b""
-        self._archive: Archive | None = None
-        if settings.recordings is not None:
-            self._archive = Archive(settings.recordings, settings.name, self._log)
+        self._archive = Archive(settings.recordings, settings.name, self._log)
         self._pace = Pace(time.monotonic(), settings.speed, _offset_s(network.locators))
         self._inputs: list[Input] = []
         """The court's own, for the next beat."""
@@ -120,8 +118,7 @@ class Court:
         An error in the loop ends the court, and not its match: that is for the next start.
         """
         pace = self._pace
-        if self._archive is not None:
-            self._archive.pack(self.match_id)
+        self._archive.pack(self.match_id)
         try:
             while not stopping():
                 time.sleep(pace.wait_s(time.monotonic()))
@@ -134,8 +131,7 @@ class Court:
             self._journal.leave()
             raise
         self._close()
-        if self._archive is not None:
-            self._archive.close()
+        self._archive.close()
 
     def _beat(self, now_s: float) -> None:
         try:
@@ -248,8 +244,7 @@ class Court:
 
     def _close(self) -> None:
         """Finish the record of this match."""
-        if self._archive is not None and self._journal.writer is not None:
-            self._archive.take(self.match_id, self._journal.writer)
+        self._archive.take(self.match_id, self._journal.writer)
 
     def _say_health(self, now_s: float) -> None:
         pace, match = self._pace, self._journal.match

@@ -9,7 +9,13 @@ import msgspec
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
 from lacoc_arenas.bot import BotFactory
-from lacoc_robots.library import find_robot, gait_files_in, robot_folder, sample_gait_files
+from lacoc_robots.library import (
+    GAIT_NAMES,
+    find_robot,
+    gait_files_in,
+    robot_folder,
+    sample_gait_files,
+)
 from lacoc_server.journal import Journal
 from lacoc_server.match import Beat, Match
 from lacoc_server.world import World
@@ -104,7 +110,7 @@ def _require_gait(arena: arenas.Arena, files: _Files, folder: Path) -> None:
     """
     levels = arena.match.open_levels
     if not any(files[1 + level] for level in levels):
-        wanted = " or ".join(("Loco-data.txt", "LocoTra-data.txt")[level] for level in levels)
+        wanted = " or ".join(GAIT_NAMES[level] for level in levels)
         raise UserError(
             f"There is no {wanted} in {folder}, where the gait is looked for: beside the robot "
             "file, or in the folder after the @. 'lacoc gait convert Loco-data.xlsx "
