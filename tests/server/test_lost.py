@@ -14,7 +14,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
-from hall import LATE_BEATS, Hall
+from hall import Hall
 from real_cable import pull_a_real_cable
 from running import WAIT_S, free_port
 from slow_link import SlowLink
@@ -27,7 +27,7 @@ from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import DecisionReply, DecisionRequest
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
-from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
+from lacoc_shared.seat import Phase, SeatFlag
 from lacoc_shared.session import open_client
 
 pytestmark = pytest.mark.slow
@@ -52,7 +52,7 @@ def test_a_killed_controller_is_taken_back_in_any_phase(hall: Hall) -> None:
 
         def lose_and_guess(bot: subprocess.Popen[bytes]) -> None:
             """Kill the left seat's program; others try to take the seat."""
-            assert hall.stands_after(bot.kill) <= BEATS_PER_S + LATE_BEATS
+            hall.loses(bot.kill)
             for token in (hall.court.seat["right"].token, hall.court.referee.token, "guess", ""):
                 thief = Controller(session, "main", "left", token, "Thieves")
                 with pytest.raises(UserError, match="does not open seat left"):
@@ -109,8 +109,7 @@ def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
     hall.bot("right")
     hall.play()
     hall.walks()
-    waited = hall.stands_after(lambda: os.kill(bot.pid, signal.SIGSTOP))
-    assert waited <= BEATS_PER_S + LATE_BEATS
+    hall.loses(lambda: os.kill(bot.pid, signal.SIGSTOP))
     hall.walks(1)
     assert hall.left.key == 0
     os.kill(bot.pid, signal.SIGCONT)
@@ -151,12 +150,12 @@ def test_a_pulled_cable(hall: Hall) -> None:
         hall.bot("right")
         hall.play()
         hall.walks()
-        assert hall.stands_after(link.stall) <= BEATS_PER_S + LATE_BEATS
+        hall.loses(link.stall)
         hall.walks(1)
         link.flow()
         hall.until(lambda: not hall.left.flags & SeatFlag.SILENT)
         hall.walks()
-        assert hall.stands_after(link.cut) <= BEATS_PER_S + LATE_BEATS
+        hall.loses(link.cut)
         link.mend()
         hall.until(lambda: not hall.left.flags & SeatFlag.SILENT)
         hall.walks()
@@ -213,7 +212,7 @@ def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
     hall.walks()
     hall.walks(1)
     # A busy machine has it look at fewer; the court drops for the frozen ones alone.
-    assert frames >= 0.5 * before
+    assert frames >= 0.2 * before
     assert hall.health.worst_late_ms <= late_ms + WAITED_MS
     assert not any(event.kind == "silent" for event in hall.view.events)
     assert all(process.poll() is None for process in watchers)
