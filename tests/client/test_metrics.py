@@ -23,7 +23,7 @@ WAIT_S = 30.0
 
 def scrape(url: str) -> dict[tuple[str, ...], float]:
     """Every sample by its name and the values of its labels, by their names."""
-    with urllib.request.urlopen(url, timeout=10) as reply:
+    with urllib.request.urlopen(url, timeout=60) as reply:
         text = reply.read().decode()
     return {
         (sample.name, *sample.labels.values()): sample.value

@@ -21,7 +21,7 @@ from lacoc_shared.codec import decode
 from lacoc_shared.messages import Event, Frame, Health, Scene, SeatFrame, Sheet
 from lacoc_shared.seat import Phase
 
-TIMEOUT_S = 20.0
+TIMEOUT_S = 45.0
 
 
 class Refused(Exception):

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgpack
 import pytest
-from page_client import PageClient, Refused
+from page_client import TIMEOUT_S, PageClient, Refused
 from venue import REFEREE, TOKENS, Venue
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
@@ -38,7 +38,7 @@ ACTS: list[tuple[str, dict[str, Any]]] = [
 
 def get(venue: Venue, path: str, **headers: str) -> tuple[int, http.client.HTTPMessage, bytes]:
     """Fetch a path as it is, dots and all."""
-    connection = http.client.HTTPConnection("127.0.0.1", venue.web_port, timeout=20)
+    connection = http.client.HTTPConnection("127.0.0.1", venue.web_port, timeout=60)
     try:
         connection.putrequest("GET", path, skip_host="Host" in headers)
         for name, value in headers.items():
@@ -310,7 +310,7 @@ def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
     third.wait(third.closed.is_set)
     assert third.code() == TRY_LATER
     second.close()
-    deadline_s = time.monotonic() + 10
+    deadline_s = time.monotonic() + TIMEOUT_S
     while True:
         fourth = venue.page(watch=False)
         try:

@@ -5,7 +5,7 @@ import time
 
 import pytest
 from court_stub import CourtStub
-from page_client import PageClient, Refused, SleepyPage, x_of
+from page_client import TIMEOUT_S, PageClient, Refused, SleepyPage, x_of
 from venue import TOKENS, Venue
 
 from lacoc_client.gateway.wire import Kind
@@ -101,7 +101,7 @@ def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
     left.wait_own(lambda own: own.key == 2)
     left.socket.socket.settimeout(None)
     left.socket.protocol.receive_data = lambda data: None  # type: ignore[method-assign]
-    referee.wait(lambda: any(event.kind == "silent" for event in referee.events), 6)
+    referee.wait(lambda: any(event.kind == "silent" for event in referee.events))
 
 
 def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
@@ -267,7 +267,7 @@ def test_a_gateway_ends_cleanly(venue: Venue) -> None:
     web = venue.web()
     page = venue.contestant("left")
     web.signal(signal.SIGINT)
-    assert web.process.wait(15) == 0
+    assert web.process.wait(TIMEOUT_S) == 0
     page.wait(page.closed.is_set)
     assert (venue.folder / "web.log").read_text().count("Traceback") == 0
 

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.slow
 
 
 def scrape(url: str) -> dict[str, float]:
-    with urllib.request.urlopen(url, timeout=10) as reply:
+    with urllib.request.urlopen(url, timeout=60) as reply:
         text = reply.read().decode()
     return {
         sample.name.removeprefix("lacoc_gateway_"): sample.value

@@ -197,7 +197,7 @@ class CourtStub:
         self._seats[seat] = msgspec.structs.replace(self._seats[seat], **changes)
 
 
-def until(condition: Callable[[], object], timeout_s: float = 10.0) -> None:
+def until(condition: Callable[[], object], timeout_s: float = 30.0) -> None:
     """Wait for something to become true."""
     deadline_s = time.monotonic() + timeout_s
     while not condition():

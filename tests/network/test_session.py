@@ -128,7 +128,7 @@ def test_refusals_carry_their_payload(router: Session) -> None:
             time.sleep(0.001)
         assert (request.key, request.payload) == ("lacoc/main/referee/start", b"please")
         request.refuse(b"no")
-        out, _ = process.communicate(timeout=20)
+        out, _ = process.communicate(timeout=60)
     assert out == "b'no'\n"
     assert issubclass(Refused, Exception)
 
@@ -209,6 +209,6 @@ def test_a_program_that_forgets_to_close_still_ends(router: Session, end: str) -
         while process.poll() is None:
             frames.put(b"frame")
             time.sleep(0.001)
-        _, errors = process.communicate(timeout=20)
+        _, errors = process.communicate(timeout=60)
     assert process.returncode == {"pass": 0, "sys.exit(3)": 3}.get(end, 1), errors
     assert ("oops" in errors) == ("oops" in end)

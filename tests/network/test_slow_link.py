@@ -40,7 +40,7 @@ def send_back(connection: socket.socket) -> None:
 
 def connect(link: SlowLink) -> socket.socket:
     host, _, port = link.address.removeprefix("tcp/").rpartition(":")
-    return socket.create_connection((host, int(port)), timeout=10)
+    return socket.create_connection((host, int(port)), timeout=60)
 
 
 def round_trip_s(client: socket.socket, packet: bytes = b"x") -> float:

@@ -26,7 +26,7 @@ from chromium import FLAGS, NoBrowser, OpenPage, build_pages, find_chromium
 from contestant import Contestant, Sit
 from venue import Venue
 
-WAIT_MS = 15_000
+WAIT_MS = 45_000
 
 
 @pytest.fixture(scope="session")
