@@ -19,7 +19,7 @@ class Archive:
     Args:
         folder: where they lie; None: nothing is recorded.
         court: whose they are.
-        log: told when no record can be packed.
+        log: told what the disk says of a match that is over, and when no record can be packed.
     """
 
     def __init__(self, folder: Path | None, court: str, log: CourtLog) -> None:
@@ -49,6 +49,7 @@ class Archive:
     def _put_away(self, match_id: str, writer: RecordWriter) -> None:
         try:
             writer.close()
+            self._log.disk(match_id, writer.sync_trouble)
         except OSError as error:
             self._log.not_packed(match_id, error)
         self._pack(match_id)

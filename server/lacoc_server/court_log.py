@@ -49,6 +49,11 @@ class CourtLog:
             self._trouble = health.record_trouble
             say(self._trouble or "The record is written again.", kind="record")
 
+    def disk(self, match_id: str, trouble: str) -> None:
+        """Log what the disk said of the record of a match that is over, if anything."""
+        if trouble:
+            self._log.warning(trouble, match_id=match_id, kind="record")
+
     def not_packed(self, match_id: str, error: OSError) -> None:
         """Log that no record could be packed: nothing is lost by that."""
         text = f"No record is packed now: {error}. The segments stay, and are packed later."

@@ -1,15 +1,13 @@
 """What a court says in its log beside the events of its match."""
 
-import logging
-from collections.abc import Iterator
-
 import msgspec
 import pytest
-import structlog
 from structlog.testing import capture_logs
 
 from lacoc_server.court_log import CourtLog
 from lacoc_shared.messages import Event, Health, SeatHealth
+
+pytestmark = pytest.mark.usefixtures("loud")
 
 LEFT = SeatHealth(id="left", joined=True, heard_ms=9.0, commands_hz=10.0, refused={"flood": 2})
 HEALTH = Health(
@@ -22,15 +20,6 @@ HEALTH = Health(
     dropped={},
     decisions={},
 )
-
-
-@pytest.fixture(autouse=True)
-def loud() -> Iterator[None]:
-    """The log, as `start` switches it on."""
-    before = structlog.get_config()
-    structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.INFO))
-    yield
-    structlog.configure(**before)
 
 
 def test_an_event_is_a_line_with_all_it_has() -> None:

@@ -1,0 +1,53 @@
+"""The records of matches that are over: what their disk says last is in the log."""
+
+import os
+from pathlib import Path
+
+import pytest
+from structlog.testing import capture_logs
+
+from lacoc_server.archive import Archive
+from lacoc_server.court_log import CourtLog
+from lacoc_shared.record.schema import FORMAT, Header, Setup
+from lacoc_shared.record.writer import RecordWriter
+
+pytestmark = pytest.mark.usefixtures("loud")
+
+MATCH = "main-20260501-100000-001"
+HEADER = Header(
+    format=FORMAT,
+    match_id=MATCH,
+    segment=1,
+    first_beat=0,
+    started="2026-05-01T10:00:00+00:00",
+    versions={},
+    setup=Setup(court="main", match=1, match_id=MATCH, arena="othello", settings={}, limits={}),
+)
+
+
+def said(folder: Path, writer: RecordWriter) -> list[str]:
+    """What the log has once a match's record is put away."""
+    with capture_logs() as lines:
+        archive = Archive(folder, "main", CourtLog("main"))
+        archive.take(MATCH, writer)
+        archive.close()
+    assert all((line["match_id"], line["kind"]) == (MATCH, "record") for line in lines)
+    return [line["event"] for line in lines]
+
+
+def test_a_match_that_the_disk_has_is_no_line(tmp_path: Path) -> None:
+    """The log is for what an organiser must know."""
+    assert said(tmp_path, RecordWriter(tmp_path, HEADER)) == []
+
+
+def test_the_last_that_a_disk_said_is_logged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody looks at that match any more: the organiser learns it from the log."""
+    writer = RecordWriter(tmp_path, HEADER)
+
+    def fails(descriptor: int) -> None:
+        raise OSError(5, "Input/output error")
+
+    monkeypatch.setattr(os, "fsync", fails)
+    assert any("reports: Input/output error" in line for line in said(tmp_path, writer))
