@@ -1,6 +1,6 @@
 /** Clocks, scores and states in words, the same on every page. */
 
-import { t } from "../i18n";
+import { type MessageName, t } from "../i18n";
 import type { Match } from "./court";
 import { type Event, type Frame, Phase, SeatFlag, type SeatFrame, type Sheet } from "./wire";
 
@@ -34,6 +34,13 @@ export function team(sheet: Sheet, index: number): string {
 /** A seat's name in the reader's language. */
 export function seatName(id: string): string {
   return id === "left" || id === "right" || id === "solo" ? t(`seat.${id}`) : id;
+}
+
+/** A marker as one says it: "corner 2". */
+export function markerName(name: string): string {
+  const [, kind, number] = /^(corner|flag)(\d+)$/.exec(name) ?? [];
+  if (kind) return t(`marker.${kind}` as MessageName, { number: number! });
+  return /^c\d+r\d+$/.test(name) ? t("marker.disc", { name }) : name;
 }
 
 /** Why a seat's keys do nothing now, or that it is not heard; "" if all is well. */

@@ -4,8 +4,8 @@ import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import type { Match } from "../core/court";
 import type { Event } from "../core/wire";
-import { BEATS_PER_S, team } from "../core/words";
-import { type MessageName, said, t } from "../i18n";
+import { BEATS_PER_S, markerName, team } from "../core/words";
+import { said, t } from "../i18n";
 import { SeatMark } from "./score";
 import "./thirds.css";
 
@@ -89,13 +89,6 @@ export function sentence(match: Match, event: Event): string {
     default:
       return said(event.text);
   }
-}
-
-/** A marker as one says it: "corner 2". */
-export function markerName(name: string): string {
-  const [, kind, number] = /^(corner|flag)(\d+)$/.exec(name) ?? [];
-  if (kind) return t(`marker.${kind}` as MessageName, { number: number! });
-  return /^c\d+r\d+$/.test(name) ? t("marker.disc", { name }) : name;
 }
 
 /** Whether a third shows an event. */

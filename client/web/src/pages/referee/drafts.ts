@@ -2,9 +2,16 @@
 
 import type { Court } from "../../core/court";
 import type { Decision, DecisionName } from "../../core/wire";
-import { BEATS_PER_S, clock, clockTicks, outcome, seatName, team } from "../../core/words";
+import {
+  BEATS_PER_S,
+  clock,
+  clockTicks,
+  markerName,
+  outcome,
+  seatName,
+  team,
+} from "../../core/words";
 import { t } from "../../i18n";
-import { markerName } from "../../ui/thirds";
 
 /** A number that a decision needs. */
 interface Amount {
