@@ -1,26 +1,29 @@
 """Watch a court: frames, events from the first on, the sheet and the scene."""
 
-import contextlib
 import time
 from collections.abc import Callable
 from typing import TypeVar
 
 import msgspec
 
-from lacoc_client.asking import ANSWER_S, NoCourt, fetch, understand
+from lacoc_client.asking import fetch, understand
 from lacoc_client.event_log import EventLog
 from lacoc_shared.codec import message_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import Mail, Session
+from lacoc_shared.session import Mail, NoReply, Question, Refused, Session
 
 T = TypeVar("T")
 
 _EVENTS_DEPTH = 4096
 _FETCH_TRIES = 3
 _STRAYS = 5
+_SHEET_S = 0.2
+"""A frame's sheet comes by itself, a moment after it; then it is asked for."""
 _OTHER_SCENE_S = 3.0
+_ANSWER_S = 2.0
+"""What lacks is asked for again when it has not come by then."""
 
 
 class _Version(msgspec.Struct):
@@ -31,7 +34,8 @@ class Spectator:
     """What one sees of a court; complete at once, also for a late comer.
 
     One thread uses it. `poll` or `wait_frame` bring it up to date; the attributes never
-    change otherwise.
+    change otherwise. What was not heard is asked for and comes later: no frame waits for it, and
+    no command of who watches because they steer.
 
     Args:
         session: an open client session.
@@ -55,7 +59,8 @@ class Spectator:
         self.sheet: Sheet
         """Who plays what; always that of the newest frame's scene."""
         self._sheet_hash = b""
-        self._fetch_sheet()
+        self._lacking_sheet = _Lacking(session, self.keys.sheet)
+        self._read_sheet(fetch(session, self.keys, self.keys.sheet))
         self.frame: Frame | None = None
         """The newest frame."""
         self.frame_s = time.monotonic()
@@ -67,7 +72,8 @@ class Spectator:
         self._log: EventLog[Event] = EventLog()
         self._strays = 0
         """Messages in a row that make no sense."""
-        self._fetch_events(ANSWER_S)
+        self._lacking_events = _Lacking(session, self.keys.event)
+        self._read_events(fetch(session, self.keys, self.keys.event))
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -84,7 +90,12 @@ class Spectator:
             UserError: if the court's messages are not understood.
         """
         told: Health | None = None
-        while (mail := self._events.take()) is not None:
+        if (events := self._lacking_events.take()) is not None:
+            self._read_events(events)
+        if (sheet := self._lacking_sheet.take()) is not None:
+            self._read_sheet(sheet)
+        # A list of events that is under way says what was before those that come now.
+        while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             if (event := self._read(mail, Event)) is not None:
                 self._take_in(event)
         if (mail := self._healths.take()) is not None:
@@ -92,6 +103,7 @@ class Spectator:
             self.health = told or self.health
         newest = self._frames.take()
         if (mail := self._sheets.take()) is not None and self._read(mail, Sheet) is not None:
+            self._lacking_sheet.forget()
             self._read_sheet(mail.payload)
         if told is not None:
             self._ask_for_what_lacks(told)
@@ -140,7 +152,7 @@ class Spectator:
             scene = fetch(self._session, self.keys, self.keys.scene)
             if message_hash(scene) == self.sheet.scene:
                 return understand(scene, Scene)
-            self._fetch_sheet()
+            self._read_sheet(fetch(self._session, self.keys, self.keys.sheet))
         raise UserError(_OTHER_SCENE)
 
     def _read(self, mail: Mail, kind: type[T]) -> T | None:
@@ -156,16 +168,12 @@ class Spectator:
             message = understand(mail.payload, kind)
         except UserError:
             self._strays += 1
-            if self._strays > _STRAYS:
+            if self._strays > _STRAYS and not self._lacking_sheet.is_asked:
                 raise
-            with contextlib.suppress(NoCourt):  # it went away just now
-                self._fetch_sheet(timeout_s=1.0)
+            self._lacking_sheet.ask()
             return None
         self._strays = 0
         return message
-
-    def _fetch_sheet(self, timeout_s: float = ANSWER_S) -> None:
-        self._read_sheet(fetch(self._session, self.keys, self.keys.sheet, timeout_s=timeout_s))
 
     def _read_sheet(self, payload: bytes) -> None:
         version = understand(payload, _Version).protocol
@@ -178,34 +186,30 @@ class Spectator:
 
     def _ask_for_what_lacks(self, told: Health) -> None:
         """Get what was sent while this was away, or was dropped on a slow link."""
-        try:
-            if self._log.differs(told.match, told.beat, told.events):
-                self._fetch_events(timeout_s=1.0)
-            if told.sheet not in (b"", self._sheet_hash):
-                self._fetch_sheet(timeout_s=1.0)
-        except NoCourt:  # it went away just now
-            return
+        if self._log.differs(told.match, told.beat, told.events):
+            self._lacking_events.ask()
+        if told.sheet not in (b"", self._sheet_hash):
+            self._lacking_sheet.ask()
 
     def _has_sheet_of(self, frame: Frame) -> bool:
-        """Whether the sheet belongs to a frame; if the scene has changed it is asked for.
+        """Whether the sheet belongs to a frame; if it does not come it is asked for.
 
         The court sends the frame a moment before the sheet, and the scene may change again: a
         frame whose sheet is not there is passed over.
         """
-        if frame.scene != self.sheet.scene:
-            with contextlib.suppress(NoCourt):  # it went away just now: the next frame asks again
-                self._fetch_sheet(timeout_s=1.0)
         if frame.scene == self.sheet.scene:
             self._other_since_s = None
             return True
         self._other_since_s = self._other_since_s or self.frame_s
-        if self.frame_s - self._other_since_s > _OTHER_SCENE_S:
+        waited_s = self.frame_s - self._other_since_s
+        if waited_s > _OTHER_SCENE_S:
             raise UserError(_OTHER_SCENE)
+        if waited_s > _SHEET_S:
+            self._lacking_sheet.ask()
         return False
 
-    def _fetch_events(self, timeout_s: float) -> None:
-        events = fetch(self._session, self.keys, self.keys.event, timeout_s=timeout_s)
-        new = self._log.restore([(one, one) for one in understand(events, tuple[Event, ...])])
+    def _read_events(self, payload: bytes) -> None:
+        new = self._log.restore([(one, one) for one in understand(payload, tuple[Event, ...])])
         for event in new:
             self._keep(event)
         self._new_events.sort(key=lambda event: (event.match, event.number))
@@ -220,6 +224,42 @@ class Spectator:
             last = (event.match - 1, event.match)
             self._new_events = [one for one in self._new_events if one.match in last]
         self._new_events.append(event)
+
+
+class _Lacking:
+    """What did not come by itself: it is asked for, once at a time."""
+
+    def __init__(self, session: Session, key: str) -> None:
+        self._session = session
+        self._key = key
+        self._question: Question | None = None
+
+    @property
+    def is_asked(self) -> bool:
+        """Whether the answer is under way."""
+        return self._question is not None
+
+    def ask(self) -> None:
+        """Ask, unless the answer is under way."""
+        if self._question is None:
+            self._question = self._session.question(self._key, timeout_s=_ANSWER_S)
+
+    def forget(self) -> None:
+        """It came by itself."""
+        self._question = None
+
+    def take(self) -> bytes | None:
+        """The answer, once; None while it is not there."""
+        if self._question is None:
+            return None
+        try:
+            answer = self._question.take()
+        except (NoReply, Refused):  # it went away just now: who still lacks it asks again
+            self._question = None
+            return None
+        if answer is not None:
+            self._question = None
+        return answer
 
 
 _OTHER_SCENE = (

@@ -102,6 +102,42 @@ class Mailbox:
         return bool(self._mails) or self._arrived.wait(timeout_s)
 
 
+class Question:
+    """A request that was sent, and its answer."""
+
+    def __init__(self, key: str, replies: "zenoh.Handler[zenoh.Reply]") -> None:
+        self._key = key
+        self._replies = replies
+
+    def take(self) -> bytes | None:
+        """The answer, or None while there is none; never blocks.
+
+        Raises:
+            NoReply: see `Session.ask`.
+            Refused: if the answer is an error.
+        """
+        try:
+            reply = self._replies.try_recv()
+        except zenoh.ZError:  # none will come
+            raise NoReply(self._key) from None
+        return None if reply is None else self._read(reply)
+
+    def wait(self) -> bytes:
+        """Wait for the answer; raises as `take`."""
+        for reply in self._replies:
+            return self._read(reply)
+        raise NoReply(self._key)
+
+    def _read(self, reply: zenoh.Reply) -> bytes:
+        if reply.ok is not None:
+            return reply.ok.payload.to_bytes()
+        assert reply.err is not None
+        error = reply.err.payload.to_bytes()
+        if error == b"Timeout":  # Zenoh's own word
+            raise TooLate(self._key)
+        raise Refused(error)
+
+
 class Request:
     """A request that waits for its answer; without one the asker sees `NoReply`."""
 
@@ -199,18 +235,14 @@ class Session:
             NoReply: if nobody was asked (or is allowed to answer), or the link broke.
             Refused: if the answer is an error.
         """
+        return self.question(key, payload, timeout_s).wait()
+
+    def question(self, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> Question:
+        """Send a request; the asker looks for its answer, or waits, when it likes."""
         replies = self._session.get(
             key, payload=payload, timeout=timeout_s, consolidation=zenoh.ConsolidationMode.NONE
         )
-        for reply in replies:
-            if reply.ok is not None:
-                return reply.ok.payload.to_bytes()
-            assert reply.err is not None
-            error = reply.err.payload.to_bytes()
-            if error == b"Timeout":  # Zenoh's own word
-                raise TooLate(key)
-            raise Refused(error)
-        raise NoReply(key)
+        return Question(key, replies)
 
     def routers(self) -> tuple[str, ...]:
         """Identities of the courts' sessions that this one is connected to now."""

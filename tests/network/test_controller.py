@@ -1,13 +1,16 @@
 """A controller at a real court over a real network."""
 
 import time
+from typing import Any
 
 import msgspec
 import pytest
 from court_stub import KEYS, TOKENS, WRONG, CourtStub, until
+from slow_link import SlowLink
 
 from lacoc_client.asking import NotNow
 from lacoc_client.controller import Controller, Hold
+from lacoc_server.network import CourtNetwork
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import HeardSeat, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
@@ -234,6 +237,32 @@ def test_a_controller_that_stops_is_silent_and_heard_again(
     until(lambda: SilentSeat(0) in court.inputs)
     one.poll(time.monotonic())
     until(lambda: court.inputs[-1] == HeardSeat(0))
+
+
+@pytest.mark.slow
+def test_no_seat_is_lost_for_what_its_program_did_not_hear(
+    court: CourtStub, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Events and sheets that did not come are asked for beside the command that is repeated.
+
+    An answer takes nearly a second here, and who is silent for one stands.
+    """
+    with SlowLink(court.address, delay_s=0.45) as link, open_client([link.address]) as session:
+        one = held(session)
+        asked: list[str] = []
+        begin = Session.question
+
+        def question(self: Session, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> Any:
+            asked.append(key)
+            return begin(self, key, payload, timeout_s)
+
+        monkeypatch.setattr(Session, "question", question)
+        monkeypatch.setattr(CourtNetwork, "newest_event", 99)
+        monkeypatch.setattr(CourtNetwork, "sheet_hash", b"another!")
+        seats = court.network.seat_health
+        until(lambda: one.wait_frame(0.05) and min(map(asked.count, (KEYS.event, KEYS.sheet))) > 2)
+        assert seats(time.monotonic())[0].commands_hz >= 8
+        assert SilentSeat(0) not in court.inputs
 
 
 @pytest.mark.slow
