@@ -90,14 +90,8 @@ class Spectator:
             UserError: if the court's messages are not understood.
         """
         told: Health | None = None
-        if (events := self._lacking_events.take()) is not None:
-            self._read_events(events)
-        if (sheet := self._lacking_sheet.take()) is not None:
-            self._read_sheet(sheet)
-        # A list of events that is under way says what was before those that come now.
-        while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
-            if (event := self._read(mail, Event)) is not None:
-                self._take_in(event)
+        self._take_answers()
+        self._take_events()
         if (mail := self._healths.take()) is not None:
             told = self._read(mail, Health)
             self.health = told or self.health
@@ -214,9 +208,19 @@ class Spectator:
             self._keep(event)
         self._new_events.sort(key=lambda event: (event.match, event.number))
 
-    def _take_in(self, event: Event) -> None:
-        if self._log.add(event, event):
-            self._keep(event)
+    def _take_answers(self) -> None:
+        """Take in what was asked for."""
+        if (events := self._lacking_events.take()) is not None:
+            self._read_events(events)
+        if (sheet := self._lacking_sheet.take()) is not None:
+            self._read_sheet(sheet)
+
+    def _take_events(self) -> None:
+        """Take in those that came; while a list is under way they wait, since it is older."""
+        while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
+            event = self._read(mail, Event)
+            if event is not None and self._log.add(event, event):
+                self._keep(event)
 
     def _keep(self, event: Event) -> None:
         """Keep a new event until it is taken; of matches before the last one nobody wants any."""
