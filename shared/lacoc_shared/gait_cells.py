@@ -89,13 +89,14 @@ def degrees_of(angle_rad: float) -> float:
     An angle that came from a file always has one. For any other the nearest is taken.
     """
     near = math.degrees(angle_rad)
-    rounded = (float(f"{near:.{digits}g}") for digits in range(1, 17))
-    # The way to radians and back rounds a few times, so the number may lie just beside.
-    neighbours = (near + steps * math.ulp(near) for steps in (0, 1, -1, 2, -2, 3, -3))
-    for value in (*rounded, *neighbours):
+    for digits in range(1, 16):
+        value = float(f"{near:.{digits}g}")
         if angle_of(value) == angle_rad:
             return value + 0.0  # never "-0"
-    return near
+    # The way to radians and back rounds a few times, so the number may lie just beside.
+    beside = (near + steps * math.ulp(near) for steps in (0, 1, -1, 2, -2, 3, -3))
+    same = [value for value in beside if angle_of(value) == angle_rad]
+    return min(same, key=lambda value: len(number_text(value)), default=near)
 
 
 def number_text(value: float) -> str:

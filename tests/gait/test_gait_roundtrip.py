@@ -67,6 +67,7 @@ patient = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @example(-5e-324)
 @example(1e-310)
 @example(149.99999999999997)
+@example(4.985737865549591e-231)
 def test_an_angle_is_written_without_loss(value_deg):
     """Rules 2: the number written for an angle of a file reads back as the same bits."""
     angle_rad = angle_of(value_deg)

@@ -110,6 +110,7 @@ class Hall:
         assert self.left.key == 0
         shown = self.frame.beat
         self.until(lambda: (self.health.seats[0].heard_ms or 0) > 1000)
+        self.until(lambda: self.silences(0)[-1:] >= [lost])
         (silence,) = (beat for beat in self.silences(0) if beat >= lost)
         assert min(shown, silence) - lost <= SHOWN_BEATS
 

@@ -18,7 +18,7 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.seat import Phase
 from lacoc_shared.session import Session, open_client
 
-WAIT_S = 30.0
+WAIT_S = 60.0
 
 
 def free_port() -> int:
