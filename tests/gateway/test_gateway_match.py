@@ -5,7 +5,7 @@ import time
 
 import pytest
 from court_stub import CourtStub
-from page_client import TIMEOUT_S, PageClient, Refused, SleepyPage, x_of
+from page_client import PageClient, Refused, SleepyPage, x_of
 from venue import TOKENS, Venue
 
 from lacoc_client.gateway.wire import Kind
@@ -77,12 +77,15 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     left, _, referee = started(venue)
     left.ask("key", **FORWARD)
     left.wait_own(lambda own: own.key == 2)
+    assert left.frame is not None
+    before = left.frame.beat
     left.close()
     assert referee.frame is not None
     gone = referee.frame.beat
     referee.wait(lambda: any(event.kind == "silent" for event in referee.events))
     silent = next(event for event in referee.events if event.kind == "silent")
-    assert 0 < silent.beat - gone <= 2 * BEATS_PER_S  # it is one; a busy machine sees late
+    assert silent.beat - before > 0.9 * BEATS_PER_S
+    assert silent.beat - gone < 2.5 * BEATS_PER_S
     referee.wait(lambda: referee.frame is not None and referee.frame.seats[0].key == 0)
 
     back = venue.page(venue.key)
@@ -101,7 +104,7 @@ def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
     left.wait_own(lambda own: own.key == 2)
     left.socket.socket.settimeout(None)
     left.socket.protocol.receive_data = lambda data: None  # type: ignore[method-assign]
-    referee.wait(lambda: any(event.kind == "silent" for event in referee.events))
+    referee.wait(lambda: any(event.kind == "silent" for event in referee.events), 6)
 
 
 def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
@@ -267,7 +270,7 @@ def test_a_gateway_ends_cleanly(venue: Venue) -> None:
     web = venue.web()
     page = venue.contestant("left")
     web.signal(signal.SIGINT)
-    assert web.process.wait(TIMEOUT_S) == 0
+    assert web.process.wait(15) == 0
     page.wait(page.closed.is_set)
     assert (venue.folder / "web.log").read_text().count("Traceback") == 0
 

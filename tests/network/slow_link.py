@@ -3,6 +3,7 @@
 import asyncio
 import random
 import threading
+from collections.abc import Callable
 from typing import Self
 
 
@@ -61,19 +62,25 @@ class SlowLink:
 
     def stall(self) -> None:
         """Let nothing through, and tell nobody: a pulled cable."""
-        self._loop.call_soon_threadsafe(self._flowing.clear)
+        self._do(self._flowing.clear)
 
     def flow(self) -> None:
         """Let through again, first of all what waited."""
-        self._loop.call_soon_threadsafe(self._flowing.set)
+        self._do(self._flowing.set)
 
     def cut(self) -> None:
         """Break all connections and refuse new ones; what was on its way is lost."""
-        self._loop.call_soon_threadsafe(self._cut)
+        self._do(self._cut)
 
     def mend(self) -> None:
         """Take connections again."""
-        self._loop.call_soon_threadsafe(self._mend)
+        self._do(self._mend)
+
+    def _do(self, what: Callable[[], None]) -> None:
+        """Do it on the link's thread; it is done when this returns."""
+        done = threading.Event()
+        self._loop.call_soon_threadsafe(lambda: (what(), done.set()))
+        assert done.wait(10.0)
 
     def _cut(self) -> None:
         self._is_cut = True

@@ -36,8 +36,6 @@ LINK_S = 3.0
 """A link that says nothing for so long may be given up."""
 WATCHED_BEATS = 600
 """Longer than the ten seconds after which a connection that says nothing is given up."""
-HELD_UP = 1
-"""How often a busy machine may hold a program up for a whole second, in a test."""
 WAITED_MS = 2000.0
 """A court that waits for a frozen watcher is this late; a busy machine is not."""
 
@@ -118,7 +116,8 @@ def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
     hall.until(lambda: not hall.left.flags & SeatFlag.SILENT)
     hall.walks()
     record = Record.read(next((hall.folder / "recordings").glob("*.live.mcap")))
-    assert all(SilentSeat(0) in record.inputs[beat] for beat in hall.silences(0))
+    (silence,) = hall.silences()
+    assert SilentSeat(0) in record.inputs[silence.beat]
 
 
 @pytest.mark.parametrize("answer_s", [1.0, 10.0])
@@ -170,7 +169,7 @@ def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
         hall.play()
         for _ in range(6):
             hall.walks()
-        assert len(hall.silences(0)) <= HELD_UP
+        assert hall.silences() == []
 
 
 def test_a_real_cable(tmp_path: Path) -> None:
@@ -213,7 +212,7 @@ def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
     hall.walks()
     hall.walks(1)
     # A busy machine has it look at fewer; the court drops for the frozen ones alone.
-    assert frames >= 0.2 * before
+    assert frames >= 0.5 * before
     assert hall.health.worst_late_ms <= late_ms + WAITED_MS
-    assert max(len(hall.silences(seat)) for seat in (0, 1)) <= HELD_UP
+    assert hall.silences() == []
     assert all(process.poll() is None for process in watchers)
