@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from benchmarks.paths import BarePath, keys_at, setup_of, started
 from lacoc_arenas import arena as arenas
-from lacoc_server.match import Match
+from lacoc_server.match.match import Match
 from lacoc_server.simulate import player, simulate
-from lacoc_server.world import World
+from lacoc_server.world.world import World
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEAT_S
 

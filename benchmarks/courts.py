@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.processes import ask, court, read_line, started, used_s
-from lacoc_server.pace import Pace
+from lacoc_server.court.pace import Pace
 from lacoc_shared.seat import Phase
 
 AIM = 0.001

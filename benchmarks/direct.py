@@ -13,7 +13,7 @@ import time
 from contextlib import ExitStack
 
 from lacoc_shared.keyspace import Keys
-from lacoc_shared.session import Mailbox, open_client
+from lacoc_shared.network.session import Mailbox, open_client
 
 PROBES = 10
 _PROBE_DEPTH = 4096

@@ -23,9 +23,9 @@ from lacoc_shared.codec import encode
 from lacoc_shared.decisions import Start
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import Command
+from lacoc_shared.network.session import open_client
 from lacoc_shared.seal import command_mac
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import open_client
 
 RATE_HZ = 10_000
 SETTLE_BEATS = 25

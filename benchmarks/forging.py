@@ -28,19 +28,22 @@ import msgspec
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
-from lacoc_server.contest_keys import make_keys
-from lacoc_shared import cli, entrances, network_config, seal
-from lacoc_shared import contest as contests
-from lacoc_shared.access import Access
+from lacoc_server.keys.make import make_keys
+from lacoc_shared import seal
 from lacoc_shared.codec import decode, encode
+from lacoc_shared.command import cli
+from lacoc_shared.contest import entrances
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.decisions import Adjust, Start
 from lacoc_shared.inputs import Decide, KeySeat
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import Command, DecisionRequest
+from lacoc_shared.network import config as network_config
+from lacoc_shared.network.session import NoReply, Refused, Session, open_client
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seal import MAC_BYTES, SECRET_BYTES, command_mac, new_token
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import NoReply, Refused, Session, open_client
 
 KEYS = Keys("main")
 SEATS = ("left", "right")

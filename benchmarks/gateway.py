@@ -21,8 +21,8 @@ from benchmarks.processes import LACOC, Opened, ask, read_line, started, used_s
 from benchmarks.processes import court as open_court
 from lacoc_client.controller import Controller
 from lacoc_client.spectator import Spectator
+from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import Session, open_client
 
 _SETTLE_S = 1.0
 

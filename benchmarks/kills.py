@@ -26,16 +26,16 @@ from pathlib import Path
 
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
-from lacoc_server.replay import Verdict, verify
+from lacoc_server.journal.replay import Verdict, verify
 from lacoc_shared.codec import decode
-from lacoc_shared.contest import Court, load
+from lacoc_shared.contest.file import Court, load
 from lacoc_shared.decisions import Adjust, Decision, Declare, Halt, Official, Resume, Start
 from lacoc_shared.messages import DecisionReply, Frame
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.record.files import record_paths
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import Session, open_client
 
 P = Phase
 BACK_IN = {P.PLAYING: P.HALTED, P.COUNTDOWN: P.HALTED}

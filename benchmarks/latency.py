@@ -10,8 +10,8 @@ from typing import Any
 from benchmarks.echo import PING, PONG
 from benchmarks.processes import court, read_line, started
 from lacoc_client.controller import Controller
+from lacoc_shared.network.session import Mailbox, Publisher, open_client
 from lacoc_shared.seat import BEAT_S, Phase
-from lacoc_shared.session import Mailbox, Publisher, open_client
 
 
 def latency(rounds: int) -> dict[str, Any]:

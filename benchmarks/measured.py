@@ -20,11 +20,11 @@ from typing import Any
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
-from lacoc_server.court import Court, CourtSettings
-from lacoc_server.decision_desk import DecisionDesk
-from lacoc_server.entry import Admission
-from lacoc_server.inbox import Inbox
-from lacoc_server.network import CourtNetwork
+from lacoc_server.court.court import Court, CourtSettings
+from lacoc_server.doors.decision_desk import DecisionDesk
+from lacoc_server.doors.inbox import Inbox
+from lacoc_server.doors.network import CourtNetwork
+from lacoc_server.match.entry import Admission
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
 from lacoc_shared.seal import hash_token, new_token

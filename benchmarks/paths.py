@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_server.journal import Journal
-from lacoc_server.match import Match
-from lacoc_server.world import SUBSTEPS, World
+from lacoc_server.journal.journal import Journal
+from lacoc_server.match.match import Match
+from lacoc_server.world.world import SUBSTEPS, World
 from lacoc_shared.decisions import Start
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.messages import SentFile

@@ -15,8 +15,8 @@ from typing import Any
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_shared.decisions import Start
+from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import open_client
 
 KEYS_HZ = 2.0
 """A new key for each seat; the last one is repeated by the controller meanwhile."""

@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 from prometheus_client.parser import text_string_to_metric_families
 
 from lacoc_client.controller import Controller
+from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import open_client
 
 _COURT = ("serve", "--json", "--arena", "practice", "--listen", "tcp/127.0.0.1:0")
 _METRICS = ("--metrics", "127.0.0.1:0")

@@ -31,9 +31,9 @@ from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_shared.decisions import Decision, Next, Official, Start
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import open_client
 from lacoc_shared.record.files import packed_path
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import open_client
 
 MOST_GROWTH = 0.02
 WARM_SHARE = 1 / 6

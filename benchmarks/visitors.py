@@ -20,7 +20,7 @@ from urllib.parse import urlsplit
 from benchmarks.spectators import Page
 from lacoc_client.spectator import Spectator
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import open_client
+from lacoc_shared.network.session import open_client
 
 STAY_S = {b"come": 15.0, b"rush": 2.0}
 """On average; some leave at once."""

@@ -16,11 +16,11 @@ import msgspec
 
 from lacoc_arenas.bot import BotFactory
 from lacoc_arenas.game import AnyGame
-from lacoc_shared import plugins
-from lacoc_shared.gait import Level
+from lacoc_shared.command import plugins
+from lacoc_shared.contest.toml_text import BadToml, read_toml
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import Colour, Pattern
-from lacoc_shared.toml_text import BadToml, read_toml
 
 _GROUP = "lacoc.arenas"
 _FILE = "arena.toml"

@@ -8,7 +8,7 @@ learning environment.
 from collections.abc import Callable
 from typing import NamedTuple
 
-from lacoc_shared.gait import Level
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame, Sheet
 
 

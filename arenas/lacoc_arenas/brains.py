@@ -8,9 +8,9 @@ from typing import Any
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.bot import BotFactory, Brain, Key
 from lacoc_arenas.checked_bot import broken, checked
-from lacoc_shared import plugins
 from lacoc_shared.codec import decode
-from lacoc_shared.gait import Level
+from lacoc_shared.command import plugins
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat, KeySeat
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError

@@ -9,7 +9,7 @@ from struct import Struct
 from typing import NamedTuple
 
 from lacoc_arenas.bot import Brain, Key
-from lacoc_shared.gait import JOINTS_PER_LEG, Level
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, Level
 from lacoc_shared.messages import Frame, SeatFrame, Sheet
 from lacoc_shared.seat import BEATS_PER_S, RESTART_KEY
 

@@ -9,7 +9,7 @@ from lacoc_shared import codec
 from lacoc_shared.keyspace import EVERY_COURT, Keys
 from lacoc_shared.messages import PROTOCOL, Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
-from lacoc_shared.session import NoReply, Refused, Session, TooLate
+from lacoc_shared.network.session import NoReply, Refused, Session, TooLate
 
 T = TypeVar("T")
 

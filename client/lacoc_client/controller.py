@@ -23,8 +23,8 @@ from lacoc_shared.messages import (
     SentFile,
 )
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.network.session import Session
 from lacoc_shared.seat import NO_SENTENCES, REPEATS_HZ
-from lacoc_shared.session import Session
 
 REPEAT_S = 1 / REPEATS_HZ
 SILENT_AFTER_S = 0.5

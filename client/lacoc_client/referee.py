@@ -4,7 +4,7 @@ from lacoc_client.asking import ask
 from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import DecisionReply, DecisionRequest, Done, Enter
-from lacoc_shared.session import Session
+from lacoc_shared.network.session import Session
 
 
 class RefereeClient:

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_shared.gait import JOINTS_PER_LEG, LocomotionTable, PostureTable
-from lacoc_shared.gait_cells import leg_labels
-from lacoc_shared.gait_text import write_gait
-from lacoc_shared.gait_workbook import read_gait_file, read_workbook
+from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, LocomotionTable, PostureTable
+from lacoc_shared.gait.text import write_gait
+from lacoc_shared.gait.workbook import read_gait_file, read_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 

@@ -12,7 +12,7 @@ from lacoc_shared.codec import message_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import Mail, NoReply, Question, Refused, Session
+from lacoc_shared.network.session import Mail, NoReply, Question, Refused, Session
 
 T = TypeVar("T")
 

@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 
 from lacoc_shared import decisions, messages, mistakes
-from lacoc_shared.gait import Level
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.record import schema
 from lacoc_shared.seat import No, Phase, SeatFlag
 

@@ -11,10 +11,10 @@ from rich.text import Text
 from lacoc_robots.library import find_robot, installed_robots
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
-from lacoc_robots.spec import read_robot
-from lacoc_shared import contest as contests
-from lacoc_shared import options, screen
-from lacoc_shared.keep import save
+from lacoc_robots.robot_file import read_robot
+from lacoc_shared.command import options, screen
+from lacoc_shared.command.keep import save
+from lacoc_shared.contest import file as contests
 
 app = typer.Typer(
     help="Check a robot file, export it as MJCF, list the robots there are.",

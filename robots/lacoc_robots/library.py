@@ -8,7 +8,7 @@ A robot's folder holds `robot.toml`, and its sample gait as `Loco-data.txt` and
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_shared import plugins
+from lacoc_shared.command import plugins
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 

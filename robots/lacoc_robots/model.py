@@ -8,7 +8,7 @@ import mujoco as mj
 
 from lacoc_robots.leg import LegSpec
 from lacoc_robots.robot import RobotSpec
-from lacoc_shared.gait import JOINTS_PER_LEG
+from lacoc_shared.gait.tables import JOINTS_PER_LEG
 
 TIMESTEP_S = 0.002
 STEPS_PER_TICK = 10

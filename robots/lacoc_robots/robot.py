@@ -6,7 +6,7 @@ from typing import Literal
 import msgspec
 
 from lacoc_robots.leg import Capsule, LegSpec, Point
-from lacoc_shared.gait import JOINTS_PER_LEG, Posture
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, Posture
 
 
 class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):

@@ -16,9 +16,9 @@ from lacoc_robots.library import (
     robot_folder,
     sample_gait_files,
 )
-from lacoc_server.journal import Journal
-from lacoc_server.match import Beat, Match
-from lacoc_server.world import World
+from lacoc_server.journal.journal import Journal
+from lacoc_server.match.match import Beat, Match
+from lacoc_server.world.world import World
 from lacoc_shared.decisions import Abort, Official, Start
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.messages import Frame, Refusal, SentFile

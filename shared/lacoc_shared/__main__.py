@@ -2,6 +2,6 @@
 
 import sys
 
-from lacoc_shared.cli import main
+from lacoc_shared.command.cli import main
 
 sys.exit(main())

@@ -1,6 +1,6 @@
 """The referee's decisions (rules 4; workshop 5-1 rule 8, 5-2 rule 9), as small values.
 
-What each does and when it is legal is the court's to say (`lacoc_server.referee`);
+What each does and when it is legal is the court's to say (`lacoc_server.match.referee`);
 here is only what both ends must agree on: the names and the arguments. A seat is
 named by its id ("left"), a marker by its name ("c2r3", "corner0", "flag7").
 """

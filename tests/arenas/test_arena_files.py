@@ -14,8 +14,8 @@ import pytest
 
 from lacoc_arenas import arena
 from lacoc_arenas.game import LEFT, RobotView
-from lacoc_shared import plugins
-from lacoc_shared.gait import Level
+from lacoc_shared.command import plugins
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
 
 mujoco = pytest.importorskip("mujoco")

@@ -14,11 +14,11 @@ from court_process import OpenCourt, environment
 from court_stub import CourtStub
 from keyed import KeyedCourt, keyed_file
 
-from lacoc_client import doctor
-from lacoc_client.doctor import Status
-from lacoc_client.doctor_link import link
-from lacoc_shared import cli
-from lacoc_shared.access import Access
+from lacoc_client.doctor import machine as doctor
+from lacoc_client.doctor.link import link
+from lacoc_client.doctor.machine import Status
+from lacoc_shared.command import cli
+from lacoc_shared.contest.invitation import Access
 
 
 @pytest.fixture

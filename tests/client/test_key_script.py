@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.key_script import KeyScript, PipeKeys
+from lacoc_client.terminal.key_script import KeyScript, PipeKeys
 
 BEAT_S = 0.02
 

@@ -13,7 +13,7 @@ from court_process import CourtProcess, OpenCourt
 
 from lacoc_client.asking import NoAnswer
 from lacoc_client.referee import RefereeClient
-from lacoc_shared import cli
+from lacoc_shared.command import cli
 from lacoc_shared.decisions import DECISIONS
 
 pytestmark = pytest.mark.slow

@@ -11,10 +11,10 @@ from court_process import OpenCourt
 from prometheus_client.parser import text_string_to_metric_families
 
 from lacoc_client.controller import Controller
-from lacoc_shared import cli
-from lacoc_shared.gait import Level
+from lacoc_shared.command import cli
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import open_client
+from lacoc_shared.network.session import open_client
 
 pytestmark = pytest.mark.slow
 

@@ -9,9 +9,9 @@ import pytest
 from rich.console import Console
 
 from lacoc_arenas import arena as arenas
-from lacoc_client import words
-from lacoc_client.board_picture import BoardPicture, Field, Grid, seat_letters
-from lacoc_client.plain import event_dict, frame_dict
+from lacoc_client.terminal import words
+from lacoc_client.terminal.board_picture import BoardPicture, Field, Grid, seat_letters
+from lacoc_client.terminal.plain import event_dict, frame_dict
 from lacoc_shared.marker_states import pack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, SeatFrame, Sheet, SheetSeat
 from lacoc_shared.seat import Phase, SeatFlag

@@ -7,10 +7,10 @@ import pytest
 
 from lacoc_client.seat_files import SeatFiles, as_text, gaits_in, gather, remarks
 from lacoc_robots.library import sample_gait_files
-from lacoc_shared.gait import PostureTable
-from lacoc_shared.gait_cells import leg_labels
-from lacoc_shared.gait_text import read_gait
-from lacoc_shared.gait_workbook import write_workbook
+from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.gait.tables import PostureTable
+from lacoc_shared.gait.text import read_gait
+from lacoc_shared.gait.workbook import write_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
 

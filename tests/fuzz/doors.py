@@ -13,12 +13,12 @@ from stage import Stage
 
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
-from lacoc_server import network as court_network
-from lacoc_server.decision_desk import DecisionDesk
-from lacoc_server.entry import Admission
-from lacoc_server.inbox import Inbox
-from lacoc_server.network import Arrival, CourtNetwork
-from lacoc_server.sessions import Sessions, Why, _Held
+from lacoc_server.doors import network as court_network
+from lacoc_server.doors.decision_desk import DecisionDesk
+from lacoc_server.doors.inbox import Inbox
+from lacoc_server.doors.network import Arrival, CourtNetwork
+from lacoc_server.doors.sessions import Sessions, Why, _Held
+from lacoc_server.match.entry import Admission
 from lacoc_shared import codec, seal
 from lacoc_shared.decisions import DECISIONS, Adjust, Clock, Halt, Set, Start, TakeBack
 from lacoc_shared.inputs import Decide, HeardSeat, JoinSeat, KeySeat, LeaveSeat, SilentSeat

@@ -21,14 +21,14 @@ from stage import QUICK, Stage, decide, join, key, setup  # noqa: E402
 
 import lacoc_arenas  # noqa: E402
 from lacoc_robots.library import find_robot, installed_robots, sample_gait_files  # noqa: E402
-from lacoc_server.journal import Journal  # noqa: E402
-from lacoc_server.match import Match  # noqa: E402
-from lacoc_server.world import World  # noqa: E402
+from lacoc_server.journal.journal import Journal  # noqa: E402
+from lacoc_server.match.match import Match  # noqa: E402
+from lacoc_server.world.world import World  # noqa: E402
 from lacoc_shared import decisions as d  # noqa: E402
 from lacoc_shared.codec import encode  # noqa: E402
-from lacoc_shared.gait_cells import LEG_LABELS  # noqa: E402
-from lacoc_shared.gait_text import read_gait  # noqa: E402
-from lacoc_shared.gait_workbook import write_workbook  # noqa: E402
+from lacoc_shared.gait.cells import LEG_LABELS  # noqa: E402
+from lacoc_shared.gait.text import read_gait  # noqa: E402
+from lacoc_shared.gait.workbook import write_workbook  # noqa: E402
 from lacoc_shared.inputs import ReadySeat  # noqa: E402
 from lacoc_shared.messages import (  # noqa: E402
     DecisionReply,

@@ -12,20 +12,21 @@ import doors
 
 from lacoc_arenas.arena import Arena, from_settings
 from lacoc_client.gateway import wire
-from lacoc_client.key_script import KeyScript
-from lacoc_robots.spec import read_robot
-from lacoc_server.entry import Entry
-from lacoc_server.world import World
-from lacoc_shared import codec, contest, messages
-from lacoc_shared.gait import Gait, Posture, PostureTable
-from lacoc_shared.gait_text import read_gait
-from lacoc_shared.gait_workbook import read_workbook
+from lacoc_client.terminal.key_script import KeyScript
+from lacoc_robots.robot_file import read_robot
+from lacoc_server.match.entry import Entry
+from lacoc_server.world.world import World
+from lacoc_shared import codec, messages
+from lacoc_shared.contest import file as contest
+from lacoc_shared.contest.toml_text import BadToml, read_toml
+from lacoc_shared.gait.tables import Gait, Posture, PostureTable
+from lacoc_shared.gait.text import read_gait
+from lacoc_shared.gait.workbook import read_workbook
 from lacoc_shared.mistakes import FileRefused, UserError
-from lacoc_shared.record import export
 from lacoc_shared.record.commands import _lines, _made, _summary
-from lacoc_shared.record.foxglove import foxglove
+from lacoc_shared.record.export import tables as export
+from lacoc_shared.record.export.foxglove import foxglove
 from lacoc_shared.record.reader import Record
-from lacoc_shared.toml_text import BadToml, read_toml
 
 CORPUS = Path(__file__).parent / "corpus"
 _SCRATCH = "/dev/shm" if os.path.isdir("/dev/shm") else None

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from lacoc_shared.gait import PostureTable
+from lacoc_shared.gait.tables import PostureTable
 
 # Copied from rules 2, columns 16 and 17 restored.
 _TABLE = """

@@ -13,8 +13,8 @@ from pathlib import Path
 import openpyxl
 import pytest
 
-from lacoc_shared.gait_text import read_gait
-from lacoc_shared.gait_workbook import INPUT_SHEET, read_gait_file, write_workbook
+from lacoc_shared.gait.text import read_gait
+from lacoc_shared.gait.workbook import INPUT_SHEET, read_gait_file, write_workbook
 
 FILES = Path(__file__).parent / "files"
 TEXTS = {

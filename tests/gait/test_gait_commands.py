@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_shared.cli import main
-from lacoc_shared.gait import SAMPLE_KEYS, PostureTable, to_locomotion
-from lacoc_shared.gait_cells import leg_labels
-from lacoc_shared.gait_text import read_gait, write_gait
-from lacoc_shared.gait_workbook import read_gait_file, write_workbook
+from lacoc_shared.command.cli import main
+from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.gait.tables import SAMPLE_KEYS, PostureTable, to_locomotion
+from lacoc_shared.gait.text import read_gait, write_gait
+from lacoc_shared.gait.workbook import read_gait_file, write_workbook
 
 
 @pytest.fixture

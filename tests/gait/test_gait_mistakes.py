@@ -2,7 +2,7 @@
 
 import pytest
 
-from lacoc_shared.gait_text import read_gait
+from lacoc_shared.gait.text import read_gait
 from lacoc_shared.mistakes import FileRefused, Mistake
 
 ANGLE = "an angle from -150 to 150 degrees"

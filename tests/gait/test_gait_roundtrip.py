@@ -9,15 +9,15 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from lacoc_shared.gait import (
+from lacoc_shared.gait.cells import angle_of, degrees_of, leg_labels, number_text
+from lacoc_shared.gait.tables import (
     LocomotionTable,
     PostureTable,
     to_locomotion,
     to_postures,
 )
-from lacoc_shared.gait_cells import angle_of, degrees_of, leg_labels, number_text
-from lacoc_shared.gait_text import MAX_BYTES, read_gait, write_gait
-from lacoc_shared.gait_workbook import read_workbook, write_workbook
+from lacoc_shared.gait.text import MAX_BYTES, read_gait, write_gait
+from lacoc_shared.gait.workbook import read_workbook, write_workbook
 from lacoc_shared.mistakes import FileRefused, Mistake
 
 legs = st.sampled_from([4, 6, 8])

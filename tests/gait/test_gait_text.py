@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from lacoc_shared.gait import SAMPLE_KEYS, LocomotionTable, PostureTable, to_locomotion
-from lacoc_shared.gait_text import MAX_BYTES, read_gait, write_gait
+from lacoc_shared.gait.tables import SAMPLE_KEYS, LocomotionTable, PostureTable, to_locomotion
+from lacoc_shared.gait.text import MAX_BYTES, read_gait, write_gait
 from lacoc_shared.mistakes import FileRefused
 
 FIGURE_4_1 = """\

@@ -7,9 +7,9 @@ import zipfile
 import openpyxl
 import pytest
 
-from lacoc_shared.gait import SAMPLE_KEYS, to_locomotion
-from lacoc_shared.gait_text import write_gait
-from lacoc_shared.gait_workbook import (
+from lacoc_shared.gait.tables import SAMPLE_KEYS, to_locomotion
+from lacoc_shared.gait.text import write_gait
+from lacoc_shared.gait.workbook import (
     INPUT_SHEET,
     MAX_BYTES,
     MIRROR_SHEET,

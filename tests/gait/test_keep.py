@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from lacoc_shared.keep import make_room, save
+from lacoc_shared.command.keep import make_room, save
 from lacoc_shared.mistakes import UserError
 
 

@@ -25,9 +25,9 @@ from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.page_seat import PageSeat
 from lacoc_client.gateway.site import PATHS
 from lacoc_client.gateway.viewer import Frames, Viewer
-from lacoc_shared.access import Access
 from lacoc_shared.codec import BadMessage
-from lacoc_shared.contest import throwaway
+from lacoc_shared.contest.file import throwaway
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
 from lacoc_shared.mistakes import UserError

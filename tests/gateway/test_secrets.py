@@ -13,13 +13,13 @@ from venue import REFEREE, TOKENS, Venue
 
 from lacoc_client.controller import Controller
 from lacoc_client.gateway.wire import Kind
-from lacoc_server.contest_keys import make_keys
-from lacoc_shared import contest as contests
-from lacoc_shared import entrances
-from lacoc_shared.access import invitation_text
+from lacoc_server.keys.make import make_keys
+from lacoc_shared.contest import entrances
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.invitation import invitation_text
 from lacoc_shared.keyspace import Keys
+from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import Session, open_client
 
 KEYS = Keys("main")
 SETTINGS = "settings.match.countdown_s = 0.1\n"

@@ -51,7 +51,7 @@ AREAS = (
             "tests/arenas/test_arena_files.py",
         ),
     ),
-    Area("drive", ("lacoc_server/drive.py",), ("tests/server/test_drive.py",)),
+    Area("drive", ("lacoc_server/match/drive.py",), ("tests/server/test_drive.py",)),
     Area(
         "codec",
         ("lacoc_shared/codec.py", "lacoc_shared/marker_states.py", "lacoc_shared/seal.py"),
@@ -60,12 +60,12 @@ AREAS = (
     Area(
         "match",
         (
-            "lacoc_server/match.py",
-            "lacoc_server/contestant.py",
-            "lacoc_server/referee.py",
-            "lacoc_server/history.py",
-            "lacoc_server/seat_state.py",
-            "lacoc_server/staging.py",
+            "lacoc_server/match/match.py",
+            "lacoc_server/match/contestant.py",
+            "lacoc_server/match/referee.py",
+            "lacoc_server/match/history.py",
+            "lacoc_server/match/seat.py",
+            "lacoc_server/match/staging.py",
         ),
         (
             "tests/server/test_match.py",

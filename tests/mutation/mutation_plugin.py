@@ -55,7 +55,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def pytest_collection_finish() -> None:
     """Weigh the same files in once: nearly all that is left."""
-    if contestant := sys.modules.get("lacoc_server.contestant"):
+    if contestant := sys.modules.get("lacoc_server.match.contestant"):
         contestant.weigh_in = functools.cache(contestant.weigh_in)
 
 

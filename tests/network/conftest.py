@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 from court_stub import CourtStub
 
-from lacoc_shared.session import Session, open_client
+from lacoc_shared.network.session import Session, open_client
 
 
 @pytest.fixture

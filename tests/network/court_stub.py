@@ -7,11 +7,10 @@ from typing import Any
 
 import msgspec
 
-from lacoc_server.decision_desk import DecisionDesk
-from lacoc_server.inbox import Inbox
-from lacoc_server.network import CourtNetwork, Outcome
+from lacoc_server.doors.decision_desk import DecisionDesk
+from lacoc_server.doors.inbox import Inbox
+from lacoc_server.doors.network import CourtNetwork, Outcome
 from lacoc_shared import seal
-from lacoc_shared.access_rules import Protection
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide, HeardSeat, Input, JoinSeat, KeySeat, SilentSeat
 from lacoc_shared.keyspace import Keys
@@ -32,6 +31,7 @@ from lacoc_shared.messages import (
     SheetSeat,
 )
 from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.network.access_rules import Protection
 from lacoc_shared.seat import No, Phase
 
 KEYS = Keys("main")

@@ -6,12 +6,12 @@ from pathlib import Path
 import msgspec
 from court_stub import TOKENS, WHISTLE, CourtStub
 
-from lacoc_server.contest_keys import make_keys
-from lacoc_server.protection import protection
-from lacoc_shared import contest as contests
-from lacoc_shared import entrances
-from lacoc_shared.access import Access
-from lacoc_shared.session import Session, open_client
+from lacoc_server.keys.make import make_keys
+from lacoc_server.keys.protection import protection
+from lacoc_shared.contest import entrances
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.invitation import Access
+from lacoc_shared.network.session import Session, open_client
 
 
 def keyed_file(folder: Path, where: str = "127.0.0.1:0", name: str = "contest") -> Path:

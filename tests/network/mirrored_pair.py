@@ -19,10 +19,10 @@ from lacoc_shared.decisions import Start
 from lacoc_shared.inputs import KeySeat
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import Frame, Health
+from lacoc_shared.network.session import open_client
 from lacoc_shared.record.files import record_paths
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEATS_PER_S, Phase
-from lacoc_shared.session import open_client
 
 COURT = "main"
 SEATS = ("left", "right")

@@ -10,15 +10,15 @@ from slow_link import SlowLink
 
 from lacoc_client.asking import NotNow
 from lacoc_client.controller import Controller, Hold
-from lacoc_server.network import CourtNetwork
+from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import HeardSeat, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
 from lacoc_shared.messages import Command, SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import RESTART_KEY
-from lacoc_shared.session import Session, open_client
 
 
 def controller(session: Session, seat: str = "left", **changes: object) -> Controller:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.decision_desk import DecisionDesk
+from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_shared import decisions as d
 from lacoc_shared import seal
 from lacoc_shared.codec import encode

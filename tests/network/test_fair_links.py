@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from mirrored_pair import play
 
-from lacoc_server.replay import Verdict, verify
+from lacoc_server.journal.replay import Verdict, verify
 
 FAR = (0.1, 0.025)
 """Delay and jitter of the slow link, one way [s]: 200 ± 50 ms there and back."""

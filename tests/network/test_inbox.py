@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.inbox import COMMANDS_HZ, COMMANDS_PER_BEAT, LOOKED_AT_PER_BEAT, Inbox
-from lacoc_server.links import FRESH_BEATS
+from lacoc_server.doors.inbox import COMMANDS_HZ, COMMANDS_PER_BEAT, LOOKED_AT_PER_BEAT, Inbox
+from lacoc_server.doors.links import FRESH_BEATS
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import (

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.links import CHANGE_BEATS, MEASURE_BEATS, TRUST_S, WINDOW_BEATS, Links, Trip
+from lacoc_server.doors.links import CHANGE_BEATS, MEASURE_BEATS, TRUST_S, WINDOW_BEATS, Links, Trip
 from lacoc_shared.inputs import KeySeat
 from lacoc_shared.messages import Command
 

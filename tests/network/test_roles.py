@@ -11,14 +11,14 @@ from keyed import KeyedCourt, keyed_file
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
-from lacoc_shared.access import Credentials
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.decisions import Start
 from lacoc_shared.inputs import Decide, SilentSeat
 from lacoc_shared.messages import Command, DecisionRequest, Scene, Sheet
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.access_rules import Credentials
+from lacoc_shared.network.session import NoReply, Session, open_client
 from lacoc_shared.seal import command_mac
-from lacoc_shared.session import NoReply, Session, open_client
 
 EVERYBODY = ("left", "right", "referee", "gateway", "spectators")
 

@@ -9,10 +9,10 @@ from collections.abc import Iterator
 import pytest
 from court_stub import until
 
-from lacoc_shared import address
 from lacoc_shared.keyspace import COMMAND_MAX_BYTES
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import NoReply, Refused, Session, TooLate, open_client, open_court
+from lacoc_shared.network import address
+from lacoc_shared.network.session import NoReply, Refused, Session, TooLate, open_client, open_court
 
 
 @pytest.fixture
@@ -116,7 +116,7 @@ def test_refusals_carry_their_payload(router: Session) -> None:
     """Typed: `Refused` with what the court said."""
     desk = router.desk("lacoc/main/referee/*", 4)
     code = (
-        "import sys; from lacoc_shared.session import *\n"
+        "import sys; from lacoc_shared.network.session import *\n"
         "with open_client([sys.argv[1]]) as c:\n"
         "    try: c.ask('lacoc/main/referee/start', b'please')\n"
         "    except Refused as refused: print(refused.payload)\n"
@@ -198,7 +198,7 @@ def _python(code: str, *arguments: str) -> "subprocess.Popen[str]":
 def test_a_program_that_forgets_to_close_still_ends(router: Session, end: str) -> None:
     """No process hangs at exit, however it ends (network.md 11)."""
     code = (
-        "import sys; from lacoc_shared.session import *\n"
+        "import sys; from lacoc_shared.network.session import *\n"
         "client = open_client([sys.argv[1]]); client.mailbox('lacoc/main/frame', 1)\n"
         "client.mailbox('lacoc/main/event', 9)\n"
         "court = open_court(['127.0.0.1:0']); court.desk('lacoc/main/sheet', 1)\n"

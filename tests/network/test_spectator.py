@@ -14,7 +14,7 @@ from lacoc_shared.codec import decode, encode, message_hash
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import NoReply, Session, open_client
+from lacoc_shared.network.session import NoReply, Session, open_client
 
 
 def seen(spectator: Spectator, numbers: list[int]) -> None:

@@ -19,12 +19,12 @@ from court_stub import CourtStub, until
 from keyed import KeyedCourt, keyed_file
 
 from lacoc_client.controller import Controller, Hold
-from lacoc_server.certificates import LIFE, Authority, utc_now
-from lacoc_shared import contest as contests
-from lacoc_shared import entrances
-from lacoc_shared.access import Access, invitation_text
+from lacoc_server.keys.certificates import LIFE, Authority, utc_now
+from lacoc_shared.contest import entrances
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.invitation import Access, invitation_text
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import open_client, open_court
+from lacoc_shared.network.session import open_client, open_court
 
 SHORT_S = 0.3
 
@@ -162,8 +162,8 @@ def test_no_password_in_zenohs_own_log(keyed: KeyedCourt, tmp_path: Path) -> Non
     invitation = tmp_path / "left.toml"
     invitation.write_text(invitation_text(left, "x"))
     code = (
-        "import sys, pathlib; from lacoc_shared.access import *\n"
-        "from lacoc_shared.session import *\n"
+        "import sys, pathlib; from lacoc_shared.contest.invitation import *\n"
+        "from lacoc_shared.network.session import *\n"
         "left = read_invitation(pathlib.Path(sys.argv[1]))\n"
         "with open_client([left.connect], credentials=left.credentials) as session:\n"
         "    session.ask('lacoc/main/sheet')\n"

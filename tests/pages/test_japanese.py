@@ -13,11 +13,11 @@ import pytest
 from stage import LEFT, QUICK, RIGHT, Script, Stage, decide, join, key, setup
 
 from lacoc_arenas import arena as arenas
-from lacoc_server.sessions import Why
+from lacoc_server.doors.sessions import Why
 from lacoc_server.simulate import player, simulate
-from lacoc_server.world import _WARNINGS
+from lacoc_server.world.world import _WARNINGS
 from lacoc_shared import decisions as d
-from lacoc_shared.gait_workbook import read_workbook
+from lacoc_shared.gait.workbook import read_workbook
 from lacoc_shared.inputs import HeardSeat, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import DecisionReply, Done, Refusal
 from lacoc_shared.mistakes import FileRefused
@@ -46,23 +46,23 @@ SPEAKERS = (
     "client/lacoc_client/gateway/page.py",
     "client/lacoc_client/gateway/page_seat.py",
     "client/lacoc_client/gateway/referees.py",
-    "client/lacoc_client/gateway/seat.py",
+    "client/lacoc_client/gateway/seat_thread.py",
     "client/lacoc_client/gateway/wire.py",
-    "robots/lacoc_robots/entries.py",
-    "robots/lacoc_robots/spec.py",
-    "server/lacoc_server/contestant.py",
-    "server/lacoc_server/decision_desk.py",
-    "server/lacoc_server/entry.py",
-    "server/lacoc_server/health.py",
-    "server/lacoc_server/inbox.py",
-    "server/lacoc_server/match.py",
-    "server/lacoc_server/referee.py",
-    "server/lacoc_server/staging.py",
-    "server/lacoc_server/unjudged.py",
-    "shared/lacoc_shared/address.py",
-    "shared/lacoc_shared/gait_reader.py",
-    "shared/lacoc_shared/gait_text.py",
-    "shared/lacoc_shared/gait_workbook.py",
+    "robots/lacoc_robots/toml_entries.py",
+    "robots/lacoc_robots/robot_file.py",
+    "server/lacoc_server/match/contestant.py",
+    "server/lacoc_server/doors/decision_desk.py",
+    "server/lacoc_server/match/entry.py",
+    "server/lacoc_server/court/health.py",
+    "server/lacoc_server/doors/inbox.py",
+    "server/lacoc_server/match/match.py",
+    "server/lacoc_server/match/referee.py",
+    "server/lacoc_server/match/staging.py",
+    "server/lacoc_server/court/unjudged.py",
+    "shared/lacoc_shared/network/address.py",
+    "shared/lacoc_shared/gait/reader.py",
+    "shared/lacoc_shared/gait/text.py",
+    "shared/lacoc_shared/gait/workbook.py",
     "shared/lacoc_shared/record/writer.py",
     "shared/lacoc_shared/seat.py",
 )
@@ -398,7 +398,7 @@ GAITS = {
 @pytest.mark.parametrize("name", GAITS)
 def test_mistakes_of_gait_files(node: str, name: str) -> None:
     """What was expected, and what was found where that is words."""
-    from lacoc_shared.gait_text import read_gait
+    from lacoc_shared.gait.text import read_gait
 
     with pytest.raises(FileRefused) as refused:
         read_gait(GAITS[name], "gait.txt", legs=6)
@@ -416,7 +416,7 @@ def test_mistakes_of_workbooks(node: str) -> None:
 def test_mistakes_of_robot_files(node: str) -> None:
     """The same for a robot file in which almost everything is wrong."""
     from lacoc_robots.library import find_robot
-    from lacoc_robots.spec import read_robot
+    from lacoc_robots.robot_file import read_robot
 
     name, good = find_robot("hexapod")
     wrong = [

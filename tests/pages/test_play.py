@@ -21,7 +21,7 @@ from venue import TOKENS, Venue, free_port
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.codec import encode
 from lacoc_shared.messages import Frame, SeatFrame
-from lacoc_shared.record.pos_data import PosData
+from lacoc_shared.record.export.pos_data import PosData
 from lacoc_shared.seat import Phase
 
 pytestmark = pytest.mark.slow

@@ -8,10 +8,10 @@ from contestant import Contestant, Sit, own_page
 from show import violations
 
 from lacoc_robots.library import sample_gait_files
-from lacoc_shared.gait import PostureTable
-from lacoc_shared.gait_cells import leg_labels
-from lacoc_shared.gait_text import read_gait
-from lacoc_shared.gait_workbook import write_workbook
+from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.gait.tables import PostureTable
+from lacoc_shared.gait.text import read_gait
+from lacoc_shared.gait.workbook import write_workbook
 from lacoc_shared.seat import Phase
 
 pytestmark = pytest.mark.slow

@@ -12,8 +12,8 @@ from show import decide, violations
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_client.gateway.browser import unseen
-from lacoc_server.contest_keys import make_keys
-from lacoc_server.referee import _RULES
+from lacoc_server.keys.make import make_keys
+from lacoc_server.match.referee import _RULES
 from lacoc_shared.decisions import DECISIONS
 
 pytestmark = pytest.mark.slow

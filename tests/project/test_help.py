@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import typer
 
-from lacoc_shared import cli
+from lacoc_shared.command import cli
 
 ROOT: Any = typer.main.get_command(cli.app)
 

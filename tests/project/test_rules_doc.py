@@ -7,7 +7,7 @@ from pathlib import Path
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot
 from lacoc_robots.limits import Limits
-from lacoc_robots.spec import read_robot
+from lacoc_robots.robot_file import read_robot
 
 PAGE = (Path(__file__).parents[2] / "docs" / "rules.md").read_text(encoding="utf-8")
 SECTIONS = dict(re.findall(r"^## ([^\n]+)\n(.*?)(?=^## |\Z)", PAGE, re.MULTILINE | re.DOTALL))

@@ -15,13 +15,15 @@ import pytest
 from mcap.reader import make_reader
 from typer.testing import CliRunner
 
-from lacoc_shared import cli, codec
+from lacoc_shared import codec
+from lacoc_shared.command import cli
 from lacoc_shared.messages import Frame, Scene, Sheet
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record import export, foxglove_messages
 from lacoc_shared.record.commands import app
-from lacoc_shared.record.foxglove import foxglove
-from lacoc_shared.record.pos_data import PosData
+from lacoc_shared.record.export import foxglove_messages
+from lacoc_shared.record.export import tables as export
+from lacoc_shared.record.export.foxglove import foxglove
+from lacoc_shared.record.export.pos_data import PosData
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header, Result
 from lacoc_shared.record.writer import RecordWriter

@@ -8,10 +8,16 @@ import pytest
 
 from lacoc_arenas.arena import load
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_server.entry import weigh_in
-from lacoc_server.world import World
-from lacoc_shared.kinematics import ForwardKinematics, euler_zyx, multiply, rotate, split_poses
+from lacoc_server.match.entry import weigh_in
+from lacoc_server.world.world import World
 from lacoc_shared.messages import Scene, SceneBody, SentFile
+from lacoc_shared.record.export.kinematics import (
+    ForwardKinematics,
+    euler_zyx,
+    multiply,
+    rotate,
+    split_poses,
+)
 
 _XML = """
 <mujoco>

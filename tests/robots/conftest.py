@@ -6,7 +6,7 @@ import pytest
 from lacoc_robots.library import find_robot
 from lacoc_robots.model import FLOOR_CONAFFINITY, FLOOR_CONTYPE, add_robot, set_options
 from lacoc_robots.robot import RobotSpec
-from lacoc_robots.spec import read_robot
+from lacoc_robots.robot_file import read_robot
 
 Compile = Callable[..., mj.MjModel]
 

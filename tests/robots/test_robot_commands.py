@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from lacoc_robots.library import find_robot
-from lacoc_shared import cli
+from lacoc_shared.command import cli
 
 HEXAPOD = find_robot("hexapod")[1].decode()
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lacoc_robots.library import find_robot
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
-from lacoc_robots.spec import LARGEST_FILE, read_robot
+from lacoc_robots.robot_file import LARGEST_FILE, read_robot
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 
 HEXAPOD = find_robot("hexapod")[1].decode()

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot import RobotSpec
-from lacoc_robots.spec import read_robot
+from lacoc_robots.robot_file import read_robot
 
 RIGHT, LEFT = (0, 1, 2), (3, 4, 5)
 ZERO = (0.0,) * 18

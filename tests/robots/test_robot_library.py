@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from lacoc_robots.library import find_robot, installed_robots, sample_gait_files
-from lacoc_robots.spec import read_robot
+from lacoc_robots.robot_file import read_robot
 from lacoc_shared.mistakes import UserError
 
 

@@ -19,7 +19,7 @@ from lacoc_robots.model import (
     export_mjcf,
 )
 from lacoc_robots.robot import RobotSpec
-from lacoc_robots.spec import read_robot
+from lacoc_robots.robot_file import read_robot
 from lacoc_shared.seat import BEAT_S
 
 Compile = Callable[..., mj.MjModel]

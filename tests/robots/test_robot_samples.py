@@ -13,10 +13,17 @@ import lacoc_robots.samples
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.model import STEPS_PER_TICK
 from lacoc_robots.robot import RobotSpec
-from lacoc_robots.spec import read_robot
-from lacoc_server.drive import Drive
-from lacoc_shared.gait import SAMPLE_KEYS, Gait, Level, LocomotionTable, PostureTable, to_locomotion
-from lacoc_shared.gait_text import read_gait, write_gait
+from lacoc_robots.robot_file import read_robot
+from lacoc_server.match.drive import Drive
+from lacoc_shared.gait.tables import (
+    SAMPLE_KEYS,
+    Gait,
+    Level,
+    LocomotionTable,
+    PostureTable,
+    to_locomotion,
+)
+from lacoc_shared.gait.text import read_gait, write_gait
 
 Compile = Callable[..., mj.MjModel]
 FOLDERS = [p.parent for p in sorted(Path(lacoc_robots.samples.__path__[0]).glob("*/robot.toml"))]

@@ -12,11 +12,11 @@ from running import WAIT_S, served, until, write_contest
 from lacoc_client.asking import fetch
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
-from lacoc_shared.contest import Contest, load
+from lacoc_shared.contest.file import Contest, load
 from lacoc_shared.decisions import Resume, Start
 from lacoc_shared.messages import Event, Frame, Health, SeatFrame
+from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
-from lacoc_shared.session import open_client
 
 LATE_BEATS = 10
 """A court that was held up takes five beats at once; a beat or two are on their way."""
@@ -56,7 +56,7 @@ class Hall:
     ) -> subprocess.Popen[bytes]:
         """A contestant's program, which presses a key every half second."""
         (self.folder / "walker.py").write_text(
-            "from lacoc_arenas.bot import Key\nfrom lacoc_shared.gait import Level\n"
+            "from lacoc_arenas.bot import Key\nfrom lacoc_shared.gait.tables import Level\n"
             "def bot(sheet, seat):\n"
             "    return lambda f: Key(Level.LOCOMOTION, 2 + f.clock_ticks // 25 % 2)\n"
         )

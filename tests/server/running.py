@@ -12,11 +12,11 @@ from pathlib import Path
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
-from lacoc_shared.contest import load
+from lacoc_shared.contest.file import load
 from lacoc_shared.decisions import Decision, Start
 from lacoc_shared.messages import Frame
+from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import Session, open_client
 
 WAIT_S = 60.0
 

@@ -11,13 +11,13 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
 from lacoc_robots.library import GaitFiles, find_robot, sample_gait_files
-from lacoc_server.entry import Entry, weigh_in
-from lacoc_server.match import Beat, Match, Outcome
-from lacoc_server.physics import Fault, MakePhysics
-from lacoc_server.world import World
+from lacoc_server.match.entry import Entry, weigh_in
+from lacoc_server.match.match import Beat, Match, Outcome
+from lacoc_server.match.physics import Fault, MakePhysics
+from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import encode
-from lacoc_shared.gait import Level, Posture
+from lacoc_shared.gait.tables import Level, Posture
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.marker_states import unpack_states
 from lacoc_shared.messages import MARKER_STATES, Event, Frame, Scene, SentFile

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from structlog.testing import capture_logs
 
-from lacoc_server.archive import Archive
-from lacoc_server.court_log import CourtLog
+from lacoc_server.court.archive import Archive
+from lacoc_server.court.log import CourtLog
 from lacoc_shared.record.schema import FORMAT, Header, Setup
 from lacoc_shared.record.writer import RecordWriter
 

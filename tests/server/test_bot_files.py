@@ -9,14 +9,14 @@ from stage import Stage
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
 from lacoc_arenas.bot import Key
-from lacoc_shared.gait import Level
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import RESTART_KEY
 
 OTHELLO = arenas.load("othello")
 HEAD = """\
 from lacoc_arenas.bot import Key
-from lacoc_shared.gait import Level
+from lacoc_shared.gait.tables import Level
 
 """
 

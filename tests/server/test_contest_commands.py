@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 
 from lacoc_arenas import arena as arenas
 from lacoc_server.commands import serve
-from lacoc_server.contest_commands import app
-from lacoc_shared import contest as contests
+from lacoc_server.commands.contest import app
+from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError
 
 

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from lacoc_server.contest_commands import app
-from lacoc_shared import contest as contests
-from lacoc_shared import entrances
-from lacoc_shared.access import read_invitation
+from lacoc_server.commands.contest import app
+from lacoc_shared.contest import entrances
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.invitation import read_invitation
 from lacoc_shared.mistakes import UserError
 
 

@@ -4,7 +4,7 @@ import msgspec
 import pytest
 from structlog.testing import capture_logs
 
-from lacoc_server.court_log import CourtLog
+from lacoc_server.court.log import CourtLog
 from lacoc_shared.messages import Event, Health, SeatHealth
 
 pytestmark = pytest.mark.usefixtures("loud")

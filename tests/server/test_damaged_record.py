@@ -20,14 +20,14 @@ from typer.testing import CliRunner
 
 from lacoc_arenas import arena as arenas
 from lacoc_server.commands.verify import app as verify_app
-from lacoc_server.journal import Journal
-from lacoc_server.match import Match
-from lacoc_server.recovery import unfinished
-from lacoc_server.replay import Verdict, verify
-from lacoc_server.world import World
+from lacoc_server.journal.journal import Journal
+from lacoc_server.journal.recovery import unfinished
+from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.match.match import Match
+from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
-from lacoc_shared import plugins
 from lacoc_shared.codec import encode
+from lacoc_shared.command import plugins
 from lacoc_shared.inputs import Input, ReadySeat
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_server.drive import Drive, DriveState
-from lacoc_shared.gait import Gait, Level, LocomotionTable, Posture, PostureTable
+from lacoc_server.match.drive import Drive, DriveState
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture, PostureTable
 
 A, B = Level.POSTURE, Level.LOCOMOTION
 ANG_MIN = math.radians(120)

@@ -4,8 +4,8 @@ import pytest
 from stage import join
 
 from lacoc_robots.limits import Limits
-from lacoc_server.entry import weigh_in
-from lacoc_shared.gait import Level
+from lacoc_server.match.entry import weigh_in
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake

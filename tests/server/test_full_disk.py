@@ -13,11 +13,11 @@ from typing import NamedTuple
 import pytest
 from running import WAIT_S, Party, party, served, write_contest
 
-from lacoc_server.inbox import SILENT_AFTER_S
-from lacoc_server.replay import Verdict, verify
+from lacoc_server.doors.inbox import SILENT_AFTER_S
+from lacoc_server.journal.replay import Verdict, verify
 from lacoc_shared.codec import decode
 from lacoc_shared.decisions import Abort, Halt, Next, Resume
-from lacoc_shared.gait import Level
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record

@@ -11,20 +11,20 @@ from stage import LEFT, QUICK, RIGHT, Script, Stage, decide, join, key, setup
 from typer.testing import CliRunner
 
 from lacoc_arenas import arena as arenas
-from lacoc_server.health import MatchHealth, advice
-from lacoc_server.inbox import Door
-from lacoc_server.journal import Journal
-from lacoc_server.match import Match
-from lacoc_server.physics import Fault
-from lacoc_server.replay import Verdict, verify
+from lacoc_server.court.health import MatchHealth, advice
+from lacoc_server.doors.inbox import Door
+from lacoc_server.journal.journal import Journal
+from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.match.match import Match
+from lacoc_server.match.physics import Fault
 from lacoc_server.simulate import player, simulate
-from lacoc_server.world import World
-from lacoc_shared.contest import HealthLimits
+from lacoc_server.world.world import World
+from lacoc_shared.contest.file import HealthLimits
 from lacoc_shared.decisions import Declare, Halt, Resume, Start
 from lacoc_shared.inputs import Advice, HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import HealthVerdict, LinkVerdict
 from lacoc_shared.record.commands import app
-from lacoc_shared.record.export import result_json
+from lacoc_shared.record.export.tables import result_json
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
 

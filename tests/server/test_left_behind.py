@@ -14,11 +14,11 @@ from stage import LEFT, QUICK, RIGHT, decide, join, setup
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
-from lacoc_server.journal import Journal
-from lacoc_server.match import Match
-from lacoc_server.recovery import Unfinished, unfinished
-from lacoc_server.replay import Verdict, verify
-from lacoc_server.world import World
+from lacoc_server.journal.journal import Journal
+from lacoc_server.journal.recovery import Unfinished, unfinished
+from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.match.match import Match
+from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
 from lacoc_shared.inputs import ReadySeat
 from lacoc_shared.mistakes import UserError
@@ -175,7 +175,7 @@ def test_a_match_that_a_court_took_up_is_not_taken_up_twice(tmp_path: Path) -> N
 
 FAILING = """
 import errno, os, runpy, subprocess, sys
-from lacoc_server.match import Match
+from lacoc_server.match.match import Match
 
 flag, what = sys.argv[1:3]
 beat, start = Match.beat, subprocess.Popen.__init__

@@ -22,11 +22,11 @@ from stage import (
     setup,
 )
 
-from lacoc_server.match import Match
-from lacoc_server.physics import Fault
+from lacoc_server.match.match import Match
+from lacoc_server.match.physics import Fault
 from lacoc_shared import __version__
 from lacoc_shared import decisions as d
-from lacoc_shared.gait import Level
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import Advice, HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import PROTOCOL, DecisionReply, Done, Event, Frame, Refusal, SeatFrame
 from lacoc_shared.record.schema import Result

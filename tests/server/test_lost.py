@@ -26,9 +26,9 @@ from lacoc_shared.inputs import SilentSeat
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import DecisionReply, DecisionRequest
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import open_client
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase, SeatFlag
-from lacoc_shared.session import open_client
 
 pytestmark = pytest.mark.slow
 

@@ -16,18 +16,18 @@ from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
-from lacoc_server.court import Court, CourtSettings
-from lacoc_server.decision_desk import DecisionDesk
-from lacoc_server.entry import Admission
-from lacoc_server.inbox import Inbox
-from lacoc_server.network import CourtNetwork
+from lacoc_server.court.court import Court, CourtSettings
+from lacoc_server.doors.decision_desk import DecisionDesk
+from lacoc_server.doors.inbox import Inbox
+from lacoc_server.doors.network import CourtNetwork
+from lacoc_server.match.entry import Admission
 from lacoc_shared.decisions import Abort, Next, Start
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SeatFrame, SentFile, Sheet
+from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seal import hash_token
 from lacoc_shared.seat import Phase, SeatFlag
-from lacoc_shared.session import Session, open_client
 
 pytestmark = pytest.mark.slow
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lacoc_server.pace import CATCH_UP_BEATS, Pace
+from lacoc_server.court.pace import CATCH_UP_BEATS, Pace
 
 
 def test_a_beat_every_20_ms_of_the_clock() -> None:

@@ -14,14 +14,14 @@ from lacoc_arenas import arena as arenas
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
-from lacoc_server.recovery import unfinished
-from lacoc_server.replay import Verdict, verify
-from lacoc_shared.contest import load
+from lacoc_server.journal.recovery import unfinished
+from lacoc_server.journal.replay import Verdict, verify
+from lacoc_shared.contest.file import load
 from lacoc_shared.decisions import Declare, Halt, Next, Official, Resume, Start
-from lacoc_shared.gait import Level
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.network.session import open_client
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import open_client
 
 pytestmark = pytest.mark.slow
 

@@ -9,11 +9,11 @@ import pytest
 from stage import FORWARD, LEFT, QUICK, RIGHT, TURN_LEFT, TURN_RIGHT, X, decide, join, key, setup
 
 from lacoc_arenas import arena as arenas
-from lacoc_server.journal import SNAPSHOT_TICKS, Journal
-from lacoc_server.match import Beat, Match
-from lacoc_server.replay import Verdict, resume, verify
+from lacoc_server.journal.journal import SNAPSHOT_TICKS, Journal
+from lacoc_server.journal.replay import Verdict, resume, verify
+from lacoc_server.match.match import Beat, Match
 from lacoc_server.simulate import player, simulate
-from lacoc_server.world import World
+from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.inputs import HeardSeat, Input, KeySeat, ReadySeat, SilentSeat

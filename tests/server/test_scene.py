@@ -8,12 +8,12 @@ import pytest
 from stage import entry
 
 from lacoc_arenas import arena as arenas
-from lacoc_server.scene import make_scene
-from lacoc_server.world import World
+from lacoc_server.world.scene import make_scene
+from lacoc_server.world.world import World
 from lacoc_shared.codec import decode, encode, message_hash
-from lacoc_shared.kinematics import ForwardKinematics
 from lacoc_shared.messages import MARKER_STATES, Scene
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.export.kinematics import ForwardKinematics
 
 ROBOTS = ("hexapod", "long-legs", "quadruped", "octopod")
 

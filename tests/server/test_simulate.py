@@ -8,9 +8,9 @@ from stage import join, setup
 from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.commands.simulate import simulate_command
-from lacoc_server.match import Match
+from lacoc_server.match.match import Match
 from lacoc_server.simulate import SETTLE_BEATS, Player, player, simulate
-from lacoc_server.world import World
+from lacoc_server.world.world import World
 from lacoc_shared.codec import decode
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import FileRefused, UserError

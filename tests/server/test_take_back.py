@@ -10,7 +10,7 @@ from stage import LEFT, QUICK, RIGHT, Script, Stage, X, key, seen
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.game import GameEvent, Observation, Place, RobotView
-from lacoc_server.history import History
+from lacoc_server.match.history import History
 from lacoc_shared import decisions as d
 from lacoc_shared.messages import DecisionReply, Event, Refusal
 from lacoc_shared.seat import Phase

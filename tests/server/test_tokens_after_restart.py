@@ -12,11 +12,11 @@ import pytest
 from running import WAIT_S, frame, party, phase, served, until, write_contest
 
 from lacoc_client.controller import Controller
-from lacoc_shared.contest import load
-from lacoc_shared.gait import Level
+from lacoc_shared.contest.file import load
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import open_client
 
 pytestmark = pytest.mark.slow
 

@@ -8,15 +8,15 @@ import pytest
 from stage import LEFT, RIGHT, Script, ScriptedPhysics, decide, join, key
 
 from lacoc_arenas import arena as arenas
-from lacoc_server import court as court_module
-from lacoc_server.court import Court, CourtSettings
-from lacoc_server.inbox import Door
-from lacoc_server.match import Match, Outcome
-from lacoc_server.network import Arrival
-from lacoc_server.physics import Fault
-from lacoc_server.recovery import unfinished
-from lacoc_server.replay import Verdict, verify
-from lacoc_server.world import World
+from lacoc_server.court import court as court_module
+from lacoc_server.court.court import Court, CourtSettings
+from lacoc_server.doors.inbox import Door
+from lacoc_server.doors.network import Arrival
+from lacoc_server.journal.recovery import unfinished
+from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.match.match import Match, Outcome
+from lacoc_server.match.physics import Fault
+from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
 from lacoc_shared.inputs import HeardSeat, Input, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import Done, Event, SeatHealth

@@ -15,12 +15,12 @@ from stage import FORWARD, LEFT, QUICK, RIGHT, TURN_LEFT, B, Stage, X, entry, ke
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import field
 from lacoc_arenas.game import Place
-from lacoc_server.drive import Drive
-from lacoc_server.entry import Entry
-from lacoc_server.physics import Fault
-from lacoc_server.world import World
+from lacoc_server.match.drive import Drive
+from lacoc_server.match.entry import Entry
+from lacoc_server.match.physics import Fault
+from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
-from lacoc_shared.gait import Posture
+from lacoc_shared.gait.tables import Posture
 from lacoc_shared.seat import NOBODY, Phase
 
 HEXAPOD = entry()

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_shared import __version__, cli, plugins
+from lacoc_shared import __version__
+from lacoc_shared.command import cli, plugins
 
 COMMANDS = {
     "play": """
@@ -66,7 +67,7 @@ COMMANDS = {
             raise ZeroDivisionError(how)
     """,
     "many": """
-        from lacoc_shared.cli import lazy_group
+        from lacoc_shared.command.cli import lazy_group
         app = lazy_group("lacoc.commands.many", help="Many things.")
         @app.command()
         def own() -> None:

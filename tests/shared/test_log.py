@@ -9,7 +9,7 @@ from datetime import datetime
 import pytest
 
 SAY = """
-from lacoc_shared import log
+from lacoc_shared.command import log
 log.get().info("before")
 log.start({json})
 say = log.get(court="main")
@@ -56,7 +56,7 @@ def test_lines_for_a_person() -> None:
 
 
 NAMES = """
-from lacoc_shared import log
+from lacoc_shared.command import log
 log.start({json})
 for text in ("Équipe", "チーム 🤖 takes the left seat.", "three"):
     log.get(court="main").info(text)
@@ -85,7 +85,7 @@ def test_what_a_pipe_can_not_encode_is_read_as_it_was() -> None:
 
 NOBODY_READS = """
 import sys
-from lacoc_shared import log
+from lacoc_shared.command import log
 log.start(True)
 for number in range(30_000):
     log.get().info("x" * 100, number=number)

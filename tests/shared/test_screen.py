@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from lacoc_shared import screen
+from lacoc_shared.command import screen
 from lacoc_shared.messages import Done
 from lacoc_shared.mistakes import Mistake
 

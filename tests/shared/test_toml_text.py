@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from lacoc_shared.toml_text import BadToml, read_toml
+from lacoc_shared.contest.toml_text import BadToml, read_toml
 
 
 def test_what_people_write_is_read() -> None:

@@ -1,7 +1,7 @@
 """A bot for practice: it shows what each key of its gait does."""
 
 from lacoc_arenas.bot import BotFactory, Brain, Key
-from lacoc_shared.gait import Level
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.seat import BEATS_PER_S
 

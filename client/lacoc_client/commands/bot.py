@@ -14,9 +14,9 @@ from lacoc_client.commands import entrance
 from lacoc_client.controller import Controller, Hold
 from lacoc_client.seat_files import SeatFiles, gather
 from lacoc_client.stopping import stop_signals
-from lacoc_shared import options, screen
+from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import open_client
+from lacoc_shared.network.session import open_client
 
 app = typer.Typer()
 

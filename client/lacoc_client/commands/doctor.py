@@ -9,13 +9,14 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_client import doctor
 from lacoc_client.commands import entrance
-from lacoc_client.doctor import Finding, Status
-from lacoc_client.doctor_link import link
-from lacoc_shared import contest as contests
-from lacoc_shared import entrances, options, screen
-from lacoc_shared.contest import Contest
+from lacoc_client.doctor import machine as doctor
+from lacoc_client.doctor.link import link
+from lacoc_client.doctor.machine import Finding, Status
+from lacoc_shared.command import options, screen
+from lacoc_shared.contest import entrances
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.file import Contest
 from lacoc_shared.mistakes import UserError
 
 app = typer.Typer()

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from lacoc_shared import contest as contests
-from lacoc_shared import entrances
-from lacoc_shared.access import Access, Role, read_invitation
-from lacoc_shared.contest import Contest
+from lacoc_shared.contest import entrances
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.invitation import Access, Role, read_invitation
 from lacoc_shared.mistakes import UserError
 
 

@@ -9,7 +9,7 @@ from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser, unseen
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import Home
-from lacoc_shared import screen
+from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
 
 Browser = Annotated[

@@ -13,12 +13,12 @@ from lacoc_client.controller import Controller
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles, gaits_in, gather, remarks
 from lacoc_client.stopping import stop_signals
-from lacoc_client.terminal_keys import open_keys
-from lacoc_client.terminal_play import TerminalPlay, keys_table
-from lacoc_shared import options, screen
-from lacoc_shared.access import Access
-from lacoc_shared.gait import Level
-from lacoc_shared.session import open_client
+from lacoc_client.terminal.keys import open_keys
+from lacoc_client.terminal.play import TerminalPlay, keys_table
+from lacoc_shared.command import options, screen
+from lacoc_shared.contest.invitation import Access
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.network.session import open_client
 
 app = typer.Typer()
 

@@ -18,7 +18,7 @@ from lacoc_client.commands import pages
 from lacoc_client.commands.play import Gaits, Robot, TeamName, choose_files, play
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles
-from lacoc_shared.access import Access
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
 
 app = typer.Typer()

@@ -16,22 +16,22 @@ from msgspec.structs import FieldInfo
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_client import words
 from lacoc_client.asking import NoAnswer
 from lacoc_client.commands import entrance
-from lacoc_client.line_view import event_columns
-from lacoc_client.plain import event_dict, frame_dict
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_client.stopping import stop_signals
-from lacoc_shared import options, screen
-from lacoc_shared.access import Access
+from lacoc_client.terminal import words
+from lacoc_client.terminal.line_view import event_columns
+from lacoc_client.terminal.plain import event_dict, frame_dict
+from lacoc_shared.command import options, screen
+from lacoc_shared.command.log import log_clock
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.decisions import DECISIONS, Decision
-from lacoc_shared.log import log_clock
 from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase, SeatFlag
-from lacoc_shared.session import Session, open_client
 
 app = typer.Typer(
     help="Referee a match: decide, read the log, see how the court is.\n\n"

@@ -9,17 +9,17 @@ import typer
 from rich.live import Live
 from rich.text import Text
 
-from lacoc_client.board_view import BoardView
 from lacoc_client.commands import entrance, pages
 from lacoc_client.gateway.home import Home
-from lacoc_client.line_view import LineView, event_columns
-from lacoc_client.plain import event_dict, frame_dict
 from lacoc_client.spectator import Spectator
 from lacoc_client.stopping import stop_signals
-from lacoc_shared import options, screen
+from lacoc_client.terminal.board_view import BoardView
+from lacoc_client.terminal.line_view import LineView, event_columns
+from lacoc_client.terminal.plain import event_dict, frame_dict
+from lacoc_shared.command import options, screen
 from lacoc_shared.messages import Event
+from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase
-from lacoc_shared.session import open_client
 
 app = typer.Typer()
 

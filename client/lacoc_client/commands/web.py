@@ -11,11 +11,11 @@ from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import VIEWERS_MOST, Home, lasting_key, new_key
-from lacoc_shared import contest as contests
-from lacoc_shared import log, options, screen
-from lacoc_shared.access import Access
-from lacoc_shared.contest import Contest
-from lacoc_shared.metrics import Exporter
+from lacoc_shared.command import log, options, screen
+from lacoc_shared.command.metrics import Exporter
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
 
 app = typer.Typer()

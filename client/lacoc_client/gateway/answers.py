@@ -7,8 +7,8 @@ from typing import Any
 
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.viewer import Viewer
-from lacoc_shared.allowance import Allowance
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.network.allowance import Allowance
 
 TOO_MUCH = "Too much at once: wait for the answers."
 

@@ -12,13 +12,13 @@ from lacoc_client.gateway.picture import CourtPicture
 from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
-from lacoc_shared import log
-from lacoc_shared.access import Access
 from lacoc_shared.codec import BadMessage
+from lacoc_shared.command import log
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import Mailbox, Session, open_client
+from lacoc_shared.network.session import Mailbox, Session, open_client
 
 SILENT_AFTER_S = 1.0
 """A court that sends no frame for so long is not connected: it sends one every 20 ms."""

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Literal
 
 from lacoc_client.seat_files import SeatFiles
-from lacoc_shared.access import Access
-from lacoc_shared.contest import Contest
-from lacoc_shared.metrics import Exporter
+from lacoc_shared.command.metrics import Exporter
+from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.invitation import Access
 
 Kind = Literal["venue", "player", "practice"]
 

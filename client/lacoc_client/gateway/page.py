@@ -18,11 +18,11 @@ from lacoc_client.gateway.viewer import USUAL_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
 from lacoc_shared import __version__
-from lacoc_shared.access import Access
-from lacoc_shared.allowance import Allowance
 from lacoc_shared.codec import BadMessage
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.network.allowance import Allowance
 
 TRY_LATER = 1013
 """WebSocket close code: come again later."""

@@ -7,11 +7,11 @@ from typing import Any
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import Answers, in_loop
 from lacoc_client.gateway.home import Prefill
-from lacoc_client.gateway.seat import SeatThread
+from lacoc_client.gateway.seat_thread import SeatThread
 from lacoc_client.gateway.viewer import MOST_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.seat_files import SeatFiles
-from lacoc_shared.access import Access
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
 
 

@@ -7,9 +7,9 @@ from lacoc_client.gateway import wire
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
-from lacoc_shared.access import Access
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.session import open_client
+from lacoc_shared.network.session import open_client
 
 T = TypeVar("T")
 

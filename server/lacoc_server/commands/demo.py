@@ -14,8 +14,8 @@ from typing import IO, Annotated, Any
 
 import typer
 
-from lacoc_shared import screen
-from lacoc_shared.log import log_clock
+from lacoc_shared.command import screen
+from lacoc_shared.command.log import log_clock
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 

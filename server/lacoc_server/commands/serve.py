@@ -11,21 +11,22 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
-from lacoc_server.court import Court, CourtSettings
-from lacoc_server.decision_desk import DecisionDesk
-from lacoc_server.entry import Admission
-from lacoc_server.inbox import Inbox
-from lacoc_server.network import CourtNetwork
-from lacoc_server.protection import protection
-from lacoc_server.recovery import unfinished
-from lacoc_shared import contest as contests
-from lacoc_shared import entrances, log, options, screen
-from lacoc_shared.address import endpoint
-from lacoc_shared.contest import Contest
+from lacoc_server.court.court import Court, CourtSettings
+from lacoc_server.doors.decision_desk import DecisionDesk
+from lacoc_server.doors.inbox import Inbox
+from lacoc_server.doors.network import CourtNetwork
+from lacoc_server.journal.recovery import unfinished
+from lacoc_server.keys.protection import protection
+from lacoc_server.match.entry import Admission
+from lacoc_shared.command import log, options, screen
+from lacoc_shared.command.metrics import Exporter
+from lacoc_shared.contest import entrances
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.file import Contest
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
-from lacoc_shared.metrics import Exporter
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import endpoint
 from lacoc_shared.seal import hash_token
 
 app = typer.Typer()

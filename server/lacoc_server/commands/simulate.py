@@ -13,9 +13,9 @@ import typer
 from rich.table import Table
 
 from lacoc_arenas import arena as arenas
-from lacoc_server.entry import weigh_in
+from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate import player, simulate
-from lacoc_shared import options, screen
+from lacoc_shared.command import options, screen
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.record.schema import Result, Setup

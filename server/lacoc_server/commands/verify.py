@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from lacoc_server.replay import Verdict, verify
-from lacoc_shared import options, screen
+from lacoc_server.journal.replay import Verdict, verify
+from lacoc_shared.command import options, screen
 from lacoc_shared.record.files import record_paths
 from lacoc_shared.record.reader import Record
 

@@ -12,13 +12,13 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_shared import keep, screen
-from lacoc_shared.cli import lazy_group
+from lacoc_shared.command import keep, screen
+from lacoc_shared.command.cli import lazy_group
 from lacoc_shared.inputs import KeySeat
 from lacoc_shared.messages import HealthVerdict
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record import export as exports
-from lacoc_shared.record.foxglove import foxglove
+from lacoc_shared.record.export import tables as exports
+from lacoc_shared.record.export.foxglove import foxglove
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEAT_S
 

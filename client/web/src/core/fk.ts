@@ -1,7 +1,7 @@
 /**
  * Forward kinematics: where every body is, from a scene and the poses of a frame.
  *
- * The same computation as `lacoc_shared/kinematics.py`. Quaternions are w, x, y, z. Everything is
+ * The same computation as `lacoc_shared/record/export/kinematics.py`. Quaternions are w, x, y, z. Everything is
  * Float64: frames are float32, and 1e-6 m would not survive a chain of four float32 rotations.
  */
 

@@ -1,7 +1,7 @@
 /**
  * Pos-data.txt: the way of one robot through a match, for a spreadsheet (rules 2, workshop 4-4).
  *
- * The same file as shared/lacoc_shared/record/pos_data.py writes from the same frames, byte for
+ * The same file as shared/lacoc_shared/record/export/pos_data.py writes from the same frames, byte for
  * byte: tests/pages/test_play.py holds one against the other.
  */
 

@@ -66,7 +66,7 @@ const FRAMES: readonly Pattern[] = [
   ["Replay advised: {Reasons}.", "再試合を推奨します：{Reasons}。"],
 ];
 
-/** How well a match was held (lacoc_server/health.py), and its record (record/writer.py). */
+/** How well a match was held (lacoc_server/court/health.py), and its record (record/writer.py). */
 const HEALTH: readonly Pattern[] = [
   ["A replay is not advised any more.", "再試合の推奨を取り下げました。"],
   [
@@ -107,7 +107,7 @@ const HEALTH: readonly Pattern[] = [
   ],
 ];
 
-/** What the match tells: the log (lacoc_server/match.py, contestant.py, the games). */
+/** What the match tells: the log (lacoc_server/match/match.py, contestant.py, the games). */
 const EVENTS: readonly Pattern[] = [
   ["LOBBY.", "チームの参加を待っています。"],
   ["READY.", "両チームの準備が完了しました。"],
@@ -187,7 +187,7 @@ const DISK: readonly Pattern[] = [
   ],
 ];
 
-/** What a referee decides, and why it can't be (lacoc_server/referee.py). */
+/** What a referee decides, and why it can't be (lacoc_server/match/referee.py). */
 const DECISIONS: readonly Pattern[] = [
   ["ready for {team}.", "{team} の代わりに準備完了としました。"],
   ["play begins in {#n} s.", "{#n} 秒後に試合を開始します。"],
@@ -378,7 +378,7 @@ const CONTESTANTS: readonly Pattern[] = [
   ],
 ];
 
-/** What a court counts of what it did not believe (lacoc_server/sessions.py). */
+/** What a court counts of what it did not believe (lacoc_server/doors/sessions.py). */
 const COUNTED: readonly Pattern[] = [
   ["bad bytes", "読み取れないデータ"],
   ["too long", "長すぎるデータ"],
@@ -502,7 +502,7 @@ const GAITS: readonly Pattern[] = [
   ["none for this arena", "この競技で使えるものがない"],
 ];
 
-/** Mistakes in robot files (robots/lacoc_robots/entries.py, spec.py). */
+/** Mistakes in robot files (robots/lacoc_robots/toml_entries.py, robot_file.py). */
 const ROBOTS: readonly Pattern[] = [
   ["{#n} numbers in [ ]", "[ ] の中に {#n} 個の数"],
   [

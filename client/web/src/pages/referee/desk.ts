@@ -19,7 +19,7 @@ import type { Draft } from "./drafts";
 const TOKEN = "lacoc-referee";
 const RETRY_MS = 1500;
 
-/** Decisions that the court takes only with a reason (lacoc_server/referee.py). */
+/** Decisions that the court takes only with a reason (lacoc_server/match/referee.py). */
 export const NEED_A_REASON: ReadonlySet<DecisionName> = new Set<DecisionName>([
   "restart",
   "freeze",

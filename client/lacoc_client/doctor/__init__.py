@@ -1,0 +1,1 @@
+"""What `lacoc doctor` looks at."""

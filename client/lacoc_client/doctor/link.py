@@ -1,0 +1,122 @@
+"""The link to a court, measured: does it go on, how long does it take, what gets lost."""
+
+import time
+from collections.abc import Iterator
+
+from lacoc_client.asking import fetch
+from lacoc_client.doctor.machine import Finding, Status
+from lacoc_client.spectator import Spectator
+from lacoc_shared import __version__
+from lacoc_shared.contest.invitation import Access
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import Session, open_client
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
+
+_REQUESTS = 50
+_LONG_TRIP_S = 0.15
+_LEAST_HZ = 45.0
+_LONG_GAP_S = 0.5
+_FIRST_S = 1.0
+
+
+def link(access: Access, seconds: float) -> Iterator[Finding]:
+    """Look at a court as a spectator does.
+
+    Args:
+        access: the way to it.
+        seconds: how long its frames are watched.
+    """
+    about = f"court {access.court}"
+    try:
+        with open_client([access.connect], credentials=access.credentials) as session:
+            view = Spectator(session, access.court)
+            yield _version(about, access, view)
+            yield _round_trip(session, view)
+            yield _frames(view, seconds)
+            yield from _record(view)
+    except UserError as error:
+        todo = "Check the address with the organiser, the network and firewalls."
+        yield Finding(about, Status.PROBLEM, str(error), todo)
+
+
+def _version(about: str, access: Access, view: Spectator) -> Finding:
+    sheet = view.sheet
+    found = f"{sheet.title} at {access.connect}, match {sheet.match}, version {sheet.version}"
+    if sheet.version == __version__:
+        return Finding(about, Status.OK, found)
+    todo = f"This machine has {__version__}: install the version that the organiser uses."
+    return Finding(about, Status.NOTE, found, todo)
+
+
+def _round_trip(session: Session, view: Spectator) -> Finding:
+    about = f"round trip to {view.keys.court}"
+    times_s = []
+    for _ in range(_REQUESTS):
+        began_s = time.perf_counter()
+        fetch(session, view.keys, view.keys.sheet)
+        times_s.append(time.perf_counter() - began_s)
+    times_s.sort()
+    p50_s, p95_s = times_s[_REQUESTS // 2], times_s[_REQUESTS * 95 // 100]
+    found = (
+        f"{_REQUESTS} requests, one after another: {p50_s * 1000:.0f} ms (p50), "
+        f"{p95_s * 1000:.0f} ms (p95); a court answers once in 20 ms"
+    )
+    if p95_s <= _LONG_TRIP_S:
+        return Finding(about, Status.OK, found)
+    return Finding(about, Status.NOTE, found, "Keys come late: use a cable, or be nearer.")
+
+
+def _frames(view: Spectator, seconds: float) -> Finding:
+    """Frames a second and the longest gap between two; a frame that is overtaken is lost.
+
+    One that came before does not count: a court that can't go on sends its last one again.
+    """
+    about = f"frames of {view.keys.court}"
+    first = view.wait_frame(_FIRST_S)
+    if first is None:
+        todo = "Is the court overloaded, or does something hold its frames back?"
+        return Finding(about, Status.PROBLEM, "none came within a second", todo)
+    count, last, last_s, gap_s = 1, first, view.frame_s, 0.0
+    began_s = last_s
+    while (now_s := time.monotonic()) - began_s < seconds:
+        frame = view.wait_frame(seconds - (now_s - began_s))
+        if frame is None:
+            break
+        if (frame.match, frame.beat) == (last.match, last.beat):
+            continue
+        gap_s = max(gap_s, view.frame_s - last_s)
+        count, last, last_s = count + 1, frame, view.frame_s
+    gap_s = max(gap_s, time.monotonic() - last_s)
+    took_s = time.monotonic() - began_s
+    hz = (count - 1) / took_s
+    made = last.beat - first.beat if last.match == first.match else count - 1
+    if count == 1 and view.frame is not first:
+        found = (
+            f"the court stands still in {Phase(last.phase).name}: it sends beat {last.beat} again"
+        )
+        return Finding(about, Status.PROBLEM, found, "Tell the organiser: no match goes on there.")
+    missed = max(0, made - (count - 1))
+    found = (
+        f"{hz:.1f} a second in {Phase(last.phase).name}, {missed} of {made} missed, "
+        f"the longest gap {gap_s * 1000:.0f} ms"
+    )
+    if hz >= _LEAST_HZ and gap_s <= _LONG_GAP_S:
+        return Finding(about, Status.OK, found)
+    slow = made * BEAT_S < took_s * _LEAST_HZ / BEATS_PER_S
+    todo = (
+        "The court itself is slow: tell the organiser."
+        if slow
+        else "The network loses or holds frames: use a cable, and end what else uses it."
+    )
+    return Finding(about, Status.NOTE, found, todo)
+
+
+def _record(view: Spectator) -> Iterator[Finding]:
+    """What is wrong with the court's disk, if it says so."""
+    end_s = time.monotonic() + _FIRST_S
+    while view.health is None and time.monotonic() < end_s:
+        view.wait_frame(_FIRST_S)
+    if view.health is not None and view.health.record_trouble:
+        about, trouble = f"record of {view.keys.court}", view.health.record_trouble
+        todo = "Tell the organiser: nothing goes on that is not recorded."
+        yield Finding(about, Status.PROBLEM, trouble, todo)

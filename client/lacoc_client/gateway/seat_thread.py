@@ -1,0 +1,158 @@
+"""A seat that a page holds: a controller on a thread of its own.
+
+The thread repeats the command 10 times a second whatever the browser does: a hidden tab
+slows its own timers. It stops with the page: a contestant who is gone stands after a
+second (rules 3), and a page that comes back joins again.
+"""
+
+import queue
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from lacoc_client.controller import REPEAT_S, Controller, Hold
+from lacoc_client.gateway.wire import FAULT
+from lacoc_client.seat_files import SeatFiles, as_text
+from lacoc_shared.contest.invitation import Access
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.network.session import open_client
+
+LOST_AFTER_S = 1.0
+"""A page that was not heard for so long has gone, though nobody closed its connection."""
+_TELL_S = 0.5
+
+Answer = Callable[[Any, Exception | None], None]
+"""Takes what came of a job: its value, or the error."""
+
+
+class _Job(NamedTuple):
+    do: Callable[[Controller], Any]
+    answer: Answer
+
+
+class SeatThread:
+    """Joins a seat and holds it until the page has gone.
+
+    Args:
+        access: the way to the seat.
+        team: the team's name.
+        files: what it brings.
+        unheard_s: says how long the page was not heard.
+        tell: told how the seat is (see docs/gateway.md, "seat"); on the thread.
+        joined: told what came of the join; on the thread.
+    """
+
+    def __init__(
+        self,
+        access: Access,
+        team: str,
+        files: SeatFiles,
+        unheard_s: Callable[[], float],
+        tell: Callable[[dict[str, Any]], None],
+        joined: Answer,
+    ) -> None:
+        self._access = access
+        self._team = team
+        self._files = files
+        self._unheard_s = unheard_s
+        self._tell = tell
+        self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
+        self._ended = False
+        self._told: dict[str, Any] = {}
+        self._told_s = 0.0
+        self._thread = threading.Thread(
+            target=self._run, args=(joined,), name=f"seat {access.seat}", daemon=True
+        )
+        self._thread.start()
+
+    def do(self, job: Callable[[Controller], Any], answer: Answer) -> None:
+        """Let the controller do something as soon as it can, in the order it is asked."""
+        self._jobs.put(_Job(job, answer))
+        if not self._thread.is_alive():
+            self._refuse_rest()
+
+    def end(self) -> None:
+        """Stop repeating now; the seat stays the contestant's."""
+        self._ended = True
+        self._jobs.put(None)
+
+    def join(self, timeout_s: float) -> None:
+        """Wait until the thread has ended."""
+        self._thread.join(timeout_s)
+
+    def _run(self, joined: Answer) -> None:
+        access = self._access
+        try:
+            with open_client([access.connect], credentials=access.credentials) as session:
+                controller = Controller(
+                    session,
+                    access.court,
+                    access.seat,
+                    access.token,
+                    self._team,
+                    **as_text(self._files)._asdict(),
+                    notify=lambda: self._jobs.put(None),
+                )
+                notes = controller.join()
+                joined({"notes": notes, "index": controller.index}, None)
+                self._report(controller)
+                self._hold(controller)
+        except Exception as error:
+            known = isinstance(error, UserError | FileRefused)
+            told = error if known else UserError(FAULT)
+            if not self._told:
+                joined(None, told)
+            else:
+                lost = {"hold": Hold.REFUSED.value, "reason": str(told), "round_trip_ms": None}
+                self._tell(self._told | lost)
+            if not known:  # a bug, but no page waits for ever
+                raise
+        finally:
+            self._refuse_rest()
+
+    def _hold(self, controller: Controller) -> None:
+        while not self._ended and controller.hold in (Hold.HELD, Hold.LOST):
+            try:
+                job = self._jobs.get(timeout=REPEAT_S / 2)
+            except queue.Empty:
+                job = None
+            if job is not None:
+                self._try(controller, job)
+            controller.repeating = self._unheard_s() < LOST_AFTER_S
+            controller.poll(time.monotonic())
+            self._report(controller)
+
+    def _try(self, controller: Controller, job: _Job) -> None:
+        try:
+            value = job.do(controller)
+        except (UserError, FileRefused) as error:
+            job.answer(None, error)
+        else:
+            job.answer(value, None)
+
+    def _report(self, controller: Controller) -> None:
+        """Say how the seat is: at once when it changed, now and then for the round trip."""
+        now_s = time.monotonic()
+        trip_ms = controller.round_trip_ms
+        told: dict[str, Any] = {
+            "seat": controller.seat,
+            "index": controller.index,
+            "hold": controller.hold.value,
+            "reason": controller.reason,
+        }
+        changed = any(self._told.get(name) != value for name, value in told.items())
+        moved = trip_ms != self._told.get("round_trip_ms") and now_s - self._told_s >= _TELL_S
+        if changed or moved:
+            self._told, self._told_s = told | {"round_trip_ms": trip_ms}, now_s
+            self._tell(self._told)
+
+    def _refuse_rest(self) -> None:
+        while True:
+            try:
+                job = self._jobs.get_nowait()
+            except queue.Empty:
+                return
+            if job is not None:
+                why = self._told.get("reason") or self._told.get("hold") or "not joined"
+                job.answer(None, UserError(f"Seat {self._access.seat} is not yours now ({why})."))

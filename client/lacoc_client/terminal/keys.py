@@ -1,0 +1,155 @@
+"""Keys from a terminal, one by one, as they are pressed.
+
+The terminal is in its usual state again when this is left, however that happens.
+"""
+
+import codecs
+import os
+import re
+import select
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Protocol
+
+from lacoc_client.terminal.key_script import PipeKeys
+from lacoc_shared.gait.cells import narrow
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import termios
+    import tty
+
+_ESCAPE = re.compile(r"\x1b(?:\[[0-9;?]*[ -/]*[@-~]|O.)")
+_NAMES = {
+    "\x1b[A": "up",
+    "\x1b[B": "down",
+    "\x1b[C": "right",
+    "\x1b[D": "left",
+    "\x1bOA": "up",
+    "\x1bOB": "down",
+    "\x1bOC": "right",
+    "\x1bOD": "left",
+    "\t": "tab",
+    " ": "space",
+}
+_WINDOWS_ARROWS = {"H": "up", "P": "down", "K": "left", "M": "right"}
+_WINDOWS_LOOK_S = 0.005
+
+
+class Keys(Protocol):
+    """Where keys come from."""
+
+    @property
+    def ended(self) -> bool:
+        """No more will come."""
+
+    def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
+        """Wait a little for keys: digits and letters as they are, others by name.
+
+        Args:
+            timeout_s: how long at most.
+            playing_s: for how long the match has been played; a script's clock.
+            playing: whether it is being played.
+        """
+
+    def take_said(self) -> list[str]:
+        """What is wrong with the input, since this was last called."""
+
+
+class KeyDecoder:
+    """Bytes of a terminal to names of keys."""
+
+    def __init__(self) -> None:
+        self._decoder = codecs.getincrementaldecoder("utf-8")(errors="replace")
+        self._rest = ""
+
+    def feed(self, data: bytes) -> list[str]:
+        """Decode what was read; half an escape sequence waits for its other half."""
+        text = self._rest + self._decoder.decode(data)
+        self._rest = ""
+        keys: list[str] = []
+        while text:
+            sequence = _ESCAPE.match(text)
+            if sequence:
+                name = _NAMES.get(sequence[0])
+                text = text[sequence.end() :]
+            elif text[0] == "\x1b":
+                if len(text) < 3:
+                    self._rest = text
+                    break
+                name, text = None, text[1:]
+            else:
+                name, text = key_name(text[0]), text[1:]
+            if name:
+                keys.append(name)
+        return keys
+
+
+def key_name(character: str) -> str | None:
+    """The name of a character's key, also where a Japanese input method is on."""
+    character = narrow(character)
+    return _NAMES.get(character) or (character.lower() if character.isprintable() else None)
+
+
+@contextmanager
+def open_keys() -> Iterator[Keys]:
+    """Read keys from standard input: a terminal's as they are pressed, a pipe's as a script."""
+    if not sys.stdin.isatty():
+        yield PipeKeys(sys.stdin.fileno())
+    elif sys.platform == "win32":
+        yield _WindowsKeys()
+    else:
+        descriptor = sys.stdin.fileno()
+        before = termios.tcgetattr(descriptor)
+        try:
+            tty.setcbreak(descriptor)
+            yield _PosixKeys(descriptor)
+        finally:
+            termios.tcsetattr(descriptor, termios.TCSAFLUSH, before)
+
+
+class _PosixKeys:
+    """Keys of a terminal that gives each character at once."""
+
+    def __init__(self, descriptor: int) -> None:
+        self.ended = False
+        self._descriptor = descriptor
+        self._decoder = KeyDecoder()
+
+    def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
+        if not select.select([self._descriptor], [], [], timeout_s)[0]:
+            return []
+        try:
+            data = os.read(self._descriptor, 1024)
+        except OSError:  # the terminal is gone
+            data = b""
+        self.ended = not data
+        return self._decoder.feed(data)
+
+    def take_said(self) -> list[str]:
+        return []
+
+
+if sys.platform == "win32":
+
+    class _WindowsKeys:
+        """Keys of a Windows console."""
+
+        ended = False
+
+        def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
+            deadline_s = time.monotonic() + timeout_s
+            while not msvcrt.kbhit():
+                if time.monotonic() >= deadline_s:
+                    return []
+                time.sleep(_WINDOWS_LOOK_S)
+            character = msvcrt.getwch()
+            special = character in "\x00\xe0"
+            name = _WINDOWS_ARROWS.get(msvcrt.getwch()) if special else key_name(character)
+            return [name] if name else []
+
+        def take_said(self) -> list[str]:
+            return []

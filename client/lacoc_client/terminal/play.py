@@ -1,0 +1,271 @@
+"""Hold a seat from a terminal: keys in, one picture of the match out (rules 3)."""
+
+import time
+from collections import deque
+from collections.abc import Callable
+from contextlib import nullcontext
+from pathlib import Path
+
+from rich.console import Group, RenderableType
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from lacoc_client.controller import Controller, Hold
+from lacoc_client.terminal import words
+from lacoc_client.terminal.keys import Keys
+from lacoc_client.terminal.line_view import event_columns, status_line
+from lacoc_shared.command import screen
+from lacoc_shared.command.keep import save
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.export.kinematics import joints_per_seat
+from lacoc_shared.record.export.pos_data import PosData
+from lacoc_shared.seat import BEAT_S, RESTART_KEY, Phase, SeatFlag
+
+POS_DATA = "Pos-data.txt"
+
+_ARROWS = {"up": 2, "left": 1, "right": 3, "down": 0}
+_LOOK_S = 0.01
+_DRAW_S = 0.1
+_SAID_S = 5.0
+_GONE_S = 120.0
+_HELP = "0-9 move   Tab level   x restart   r ready   z save and leave   q leave"
+_LEVEL_NAMES = {Level.POSTURE: "A postures", Level.LOCOMOTION: "B locomotion"}
+
+
+class TerminalPlay:
+    """One contestant at a terminal.
+
+    Args:
+        controller: holds the seat.
+        keys: where keys come from.
+        folder: where Pos-data.txt goes.
+    """
+
+    def __init__(self, controller: Controller, keys: Keys, folder: Path) -> None:
+        self._controller = controller
+        self._view = controller.view
+        self._keys = keys
+        self._folder = folder
+        self._level = Level(self._view.sheet.levels[0])
+        self._data: PosData | None = None
+        self._data_match = 0
+        self._said: deque[str] = deque()
+        self._message = ""
+        self._said_s = 0.0
+        self._playing_s = 0.0
+        self._beat = 0
+        self._view_asked = False
+        self._leaving = False
+        self._saving = False
+
+    def run(self, stopping: Callable[[], bool]) -> None:
+        """Play until a key, a signal or the end of a script ends it.
+
+        Raises:
+            UserError: if the seat is lost for good, or Pos-data.txt can't be written.
+        """
+        console = screen.stdout
+        in_place = console.is_terminal
+        live = Live(console=console, auto_refresh=False, transient=True)
+        drawn_s = 0.0
+        with live if in_place else nullcontext():
+            while not (stopping() or self._leaving):
+                lines = self._step()
+                for line in lines:
+                    console.print(line)
+                now_s = time.monotonic()
+                if in_place and (lines or now_s - drawn_s >= _DRAW_S):
+                    drawn_s = now_s
+                    live.update(self._draw(now_s), refresh=True)
+        self._leave()
+
+    def _step(self) -> list[Text]:
+        """Take in keys, frames and events; returns the lines that are to stand above."""
+        controller = self._controller
+        frame = self._view.frame
+        playing = frame is not None and frame.phase == Phase.PLAYING
+        for key in self._keys.read(_LOOK_S, self._playing_s, playing):
+            self._press(key)
+        frame = controller.poll(time.monotonic())
+        if frame is not None:
+            self._see(frame)
+        for refused in controller.take_refused():
+            key = "x" if refused.key == RESTART_KEY else str(refused.key)
+            self._say(f"[{key}] refused: {refused.why}.")
+        for text in self._keys.take_said():
+            self._say(text)
+        lines = [Text.assemble(*event_columns(event)) for event in self._view.take_events()]
+        while self._said:
+            self._message, self._said_s = self._said.popleft(), time.monotonic()
+            if not screen.stdout.is_terminal:
+                lines.append(Text(self._message))
+        self._check_end()
+        return lines
+
+    def _press(self, key: str) -> None:
+        """Do what a key says."""
+        self._message = ""
+        try:
+            if key.isdecimal() and len(key) == 1:
+                self._controller.press(self._level, int(key))
+            elif key in _ARROWS:
+                self._press_arrow(key)
+            elif key == "x":
+                self._controller.press(self._level, RESTART_KEY)
+            elif key == "tab":
+                self._change_level()
+            elif key == "r":
+                self._toggle_ready()
+            elif key == "space":
+                self._tell_about_views()
+            elif key in ("z", "q"):
+                self._leaving, self._saving = True, key == "z"
+            else:
+                self._say(f"[{key}] does nothing.")
+        except UserError as error:
+            self._say(str(error))
+
+    def _press_arrow(self, key: str) -> None:
+        if self._level is Level.LOCOMOTION:
+            self._controller.press(self._level, _ARROWS[key])
+        else:
+            self._say("Arrows are for level B; Tab changes the level.")
+
+    def _change_level(self) -> None:
+        """The next of the open levels; that alone sends nothing (rules 3)."""
+        levels = [Level(level) for level in self._view.sheet.levels]
+        if levels == [self._level]:
+            self._say(f"This arena opens level {_LEVEL_NAMES[self._level]} only.")
+            return
+        following = levels.index(self._level) + 1 if self._level in levels else 0
+        self._level = levels[following % len(levels)]
+        self._say(f"Level {_LEVEL_NAMES[self._level]}: press a digit.")
+
+    def _toggle_ready(self) -> None:
+        frame = self._view.frame
+        seat = None if frame is None else frame.seats[self._controller.index]
+        is_ready = seat is not None and bool(seat.flags & SeatFlag.READY)
+        self._controller.ready(not is_ready)
+        self._say("You are not ready after all." if is_ready else "You are ready.")
+
+    def _tell_about_views(self) -> None:
+        if not self._view_asked:
+            self._view_asked = True
+            self._say("The terminal has no views; 'lacoc watch --board' shows the field.")
+
+    def _see(self, frame: Frame) -> None:
+        if frame.phase == Phase.PLAYING:
+            self._playing_s += BEAT_S * max(1, min(frame.beat - self._beat, 50))
+        self._beat = frame.beat
+        sheet = self._view.sheet
+        if not frame.poses or frame.scene != sheet.scene:
+            return
+        joints = joints_per_seat(sheet)
+        if self._data is None or self._data_match != frame.match or self._data.joints != joints:
+            self._data, self._data_match = PosData(self._controller.index, joints), frame.match
+        self._data.add(frame)
+
+    def _say(self, text: str) -> None:
+        self._said.append(text)
+
+    def _check_end(self) -> None:
+        """See whether the seat is lost, or a script and its match are over.
+
+        Raises:
+            UserError: if the seat is lost, or a script waits for a court that is gone.
+        """
+        controller, frame = self._controller, self._view.frame
+        if controller.hold in (Hold.REPLACED, Hold.REFUSED):
+            raise UserError(f"The seat is lost: {controller.reason}.")
+        if not self._keys.ended or frame is None:
+            return
+        if self._view.silent_s(time.monotonic()) > _GONE_S:
+            raise UserError(f"No word from the court for {_GONE_S:.0f} s.")
+        if frame.phase >= Phase.FINISHED or not self._view.sheet.duration_s:
+            self._leaving = True
+
+    def _draw(self, now_s: float) -> RenderableType:
+        controller, frame, sheet = self._controller, self._view.frame, self._view.sheet
+        if frame is None:
+            return Text("Waiting for the court ...", style="dim")
+        seat = frame.seats[controller.index]
+        second = Text()
+        for level in map(Level, sheet.levels):
+            style = "bold reverse" if level is self._level else "dim"
+            second.append(f" {_LEVEL_NAMES[level]} ", style)
+        if frame.poses:
+            second.append(f"  {words.standing_key(seat, sheet, controller.index)}", "bold")
+        if controller.round_trip_ms is not None:
+            second.append(f"  round trip {controller.round_trip_ms:.0f} ms", "dim")
+        health = self._view.health
+        if health is not None and health.input_delay_ms:
+            second.append(f"  equalised: {health.input_delay_ms} ms", "dim")
+        if len(sheet.seats) == 1:
+            second.append(words.place(frame, sheet, controller.seat))
+        first = status_line(frame, sheet)
+        for line in (first, second):
+            line.no_wrap, line.overflow = True, "ellipsis"
+        return Group(first, second, self._third(now_s))
+
+    def _third(self, now_s: float) -> Text:
+        """What matters most now: the link, an answer to a key, the seat, the phase, the keys."""
+        controller, frame = self._controller, self._view.frame
+        assert frame is not None
+        banner = words.link(self._view.silent_s(now_s))
+        if not banner and controller.hold is not Hold.HELD:
+            banner = controller.link(now_s)
+        if banner:
+            return Text(f" {banner} ", "bold white on red")
+        if self._message and now_s - self._said_s < _SAID_S:
+            return Text(self._message, "yellow")
+        seat = frame.seats[controller.index]
+        state = words.seat_state(seat) or words.phase_hint(frame, self._view.sheet)
+        if frame.phase == Phase.LOBBY and not seat.flags & SeatFlag.READY:
+            state = "press r when you are ready"
+        return Text(state, "cyan") if state else Text(_HELP, "dim")
+
+    def _leave(self) -> None:
+        """Give the seat up, and write what the robot did."""
+        controller = self._controller
+        if self._view.silent_s(time.monotonic()) < 1.0 and controller.hold is Hold.HELD:
+            try:
+                text = controller.leave()
+                screen.note(
+                    f"You have left. {text if self._view.sheet.duration_s else ''}".rstrip()
+                )
+            except UserError as error:
+                screen.note(str(error))
+        if not self._saving:
+            return
+        if self._data is None:
+            screen.warn(f"No {POS_DATA}: your robot has not stood on the field yet.")
+            return
+        path = self._folder / POS_DATA
+        kept = save(path, self._data.text().encode())
+        if kept is not None:
+            screen.note(f"{path} was there: it is {kept} now.")
+        screen.note(f"{path} written: the way of your robot.")
+
+
+def keys_table(controller: Controller) -> Table:
+    """Which keys do what in this seat."""
+    sheet = controller.view.sheet
+    seat = sheet.seats[controller.index]
+    table = Table(show_header=False, box=None, padding=(0, 2))
+    for level in map(Level, sheet.levels):
+        digits = seat.keys[level]
+        what = "one posture each" if level is Level.POSTURE else "walk, until the next key"
+        shown = " ".join(map(str, digits)) or "none in your files"
+        table.add_row(Text(shown, "bold"), f"level {_LEVEL_NAMES[level]}: {what}")
+    if Level.LOCOMOTION in sheet.levels:
+        table.add_row(Text("↑ ← → ↓", "bold"), "2 1 3 0 of level B")
+    if len(sheet.levels) > 1:
+        table.add_row(Text("Tab", "bold"), "change the level")
+    table.add_row(Text("x", "bold"), "restart: back to the start place")
+    table.add_row(Text("r", "bold"), "ready, or not ready after all")
+    table.add_row(Text("z", "bold"), f"leave, and write {POS_DATA}")
+    table.add_row(Text("q", "bold"), "leave (Ctrl-C too)")
+    return table

@@ -1,0 +1,104 @@
+"""Clocks, scores, keys and links in words, the same on every screen of the terminal."""
+
+from lacoc_client.controller import SILENT_AFTER_S
+from lacoc_client.terminal.plain import poses
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.messages import Frame, SeatFrame, Sheet
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, NO_SENTENCES, Phase, SeatFlag
+
+_PHASES = {
+    Phase.CREATED: "the court opens",
+    Phase.LOBBY: "waiting for the teams",
+    Phase.READY: "ready, waiting for the start",
+    Phase.COUNTDOWN: "starts in {countdown_s:.0f} s",
+    Phase.HALTED: "halted; the referee resumes it",
+    Phase.FINISHED: "over; the referee confirms the result",
+    Phase.OFFICIAL: "the result is official",
+    Phase.VOID: "the match is void",
+}
+
+
+def clock(ticks: int) -> str:
+    """A time of the clock: "2:05"; the second that has begun counts."""
+    seconds = -(-max(0, ticks) // BEATS_PER_S)
+    return f"{seconds // 60}:{seconds % 60:02d}"
+
+
+def match_clock(frame: Frame, sheet: Sheet) -> str:
+    """The time that is left, or the time played where a match has no end."""
+    if not sheet.duration_s:
+        return clock(frame.clock_ticks)
+    return clock(round(sheet.duration_s * BEATS_PER_S) - frame.clock_ticks)
+
+
+def phase_hint(frame: Frame, sheet: Sheet) -> str:
+    """What a phase other than PLAYING means, and in the lobby who is missing."""
+    if frame.phase == Phase.LOBBY:
+        return "; ".join(_missing(frame, sheet)) or _PHASES[Phase.LOBBY]
+    countdown_s = frame.countdown_beats * BEAT_S
+    return _PHASES.get(Phase(frame.phase), "").format(countdown_s=-(-countdown_s // 1))
+
+
+def score(frame: Frame) -> str:
+    """The score: "18 : 20"."""
+    return " : ".join(str(seat.score) for seat in frame.seats)
+
+
+def teams(sheet: Sheet) -> list[str]:
+    """The teams' names; a seat's own where nobody has joined."""
+    return [seat.team or seat.id for seat in sheet.seats]
+
+
+def standing_key(seat: SeatFrame, sheet: Sheet, index: int) -> str:
+    """What a robot does: "B key 2, posture 1/4"."""
+    text = f"{'AB'[seat.level]} key {seat.key}"
+    counts = sheet.seats[index].postures
+    if seat.level == Level.LOCOMOTION and seat.key < len(counts) and counts[seat.key] > 1:
+        text += f", posture {seat.posture + 1}/{counts[seat.key]}"
+    return text
+
+
+def place(frame: Frame, sheet: Sheet, seat: str) -> str:
+    """Where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" while it has none."""
+    pose = poses(frame, sheet).get(seat)
+    if pose is None:
+        return ""
+    # Adding zero turns -0.00 into 0.00 once it is rounded.
+    x_m, y_m = (round(pose[name], 2) + 0.0 for name in ("x_m", "y_m"))
+    return f"  x {x_m:.2f} m  y {y_m:.2f} m  heading {pose['heading_deg']:.0f}°"
+
+
+def seat_state(seat: SeatFrame) -> str:
+    """Why a seat's keys do nothing now, or that it is not heard; "" if all is well."""
+    flags = SeatFlag(seat.flags)
+    if SeatFlag.FROZEN in flags:
+        return f"frozen by the referee for {_wait_s(seat)} s"
+    if seat.locked_ticks:
+        return f"restarted: keys again in {_wait_s(seat)} s"
+    return "not heard: it stands" if SeatFlag.SILENT in flags else ""
+
+
+def link(silent_s: float) -> str:
+    """A banner where no frame comes; "" while they do."""
+    if silent_s < SILENT_AFTER_S:
+        return ""
+    return f"No word from the court for {silent_s:.0f} s - trying again"
+
+
+def refusal(why: int) -> str:
+    """Why a command was refused, in a sentence."""
+    return {int(no): text for no, text in NO_SENTENCES.items()}.get(why, "the court refused it")
+
+
+def _missing(frame: Frame, sheet: Sheet) -> list[str]:
+    missing = []
+    for info, seat in zip(sheet.seats, frame.seats, strict=False):
+        if not seat.flags & SeatFlag.JOINED:
+            missing.append(f"waiting for {info.id} to join")
+        elif not seat.flags & SeatFlag.READY:
+            missing.append(f"{info.team or info.id} has not said ready")
+    return missing
+
+
+def _wait_s(seat: SeatFrame) -> int:
+    return -(-seat.locked_ticks // BEATS_PER_S)

@@ -1,0 +1,259 @@
+"""Reading a robot file: TOML in degrees, metres and kilograms (rules 1, workshop 4-3).
+
+First every entry is looked at by itself, then the robot as a whole. A mistake in the
+first part makes numbers NaN, and the whole is judged only where its numbers are known.
+"""
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+from lacoc_robots.leg import Capsule, LegSpec, Point
+from lacoc_robots.limits import Limits
+from lacoc_robots.robot import RobotSpec
+from lacoc_robots.toml_entries import Entries
+from lacoc_shared.contest.toml_text import BadToml, read_toml
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, LEVEL_NAMES, Posture, leg_and_level
+from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.seat import BEAT_S
+
+__all__ = ["Capsule", "LegSpec", "Limits", "Point", "RobotSpec", "read_robot"]
+
+LARGEST_FILE = 32 * 1024
+"""Bytes; the same as for gaits (rules 2)."""
+
+_ROUNDING_KG = 1e-9  # what a sum of decimal masses may miss by
+_ROUNDING_M = 1e-6  # where a foot stands exactly on the floor
+
+
+class _Link(NamedTuple):
+    """What [link] says for all legs, and a leg may say for itself."""
+
+    lengths_m: tuple[float, ...]
+    radius_m: float
+    masses_kg: tuple[float, ...]
+    range_deg: tuple[float, ...]
+
+
+def read_robot(text: str | bytes, file: str, limits: Limits | None = None) -> RobotSpec:
+    """Read a robot file (TOML; the sample `hexapod` explains every entry).
+
+    Args:
+        text: the file's content.
+        file: its name, for the mistakes.
+        limits: the contest's limits; None: the defaults of rules 1.
+
+    Raises:
+        FileRefused: with every mistake of the file.
+    """
+    mistakes: list[Mistake] = []
+    root = Entries(_parse(text, file), "", file, mistakes)
+    robot = _robot(root, limits or Limits())
+    if mistakes:
+        raise FileRefused(mistakes)
+    return robot
+
+
+def _parse(text: str | bytes, file: str) -> dict[str, object]:
+    try:
+        return read_toml(text, LARGEST_FILE, any_integers=True)
+    except BadToml as error:
+        expected = f"TOML of at most {LARGEST_FILE} bytes: lines such as  name = value"
+        mistake = Mistake(file=file, found=error.reason, expected=expected, row=error.row)
+        raise FileRefused([mistake]) from None
+
+
+def _robot(root: Entries, limits: Limits) -> RobotSpec:
+    """Read every table; what is wrong is noted, and NaN in the robot."""
+    body, start = root.table("body"), root.table("start")
+    drive, servo = root.table("drive", optional=True), root.table("servo", optional=True)
+    surface = root.table("surface", optional=True)
+    name = root.text("name", 24)
+    size = body.numbers(
+        "size_m", [(0.01, limits.width_m), (0.01, limits.length_m), (0.01, limits.height_m)], "m"
+    )
+    body_mass_kg = body.number("mass_kg", limits.part_mass_min_kg, limits.part_mass_max_kg, "kg")
+    legs = _legs(root, limits)
+    advance = drive.choice("advance", ("reached", "time"))
+    hold_s = (
+        drive.number("hold_s", BEAT_S, limits.hold_s, 's with advance = "time"')
+        if advance == "time"
+        else drive.number("hold_s", 0.0, limits.hold_s, "s", default=0.0)
+    )
+    robot = RobotSpec(
+        name=name,
+        size_m=(size[0], size[1], size[2]),
+        body_mass_kg=body_mass_kg,
+        legs=legs,
+        start_height_m=start.number("height_m", 0.0, 2 * limits.height_m, "m"),
+        start_posture=_posture(start, legs, limits),
+        ang_min_rad_s=math.radians(
+            drive.number("ang_min_deg_s", 1.0, limits.ang_min_deg_s, "degrees/s", default=120.0)
+        ),
+        advance="time" if advance == "time" else "reached",
+        hold_us=0 if math.isnan(hold_s) else round(hold_s * 1e6),
+        kp=servo.number("kp", 1.0, limits.kp_max, "N m/rad", default=20.0),
+        kv=servo.number("kv", 0.0, limits.kv_max, "N m s/rad", default=0.5),
+        torque_n_m=servo.number("torque_n_m", 0.1, limits.torque_n_m, "N m", default=2.0),
+        damping=servo.number("damping", 0.0, limits.damping_max, "N m s/rad", default=0.02),
+        armature=servo.number(
+            "armature", limits.armature_min, limits.armature_max, "kg m2", default=0.002
+        ),
+        friction=surface.number("friction", 0.0, limits.friction_max, default=1.0),
+    )
+    for table in (root, body, start, drive, servo, surface):
+        table.finish()
+    _check_order(root, robot)
+    _check_mass(root, robot, limits)
+    _check_size(root, start, robot, limits)
+    return robot
+
+
+def _legs(root: Entries, limits: Limits) -> tuple[LegSpec, ...]:
+    link_table = root.table("link")
+    default = _link(link_table, None, limits)
+    link_table.finish()
+    low, high = int(limits.legs_min), int(limits.legs_max)
+    expected = f"an even number of legs from {low} to {high}, each begun by the line [[leg]]"
+    tables = root.tables("leg", expected)
+    if tables and (len(tables) % 2 or not low <= len(tables) <= high):
+        root.note("leg", f"{len(tables)} of them", expected)
+    legs: list[LegSpec] = []
+    for table in tables[:high]:
+        leg = _leg(table, default, limits)
+        table.finish()
+        if leg.label and leg.label in (other.label for other in legs):
+            table.note("label", f'"{leg.label}" for a second time', "another label for every leg")
+        legs.append(leg)
+    return tuple(legs)
+
+
+def _leg(table: Entries, default: _Link, limits: Limits) -> LegSpec:
+    label = table.text("label", 8)
+    sizes = (limits.width_m, limits.length_m, limits.height_m)
+    position = table.numbers("position_m", [(-size / 2, size / 2) for size in sizes], "m")
+    outward_deg = table.number("outward_deg", -180.0, 360.0, "degrees")
+    if abs(math.cos(math.radians(outward_deg))) < 0.01:
+        table.note(
+            "outward_deg",
+            f"{outward_deg:g} degrees, straight forward or back",
+            "a leg that points to the right (near 0) or to the left (near 180)",
+        )
+    link = _link(table, default, limits)
+    return LegSpec(
+        label=label,
+        position_m=Point(*position),
+        outward_rad=math.radians(outward_deg),
+        lengths_m=(link.lengths_m[0], link.lengths_m[1], link.lengths_m[2]),
+        radius_m=link.radius_m,
+        masses_kg=(link.masses_kg[0], link.masses_kg[1], link.masses_kg[2]),
+        range_rad=(math.radians(link.range_deg[0]), math.radians(link.range_deg[1])),
+        accent=table.flag("accent"),
+    )
+
+
+def _link(table: Entries, default: _Link | None, limits: Limits) -> _Link:
+    """Read the links of all legs, or (with a default) what one leg has of its own."""
+
+    def own(name: str) -> bool:
+        table.ask(name)
+        return default is None or name in table
+
+    link = default or _Link((), 0.0, (), ())
+    bounds_m = (limits.link_min_m, limits.link_max_m)
+    if own("lengths_m"):
+        root_bounds_m = (limits.radius_min_m, limits.link_max_m)
+        lengths = table.numbers("lengths_m", [root_bounds_m, bounds_m, bounds_m], "m")
+        link = link._replace(lengths_m=lengths)
+    if own("radius_m"):
+        radius = table.number("radius_m", limits.radius_min_m, limits.radius_max_m, "m")
+        link = link._replace(radius_m=radius)
+    if own("masses_kg"):
+        part_kg = (limits.part_mass_min_kg, limits.part_mass_max_kg)
+        link = link._replace(masses_kg=table.numbers("masses_kg", [part_kg] * 3, "kg"))
+    if own("range_deg"):
+        widest_deg = (-limits.range_deg, limits.range_deg)
+        low, high = table.numbers("range_deg", [widest_deg] * 2, "degrees")
+        if low >= high:
+            table.note("range_deg", f"{low:g} to {high:g}", "the smaller angle first")
+        link = link._replace(range_deg=(low, high))
+    if own("lengths_m") or own("radius_m"):
+        shortest = (link.radius_m, 2 * link.radius_m, 2 * link.radius_m)
+        for level, (length, least) in enumerate(zip(link.lengths_m, shortest, strict=True)):
+            if length < least or (level > 0 and length == least):
+                table.note(
+                    "lengths_m",
+                    f"{LEVEL_NAMES[level]} link {length:g} m long",
+                    "a root link at least its radius long, and the others longer than two radii "
+                    f"(radius_m is {link.radius_m:g})",
+                )
+    return link
+
+
+def _posture(start: Entries, legs: tuple[LegSpec, ...], limits: Limits) -> Posture:
+    if not legs:
+        start.ask("posture_deg")
+        return ()
+    bounds, where = [], []
+    for joint in range(JOINTS_PER_LEG * len(legs)):
+        leg = legs[leg_and_level(joint, len(legs))[0]]
+        low, high = leg.range_deg
+        known = low < high
+        bounds.append((low, high) if known else (-limits.range_deg, limits.range_deg))
+        where.append({"joint": joint, "leg": leg.label or None})
+    angles_deg = start.numbers("posture_deg", bounds, "degrees", where)
+    return tuple(math.radians(angle) for angle in angles_deg)
+
+
+def _check_order(root: Entries, robot: RobotSpec) -> None:
+    """Legs are numbered clockwise from the right front, seen from above (rules 1)."""
+    bearings = [math.atan2(leg.position_m.x, leg.position_m.y) % math.tau for leg in robot.legs]
+    for i, (one, other) in enumerate(pairwise(bearings), 1):
+        if other <= one:
+            root.note(
+                f"leg {i}, position_m",
+                f'"{robot.labels[i]}" not clockwise of "{robot.labels[i - 1]}"',
+                "the legs clockwise, seen from above, beginning at the right front",
+            )
+
+
+def _check_mass(root: Entries, robot: RobotSpec, limits: Limits) -> None:
+    low_kg, high_kg = limits.mass_min_kg, limits.mass_max_kg
+    if robot.mass_kg < low_kg - _ROUNDING_KG or robot.mass_kg > high_kg + _ROUNDING_KG:
+        root.note(
+            "mass_kg and masses_kg",
+            f"{robot.mass_kg:.3f} kg together",
+            f"a robot of {low_kg:g} to {high_kg:g} kg",
+        )
+
+
+def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits) -> None:
+    """The robot at angle 0 fits in its box, and it starts on the floor, or a little above."""
+    low, high = _bounds(robot, (0.0,) * robot.joints)
+    most = (limits.width_m, limits.length_m, limits.height_m)
+    for name, a, b, most_m in zip(("wide", "long", "high"), low, high, most, strict=True):
+        if b - a > most_m + _ROUNDING_M:
+            root.note(
+                "",
+                f"a robot {b - a:.3f} m {name} with every angle 0",
+                f"at most {most_m:g} m, with legs and their radius",
+            )
+    lowest = _bounds(robot, robot.start_posture)[0].z + robot.start_z_m
+    if lowest < -_ROUNDING_M or lowest > limits.drop_m + _ROUNDING_M:
+        least_m = robot.start_height_m - lowest
+        start.note(
+            "height_m",
+            f"{robot.start_height_m:g}, with the lowest part {lowest:.3f} m above the floor",
+            f"{math.ceil(least_m * 1e3) / 1e3:g} to {least_m + limits.drop_m:.3f} m "
+            "for this start posture",
+        )
+
+
+def _bounds(robot: RobotSpec, posture: Posture) -> tuple[Point, Point]:
+    """Lowest and highest x, y and z of all parts; NaN unless every number is known."""
+    ends = (c for capsule in robot.capsules(posture) for c in (*capsule.start, *capsule.end))
+    radii = (leg.radius_m for leg in robot.legs)
+    if any(map(math.isnan, (*robot.size_m, *ends, *radii))):
+        unknown = Point(math.nan, math.nan, math.nan)
+        return unknown, unknown
+    return robot.bounds(posture)

@@ -1,0 +1,201 @@
+"""`lacoc contest`: write, check and show the contest file (`lacoc_shared.contest.file`)."""
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.text import Text
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.limits import Limits
+from lacoc_shared.command import options, screen
+from lacoc_shared.command.keep import save
+from lacoc_shared.contest import entrances
+from lacoc_shared.contest import file as contests
+from lacoc_shared.contest.file import Court
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seal import new_token
+
+app = typer.Typer(
+    help="Write, check and show the contest file: courts, addresses, tokens, limits.",
+    no_args_is_help=True,
+)
+
+_DEFAULT = Path("contest.toml")
+_FileToRead = Annotated[
+    Path, typer.Argument(envvar="LACOC_CONTEST", metavar="FILE", help="The contest file.")
+]
+
+_TEMPLATE = """\
+# A contest of LACOC. Check it with 'lacoc contest check', start its court with
+# 'lacoc serve --contest {file}', and hand each person their line of 'lacoc contest show'.
+# 'lacoc contest keys' encrypts it and makes an invitation for each person.
+# Whoever has a token is let in with it: keep this file to yourself.
+
+[contest]
+name = "Contest"
+recordings = "recordings"  # folder of the records, beside this file
+robot = "hexapod"          # for a team that brings none: an installed robot or a file
+
+[limits]                   # for robots that teams bring; these are some of the defaults
+# legs_max = 8
+# width_m = 0.45           # and length_m, height_m: the robot with every angle 0
+# mass_max_kg = 3.0
+# ang_min_deg_s = 240.0    # fastest joint
+# torque_n_m = 2.0         # strongest servo
+
+[health]                   # a match held worse than this: "replay advised"; these are the defaults
+# real_time_factor = 0.98  # at least, over the time that was played
+# slow_beats_percent = 1.0
+# worst_late_ms = 200.0
+# silent_s = 5.0           # of a seat; heard_percent = 70.0: of its repeats that arrived
+# faults = 0               # stops of physics; resumptions = 2: restarts of a killed court
+
+# One table like this for each court; each listens at a port of its own (7448, 7449, ...).
+[court.{court}]
+arena = "{arena}"
+listen = ["0.0.0.0:7447"]          # 127.0.0.1:7447: this machine alone
+# connect = "192.168.1.20:7447"    # where others reach it, for 'show' and 'keys'
+# input_delay = "equal"                # hold keys until both links have the same delay,
+# input_delay_max_ms = 400             # at most this
+
+# A seat may have its team's own look: colour = "#009e73", pattern = "plain", "stripes" or "dots".
+{seats}
+[court.{court}.referee]
+token = "{referee}"
+
+# What differs from the arena's own file.
+[court.{court}.settings.match]
+# duration_s = 120.0
+# countdown_s = 3.0
+# restart_freeze_s = 5.0   # keys are refused for so long after [x]
+# levels = ["B"]           # ["A", "B"]: posture keys too
+# start = "ready"          # begin when all seats are ready, without a referee's word
+# unattended_s = 900.0     # such a match ends when nobody has been heard for so long; 0: never
+"""
+
+
+@app.command()
+def init(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Where to write it.")] = _DEFAULT,
+    arena: Annotated[
+        str, typer.Option(metavar="NAME", help="The court's game: an arena's name or folder.")
+    ] = "othello",
+    court: Annotated[str, typer.Option(metavar="NAME", help="The court's name.")] = contests.MAIN,
+) -> None:
+    """Write a contest file with comments and fresh tokens; an older one is kept."""
+    Keys(court)
+    seats = "\n".join(
+        f'[court.{court}.seat.{seat.id}]\ntoken = "{new_token()}"\n'
+        for seat in arenas.load(arena).seats
+    )
+    text = _TEMPLATE.format(file=file, court=court, arena=arena, seats=seats, referee=new_token())
+    before = os.umask(0o077)  # only its owner may read it, from its first byte on
+    try:
+        kept = save(file, text.encode())
+    finally:
+        os.umask(before)
+    if kept is not None:
+        screen.note(f"{file} was there: it is {kept} now.")
+    screen.note(f"{file} written. Next: lacoc serve --contest {file}")
+
+
+@app.command()
+def check(file: _FileToRead = _DEFAULT) -> None:
+    """Check a contest file, its arenas' settings and its limits for robots."""
+    contest = contests.load(file)
+    Limits.of(contest.limits)
+    for name, court in contest.courts.items():
+        _check_court(name, court)
+    courts = ", ".join(f"{name} ({court.arena})" for name, court in contest.courts.items())
+    screen.show(f"{file} is right. Courts: {courts}.")
+
+
+@app.command()
+def keys(
+    file: _FileToRead = _DEFAULT,
+    host: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="HOST",
+            help="Name or number by which others reach the courts' machine; may be given again.",
+        ),
+    ] = None,
+    renew: Annotated[
+        bool,
+        typer.Option(
+            "--renew",
+            help="Replace all keys: everybody needs a new invitation. The old are kept with a "
+            "number.",
+        ),
+    ] = False,
+) -> None:
+    """Encrypt a contest: make its keys, and an invitation for each person.
+
+    They go to the folder 'keys' beside the contest file, or to 'keys-FILE' where another contest's
+    are in 'keys'; the contest file gets an entry that says so. From then on its courts listen
+    with TLS, and each person can do no more than their invitation says.
+
+    Run again, it adds what is new (a court, a token, a host); invitations that were handed out
+    stay valid. Courts that run take the new keys when they are started again.
+    """
+    from lacoc_server.keys.make import make_keys  # needs what the base install leaves out
+
+    made = make_keys(file, host or (), renew)
+    if made.kept is not None:
+        screen.note(f"The old keys are in {made.kept}; their invitations are no longer valid.")
+    elif made.handed_out_hold:
+        screen.note("The contest had keys: invitations that were handed out stay valid.")
+    screen.show(f"Keys of {', '.join(made.hosts)}, valid until {made.ends}: {made.folder.path}")
+    for access in made.invitations:
+        screen.show(f"  {made.folder.invitation(access.user)}")
+    starts = [f"lacoc serve --contest {file} --court {name}" for name in contests.load(file).courts]
+    screen.note(
+        "Hand each person their invitation, and nothing else of that folder. Next: "
+        f"{', and '.join(starts)}"
+    )
+
+
+@app.command()
+def show(
+    file: _FileToRead = _DEFAULT,
+    court: options.CourtName = None,
+    host: Annotated[
+        str,
+        typer.Option(
+            metavar="HOST",
+            help="Name or address of the court's machine, where the file does not say it.",
+        ),
+    ] = "HOST",
+    json: options.Json = False,
+) -> None:
+    """Print the command line for each contestant, the referee and spectators."""
+    contest = contests.load(file)
+    names = [contest.court(court)[0]] if court else list(contest.courts)
+    if contest.keys:
+        lines = {n: entrances.invitation_lines(entrances.everybody(contest, n)) for n in names}
+    else:
+        lines = {name: entrances.join_lines(name, contest.courts[name], host) for name in names}
+    if json:
+        screen.print_json(lines)
+        return
+    for name, by_person in lines.items():
+        for person, line in by_person.items():
+            screen.show(Text(f"# court {name}, {person}", style="dim"))
+            screen.stdout.print(line, markup=False, soft_wrap=True)  # to be copied whole
+    if contest.keys:
+        screen.note(f"The invitations are in {contest.keys.invitations}.")
+    if any("/HOST:" in line for by_person in lines.values() for line in by_person.values()):
+        screen.note("HOST is the court's machine: give --host, or 'connect' in the contest file.")
+
+
+def _check_court(name: str, court: Court) -> None:
+    arena = arenas.load(court.arena, court.settings, court.looks)
+    there = {seat.id for seat in arena.seats}
+    if there != set(court.seat):
+        raise UserError(
+            f"Court {name!r}: arena {court.arena!r} has the seats {', '.join(sorted(there))}; "
+            f"the contest file has {', '.join(sorted(court.seat)) or 'none'}."
+        )

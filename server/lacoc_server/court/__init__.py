@@ -1,0 +1,1 @@
+"""The court: the process that holds one match at a time."""

@@ -1,0 +1,276 @@
+"""A court: the loop that gives a match its beats, and the only reader of a clock.
+
+One thread; only an outbox sends beside it, and an archive puts away the records of matches that
+are over. Each beat takes what arrived, lets the match have it, records, and only then answers and
+publishes: what anybody was told is on disk (design.md, "One beat"). Where the disk does not take
+it, the court waits: no beat passes until it does.
+"""
+
+import hashlib
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from lacoc_arenas.arena import Arena
+from lacoc_server.court import unjudged
+from lacoc_server.court.archive import Archive
+from lacoc_server.court.health import MatchHealth
+from lacoc_server.court.log import CourtLog
+from lacoc_server.court.metrics import CourtMetrics
+from lacoc_server.court.pace import Pace
+from lacoc_server.doors.network import Arrival, CourtNetwork, Outcome
+from lacoc_server.journal.journal import Journal
+from lacoc_server.journal.recovery import IN_PLAY, Unfinished
+from lacoc_server.match.match import Beat, Match
+from lacoc_server.world.world import World
+from lacoc_shared.contest.file import HealthLimits
+from lacoc_shared.decisions import Halt
+from lacoc_shared.inputs import Advice, Decide, Input
+from lacoc_shared.messages import Health, HealthVerdict
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network import heap
+from lacoc_shared.record.matches import MatchName
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import BEATS_PER_S, Phase
+
+HEALTH_BEATS = BEATS_PER_S // 2
+"""Health goes out twice a second."""
+
+
+@dataclass(frozen=True)
+class CourtSettings:
+    """What a court is started with."""
+
+    name: str
+    arena: Arena
+    limits: Mapping[str, float]
+    """Contest limits for robots that differ from the defaults of rules 1."""
+    recordings: Path | None
+    """Folder of the records; None: no record."""
+    speed: float = 1.0
+    """1: a beat every 20 ms; more for a demonstration in a hurry."""
+    health: HealthLimits = field(default_factory=HealthLimits)
+    """Beyond these a replay is advised."""
+
+
+class _Made(NamedTuple):
+    """A beat that is over, and what is to be told of it."""
+
+    beat: Beat
+    frame: bytes
+    arrivals: Sequence[Arrival]
+    outcomes: Sequence[Outcome]
+    """For each arrival."""
+
+
+class Court:
+    """Holds one match at a time.
+
+    Args:
+        settings: what to play.
+        network: how others reach it; opened by the caller.
+        left: a match that an earlier court left behind, to go on with.
+    """
+
+    def __init__(
+        self,
+        settings: CourtSettings,
+        network: CourtNetwork,
+        left: Unfinished | None = None,
+    ) -> None:
+        self._settings = settings
+        self._network = network
+        self._log = CourtLog(settings.name)
+        self.metrics = CourtMetrics(settings.name)
+        """Its numbers, for who watches courts."""
+        self._scene = b""
+        self._archive = Archive(settings.recordings, settings.name, self._log)
+        self._pace = Pace(time.monotonic(), settings.speed, _offset_s(network.locators))
+        self._inputs: list[Input] = []
+        """The court's own, for the next beat."""
+        self._made: _Made | None = None
+        """A beat that nobody was told of yet."""
+        self._frame = b""
+        """The newest that was published."""
+        self._trouble = ""
+        """What is wrong with the disk of the record."""
+        self._waits = 0
+        """Beats that could have been in the time that the disk did not take the record."""
+        if left is None:
+            self._journal = self._open(1)
+        else:
+            self._journal = self._journal_of(left.match, left.segment, left.health)
+            self._inputs = left.inputs
+            network.publish_sheet(left.match.sheet())
+            for event in left.events:
+                network.publish_event(event)
+
+    @property
+    def match_id(self) -> str:
+        """Names the record of the match that is on."""
+        return self._journal.match.setup.match_id
+
+    def run(self, stopping: Callable[[], bool]) -> None:
+        """Give the match its beats until `stopping` says so; then finish the record.
+
+        An error in the loop ends the court, and not its match: that is for the next start.
+        """
+        pace = self._pace
+        self._archive.pack(self.match_id)
+        try:
+            while not stopping():
+                time.sleep(pace.wait_s(time.monotonic()))
+                now_s = time.monotonic()
+                pace.begin(now_s)
+                self._health.begin(now_s, pace.late_s, self._network.doors())
+                self._beat(now_s)
+                self.metrics.beat(time.monotonic() - now_s)
+        except BaseException:
+            self._journal.leave()
+            raise
+        self._close()
+        self._archive.close()
+
+    def _beat(self, now_s: float) -> None:
+        try:
+            if self._made is None:
+                if self._journal.match.next_wanted:
+                    self._open_next()
+                self._made = self._make(now_s)
+            self._journal.flush()
+        except UserError as trouble:
+            self._wait(now_s, str(trouble))
+            return
+        made, self._made, self._waits = self._made, None, 0
+        self._inputs = self._follow()
+        self._tell(made, now_s)
+
+    def _make(self, now_s: float) -> _Made:
+        """Let the match have a beat."""
+        own, self._inputs = self._inputs, []
+        match, network = self._journal.match, self._network
+        silent = [seat.silent for seat in match.seats]
+        arrivals = network.poll(now_s, match.setup.match, match.beats + 1, silent)
+        beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
+        return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])
+
+    def _wait(self, now_s: float, trouble: str) -> None:
+        """Let no beat pass: nobody may be told what is not on disk.
+
+        What was published last is published again, so that nobody takes the court for dead.
+        """
+        self._trouble = trouble
+        self._network.turn_away(trouble)
+        if self._frame:
+            self._network.publish_again(self._frame)
+        if self._waits % HEALTH_BEATS == 0:
+            self._say_health(now_s)
+        self._waits += 1
+
+    def _tell(self, made: _Made, now_s: float) -> None:
+        """Answer and publish what a beat made."""
+        match, network, beat = self._journal.match, self._network, made.beat
+        for arrival, outcome in zip(made.arrivals, made.outcomes, strict=True):
+            if arrival.answer is not None:
+                arrival.answer(outcome)
+        self._frame = made.frame
+        network.publish_frame(made.frame, time.monotonic())
+        for event in beat.events:
+            network.publish_event(event)
+            self._log.event(self.match_id, event)
+        if match.physics.scene_hash != self._scene:
+            self._scene = match.physics.scene_hash
+            network.publish_scene(match.physics.scene)
+        if beat.sheet_changed:
+            network.publish_sheet(match.sheet())
+        if match.beats % HEALTH_BEATS == 0:
+            self._say_health(now_s)
+
+    def _open_next(self) -> None:
+        if self._waits % HEALTH_BEATS:  # a match takes longer than a beat to make
+            raise UserError(self._trouble)
+        match = self._journal.match
+        following = self._open(match.setup.match + 1)
+        self._close()
+        self._journal = following
+        heap.give_back()  # models and worlds of the match before
+        self._inputs = list(match.next_joins())
+
+    def _follow(self) -> list[Input]:
+        """What comes after a beat that was recorded: the court's own decisions."""
+        match, before = self._journal.match, self._trouble
+        self._trouble = now = self._journal.trouble
+        if before != now and match.phase in IN_PLAY:
+            return [Decide("court", before or now, Halt())]
+        if match.phase is Phase.FINISHED:
+            reasons = self._health.verdict().advice
+            if reasons != match.advice:
+                return [Advice(reasons)]
+        if match.rules.start == "ready":
+            return unjudged.decisions(match, self._held)
+        return []
+
+    def _held(self) -> list[bool]:
+        return [bool(one.session) for one in self._network.seat_health(time.monotonic())]
+
+    def _open(self, number: int) -> Journal:
+        settings = self._settings
+        setup = Setup(
+            match_id=str(MatchName.now(settings.name, number)),
+            court=settings.name,
+            match=number,
+            arena=settings.arena.name,
+            settings=settings.arena.settings,
+            limits=dict(settings.limits),
+        )
+        return self._journal_of(Match(setup, World, settings.arena.folder))
+
+    def _journal_of(
+        self, match: Match, segment: int = 0, before: HealthVerdict | None = None
+    ) -> Journal:
+        settings = self._settings
+        journal = Journal(match, settings.recordings, segment)
+        journal.health = self._health = MatchHealth(
+            match,
+            settings.health,
+            self._network.doors(),
+            speed=settings.speed,
+            before=before,
+            resumptions=segment,
+        )
+        return journal
+
+    def _close(self) -> None:
+        """Finish the record of this match."""
+        self._archive.take(self.match_id, self._journal.writer)
+
+    def _say_health(self, now_s: float) -> None:
+        pace, match = self._pace, self._journal.match
+        health = Health(
+            match=match.setup.match,
+            beat=match.beats,
+            real_time_factor=pace.real_time_factor,
+            slow_beats=pace.slow_beats,
+            worst_late_ms=pace.worst_late_s * 1000,
+            seats=self._network.seat_health(now_s),
+            dropped=self._network.dropped,
+            decisions=match.legality(),
+            verdict=self._health.verdict(),
+            record_trouble=self._trouble,
+            input_delay_ms=self._network.input_delay_ms,
+            events=self._network.newest_event,
+            sheet=self._network.sheet_hash,
+        )
+        self._network.publish_health(health)
+        self._log.health(self.match_id, health)
+        self.metrics.health(self.match_id, health, self._network.doors())
+
+
+def _offset_s(locators: tuple[str, ...]) -> float:
+    """Part of a second by which a court's beats are shifted (design.md, "Time").
+
+    Names of courts may be the same on one machine; where they listen is not.
+    """
+    return int.from_bytes(hashlib.blake2b(repr(locators).encode(), digest_size=4).digest()) / 2**32

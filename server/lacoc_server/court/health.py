@@ -1,0 +1,204 @@
+"""How well a match is held: measured on the wall clock and on the links, beside the match.
+
+Pure: times, counts and beats come in, the verdict comes out. It is no part of the match,
+which is the same at any speed and with any loss; so it stands in the record as a message
+of its own. Only its advice enters the match, as an input (design.md, "Time").
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+import msgspec
+
+from lacoc_server.court.pace import SLOW_S
+from lacoc_server.doors.inbox import Door
+from lacoc_server.match.match import Beat, Match
+from lacoc_shared.contest.file import HealthLimits
+from lacoc_shared.inputs import Input, KeySeat
+from lacoc_shared.messages import HealthVerdict, LinkVerdict, Refusal
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, REPEATS_HZ, Phase
+
+_LEAST_FACTOR = 1e-4
+"""What a rounded real-time factor can tell from standing still."""
+_CARRIED = 2
+"""Repeats that came before their second began: a second may have 9 of them and the next 11."""
+
+
+class _Link:
+    """One seat's link in PLAYING."""
+
+    def __init__(self, before: LinkVerdict | None) -> None:
+        self.silences = before.silences if before else 0
+        self.silent_s = before.silent_s if before else 0.0
+        self.expected = before.expected if before else 0
+        self.arrived = before.arrived if before else 0
+        self.refused = Counter(before.refused if before else {})
+        self._silent = False
+        self._heard: int | None = None
+        """What the doors had counted when this second of PLAYING began."""
+        self._counted = 0
+        """Its beats so far."""
+        self._carried = 0
+
+    def count(self, silent: bool, heard: int) -> None:
+        """Count a beat of PLAYING."""
+        self.silent_s += silent * BEAT_S
+        self.silences += silent and not self._silent
+        self._silent = silent
+        if self._heard is None:
+            self._heard, self._counted = heard, 0
+            return
+        self._counted += 1
+        if self._counted == BEATS_PER_S:
+            came = heard - self._heard + self._carried
+            self.expected += REPEATS_HZ
+            self.arrived += min(came, REPEATS_HZ)
+            self._carried = max(0, min(came - REPEATS_HZ, _CARRIED))
+            self._heard, self._counted = heard, 0
+
+    def pause(self) -> None:
+        """Count nothing until the next beat of PLAYING."""
+        self._heard = None
+
+
+class MatchHealth:
+    """Measures one match, in its court or in several after another.
+
+    Args:
+        match: the match.
+        limits: beyond which a replay is advised.
+        doors: what the doors had counted for each seat before this match.
+        speed: of the court; 2 lets two beats of 20 ms pass in 20 ms.
+        before: what was measured before the court was killed, if it was.
+        resumptions: how often the match went on after that.
+    """
+
+    def __init__(
+        self,
+        match: Match,
+        limits: HealthLimits,
+        doors: Sequence[Door],
+        *,
+        speed: float = 1.0,
+        before: HealthVerdict | None = None,
+        resumptions: int = 0,
+    ) -> None:
+        self._match = match
+        self._limits = limits
+        self._speed = speed
+        self._resumptions = resumptions
+        self._doors_before = [Counter(door.refused) for door in doors]
+        self._doors = doors
+        self._now_s = self._late_s = 0.0
+        self._playing_since: float | None = None
+        """When the last beat began, if it was one of PLAYING."""
+        self._beats = before.played_beats if before else 0
+        factor = max(before.real_time_factor, _LEAST_FACTOR) if before else 1.0
+        # In seconds of a court of speed 1, so that it can be gone on with at another speed.
+        self._took_s = self._beats * BEAT_S / factor
+        self._slow_beats = before.slow_beats if before else 0
+        self._worst_late_s = before.worst_late_ms / 1000 if before else 0.0
+        self._faults = before.faults if before else 0
+        seats = before.seats if before else [None] * len(match.seats)
+        self._links = [_Link(seat) for seat in seats]
+
+    def begin(self, now_s: float, late_s: float, doors: Sequence[Door]) -> None:
+        """A beat begins.
+
+        Args:
+            now_s: monotonic time.
+            late_s: how much later than it should.
+            doors: what the doors counted so far.
+        """
+        self._now_s, self._late_s, self._doors = now_s, late_s, doors
+
+    def take(self, inputs: Sequence[Input], beat: Beat) -> None:
+        """Take in what the beat made of its inputs."""
+        self._faults += sum(event.kind == "fault" for event in beat.events)
+        for item, outcome in zip(inputs, beat.outcomes, strict=True):
+            if isinstance(item, KeySeat) and isinstance(outcome, Refusal):
+                why = outcome.reason.lower().replace("_", " ")
+                self._links[item.seat].refused[why] += 1
+        if self._match.phase is not Phase.PLAYING:
+            self._playing_since = None
+            for link in self._links:
+                link.pause()
+            return
+        # The first beat of PLAYING began before anybody could play.
+        if self._playing_since is not None:
+            self._beats += 1
+            self._took_s += (self._now_s - self._playing_since) * self._speed
+            self._slow_beats += self._late_s > SLOW_S
+            self._worst_late_s = max(self._worst_late_s, self._late_s)
+        self._playing_since = self._now_s
+        for seat, link, door in zip(self._match.seats, self._links, self._doors, strict=True):
+            if seat.left:  # nobody wants to hear of it
+                link.pause()
+            else:
+                link.count(seat.silent, door.heard)
+
+    def verdict(self) -> HealthVerdict:
+        """How well the match was held so far."""
+        took_s = self._took_s
+        verdict = HealthVerdict(
+            played_beats=self._beats,
+            real_time_factor=round(self._beats * BEAT_S / took_s, 4) if took_s else 1.0,
+            slow_beats=self._slow_beats,
+            worst_late_ms=round(self._worst_late_s * 1000, 1),
+            faults=self._faults,
+            resumptions=self._resumptions,
+            seats=tuple(
+                LinkVerdict(
+                    id=seat.id,
+                    silences=link.silences,
+                    silent_s=round(link.silent_s, 2),
+                    expected=link.expected,
+                    arrived=link.arrived,
+                    refused=dict(link.refused + Counter(door.refused) - before),
+                )
+                for seat, link, door, before in zip(
+                    self._match.seats, self._links, self._doors, self._doors_before, strict=True
+                )
+            ),
+            advice=(),
+        )
+        return msgspec.structs.replace(verdict, advice=tuple(advice(verdict, self._limits)))
+
+
+def advice(verdict: HealthVerdict, limits: HealthLimits) -> Iterator[str]:
+    """Everything in which a match was held worse than its contest wants, in words."""
+    if verdict.real_time_factor < limits.real_time_factor:
+        yield (
+            f"it ran at {verdict.real_time_factor:.3f} of real time, "
+            f"at least {limits.real_time_factor:g} is wanted"
+        )
+    slow_percent = 100 * verdict.slow_beats / max(1, verdict.played_beats)
+    if slow_percent > limits.slow_beats_percent:
+        yield (
+            f"{slow_percent:.1f} % of the beats were slow, "
+            f"at most {limits.slow_beats_percent:g} % may be"
+        )
+    if verdict.worst_late_ms > limits.worst_late_ms:
+        yield (
+            f"a beat began {verdict.worst_late_ms:.0f} ms late, "
+            f"at most {limits.worst_late_ms:g} ms may be"
+        )
+    for seat in verdict.seats:
+        if seat.silent_s > limits.silent_s:
+            yield (
+                f"seat {seat.id} was silent for {seat.silent_s:.1f} s, "
+                f"at most {limits.silent_s:g} s may be"
+            )
+        heard_percent = 100 * seat.arrived / max(1, seat.expected)
+        if seat.expected and heard_percent < limits.heard_percent:
+            yield (
+                f"{heard_percent:.0f} % of the repeats of seat {seat.id} arrived, "
+                f"at least {limits.heard_percent:g} % are wanted"
+            )
+    if verdict.faults > limits.faults:
+        yield f"physics stopped {verdict.faults} times, at most {limits.faults} may be"
+    if verdict.resumptions > limits.resumptions:
+        yield (
+            f"the court was started again {verdict.resumptions} times, "
+            f"at most {limits.resumptions} may be"
+        )

@@ -1,0 +1,1 @@
+"""What comes into a court from the network and what goes out."""

@@ -1,0 +1,107 @@
+"""Which of the referee's requests a court listens to: token, form, sane numbers.
+
+Whether a decision is legal now is not judged here but by the match.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Collection
+
+import msgspec
+
+from lacoc_server.doors.sessions import Why
+from lacoc_shared import codec, seal
+from lacoc_shared.decisions import DECISIONS, Decision
+from lacoc_shared.inputs import Decide
+from lacoc_shared.keyspace import DECISION_MAX_BYTES
+from lacoc_shared.messages import DecisionRequest, Done, Enter, Refusal
+
+_NUMBER_MAX = 1e6  # seconds, points, an event's number
+
+
+class _Token(msgspec.Struct):
+    token: str
+
+
+class _Name(msgspec.Struct):
+    type: str
+
+
+class _DecisionName(msgspec.Struct):
+    decision: _Name
+
+
+class DecisionDesk:
+    """Takes the requests of referees.
+
+    Args:
+        referee_hashes: hashes of the tokens that open it.
+    """
+
+    def __init__(self, referee_hashes: Collection[str]) -> None:
+        self._referee_hashes = tuple(referee_hashes)
+        self.refused: Counter[str] = Counter()
+        """Refusals by reason."""
+
+    def enter(self, payload: bytes) -> Done | Refusal:
+        """Judge a token that is only shown.
+
+        Args:
+            payload: an `Enter`, perhaps.
+        """
+        return self._check_token(payload, Enter) or Done()
+
+    def decision(self, name: str, payload: bytes) -> Decide | Refusal:
+        """Judge a request.
+
+        Args:
+            name: the decision's name in the key expression it came under.
+            payload: a `DecisionRequest`, perhaps.
+        """
+        refusal = self._check_token(payload, _Token)
+        if refusal is not None:
+            return refusal
+        try:
+            found = codec.decode(payload, _DecisionName).decision.type
+            if found not in DECISIONS or found != name:
+                raise codec.BadMessage(f"there is no decision {found!r:.40} under {name!r:.40}")
+            request = codec.decode(payload, DecisionRequest)
+        except codec.BadMessage as error:
+            return self._refuse(
+                Why.BAD_DECISION,
+                f"The decision was not understood: {error}. There are: {_all_decisions()}.",
+            )
+        if not (request.by.strip() and request.by.isprintable()):
+            return self._refuse(Why.BAD_NAME, "Say who decides: it stands in the record.")
+        if not _numbers_are_sane(request.decision):
+            return self._refuse(
+                Why.OUT_OF_RANGE, f"A number of the decision {name} is beyond all reason."
+            )
+        return Decide(request.by.strip(), request.reason, request.decision)
+
+    def _check_token(self, payload: bytes, kind: type[_Token] | type[Enter]) -> Refusal | None:
+        try:
+            token = codec.decode(payload, kind, DECISION_MAX_BYTES).token
+        except codec.BadMessage as error:
+            return self._refuse(Why.BAD_BYTES, f"The request was not understood: {error}.")
+        if not any(seal.verify_token(token, known) for known in self._referee_hashes):
+            return self._refuse(Why.WRONG_TOKEN, "This is not a referee's token of this court.")
+        return None
+
+    def _refuse(self, why: Why, reason: str) -> Refusal:
+        self.refused[why] += 1
+        return Refusal(reason)
+
+
+def _numbers_are_sane(decision: Decision) -> bool:
+    numbers = [n for n in msgspec.structs.astuple(decision) if isinstance(n, int | float)]
+    return all(math.isfinite(number) and abs(number) <= _NUMBER_MAX for number in numbers)
+
+
+def _all_decisions() -> str:
+    """Every decision with its arguments: "start, adjust (seat: str, points: int), ..."."""
+    texts = []
+    for name, kind in DECISIONS.items():
+        fields = ", ".join(f"{f.name}: {f.type.__name__}" for f in msgspec.structs.fields(kind))
+        texts.append(f"{name} ({fields})" if fields else name)
+    return ", ".join(texts)

@@ -1,0 +1,376 @@
+"""What a court believes of what arrives: tokens, sessions, sequence numbers, seals, floods.
+
+Pure: bytes and the time come in, inputs and refusals come out. Whatever the network
+lets through, nothing passes here that is not proven to be the seat's own, and nothing
+that arrives ever raises or costs more than a fixed amount of a beat.
+"""
+
+from collections import Counter, deque
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import NamedTuple
+
+import msgspec
+
+from lacoc_server.doors.links import Links
+from lacoc_server.doors.sessions import Sessions, Why
+from lacoc_shared import codec, seal
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.inputs import (
+    HeardSeat,
+    Input,
+    JoinSeat,
+    LeaveSeat,
+    ReadySeat,
+    SilentSeat,
+)
+from lacoc_shared.keyspace import COMMAND_MAX_BYTES, JOIN_MAX_BYTES, Keys
+from lacoc_shared.messages import (
+    PROTOCOL,
+    Command,
+    Join,
+    Joined,
+    Refusal,
+    SeatHealth,
+    SeatRequest,
+)
+from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.network.allowance import Allowance
+from lacoc_shared.seat import RESTART_KEY
+
+SILENT_AFTER_S = 1.0
+"""A joined seat without a valid command for longer than this is silent (rules 3)."""
+COMMANDS_PER_BEAT = 16
+"""More of a seat's commands do not count in one beat: the newest do."""
+LOOKED_AT_PER_BEAT = 64
+"""More of what comes for a seat is not looked at in one beat, whoever it is from."""
+COMMANDS_HZ = 200.0
+"""Nor more than this in the long run; a controller sends 10 and what is pressed, a bot 60."""
+NAME_MAX = 24
+FILE_NAME_MAX = 100
+"""A file's name stands in each of its mistakes."""
+
+_JOINS_HZ, _JOINS_BURST = 1.0, 5  # each may cost the reading of three files
+_READYS_HZ, _READYS_BURST = 1.0, 5  # each may cost the making of a model, and is an event for all
+_RATE_WINDOW_S = 2.0
+
+_SESSION_SENTENCES = {
+    Why.UNKNOWN_SESSION: "The court does not know this session: join seat {seat} again.",
+    Why.REPLACED: "Seat {seat} was joined again from another window or machine.",
+    Why.LEFT: "This session has left seat {seat}: join again.",
+    Why.NOT_YOUR_SEAT: "This session holds another seat than {seat}.",
+}
+
+
+class Door(NamedTuple):
+    """What was counted for a seat since the court was started."""
+
+    heard: int
+    """Valid commands."""
+    refused: Mapping[str, int]
+    """Refusals by reason."""
+
+
+class _Seat:
+    def __init__(self, index: int, name: str, last_seq: int, joined: bool) -> None:
+        self.index = index
+        self.name = name
+        self.last_seq = last_seq
+        self.joined = joined
+        self.heard_s: float | None = None
+        self.refused: Counter[str] = Counter()
+        self.heard = 0
+        """Valid commands."""
+        self.valid_s: deque[float] = deque(maxlen=int(2 * COMMANDS_HZ * _RATE_WINDOW_S))
+        self.commands = Allowance(COMMANDS_HZ, COMMANDS_PER_BEAT)
+        self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
+        self.readys = Allowance(_READYS_HZ, _READYS_BURST)
+
+    def refuse(self, why: Why, reason: str, *, again: bool = False) -> Refusal:
+        self.refused[why] += 1
+        return Refusal(reason, again=again)
+
+
+class _Version(msgspec.Struct):
+    protocol: int
+
+
+_MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one message
+
+
+class Inbox:
+    """The seats of a court and who holds them.
+
+    Args:
+        keys: key expressions of the court; seals are over them.
+        seats: the seats' names, in the arena's order.
+        token_hashes: hash of the token that opens a seat, by the seat's name; a seat without one
+            can't be joined.
+        check_files: weighs a join's files in; returns the join with the robot file filled in, or
+            raises `FileRefused`.
+        last_seqs: for a restarted court, the newest sequence numbers of its record, by seat.
+        joined: for a restarted court, the seats that are held.
+        former: hashes of tokens that open seats too: of who held them before a restart of the
+            court made new ones.
+        most_delay_ms: links are made equal by a delay of at most this; 0: they are not.
+    """
+
+    def __init__(
+        self,
+        keys: Keys,
+        seats: Sequence[str],
+        token_hashes: Mapping[str, str],
+        check_files: Callable[[Join], Join],
+        *,
+        last_seqs: Mapping[str, int] | None = None,
+        joined: Collection[str] = (),
+        former: Mapping[str, str] | None = None,
+        most_delay_ms: int = 0,
+    ) -> None:
+        self._keys = keys
+        self._token_hashes = (token_hashes, former or {})
+        self._check_files = check_files
+        self._seats = [
+            _Seat(index, name, (last_seqs or {}).get(name, 0), name in joined)
+            for index, name in enumerate(seats)
+        ]
+        self.links = Links(len(seats), most_delay_ms)
+        """Told of every beat by the network."""
+        self._sessions = Sessions()
+        self._now_s = 0.0
+
+    @property
+    def seats(self) -> tuple[str, ...]:
+        """The seats' names, in the arena's order."""
+        return tuple(seat.name for seat in self._seats)
+
+    def commands(
+        self, now_s: float, arrived: Sequence[Sequence[bytes]], silent: Sequence[bool]
+    ) -> list[Input]:
+        """Take a beat's commands in.
+
+        Args:
+            now_s: monotonic time.
+            arrived: for each seat the payloads on its key expression, the newest last.
+            silent: for each seat, whether the match takes it for silent.
+
+        Returns:
+            For each seat: that it fell silent or is heard again, then of the keys that take effect
+            now its newest [x], then its newest digit (rules 3).
+        """
+        self._now_s = now_s
+        inputs: list[Input] = []
+        for seat, payloads, is_silent in zip(self._seats, arrived, silent, strict=True):
+            for command in self._own(seat, payloads):
+                self._take(seat, command)
+            inputs += self._presence(seat, is_silent)
+            newest = {key.key == RESTART_KEY: key for key in self.links.release(seat.index)}
+            inputs += [newest[restart] for restart in (True, False) if restart in newest]
+        return inputs
+
+    def join(self, index: int, payload: bytes) -> JoinSeat | Refusal:
+        """Judge a join; it takes effect with `seated`, once the match has taken it in."""
+        seat = self._seats[index]
+        try:
+            protocol = codec.decode(payload, _Version, JOIN_MAX_BYTES).protocol
+            if protocol != PROTOCOL:
+                return seat.refuse(
+                    Why.WRONG_VERSION,
+                    f"This court speaks version {PROTOCOL} of the protocol, your program version "
+                    f"{protocol}: install the version of lacoc that the organiser uses.",
+                )
+            join = codec.decode(payload, Join, JOIN_MAX_BYTES)
+        except codec.BadMessage as error:
+            return seat.refuse(Why.BAD_BYTES, f"The join was not understood: {error}.")
+        hashes = [by_seat[seat.name] for by_seat in self._token_hashes if seat.name in by_seat]
+        token_hash = next((one for one in hashes if seal.verify_token(join.token, one)), None)
+        if token_hash is None:
+            return seat.refuse(
+                Why.WRONG_TOKEN,
+                f"This token does not open seat {seat.name}. "
+                "Check the seat and the token that the organiser gave you.",
+            )
+        if not seat.joins.take(1, self._now_s):
+            why = "Too many joins at once: wait a few seconds."
+            return seat.refuse(Why.FLOOD, why, again=True)
+        name = join.name.strip()
+        if not (0 < len(name) <= NAME_MAX and name.isprintable()):
+            return seat.refuse(
+                Why.BAD_NAME,
+                f"A team's name has 1-{NAME_MAX} printable characters; found {join.name!r:.60}.",
+            )
+        files = [one for one in (join.robot, join.postures, join.locomotion) if one is not None]
+        if not all(0 < len(one.name) <= FILE_NAME_MAX and one.name.isprintable() for one in files):
+            return seat.refuse(
+                Why.BAD_NAME,
+                f"A file's name has 1-{FILE_NAME_MAX} printable characters: rename it.",
+            )
+        try:
+            checked = self._check_files(join)
+        except FileRefused as refused:
+            seat.refused[Why.BAD_FILES] += 1
+            mistakes = refused.mistakes
+            first = f"; the first {_MISTAKES_TOLD} follow" if len(mistakes) > _MISTAKES_TOLD else ""
+            return Refusal(
+                f"Your files have {len(mistakes)} mistakes{first}.",
+                tuple(mistakes[:_MISTAKES_TOLD]),
+            )
+        assert checked.robot is not None, "check_files fills the robot file in"
+        return JoinSeat(
+            seat=index,
+            team=name,
+            robot=checked.robot,
+            postures=checked.postures,
+            locomotion=checked.locomotion,
+            token_hash=token_hash,
+        )
+
+    def seated(self, index: int, notes: tuple[str, ...] = ()) -> Joined:
+        """Give a seat to whoever's join was taken in; an older session of it ends."""
+        seat = self._seats[index]
+        number, secret = self._sessions.begin(index)
+        seat.joined = True
+        seat.heard_s = self._now_s
+        return Joined(session=number, secret=secret, last_seq=seat.last_seq, notes=notes)
+
+    def ready(self, index: int, payload: bytes) -> ReadySeat | Refusal:
+        """Judge a ready request."""
+        request = self._request(index, payload, "ready")
+        if isinstance(request, Refusal):
+            return request
+        seat = self._seats[index]
+        if not seat.readys.take(1, self._now_s):
+            why = "Ready and not ready too often: wait a few seconds."
+            return seat.refuse(Why.FLOOD, why, again=True)
+        return ReadySeat(index, request.ready)
+
+    def leave(self, index: int, payload: bytes) -> LeaveSeat | Refusal:
+        """Judge a leave request; it takes effect with `left`."""
+        request = self._request(index, payload, "leave")
+        return request if isinstance(request, Refusal) else LeaveSeat(index)
+
+    def left(self, index: int) -> None:
+        """Free a seat whose leaving was taken in."""
+        seat = self._seats[index]
+        self._sessions.end(index, Why.LEFT)
+        seat.joined = False
+        seat.heard_s = None
+        self.links.drop(index)
+
+    def doors(self) -> tuple[Door, ...]:
+        """What was let in and refused, for each seat."""
+        return tuple(Door(seat.heard, seat.refused) for seat in self._seats)
+
+    def health(self, now_s: float) -> tuple[SeatHealth, ...]:
+        """How each seat's link is."""
+        return tuple(self._health(seat, now_s) for seat in self._seats)
+
+    def _health(self, seat: _Seat, now_s: float) -> SeatHealth:
+        trip = self.links.trip(seat.index)
+        recent = sum(at_s > now_s - _RATE_WINDOW_S for at_s in seat.valid_s)
+        return SeatHealth(
+            id=seat.name,
+            joined=seat.joined,
+            session=self._sessions.holder(seat.index),
+            heard_ms=None if seat.heard_s is None else (now_s - seat.heard_s) * 1000,
+            commands_hz=recent / _RATE_WINDOW_S,
+            refused=dict(seat.refused),
+            round_trip_p50_ms=trip and trip.p50_s * 1000,
+            round_trip_p95_ms=trip and trip.p95_s * 1000,
+            late=self.links.late(seat.index),
+        )
+
+    def _own(self, seat: _Seat, payloads: Sequence[bytes]) -> list[Command]:
+        """The newest commands that are proven to be the seat's own, the oldest first.
+
+        What anybody else sends takes nothing of what the seat may send.
+        """
+        allowed = seat.commands.left(self._now_s)
+        own: list[Command] = []
+        looked_at = 0
+        for payload in reversed(payloads[-LOOKED_AT_PER_BEAT:]):
+            if len(own) == allowed:
+                break
+            looked_at += 1
+            command = self._proven(seat, payload)
+            if isinstance(command, Why):
+                seat.refused[command] += 1
+            else:
+                own.append(command)
+        seat.commands.take(len(own), self._now_s)
+        if looked_at < len(payloads):
+            seat.refused[Why.FLOOD] += len(payloads) - looked_at
+        return own[::-1]
+
+    def _take(self, seat: _Seat, command: Command) -> None:
+        why = self._nonsense(seat, command)
+        is_new = command.seq > seat.last_seq
+        if why is None and not (self.links.heard(seat.index, command) or is_new):
+            why = Why.STALE
+        if why is not None:
+            seat.refused[why] += 1
+            return
+        seat.heard_s = self._now_s
+        seat.heard += 1
+        seat.valid_s.append(self._now_s)
+        if is_new:  # else only a sign of life
+            seat.last_seq = command.seq
+            self.links.hold(seat.index, command)
+
+    def _proven(self, seat: _Seat, payload: bytes) -> Command | Why:
+        if len(payload) > COMMAND_MAX_BYTES:
+            return Why.TOO_LONG
+        try:
+            command = codec.decode(payload, Command)
+        except codec.BadMessage:
+            return Why.BAD_BYTES
+        secret = self._sessions.secret(seat.index, command.session)
+        if isinstance(secret, Why):
+            return secret
+        *numbers, mac = msgspec.structs.astuple(command)
+        expected = seal.command_mac(secret, self._keys.command(seat.name), *numbers)
+        return command if seal.same(mac, expected) else Why.BAD_SEAL
+
+    def _nonsense(self, seat: _Seat, command: Command) -> Why | None:
+        if command.level not in (Level.POSTURE, Level.LOCOMOTION):
+            return Why.OUT_OF_RANGE
+        if not (0 <= command.key <= RESTART_KEY and 0 <= command.seq < 2**53):
+            return Why.OUT_OF_RANGE
+        if min(command.match, command.seen) < 0:
+            return Why.OUT_OF_RANGE
+        if self.links.is_ahead(command):
+            return Why.AHEAD
+        return Why.OLD if 0 < command.seq < seat.last_seq else None
+
+    def _request(self, index: int, payload: bytes, what: str) -> SeatRequest | Refusal:
+        seat = self._seats[index]
+        try:
+            request = codec.decode(payload, SeatRequest, COMMAND_MAX_BYTES)
+        except codec.BadMessage as error:
+            return seat.refuse(Why.BAD_BYTES, f"The request was not understood: {error}.")
+        secret = self._sessions.secret(index, request.session)
+        if isinstance(secret, Why):
+            return seat.refuse(secret, _SESSION_SENTENCES[secret].format(seat=seat.name))
+        key_expression = self._keys.request(seat.name, what)
+        expected = seal.request_mac(
+            secret, key_expression, request.session, request.seq, request.ready
+        )
+        if not seal.same(request.mac, expected):
+            return seat.refuse(
+                Why.BAD_SEAL, f"The request's seal is not that of seat {seat.name}: join again."
+            )
+        if not self._sessions.is_next(request.session, request.seq):
+            return seat.refuse(Why.OLD, "This request has come before, or a newer one has.")
+        return request
+
+    def _presence(self, seat: _Seat, is_silent: bool) -> list[Input]:
+        """What the match takes the seat for and it is not: also a new match, or a restarted one."""
+        if not seat.joined:
+            return []
+        if seat.heard_s is None:  # held since before a restart of the court
+            if is_silent:
+                return []
+            seat.heard_s = self._now_s
+        now_silent = self._now_s - seat.heard_s > SILENT_AFTER_S
+        if now_silent == is_silent:
+            return []
+        return [SilentSeat(seat.index) if now_silent else HeardSeat(seat.index)]

@@ -1,0 +1,264 @@
+"""A court's place on the network: what arrives in a beat, what goes out after it.
+
+Nothing comes in on a thread of its own: rings and desks are emptied by `poll`, once a
+beat, in the same order every time. What it may believe is the inbox's to say; a request is
+answered when the match has taken it in and the record is written. An outbox sends the rest.
+"""
+
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import NamedTuple, Self
+
+from lacoc_server.doors.decision_desk import DecisionDesk
+from lacoc_server.doors.inbox import LOOKED_AT_PER_BEAT, Door, Inbox
+from lacoc_server.doors.outbox import Outbox
+from lacoc_shared.codec import encode, message_hash
+from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
+from lacoc_shared.keyspace import ENTER, EVENTS_LISTED, Keys
+from lacoc_shared.messages import (
+    DecisionReply,
+    Done,
+    Event,
+    Health,
+    Joined,
+    Refusal,
+    Scene,
+    SeatHealth,
+    Sheet,
+)
+from lacoc_shared.network.access_rules import Protection
+from lacoc_shared.network.session import Desk, Request, Ring, open_court
+
+Outcome = Done | DecisionReply | Refusal
+"""What a match makes of an input."""
+
+_RING = LOOKED_AT_PER_BEAT
+_DESK = 16
+_FETCH_DESK = 256  # a crowd may arrive at once
+_REQUESTS_PER_BEAT = 4  # that are refused; of one desk at most one enters a beat
+_FETCHES_PER_BEAT = 8
+
+
+_Judge = Callable[[Request], Input | Done | Refusal]
+
+
+class Arrival(NamedTuple):
+    """An input for the match, and where its outcome goes."""
+
+    input: Input
+    answer: Callable[[Outcome], None] | None
+    """To be called once the outcome is on disk; None: nobody waits for it."""
+
+
+class CourtNetwork:
+    """Opens a court to the network; used as a context manager.
+
+    Args:
+        keys: the court's key expressions.
+        listen: addresses to listen on; port 0 takes a free one.
+        inbox: judges what comes for the seats.
+        decision_desk: judges what comes from referees.
+        protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
+
+    Raises:
+        UserError: if an address can't be listened on.
+    """
+
+    def __init__(
+        self,
+        keys: Keys,
+        listen: Sequence[str],
+        inbox: Inbox,
+        decision_desk: DecisionDesk,
+        protection: Protection | None = None,
+    ) -> None:
+        self._inbox = inbox
+        self._decision_desk = decision_desk
+        self._session = session = open_court(listen, protection)
+        self._outbox = Outbox()
+        self._frame = session.publisher(keys.frame)
+        self._event = session.publisher(keys.event)
+        self._sheet = session.publisher(keys.sheet)
+        self._health = session.publisher(keys.health)
+        self._commands = [session.ring(keys.command(seat), _RING) for seat in inbox.seats]
+        self._desks: list[tuple[Desk, _Judge]] = [
+            (session.desk(keys.request(seat, what), _DESK), _seat_judge(judge, index))
+            for what, judge in (
+                ("join", inbox.join),
+                ("ready", inbox.ready),
+                ("leave", inbox.leave),
+            )
+            for index, seat in enumerate(inbox.seats)
+        ]
+        self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
+        self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
+        self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
+        self._log_desk = session.desk(keys.event, _FETCH_DESK)
+        self._log: deque[Event] = deque(maxlen=EVENTS_LISTED)
+        """The events of the match."""
+        self._sheet_bytes = self._scene_bytes = b""
+        session.announce(keys.alive)
+        self.locators = session.locators()
+        """Addresses to connect to, with the port it really got."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._outbox.close()
+        self._session.close()
+
+    def poll(self, now_s: float, match: int, beat: int, silent: Sequence[bool]) -> list[Arrival]:
+        """Take in what arrived since the last beat.
+
+        What is refused at the door is answered at once and is not among the arrivals.
+
+        Args:
+            now_s: monotonic time.
+            match: number of the match.
+            beat: number of the beat that begins now.
+            silent: for each seat, whether the match takes it for silent.
+        """
+        self._inbox.links.begin(now_s, match, beat)
+        waiting = [_empty(ring) for ring in self._commands]
+        inputs = self._inbox.commands(now_s, waiting, silent)
+        arrivals = [Arrival(one, None) for one in inputs]
+        for desk, judge in self._desks:
+            arrivals += self._let_in(desk, judge)
+        self._serve_fetches()
+        return arrivals
+
+    def turn_away(self, reason: str) -> None:
+        """Refuse the requests that arrived: no beat can take them in.
+
+        Args:
+            reason: a sentence for those who asked.
+        """
+        refusal = encode(Refusal(reason, again=True))
+        for desk, _ in self._desks:
+            for _ in range(_REQUESTS_PER_BEAT):
+                if (request := desk.take()) is not None:
+                    request.refuse(refusal)
+        self._serve_fetches()
+
+    def publish_frame(self, frame: bytes, now_s: float) -> None:
+        """Send an encoded frame; a slow receiver misses it.
+
+        Args:
+            frame: that of the beat.
+            now_s: monotonic time: answers to it are counted from here.
+        """
+        self._inbox.links.sent(now_s)
+        self._outbox.send_newest(self._frame, frame)
+
+    def publish_again(self, frame: bytes) -> None:
+        """Send a frame that was published before, as a sign of life."""
+        self._outbox.send_newest(self._frame, frame)
+
+    def publish_event(self, event: Event) -> None:
+        """Send an event, and keep it for those who come late or missed it."""
+        if self._log and self._log[0].match != event.match:
+            self._log.clear()
+        self._log.append(event)
+        self._outbox.send(self._event, encode(event))
+
+    def publish_sheet(self, sheet: Sheet) -> None:
+        """Send a changed sheet, and keep it for those who ask."""
+        self._sheet_bytes = encode(sheet)
+        self._outbox.send(self._sheet, self._sheet_bytes)
+
+    def publish_scene(self, scene: Scene) -> None:
+        """Keep a changed scene for those who ask: frames tell by its hash that it changed."""
+        self._scene_bytes = encode(scene)
+
+    def publish_health(self, health: Health) -> None:
+        """Send the court's health; by it everybody finds what did not reach them."""
+        self._outbox.send_newest(self._health, encode(health))
+
+    @property
+    def newest_event(self) -> int:
+        """Number of the event that was sent last; 0: none."""
+        return self._log[-1].number if self._log else 0
+
+    @property
+    def sheet_hash(self) -> bytes:
+        """Of the sheet that was sent last."""
+        return message_hash(self._sheet_bytes)
+
+    def seat_health(self, now_s: float) -> tuple[SeatHealth, ...]:
+        """How each seat's link is, in the arena's order."""
+        return self._inbox.health(now_s)
+
+    def doors(self) -> tuple[Door, ...]:
+        """What was let in and refused, for each seat."""
+        return self._inbox.doors()
+
+    @property
+    def input_delay_ms(self) -> int:
+        """The common delay of all seats' links; 0: none."""
+        return self._inbox.links.delay_ms
+
+    @property
+    def dropped(self) -> dict[str, int]:
+        """Refusals that belong to no seat, by reason."""
+        return dict(self._decision_desk.refused)
+
+    def _serve_fetches(self) -> None:
+        if self._sheet_bytes:  # who asks too early waits
+            _serve(self._sheet_desk, lambda: self._sheet_bytes)
+        if self._scene_bytes:
+            _serve(self._scene_desk, lambda: self._scene_bytes)
+        _serve(self._log_desk, lambda: encode(tuple(self._log)))
+
+    def _let_in(self, desk: Desk, judge: _Judge) -> Iterator[Arrival]:
+        for _ in range(_REQUESTS_PER_BEAT):
+            request = desk.take()
+            if request is None:
+                return
+            judged = judge(request)
+            if isinstance(judged, Refusal):
+                request.refuse(encode(judged))
+            elif isinstance(judged, Done):  # nothing that concerns the match
+                request.reply(encode(judged))
+            else:
+                yield Arrival(judged, partial(self._answer, request, judged))
+                return
+
+    def _answer(self, request: Request, judged: Input, outcome: Outcome) -> None:
+        if isinstance(outcome, Refusal):
+            request.refuse(encode(outcome))
+            return
+        reply: Outcome | Joined = outcome
+        if isinstance(judged, JoinSeat):
+            notes = outcome.text.splitlines()
+            reply = self._inbox.seated(judged.seat, tuple(notes))
+        elif isinstance(judged, LeaveSeat):
+            self._inbox.left(judged.seat)
+        request.reply(encode(reply))
+
+    def _judge_decision(self, request: Request) -> Decide | Done | Refusal:
+        name = request.key.rpartition("/")[2]
+        if name == ENTER:
+            return self._decision_desk.enter(request.payload)
+        return self._decision_desk.decision(name, request.payload)
+
+
+def _seat_judge(judge: Callable[[int, bytes], Input | Refusal], seat: int) -> _Judge:
+    return lambda request: judge(seat, request.payload)
+
+
+def _empty(ring: Ring) -> list[bytes]:
+    waiting: list[bytes] = []
+    while len(waiting) < _RING and (payload := ring.take()) is not None:
+        waiting.append(payload)
+    return waiting
+
+
+def _serve(desk: Desk, payload: Callable[[], bytes]) -> None:
+    """Answer those who fetch something; those who ask in a crowd wait their turn."""
+    for _ in range(_FETCHES_PER_BEAT):
+        request = desk.take()
+        if request is None:
+            return
+        request.reply(payload())

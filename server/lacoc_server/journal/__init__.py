@@ -1,0 +1,1 @@
+"""The record of a match: written beat by beat, read back, proven."""

@@ -1,0 +1,135 @@
+"""A match with its record: every beat is on its way to the disk before anyone is answered.
+
+A beat's frame comes after all else that the beat made, and so seals it: what stands in a
+record without the frame of its beat was written by a court that was killed in that beat.
+Only beats in which nothing happened at all have no frame.
+"""
+
+import platform
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+from lacoc_server.court.health import MatchHealth
+from lacoc_server.match.match import Beat, Match
+from lacoc_server.world.world import MUJOCO_VERSION, World
+from lacoc_shared import __version__
+from lacoc_shared.codec import encode
+from lacoc_shared.inputs import Input
+from lacoc_shared.messages import PROTOCOL, Frame
+from lacoc_shared.record.schema import FORMAT, Header, Setup
+from lacoc_shared.record.writer import RecordWriter
+from lacoc_shared.seat import BEATS_PER_S, Phase
+
+SNAPSHOT_TICKS = 250
+"""A full snapshot every 5 s of physics."""
+
+
+class Journal:
+    """Runs a match and writes its record.
+
+    Args:
+        match: the match; may have run some beats already.
+        folder: where the record goes; None: no record.
+        segment: how many segments of this match's record came before.
+
+    Raises:
+        UserError: if the record can't be made.
+    """
+
+    def __init__(self, match: Match, folder: Path | None, segment: int = 0) -> None:
+        self.match = match
+        self.writer = (
+            RecordWriter(folder, _header(match.setup, segment, match.beats + 1)) if folder else None
+        )
+        self.health: MatchHealth | None = None
+        """Measures how well the match is held; None: it runs headless, and nothing can be late."""
+        self._ticks = 0
+        self._last: tuple[object, ...] = ()
+        self._scene = b""
+
+    def beat(self, inputs: Sequence[Input] = ()) -> tuple[Beat, bytes]:
+        """Let one beat pass and record it.
+
+        Returns:
+            What the beat made, and its frame as it is recorded and published.
+        """
+        match, writer = self.match, self.writer
+        beat = match.beat(inputs)
+        if self.health is not None:
+            self.health.take(inputs, beat)
+        encoded = encode(beat.frame)
+        if writer is None:
+            return beat, encoded
+        number = beat.frame.beat
+        for item in inputs:
+            writer.input(number, item)
+        for event in beat.events:
+            writer.event(event)
+        if match.physics.scene_hash != self._scene:
+            self._scene = match.physics.scene_hash
+            writer.scene(number, match.physics.scene)
+        if beat.sheet_changed:
+            writer.sheet(number, match.sheet())
+        if beat.touch is not None:
+            writer.touch(number, beat.touch)
+        if beat.result is not None:
+            writer.result(beat.result)
+        playing = match.phase is Phase.PLAYING and number % BEATS_PER_S == 0
+        if self.health is not None and (playing or beat.result is not None):
+            writer.health(number, self.health.verdict())
+        happened = beat.ticked or inputs or beat.events or beat.sheet_changed
+        if self._new(beat.frame) or happened or number % BEATS_PER_S == 0:
+            writer.frame(number, encoded)
+        if beat.ticked:
+            self._ticks += 1
+            if self._ticks % SNAPSHOT_TICKS == 1 and isinstance(match.physics, World):
+                writer.snapshot(number, match.physics.save())
+        return beat, encoded
+
+    def flush(self) -> None:
+        """See that all beats so far are written.
+
+        Raises:
+            UserError: if the disk does not take them.
+        """
+        if self.writer is not None:
+            self.writer.flush()
+
+    @property
+    def trouble(self) -> str:
+        """What the disk said of what was written before, as a sentence; "" while all is well."""
+        return "" if self.writer is None else self.writer.sync_trouble
+
+    def close(self) -> None:
+        """Finish the record: the match is over, and nobody goes on with it."""
+        if self.writer is not None:
+            self.writer.close()
+
+    def leave(self) -> None:
+        """Let go of the record as it is: the next start of its court goes on with the match."""
+        if self.writer is not None:
+            self.writer.leave()
+
+    def _new(self, frame: Frame) -> bool:
+        """Whether a frame without physics says more than that time passes."""
+        content = (frame.phase, frame.seats, frame.markers, frame.poses, frame.clock_ticks)
+        new, self._last = content != self._last, content
+        return new
+
+
+def _header(setup: Setup, segment: int, first_beat: int) -> Header:
+    return Header(
+        format=FORMAT,
+        match_id=setup.match_id,
+        segment=segment,
+        first_beat=first_beat,
+        started=datetime.now(UTC).isoformat(timespec="seconds"),
+        versions={
+            "lacoc": __version__,
+            "protocol": str(PROTOCOL),
+            "mujoco": MUJOCO_VERSION,
+            "machine": platform.machine(),
+        },
+        setup=setup,
+    )

@@ -1,0 +1,145 @@
+"""A match that a killed court left behind, ready to go on (design.md, "Record")."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from lacoc_arenas.arena import Arena
+from lacoc_server.journal.replay import resume
+from lacoc_server.match.match import Match
+from lacoc_shared.decisions import Halt
+from lacoc_shared.inputs import Decide, Input, KeySeat
+from lacoc_shared.messages import Event, HealthVerdict
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.files import is_held
+from lacoc_shared.record.matches import MatchName, court_matches, is_over
+from lacoc_shared.record.reader import NoMatch, Record
+from lacoc_shared.seat import Phase
+
+IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
+"""What the court halts when its match was interrupted."""
+_OPENING_BYTES = 1 << 14
+"""A shorter file without a header was cut while its court opened it: nothing is lost with it."""
+
+
+@dataclass(frozen=True)
+class Unfinished:
+    """A match as it was when its court died."""
+
+    match: Match
+    segment: int
+    """Number of the record's next segment."""
+    events: tuple[Event, ...]
+    """To be published again: the history that died with the court."""
+    last_seqs: dict[str, int]
+    """By seat: its sequence numbers go on after this one."""
+    token_hashes: dict[str, str]
+    """By seat that is held: the token that opens it."""
+    health: HealthVerdict | None
+    """How well it had been held until then."""
+    cut: str
+    """Where its record ends, in words."""
+
+    @property
+    def inputs(self) -> list[Input]:
+        """What the court does first: nobody may find a match already running."""
+        if self.match.phase in IN_PLAY:
+            return [Decide("court", "the court was started again", Halt())]
+        return []
+
+
+def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
+    """Find the newest match of a court, if its court did not end it; None if it did.
+
+    A match that a running court of this name holds right now was not left behind, nor one without
+    a header: its court was killed before it had opened.
+
+    Args:
+        folder: of the records.
+        court: the court's name.
+        arena: what the court is to play.
+
+    Raises:
+        UserError: if there is one and it can't go on here; the message says why.
+    """
+    for name, segments in reversed(court_matches(folder, court).items()):
+        if is_over(name, segments):
+            return None
+        if any(map(is_held, segments.values())):
+            continue
+        number = max(segments)
+        newest = segments[number]
+        try:
+            record = Record.read(segments.values())
+            _check_origin(record, name, arena)
+            if record.gap:
+                raise UserError(record.cut)
+            match = resume(record, folder=arena.folder)
+            _check_seats(match, arena)
+        except NoMatch as error:
+            if newest.stat().st_size < _OPENING_BYTES:
+                continue
+            raise _can_not_go_on(newest, error) from None
+        except UserError as error:
+            raise _can_not_go_on(newest, error) from None
+        return _as_left(record, match, number + 1)
+    return None
+
+
+def _check_origin(record: Record, name: MatchName, arena: Arena) -> None:
+    """See that a record is of the match that its files are named after, and of this arena.
+
+    Raises:
+        UserError: if it is not.
+    """
+    setup = record.header.setup
+    if (setup.match_id, setup.court) != (str(name), name.court):
+        raise UserError(
+            f"It is of match {setup.match_id!r:.80} of court {setup.court!r:.40}: give its files "
+            "their own names again."
+        )
+    if not arena.plays(setup.arena):
+        raise UserError(
+            f"It was played in arena {setup.arena!r:.80}, and this court is to play "
+            f"{arena.name!r:.80}: start the court with that arena to go on."
+        )
+
+
+def _check_seats(match: Match, arena: Arena) -> None:
+    seats, wanted = ([seat.id for seat in of] for of in (match.arena.seats, arena.seats))
+    if seats != wanted:
+        raise UserError(
+            f"It has the seats {', '.join(seats)}, and this court is to have "
+            f"{', '.join(wanted)}: start the court with those seats to go on."
+        )
+
+
+def _can_not_go_on(path: Path, error: UserError) -> UserError:
+    return UserError(
+        f"The match of {path} was not finished, and can't go on here. {error} "
+        "Its record stays as it is; 'lacoc serve --fresh' opens a new match."
+    )
+
+
+def _as_left(record: Record, match: Match, segment: int) -> Unfinished:
+    held = [seat for seat in match.seats if seat.join]
+    return Unfinished(
+        match,
+        segment,
+        tuple(event for event in record.events if event.beat <= match.beats),
+        {seat.id: _last_seq(record, seat.index) for seat in match.seats},
+        {seat.id: seat.join.token_hash for seat in held if seat.join},
+        record.health,
+        record.cut,
+    )
+
+
+def _last_seq(record: Record, seat: int) -> int:
+    return max(
+        (
+            item.seq
+            for items in record.inputs.values()
+            for item in items
+            if isinstance(item, KeySeat) and item.seat == seat
+        ),
+        default=0,
+    )

@@ -1,0 +1,1 @@
+"""Certificates and invitations of a contest with keys."""

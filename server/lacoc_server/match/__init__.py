@@ -1,0 +1,1 @@
+"""A match as a pure function of its setup and its inputs."""

@@ -1,0 +1,119 @@
+"""A seat's entry: the robot and gait files, weighed in together (rules 1 and 2)."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import msgspec
+
+from lacoc_robots.robot_file import Limits, RobotSpec, read_robot
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
+from lacoc_shared.gait.text import read_gait
+from lacoc_shared.messages import Join, SentFile
+from lacoc_shared.mistakes import FileRefused, Mistake
+
+DEFAULT_LIMITS = Limits()
+
+_SEQUENCES = (
+    "a LocoTra-data file (sequences for level B; "
+    "'lacoc gait convert Loco-data.xlsx LocoTra-data.txt' makes one)"
+)
+_TABLES: dict[Level, tuple[type[PostureTable] | type[LocomotionTable], str]] = {
+    Level.POSTURE: (PostureTable, "a Loco-data file (postures for level A)"),
+    Level.LOCOMOTION: (LocomotionTable, _SEQUENCES),
+}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A robot with its gait, admitted to a match."""
+
+    robot: RobotSpec
+    gait: Gait
+
+
+def weigh_in(
+    robot: SentFile,
+    postures: SentFile | None,
+    locomotion: SentFile | None,
+    limits: Limits = DEFAULT_LIMITS,
+    levels: Collection[Level] = tuple(Level),
+) -> Entry:
+    """Read and check what a contestant brings.
+
+    Args:
+        robot: the robot file.
+        postures: a Loco-data file, or None.
+        locomotion: a LocoTra-data file, or None.
+        limits: what the contest allows.
+        levels: levels of control that are open: a gait must have keys at one of them.
+
+    Raises:
+        FileRefused: with every mistake of every file.
+    """
+    mistakes: list[Mistake] = []
+    spec = None
+    try:
+        spec = read_robot(robot.data, robot.name, limits)
+    except FileRefused as refused:
+        mistakes += refused.mistakes
+    tables: list[PostureTable | LocomotionTable] = []
+    for file, (kind, what) in zip((postures, locomotion), _TABLES.values(), strict=True):
+        if file is None:
+            continue
+        try:
+            table = _read_gait(file, spec)
+        except FileRefused as refused:
+            mistakes += refused.mistakes
+            continue
+        if isinstance(table, kind):
+            tables.append(table)
+        else:
+            mistakes.append(Mistake(file=file.name, found="the other kind of table", expected=what))
+    gait = Gait(
+        next((t for t in tables if isinstance(t, PostureTable)), None),
+        next((t for t in tables if isinstance(t, LocomotionTable)), None),
+    )
+    if not (mistakes or any(gait.keys(level) for level in levels)):
+        expected = " or ".join(_TABLES[level][1] for level in sorted(levels))
+        mistakes.append(Mistake(file="gait files", found="none for this arena", expected=expected))
+    if spec is None or mistakes:
+        raise FileRefused(mistakes)
+    return Entry(spec, gait)
+
+
+@dataclass(frozen=True)
+class Admission:
+    """Weighs in what comes with a join, and fills in what a contestant did not bring.
+
+    A team without a robot file gets the contest's robot; without gait files too, its sample gait.
+    """
+
+    robot: SentFile
+    """The contest's robot."""
+    postures: SentFile | None
+    locomotion: SentFile | None
+    """Its sample gait."""
+    limits: Limits
+    levels: Collection[Level]
+    """Levels of control that the arena opens."""
+
+    def __call__(self, join: Join) -> Join:
+        """Complete a join.
+
+        Raises:
+            FileRefused: with every mistake of every file.
+        """
+        robot, postures, locomotion = join.robot, join.postures, join.locomotion
+        if robot is None:
+            robot = self.robot
+            if postures is None and locomotion is None:
+                postures, locomotion = self.postures, self.locomotion
+        weigh_in(robot, postures, locomotion, self.limits, self.levels)
+        return msgspec.structs.replace(join, robot=robot, postures=postures, locomotion=locomotion)
+
+
+def _read_gait(file: SentFile, robot: RobotSpec | None) -> PostureTable | LocomotionTable:
+    """Read a gait for a robot, or for any where the robot file itself is refused."""
+    if robot is None:
+        return read_gait(file.data, file.name)
+    return read_gait(file.data, file.name, legs=robot.labels, range_deg=robot.ranges_deg)

@@ -1,0 +1,130 @@
+"""A seat as the match sees it: who sits there, with what, and what its keys do now."""
+
+from dataclasses import dataclass
+
+from lacoc_server.match.drive import Drive, DriveState
+from lacoc_server.match.entry import Entry
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.inputs import JoinSeat, KeySeat
+from lacoc_shared.messages import SeatFrame, SheetSeat
+from lacoc_shared.seat import RESTART_KEY, No, SeatFlag
+
+# Plain numbers: an IntFlag takes longer to add up than all the rest of a frame.
+_JOINED, _READY, _SILENT, _FROZEN = (
+    int(flag) for flag in (SeatFlag.JOINED, SeatFlag.READY, SeatFlag.SILENT, SeatFlag.FROZEN)
+)
+
+
+@dataclass
+class Seat:
+    """One seat of a match."""
+
+    index: int
+    id: str
+    colour: str
+    pattern: str
+    join: JoinSeat | None = None
+    entry: Entry | None = None
+    coming: JoinSeat | None = None
+    """Who joined since the match began: sits here in the next one."""
+    ready: bool = False
+    silent: bool = False
+    left: bool = False
+    """The contestant left during play; the next match does not take them along."""
+    drive: Drive | None = None
+    """From READY on."""
+    state: DriveState | None = None
+    locked_until: int = 0
+    """Ticks played from which keys are taken again after a restart."""
+    frozen_until: int = 0
+    """The same, after a referee's freeze."""
+    applied: tuple[int, int] = (0, 0)
+    """Newest applied command: sequence number, beat."""
+    refused: tuple[int, No] = (0, No.NONE)
+    """Newest refused command: sequence number, reason."""
+    restarting: bool = False
+    """It goes back to its start place in this beat."""
+
+    @property
+    def team(self) -> str:
+        """The team's name, or the seat's while nobody has joined."""
+        return self.join.team if self.join else self.id
+
+    def begin(self, repeat: bool, level: Level) -> None:
+        """Stand in the start posture, with the drive that robot and files make."""
+        if self.entry is None:
+            return
+        robot = self.entry.robot
+        self.drive = Drive(
+            self.entry.gait,
+            robot.start_posture,
+            robot.ang_min_rad_s,
+            robot.advance,
+            robot.hold_us,
+            repeat,
+        )
+        self.state = self.drive.begin(level)
+
+    def stand(self) -> None:
+        """Key 0 at the same level, and no step further (silence, freeze)."""
+        if self.drive and self.state:
+            self.state = self.drive.stand(self.state)
+
+    def restart(self) -> None:
+        """Go back to the start in this beat, and stand at the same level (rules 4, [x])."""
+        self.restarting = True
+        if self.drive and self.state:
+            self.state = self.drive.begin(self.state.level)
+
+    def why_not(self, key: KeySeat, ticks: int, levels: tuple[Level, ...]) -> No:
+        """Why a command is refused while the match is played; `No.NONE` if it is not."""
+        if ticks < self.frozen_until:
+            return No.FROZEN
+        if ticks < self.locked_until:
+            return No.RESTARTED
+        if key.key == RESTART_KEY:
+            return No.NONE
+        if key.level not in levels:
+            return No.LEVEL_CLOSED
+        if not (self.drive and self.drive.has(Level(key.level), key.key)):
+            return No.NO_SUCH_KEY
+        return No.NONE
+
+    def frame(self, score: int, ticks: int) -> SeatFrame:
+        """The seat as frames carry it."""
+        flags = (
+            (self.join is not None) * _JOINED
+            + self.ready * _READY
+            + self.silent * _SILENT
+            + (ticks < self.frozen_until) * _FROZEN
+        )
+        level, digit, posture = (
+            (self.state.level, self.state.digit, self.state.posture) if self.state else (0, 0, 0)
+        )
+        return SeatFrame(
+            flags,
+            score,
+            int(level),
+            digit,
+            posture,
+            max(0, self.locked_until - ticks, self.frozen_until - ticks),
+            *self.applied,
+            self.refused[0],
+            int(self.refused[1]),
+        )
+
+    def sheet(self) -> SheetSeat:
+        """The seat as the sheet names it."""
+        if self.join is None or self.entry is None:
+            return SheetSeat(id=self.id, colour=self.colour, pattern=self.pattern)
+        gait = self.entry.gait
+        return SheetSeat(
+            id=self.id,
+            team=self.join.team,
+            colour=self.colour,
+            pattern=self.pattern,
+            robot=self.entry.robot.name,
+            legs=tuple(self.entry.robot.labels),
+            keys=(gait.keys(Level.POSTURE), gait.keys(Level.LOCOMOTION)),
+            postures=tuple(len(s) for s in gait.locomotion.sequences) if gait.locomotion else (),
+        )

@@ -1,0 +1,102 @@
+"""The robots of a match on their field: built once, put back at their starts, looked at."""
+
+import math
+import struct
+from collections.abc import Sequence
+
+from lacoc_arenas.arena import Arena
+from lacoc_arenas.game import Observation, Place, RobotView
+from lacoc_server.match.physics import MakePhysics, Physics
+from lacoc_server.match.seat import Seat
+from lacoc_shared.record.schema import Touch
+
+MIN_START_DISTANCE_M = 0.35
+"""A start place is free if the other robot's centre is at least this far, and both radii."""
+
+_BODY = struct.Struct("<7f")
+
+
+class Staging:
+    """Physics with what the rules and the frames see of it.
+
+    Args:
+        arena: the field and its game.
+        make_physics: builds the robots on it.
+    """
+
+    def __init__(self, arena: Arena, make_physics: MakePhysics) -> None:
+        self._arena = arena
+        self.make_physics = make_physics
+        self.clear()
+
+    def clear(self) -> None:
+        """Leave the field empty."""
+        self.physics: Physics = self.make_physics(self._arena, ())
+        self.poses = b""
+        """The robots as `Frame.poses`: exactly the numbers that everybody sees."""
+        self._views: tuple[RobotView, ...] = ()
+        self._offsets: tuple[int, ...] = ()
+        self._radii_m: tuple[float, ...] = ()
+        self._placed: list[Place | None] = []
+
+    def build(self, seats: Sequence[Seat]) -> None:
+        """Compile the model: once, before the match (design.md, "Robot and world")."""
+        entries = [seat.entry for seat in seats if seat.entry]
+        self.physics = self.make_physics(self._arena, entries)
+        sizes = [4 * (7 + entry.robot.joints) for entry in entries]
+        self._offsets = tuple(sum(sizes[:seat]) for seat in range(len(sizes)))
+        self._radii_m = tuple(entry.robot.radius_m for entry in entries)
+        self._placed = [None] * len(entries)
+        self.look()
+
+    def look(self) -> None:
+        """Take in where the robots are now."""
+        self.poses = self.physics.poses()
+        self._views = tuple(
+            RobotView(*_BODY.unpack_from(self.poses, offset)) for offset in self._offsets
+        )
+
+    def observe(self) -> tuple[Observation, Touch | None]:
+        """What the rules see of a tick.
+
+        Returns:
+            The observation, and of it what does not stand in the poses, if there is any.
+        """
+        touched, placed = self.physics.touched(), self._placed
+        if not (any(touched) or any(placed)):
+            return self._views, None
+        self._placed = [None] * len(placed)
+        seen = tuple(
+            view._replace(placed=place, touched=touch)
+            for view, place, touch in zip(self._views, placed, touched, strict=True)
+        )
+        return seen, Touch(tuple(touched), tuple(placed))
+
+    def put_back(self, seats: Sequence[Seat]) -> None:
+        """Put the robots that restart in this beat at their start places."""
+        going = [seat for seat in seats if seat.restarting]
+        if not going:
+            return
+        # Robots that restart in the same beat are not in the way: each goes to its own side, and
+        # so no seat comes first.
+        staying = [seat for seat in seats if not seat.restarting]
+        for seat in going:
+            place = self._free_place(seat, staying)
+            self.physics.place(seat.index, place)
+            self._placed[seat.index] = place
+            seat.restarting = False
+        self.look()
+
+    def _free_place(self, seat: Seat, others: Sequence[Seat]) -> Place:
+        """The first start place that is far enough from the others (rules 4), or the farthest."""
+
+        def room_m(place: Place) -> float:
+            gaps_m = (
+                math.dist(place[:2], self._views[other.index][:2])
+                - max(MIN_START_DISTANCE_M, self._radii_m[seat.index] + self._radii_m[other.index])
+                for other in others
+            )
+            return min(gaps_m, default=math.inf)
+
+        places = self._arena.game.starts[seat.index]
+        return next((place for place in places if room_m(place) >= 0), max(places, key=room_m))

@@ -1,0 +1,1 @@
+"""The command `lacoc` and what all its subcommands share."""

@@ -1,0 +1,136 @@
+"""The log of what runs for long: one line an event, for a person or for a program.
+
+`start` switches it on; before, and in every other command, it is silent. Lines go out on
+a thread of their own: a terminal that is held still, or a pipe that nobody reads, must
+never hold a beat.
+"""
+
+import atexit
+import codecs
+import json
+import logging
+import queue
+import sys
+import threading
+from datetime import datetime
+from typing import Any, TextIO
+
+import msgspec
+import structlog
+from structlog.typing import FilteringBoundLogger
+
+from lacoc_shared.command import screen
+from lacoc_shared.seat import BEATS_PER_S
+
+_WAITING_MOST = 10_000
+"""Lines that wait for a reader; what comes then is lost, and it is said how much."""
+_END_S = 1.0
+"""At the end a reader gets so long to take what waits."""
+_ESCAPED = "lacoc-escaped"
+_CLOCK = "%H:%M:%S"
+_DIM, _WARN, _PLAIN = "\x1b[2m", "\x1b[33m", "\x1b[0m"
+
+
+class _Writer:
+    """Prints lines in their order, beside whoever logs."""
+
+    def __init__(self) -> None:
+        self._lines: queue.Queue[str | None] = queue.Queue(_WAITING_MOST)
+        self._lost = 0
+        self._thread = threading.Thread(target=self._run, name="log", daemon=True)
+        self._thread.start()
+        atexit.register(self.close)
+
+    def msg(self, line: str) -> None:
+        """Take a line; never waits."""
+        try:
+            if self._lost:
+                self._lines.put_nowait(f"({self._lost} lines of the log were lost here)")
+                self._lost = 0
+            self._lines.put_nowait(line)
+        except queue.Full:
+            self._lost += 1
+
+    info = warning = msg  # structlog calls the method of the level
+
+    def close(self) -> None:
+        """Let what waits go out, unless nobody takes it."""
+        try:
+            self._lines.put_nowait(None)
+        except queue.Full:
+            return
+        self._thread.join(_END_S)
+
+    def _run(self) -> None:
+        while (line := self._lines.get()) is not None:
+            try:
+                sys.stdout.write(f"{_for(sys.stdout, line)}\n")
+                sys.stdout.flush()
+            except (OSError, ValueError):  # who read it has gone
+                return
+
+
+def _for(stream: TextIO, line: str) -> str:
+    """A line with what a stream can't encode written as numbers: a name ends no log."""
+    encoding = stream.encoding or "utf-8"
+    return line.encode(encoding, _ESCAPED).decode(encoding)
+
+
+def _escape(error: UnicodeError) -> tuple[str, int]:
+    """Python's `backslashreplace`, but in the form that JSON has too: a line stays an object."""
+    assert isinstance(error, UnicodeEncodeError)
+    return json.dumps(error.object[error.start : error.end])[1:-1], error.end
+
+
+codecs.register_error(_ESCAPED, _escape)
+
+
+def start(as_json: bool) -> None:
+    """Switch the log on.
+
+    Args:
+        as_json: lines of JSON for a program; else words for a person.
+    """
+    writer = _Writer()
+    structlog.configure(
+        processors=[
+            structlog.processors.add_log_level,
+            structlog.processors.TimeStamper(fmt="iso", utc=True),
+            structlog.processors.EventRenamer("text"),
+            _json if as_json else _words,
+        ],
+        wrapper_class=structlog.make_filtering_bound_logger(logging.INFO),
+        logger_factory=lambda *_: writer,
+        cache_logger_on_first_use=False,
+    )
+
+
+def get(**always: Any) -> FilteringBoundLogger:
+    """A logger; every line of it has these values."""
+    logger: FilteringBoundLogger = structlog.get_logger(**always)
+    return logger
+
+
+def _json(_: Any, __: str, line: structlog.typing.EventDict) -> str:
+    return msgspec.json.encode(line).decode()
+
+
+def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
+    """Wall time, match, match clock and what happened; particulars are for programs."""
+    at = datetime.fromisoformat(line["timestamp"]).astimezone().strftime(_CLOCK)
+    head = " ".join(filter(None, (at, line.get("match_id") or line.get("court"))))
+    ticks = line.get("clock_ticks")
+    clock = "" if ticks is None else f" {log_clock(ticks)}"
+    if not screen.stdout.is_terminal or screen.stdout.no_color:
+        return f"{head}{clock}  {line['text']}"
+    tone = _PLAIN if level == "info" else _WARN
+    return f"{_DIM}{head}{_PLAIN}{clock}  {tone}{line['text']}{_PLAIN}"
+
+
+def log_clock(ticks: int) -> str:
+    """Ticks of a match's clock, as the time that was played: "2:04.6"."""
+    tenths = max(0, ticks) * 10 // BEATS_PER_S
+    return f"{tenths // 600}:{tenths % 600 / 10:04.1f}"
+
+
+structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.CRITICAL))

@@ -1,0 +1,1 @@
+"""The contest file, and how each person gets into a contest."""

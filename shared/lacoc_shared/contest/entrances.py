@@ -1,0 +1,147 @@
+"""The ways into a contest's courts, found from its file and from what somebody said.
+
+What is None was not said, and is looked up in the contest file.
+"""
+
+from lacoc_shared.contest.file import LOOPBACK, MAIN, OTHERS, Contest, Court
+from lacoc_shared.contest.invitation import Access
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import endpoint
+
+
+def spectator_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
+    """Find the way to a court for somebody who only watches.
+
+    Args:
+        contest: the contest file, if there is one: it says what the others leave open.
+        court: the court's name, or None.
+        connect: the court's address, or None.
+
+    Raises:
+        UserError: if the contest has no such court, or the address is none.
+    """
+    name, entry = _court_of(contest, court)
+    address = connect or (entry.address() if entry else LOOPBACK)
+    keys = contest.keys if contest else None
+    address = endpoint(address, contest.protocol if contest else "tcp")
+    return Access(court=name, connect=address, ca=keys.read(keys.ca) if keys else "")
+
+
+def seat_access(
+    contest: Contest | None,
+    court: str | None,
+    connect: str | None,
+    seat: str | None,
+    token: str | None,
+) -> Access:
+    """Find the way to a seat, for its contestant or a bot.
+
+    Args:
+        contest: the contest file, if there is one: it says what the others leave open.
+        court: the court's name, or None.
+        connect: the court's address, or None.
+        seat: the seat's name, or None: the only seat of the contest's court.
+        token: the seat's token, or None.
+
+    Raises:
+        UserError: if seat or token are neither given nor in the contest file.
+    """
+    access = spectator_access(contest, court, connect)
+    _, entry = _court_of(contest, court)
+    seats = entry.seat if entry else {}
+    if seat is None and len(seats) == 1:
+        seat = next(iter(seats))
+    if seat is None:
+        names = ", ".join(seats) or "left, right"
+        raise UserError(f"Which seat? Give --seat with the name of one: {names}.")
+    token = token or (seats[seat].token if seat in seats else None)
+    if token is None:
+        raise UserError(_no_token(f"seat {seat!r}"))
+    return access.of_seat(seat, token)
+
+
+def referee_access(
+    contest: Contest | None, court: str | None, connect: str | None, token: str | None
+) -> Access:
+    """Find the way to a court for its referee; arguments as for a seat.
+
+    Raises:
+        UserError: if the token is neither given nor in the contest file.
+    """
+    access = spectator_access(contest, court, connect)
+    _, entry = _court_of(contest, court)
+    token = token or (entry.referee.token if entry else None)
+    if token is None:
+        raise UserError(_no_token("the referee"))
+    return access.of_referee(token)
+
+
+def gateway_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
+    """Find the way to a court for a gateway; arguments and errors as for a spectator."""
+    access = spectator_access(contest, court, connect)
+    keys = contest.keys if contest else None
+    return access.of_gateway(keys.read(keys.gateway_token).strip()) if keys else access
+
+
+def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict[str, Access]:
+    """Find the way of each person to a court with keys: the seats, the referee, others.
+
+    Args:
+        contest: a contest with keys.
+        court: the court's name.
+        any_host: the host to name where the court listens at every address of its machine.
+
+    Raises:
+        UserError: if its keys can't be read.
+    """
+    entry = contest.courts[court]
+    address = entry.address(any_host)
+    watching = spectator_access(contest, court, address)
+    seats = {seat: watching.of_seat(seat, holder.token) for seat, holder in entry.seat.items()}
+    referee = watching.of_referee(entry.referee.token)
+    others = (referee, gateway_access(contest, court, address), watching)
+    return seats | dict(zip(OTHERS, others, strict=True))
+
+
+def join_lines(name: str, court: Court, any_host: str = "HOST") -> dict[str, str]:
+    """Write the command line for each person at a court: the seats, the referee, spectators.
+
+    Args:
+        name: the court's name.
+        court: its entry.
+        any_host: the host to name where the court listens at every address of its machine.
+    """
+    where = f"--court {name} --connect {court.address(any_host)}"
+    seats = {
+        seat: f"lacoc play {where} --seat {seat} --token {holder.token}"
+        for seat, holder in court.seat.items()
+    }
+    return {
+        **seats,
+        "referee": f"lacoc referee status {where} --token {court.referee.token}",
+        "spectators": f"lacoc watch {where}",
+    }
+
+
+def invitation_lines(everybody: dict[str, Access]) -> dict[str, str]:
+    """Write the command line for each person who has an invitation beside them.
+
+    Args:
+        everybody: the way of each, by the person.
+    """
+    commands = {"seat": "play", "referee": "referee status", "gateway": "web"}
+    return {
+        who: f"lacoc {commands.get(access.role, 'watch')} --invitation {access.user}.toml"
+        for who, access in everybody.items()
+    }
+
+
+def _court_of(contest: Contest | None, court: str | None) -> tuple[str, Court | None]:
+    return (court or MAIN, None) if contest is None else contest.court(court)
+
+
+def _no_token(whose: str) -> str:
+    return (
+        f"The token of {whose} is missing. Give --invitation, --token or set LACOC_TOKEN; "
+        "the organiser has it ('lacoc contest show' prints it)."
+    )

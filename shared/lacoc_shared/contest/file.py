@@ -1,0 +1,330 @@
+"""The contest file: courts, addresses, tokens, limits (rules 1, "Where each number lives").
+
+An organiser writes it once ('lacoc contest init'); a court is started from it, and a
+client that has it needs no address and no token. Every setting can also be said on the
+command line or in the environment, and goes before the file then: `options` has both,
+and what is still None is looked up by `entrances`.
+"""
+
+import itertools
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar
+
+import msgspec
+
+from lacoc_shared.contest.key_folder import KeyFolder
+from lacoc_shared.contest.toml_text import BadToml, read_toml
+from lacoc_shared.keyspace import Keys
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import (
+    ANY_HOST,
+    check_protocols,
+    collisions,
+    endpoint,
+    free_beside,
+)
+from lacoc_shared.network.address import host as address_host
+from lacoc_shared.seal import new_token
+from lacoc_shared.seat import Colour, Pattern
+
+T = TypeVar("T")
+
+MAIN = "main"
+"""Name of the court where nobody names one."""
+LOOPBACK = "127.0.0.1:7447"
+"""Where a court listens, and where a client looks for it, if nobody says otherwise."""
+
+OTHERS = ("referee", "gateway", "spectators")
+"""With the seats, all who come to a court."""
+
+Token = Annotated[str, msgspec.Meta(min_length=12, max_length=64)]
+
+
+class Holder(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Who holds a seat, or the referee's place: whoever knows the token."""
+
+    token: Token
+
+
+class SeatHolder(Holder, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Who holds a seat, and how its robot looks there."""
+
+    colour: Colour | None = None
+    """The team's own; None: the seat's, as the arena's file has it."""
+    pattern: Pattern | None = None
+
+    @property
+    def look(self) -> dict[str, str]:
+        """What of these is the team's own."""
+        both = {"colour": self.colour, "pattern": self.pattern}
+        return {name: own for name, own in both.items() if own}
+
+
+_Amount = Annotated[float, msgspec.Meta(ge=0)]
+_Percent = Annotated[float, msgspec.Meta(ge=0, le=100)]
+_Times = Annotated[int, msgspec.Meta(ge=0)]
+
+
+class HealthLimits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A match that was held worse than this gets the advice to be played again."""
+
+    real_time_factor: _Amount = 0.98
+    """Least over the whole of PLAYING."""
+    slow_beats_percent: _Percent = 1.0
+    """Most, of the beats of PLAYING."""
+    worst_late_ms: _Amount = 200.0
+    """The latest that a beat of PLAYING may begin; from 100 on the match runs late."""
+    silent_s: _Amount = 5.0
+    """Most that a seat may be silent in PLAYING."""
+    heard_percent: _Percent = 70.0
+    """Least of a seat's repeats that have to arrive."""
+    faults: _Times = 0
+    """Most stops of physics."""
+    resumptions: _Times = 2
+    """Most restarts of a killed court."""
+
+
+class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A court and all that is needed to start it, or to reach it."""
+
+    arena: str
+    """Name of an installed arena, or the path of an arena's folder."""
+    listen: Annotated[tuple[str, ...], msgspec.Meta(min_length=1)] = (LOOPBACK,)
+    """Where the court listens."""
+    connect: str = ""
+    """Where others reach it; "": the first of `listen`."""
+    seat: dict[str, SeatHolder] = {}
+    """By the arena's name of the seat."""
+    referee: Holder
+    settings: dict[str, Any] = {}
+    """Entries that replace those of the arena's file."""
+    input_delay: Literal["none", "equal"] = "none"
+    """Whether keys are held until all seats' links have the same delay."""
+    input_delay_max_ms: Annotated[int, msgspec.Meta(ge=20, le=1000)] = 400
+    """That delay is never longer; a link that is slower stays behind."""
+
+    @property
+    def most_delay_ms(self) -> int:
+        """The longest delay that makes links equal; 0: none does."""
+        return self.input_delay_max_ms if self.input_delay == "equal" else 0
+
+    @property
+    def host(self) -> str:
+        """Where others reach it; "" if it listens at every address and nothing says which."""
+        found = address_host(self.connect or self.listen[0])
+        return "" if found in ANY_HOST else found
+
+    @property
+    def looks(self) -> dict[str, dict[str, str]]:
+        """By seat, its team's own colour and pattern, if it has them."""
+        return {seat: holder.look for seat, holder in self.seat.items()}
+
+    def address(self, any_host: str = "127.0.0.1") -> str:
+        """Where a client connects.
+
+        Args:
+            any_host: the host to name where the court listens at every address of its machine.
+        """
+        address = self.connect or self.listen[0]
+        if self.host:
+            return address
+        protocol, port = address.partition("/")[0], address.rpartition(":")[2]
+        return f"{protocol}/{any_host}:{port}"
+
+
+class Contest(msgspec.Struct, frozen=True, kw_only=True):
+    """A contest file, checked."""
+
+    name: str = "Contest"
+    recordings: Path = Path("recordings")
+    """Folder of the records."""
+    robot: str = "hexapod"
+    """For a team that sends no robot file: an installed robot's name, or a file."""
+    limits: dict[str, float] = {}
+    """Limits for robots that differ from the defaults of rules 1, by name."""
+    health: HealthLimits = HealthLimits()
+    """When a replay is advised."""
+    keys: KeyFolder | None = None
+    """What its courts encrypt and let in with; None: by tokens alone, and nothing is encrypted."""
+    courts: dict[str, Court]
+
+    @property
+    def protocol(self) -> str:
+        """Of an address that names none."""
+        return "tls" if self.keys else "tcp"
+
+    def court(self, name: str | None = None) -> tuple[str, Court]:
+        """Find a court with its name; without a name the only one.
+
+        Raises:
+            UserError: if there is no such court, or more than one to choose from.
+        """
+        if name is None and len(self.courts) == 1:
+            return next(iter(self.courts.items()))
+        if name not in self.courts:
+            found = "there is more than one court" if name is None else f"no court {name!r}"
+            raise UserError(
+                f"Contest {self.name!r}: {found}. Name one with --court: {', '.join(self.courts)}."
+            )
+        return name, self.courts[name]
+
+
+def load(path: Path) -> Contest:
+    """Read a contest file; the paths in it start from its own folder.
+
+    Raises:
+        UserError: if it can't be read, or at the first wrong entry; the message names it.
+    """
+    try:
+        return loads(path.read_bytes(), path)
+    except OSError as error:
+        raise _cannot_read(path, error.strerror) from None
+
+
+def loads(data: bytes, path: Path) -> Contest:
+    """Read what stands in a contest file, or will.
+
+    Args:
+        data: its bytes.
+        path: where it is.
+
+    Raises:
+        UserError: at the first wrong entry.
+    """
+    try:
+        table = read_toml(data)
+    except BadToml as error:
+        raise _cannot_read(path, error) from None
+    try:
+        return _contest(table, path.resolve().parent)
+    except _Wrong as wrong:
+        raise UserError(f"Contest file {path}, {wrong}") from None
+
+
+def throwaway(
+    arena: str, seats: Iterable[str] = ("left", "right"), listen: tuple[str, ...] = (LOOPBACK,)
+) -> Contest:
+    """Make a contest of one court with fresh tokens, for a court started without a file."""
+    court = Court(
+        arena=arena,
+        listen=tuple(map(endpoint, listen)),
+        seat={seat: SeatHolder(token=new_token()) for seat in seats},
+        referee=Holder(token=new_token()),
+    )
+    return Contest(name="throw-away", courts={MAIN: court})
+
+
+def _cannot_read(path: Path, reason: object) -> UserError:
+    return UserError(
+        f"The contest file {path} can't be read: {reason}. 'lacoc contest init' writes one."
+    )
+
+
+class _Wrong(Exception):
+    """What is wrong with a contest file, and where in it."""
+
+
+_PathText = Annotated[str, msgspec.Meta(pattern="^[^\\x00]*$")]
+
+
+class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    name: str = "Contest"
+    recordings: _PathText = "recordings"
+    robot: str = "hexapod"
+    keys: _PathText | None = None
+
+
+class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    contest: dict[str, Any] = {}
+    limits: dict[str, Any] = {}
+    health: dict[str, Any] = {}
+    court: Annotated[dict[str, Any], msgspec.Meta(min_length=1)]
+
+
+def _contest(table: dict[str, Any], folder: Path) -> Contest:
+    file = _convert(table, _File, "")
+    general = _convert(file.contest, _General, "contest")
+    keys = None if general.keys is None else KeyFolder(folder / general.keys)
+    courts = {
+        name: _court(name, entry, folder, keys is not None) for name, entry in file.court.items()
+    }
+    _check_ports(courts)
+    return Contest(
+        name=general.name,
+        recordings=folder / general.recordings,
+        robot=_beside(folder, general.robot),
+        limits={name: _limit(name, value) for name, value in file.limits.items()},
+        health=_convert(file.health, HealthLimits, "health"),
+        keys=keys,
+        courts=courts,
+    )
+
+
+def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
+    where = f"court.{name}"
+    entries = _convert(table, dict[str, Any], where)
+    seats = _convert(entries.get("seat", {}), dict[str, Any], f"{where}.seat")
+    court = _convert({**entries, "seat": {}}, Court, where)
+    holders = {seat: _convert(seats[seat], SeatHolder, f"{where}.seat.{seat}") for seat in seats}
+    tokens = [court.referee.token, *(holder.token for holder in holders.values())]
+    if len(set(tokens)) < len(tokens):
+        raise _Wrong(f"[{where}]: two places have the same token; each needs its own.")
+    if taken := set(holders) & set(OTHERS):
+        raise _Wrong(f"[{where}.seat]: a seat can't be called {taken.pop()!r}.")
+    protocol = "tls" if keys else "tcp"
+    try:
+        Keys(name)
+        listen = tuple(endpoint(one, protocol) for one in court.listen)
+        connect = court.connect and endpoint(court.connect, protocol)
+        check_protocols([*listen, connect] if connect else listen, keys=keys)
+        return msgspec.structs.replace(
+            court,
+            arena=_beside(folder, court.arena),
+            listen=listen,
+            connect=connect,
+            seat=holders,
+        )
+    except UserError as error:
+        raise _Wrong(f"[{where}]: {error}") from None
+
+
+def _check_ports(courts: dict[str, Court]) -> None:
+    """See that all courts can run at once; two `connect` hosts mean two machines."""
+    taken = [at for court in courts.values() for at in court.listen]
+    for (first, one), (second, other) in itertools.combinations(courts.items(), 2):
+        apart = one.connect and other.connect and one.host != other.host
+        for at in () if apart else collisions(other.listen, one.listen):
+            raise _Wrong(
+                f"[court.{second}]: court {first!r} listens at {at} too, and only one of them can "
+                f'start. Write another port, such as  listen = ["{free_beside(at, taken)}"]; or, '
+                "where each court has a machine of its own, 'connect' in both."
+            )
+
+
+def _limit(name: str, value: Any) -> float:
+    number = _convert(value, float, f"limits.{name}")
+    if not math.isfinite(number):
+        raise _Wrong(f"[limits.{name}]: expected a finite number, found {number}.")
+    return number
+
+
+def _convert(value: Any, kind: type[T], where: str) -> T:
+    try:
+        return msgspec.convert(value, kind)
+    except msgspec.ValidationError as error:
+        what, _, place = str(error).partition(" - at `$")
+        at = f"{where}{place.rstrip('`')}".lstrip(".")
+        fields = getattr(kind, "__struct_fields__", ())
+        known = f" There can be: {', '.join(fields)}." if "field" in what else ""
+        raise _Wrong(f"{f'[{at}]: ' if at else ''}{what}.{known}") from None
+
+
+def _beside(folder: Path, name: str) -> str:
+    """A name of something installed as it is; a path as seen from the contest file's folder."""
+    is_path = "/" in name or "." in name or "\\" in name
+    try:
+        return str((folder / Path(name).expanduser()).resolve()) if is_path else name
+    except (ValueError, RuntimeError, OSError):  # a NUL, a user who is not known, a loop of links
+        raise _Wrong(f"{name!r:.80} is no path.") from None

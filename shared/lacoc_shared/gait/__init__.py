@@ -1,0 +1,1 @@
+"""Gaits: tables of postures and their files."""

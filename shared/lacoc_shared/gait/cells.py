@@ -1,0 +1,132 @@
+"""The cells of a gait file: what stands in which row and column (rules 2, Fig. 4-1, Fig. 4-2).
+
+Text files and workbooks are the same table: both are written from the cells made here, and
+`reader` reads both once they are split into cells. Degrees outside, radians inside.
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from lacoc_shared.gait.tables import (
+    JOINTS_PER_LEG,
+    LEVEL_NAMES,
+    LocomotionTable,
+    PostureTable,
+    leg_and_level,
+)
+from lacoc_shared.mistakes import printable
+
+RANGE_DEG = 150.0
+"""The movable range is -150 to +150 degrees (workshop 3-1)."""
+MAX_KEYS = 10
+"""Digit keys in a file: [0] to [9]."""
+MAX_POSTURES_PER_KEY = 100
+
+LEG_LABELS: dict[int, tuple[str, ...]] = {
+    4: ("R,F", "R,B", "L,B", "L,F"),
+    6: ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F"),
+    8: ("R,F", "R,FC", "R,BC", "R,B", "L,B", "L,BC", "L,FC", "L,F"),
+}
+"""Number of legs -> their labels, for the robots whose gaits are told apart by their columns."""
+
+# Full-width forms (what a Japanese input method types) to ASCII, the ideographic space
+# to a space, the minus sign U+2212 to a hyphen. U+FF0D is among the full-width forms.
+_NARROW = {0xFF01 + i: 0x21 + i for i in range(94)} | {0x3000: " ", 0x2212: "-"}
+_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of a file: its number from 1, and its cells."""
+
+    number: int
+    cells: list[str]
+
+
+def posture_cells(table: PostureTable, legs: Sequence[str]) -> list[list[str | float]]:
+    """The cells of Fig. 4-1 for a table: the number, the postures [deg], the three legend rows.
+
+    Raises:
+        ValueError: if the table is not for a robot with these legs.
+    """
+    _require_fit(table, legs)
+    joints = range(table.joints)
+    cells: list[list[str | float]] = [["Num of Posture", float(len(table.postures))]]
+    for digit, posture in sorted(table.postures.items()):
+        cells.append([f"{digit} Key", *map(degrees_of, posture)])
+    cells.append(["ID of Joint", *map(float, joints)])
+    cells.append(["Position", *(legs[leg_and_level(joint, len(legs))[0]] for joint in joints)])
+    cells.append([""])
+    for name in LEVEL_NAMES:
+        cells[-1] += [name] + [""] * (len(legs) - 1)
+    return cells
+
+
+def locomotion_cells(table: LocomotionTable, legs: Sequence[str]) -> list[list[str | float]]:
+    """The cells of Fig. 4-2 for a table: the number of keys, then each key's postures [deg].
+
+    Raises:
+        ValueError: if the table is not for a robot with these legs.
+    """
+    _require_fit(table, legs)
+    cells: list[list[str | float]] = [[float(len(table.sequences))]]
+    for sequence in table.sequences:
+        cells.append([float(len(sequence))])
+        cells.extend([*map(degrees_of, posture)] for posture in sequence)
+    return cells
+
+
+def leg_labels(legs: int) -> tuple[str, ...]:
+    """Labels of a robot's legs, clockwise from the right front, where no robot file gives them."""
+    return LEG_LABELS.get(legs) or tuple(map(str, range(legs)))
+
+
+def degrees_of(angle_rad: float) -> float:
+    """The number of degrees with the fewest digits that reads back as exactly this angle.
+
+    An angle that came from a file always has one. For any other the nearest is taken.
+    """
+    near = math.degrees(angle_rad)
+    for digits in range(1, 16):
+        value = float(f"{near:.{digits}g}")
+        if angle_of(value) == angle_rad:
+            return value + 0.0  # never "-0"
+    # The way to radians and back rounds a few times, so the number may lie just beside.
+    beside = (near + steps * math.ulp(near) for steps in (0, 1, -1, 2, -2, 3, -3))
+    same = [value for value in beside if angle_of(value) == angle_rad]
+    return min(same, key=lambda value: len(number_text(value)), default=near)
+
+
+def number_text(value: float) -> str:
+    """A number as short as it can be without loss: "45", "-22.5"."""
+    return repr(float(value)).removesuffix(".0")
+
+
+def narrow(text: str) -> str:
+    """Full-width characters, and the minus sign that is no hyphen, as their ASCII forms."""
+    return text.translate(_NARROW)
+
+
+def number_of(cell: str) -> float | None:
+    """The number in a cell, with a decimal point or a decimal comma; None if it is no number."""
+    return float(cell.replace(",", ".")) if _NUMBER.fullmatch(cell) else None
+
+
+def shown(cell: str) -> str:
+    """A cell as a mistake quotes it: short, and safe to print."""
+    if not cell:
+        return "nothing"
+    text = printable(cell)
+    return text if number_of(cell) is not None else f'"{text}"'
+
+
+def angle_of(value_deg: float) -> float:
+    """An angle [rad] from a number of degrees."""
+    return math.radians(value_deg) + 0.0  # makes -0.0 the same zero
+
+
+def _require_fit(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> None:
+    if table.joints != len(legs) * JOINTS_PER_LEG:
+        raise ValueError(f"a table of {table.joints} joints is not for {len(legs)} legs")

@@ -1,0 +1,226 @@
+"""`lacoc gait`: look at gait files before a match does, and turn one kind into another."""
+
+import itertools
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+from rich.table import Table
+from rich.text import Text
+
+from lacoc_shared.command import options, screen
+from lacoc_shared.command.keep import save
+from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY, leg_labels
+from lacoc_shared.gait.tables import (
+    JOINTS_PER_LEG,
+    SAMPLE_KEYS,
+    LocomotionTable,
+    Posture,
+    PostureTable,
+    to_locomotion,
+    to_postures,
+)
+from lacoc_shared.gait.text import write_gait
+from lacoc_shared.gait.workbook import read_gait_file, write_workbook
+from lacoc_shared.mistakes import FileRefused, Mistake, UserError
+
+app = typer.Typer(
+    help="Check gait files (Loco-data.txt, LocoTra-data.txt, Loco-data.xlsx) and convert them.",
+    no_args_is_help=True,
+)
+
+_SAMPLE_KEYS_TEXT = ";".join(",".join(map(str, sequence)) for sequence in SAMPLE_KEYS)
+_KEYS = re.compile(r"\d(,\d)*(;\d(,\d)*)*", re.ASCII)
+_NAME_OF_A_FILE = "the name of a gait file (a pattern that fits none stays as it is typed)"
+_LIFTED = 0.1  # of a link's length above the lowest foot: 7 mm on the workshop's robot
+
+
+class CheckedFile(msgspec.Struct, frozen=True):
+    """What `lacoc gait check --json` says of a file without mistakes."""
+
+    file: str
+    kind: str
+    """"postures" (level A) or "locomotion" (level B)."""
+    legs: int
+    keys: dict[int, int]
+    """Digit key -> number of its postures."""
+
+
+@app.command()
+def check(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE", help="Gait files, text or workbook.")
+    ],
+    legs: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=100,
+            metavar="N",
+            help="The robot's number of legs; left out, a gait for 4, 6 or 8 legs is fine.",
+        ),
+    ] = None,
+    json: options.Json = False,
+) -> None:
+    """Say what the keys of a gait do, or list every mistake in the file."""
+    tables: list[tuple[Path, PostureTable | LocomotionTable]] = []
+    mistakes: list[Mistake] = []
+    notes: list[str] = []
+    for file in files:
+        try:
+            tables.append((file, read_gait_file(file, legs=legs, notes=notes)))
+        except FileRefused as error:
+            mistakes += error.mistakes
+        except UserError as error:  # one file that can't be opened hides none of the others
+            mistakes.append(Mistake(file=str(file), found=str(error), expected=_NAME_OF_A_FILE))
+    if json:
+        checked = [_checked(file, table) for file, table in tables]
+        screen.print_json({"files": checked, "mistakes": mistakes, "notes": notes})
+        if mistakes:
+            raise typer.Exit(2)
+        return
+    for file, table in tables:
+        level = "A, postures" if isinstance(table, PostureTable) else "B, locomotion"
+        robot = f"{table.joints // JOINTS_PER_LEG} legs"
+        screen.show(Text(f"{file.name}: right. Level {level}, {robot}.", style="bold"))
+        screen.show(_summary(table))
+    for note in notes:
+        screen.warn(note)
+    if mistakes:
+        raise FileRefused(mistakes)
+
+
+@app.command()
+def convert(
+    source: Annotated[Path, typer.Argument(metavar="A", help="The gait file to read.")],
+    target: Annotated[
+        Path,
+        typer.Argument(
+            metavar="B",
+            help="The file to write: .xlsx is a workbook; a .txt whose name begins with LocoTra "
+            "has locomotion (level B); any other .txt has postures (level A).",
+        ),
+    ],
+    keys: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KEYS",
+            help="From postures to locomotion: the postures of each key from 0 on. "
+            f"By default the sample's: '{_SAMPLE_KEYS_TEXT}'.",
+        ),
+    ] = None,
+) -> None:
+    """Turn a gait file into another kind; an older file of that name is kept with a number."""
+    locomotion = _is_locomotion(target)
+    table = read_gait_file(source)
+    if keys is not None and not (locomotion and isinstance(table, PostureTable)):
+        raise UserError(
+            "--keys is for making locomotion from postures: A must be Loco-data, "
+            "and the name of B must begin with LocoTra."
+        )
+    if locomotion and isinstance(table, PostureTable):
+        table = _joined(table, source, _SAMPLE_KEYS_TEXT if keys is None else keys)
+    elif not locomotion and isinstance(table, LocomotionTable):
+        try:
+            table = to_postures(table)
+        except ValueError as error:
+            raise UserError(f"{source.name} has {error}.") from error
+    labels = leg_labels(table.joints // JOINTS_PER_LEG)
+    if isinstance(table, PostureTable) and target.suffix.lower() == ".xlsx":
+        data = write_workbook(table, labels)
+    else:
+        data = write_gait(table, labels)
+    kept = save(target, data)
+    if kept is not None:
+        screen.note(f"{target} was there: it is {kept} now.")
+    screen.note(f"{target} written.")
+
+
+def _is_locomotion(target: Path) -> bool:
+    """Which level the file to write has, by its name.
+
+    Raises:
+        UserError: if it is a kind of file that is not written here.
+    """
+    if target.suffix.lower() not in (".txt", ".xlsx"):
+        raise UserError(f"Cannot write {target}: the name of B must end with .txt or .xlsx.")
+    return target.suffix.lower() == ".txt" and target.name.lower().startswith("locotra")
+
+
+def _joined(table: PostureTable, source: Path, keys: str) -> LocomotionTable:
+    """Join postures to sequences as --keys says.
+
+    Raises:
+        UserError: if it says so in a wrong way, or names a posture that there is not.
+    """
+    compact = keys.replace(" ", "")
+    if not _KEYS.fullmatch(compact):
+        raise UserError(
+            f"--keys {keys!r} is no list of postures. Write the digits of each key's postures "
+            f"with commas, and semicolons between the keys: '{_SAMPLE_KEYS_TEXT}'."
+        )
+    sequences = tuple(tuple(map(int, part.split(","))) for part in compact.split(";"))
+    if len(sequences) > MAX_KEYS or max(map(len, sequences)) > MAX_POSTURES_PER_KEY:
+        raise UserError(
+            f"--keys has {len(sequences)} keys, the longest of {max(map(len, sequences))} "
+            f"postures; at most {MAX_KEYS} keys of {MAX_POSTURES_PER_KEY} postures fit in a file."
+        )
+    try:
+        return to_locomotion(table, sequences)
+    except KeyError as error:
+        there = ", ".join(map(str, sorted(table.postures)))
+        raise UserError(
+            f"The keys '{keys}' use posture {error}, but {source.name} has only {there}. "
+            "Say with --keys which postures to join."
+        ) from error
+
+
+def _checked(file: Path, table: PostureTable | LocomotionTable) -> CheckedFile:
+    return CheckedFile(
+        file=file.name,
+        kind="postures" if isinstance(table, PostureTable) else "locomotion",
+        legs=table.joints // JOINTS_PER_LEG,
+        keys={digit: len(sequence) for digit, sequence in _sequences(table).items()},
+    )
+
+
+def _summary(table: PostureTable | LocomotionTable) -> Table:
+    """What each key does."""
+    labels = leg_labels(table.joints // JOINTS_PER_LEG)
+    summary = Table("key", "postures", "feet lifted")
+    for digit, sequence in sorted(_sequences(table).items()):
+        summary.add_row(str(digit), str(len(sequence)), Text(_lifts(sequence, labels)))
+    return summary
+
+
+def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture, ...]]:
+    if isinstance(table, PostureTable):
+        return {digit: (posture,) for digit, posture in table.postures.items()}
+    return dict(enumerate(table.sequences))
+
+
+def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
+    """The feet lifted in each posture of a sequence; postures with the same feet count once."""
+    steps = [step for step, _ in itertools.groupby(_lifted(p, labels) for p in sequence)]
+    return ", then ".join(" ".join(step) or "none" for step in steps[:6]) + (
+        " …" if len(steps) > 6 else ""
+    )
+
+
+def _lifted(posture: Posture, labels: Sequence[str]) -> tuple[str, ...]:
+    """The legs whose feet are above the lowest, on a level body with links of one length."""
+    legs = len(labels)
+    # Rules 1: 1st + lifts the link, 2nd + swings the shank up; both 0: it hangs straight down.
+    heights = [
+        math.sin(first) - math.cos(first + second)
+        for first, second in zip(posture[legs : 2 * legs], posture[2 * legs :], strict=True)
+    ]
+    return tuple(
+        label
+        for label, height in zip(labels, heights, strict=True)
+        if height > min(heights) + _LIFTED
+    )

@@ -1,0 +1,141 @@
+"""Loco-data.txt and LocoTra-data*.txt: gaits as text (workshop 4-1, 4-2, rules 2)."""
+
+import codecs
+import re
+from collections.abc import Iterable, Sequence
+
+from lacoc_shared.gait.cells import (
+    RANGE_DEG,
+    Row,
+    locomotion_cells,
+    narrow,
+    number_text,
+    posture_cells,
+)
+from lacoc_shared.gait.reader import Legs, Range, read_cells
+from lacoc_shared.gait.tables import LocomotionTable, PostureTable
+from lacoc_shared.mistakes import FileRefused, Mistake
+
+MAX_BYTES = 32 * 1024
+_MAX_ROWS = 1200  # a gait has 1011, and lines of remarks
+
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+_PATH_BEGIN = b"time_s"
+"""How the header row of Pos-data.txt begins (rules 2)."""
+_CSV = "commas or semicolons between the cells (CSV)"
+_LINE_END = re.compile(r"\r\n|\r|\n")
+# A row without a tab: labels that hold spaces, quoted cells, and then what spaces part.
+_SPACED_CELL = re.compile(
+    r"(?i:^\s*(?:num of postures?|id of joint|\d+ *key))(?!\S)|\"(?:[^\"]|\"\")*\"|\S+"
+)
+
+
+def read_gait(
+    data: bytes,
+    name: str,
+    *,
+    legs: Legs = None,
+    range_deg: Range = RANGE_DEG,
+    notes: list[str] | None = None,
+) -> PostureTable | LocomotionTable:
+    """Read Loco-data or LocoTra-data text; which of the two shows in its first cell.
+
+    Args:
+        data: the file, at most 32 KiB, in UTF-8, UTF-16 or Shift-JIS.
+        name: the file's name, for the mistakes.
+        legs: the robot that it must fit: the labels of its legs in order, or their
+            number. None takes a gait for any robot with 4, 6 or 8 legs.
+        range_deg: range of the angles: one bound for all, or (lowest, highest) of each joint.
+        notes: takes what is no mistake, but may not be meant.
+
+    Raises:
+        FileRefused: with every mistake in the file; nothing is clamped or skipped.
+    """
+    # First of all: it lies beside the gaits, and is soon longer than any of them.
+    if data.startswith(_PATH_BEGIN):
+        raise _refused(name, "the path of a robot (Pos-data)", "a gait (Loco-data or LocoTra-data)")
+    lines = _LINE_END.split(narrow(_text(data, name)))
+    filled = [(number, line) for number, line in enumerate(lines, start=1) if line.strip()]
+    if len(filled) > _MAX_ROWS:
+        raise _refused(name, f"{len(filled)} rows", f"a gait of at most {_MAX_ROWS} rows")
+    rows = [Row(number, _cells(line)) for number, line in filled]
+    try:
+        return read_cells(rows, name, legs=legs, range_deg=range_deg, notes=notes)
+    except FileRefused:
+        if _is_csv(line for _, line in filled):
+            raise _refused(name, _CSV, "tabs: save it as text with tabs, or as .xlsx") from None
+        raise
+
+
+def write_gait(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> bytes:
+    """Write a table as Loco-data or LocoTra-data text: UTF-8, tabs, one line feed a row.
+
+    Args:
+        table: the gait; angles in radians, written in degrees as short as they are exact.
+        legs: labels of the robot's legs, for the legend of Loco-data.
+
+    Raises:
+        ValueError: if the table is not for a robot with these legs.
+    """
+    cells = (
+        posture_cells(table, legs)
+        if isinstance(table, PostureTable)
+        else locomotion_cells(table, legs)
+    )
+    lines = (
+        "\t".join(cell if isinstance(cell, str) else number_text(cell) for cell in row)
+        for row in cells
+    )
+    return "".join(f"{line.rstrip()}\n" for line in lines).encode()
+
+
+def _text(data: bytes, name: str) -> str:
+    """Decode a file: by its BOM, else UTF-16 by its NULs, else strict UTF-8, else cp932."""
+    if len(data) > MAX_BYTES:
+        raise _refused(name, f"{len(data)} bytes", "a gait file of at most 32 KiB")
+    for bom, encoding in _BOMS:
+        if data.startswith(bom):
+            return _decoded(data[len(bom) :], encoding, name)
+    if b"\0" in data:
+        # In UTF-16 every other byte of a table is NUL: the high bytes of digits and tabs.
+        little = data[1::2].count(0) >= data[0::2].count(0)
+        return _decoded(data, "utf-16-le" if little else "utf-16-be", name)
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        return _decoded(data, "cp932", name)
+
+
+def _decoded(data: bytes, encoding: str, name: str) -> str:
+    try:
+        return data.decode(encoding)
+    except UnicodeDecodeError as error:
+        found = f"bytes that are no text (byte {error.start + 1} is 0x{data[error.start]:02x})"
+        raise _refused(name, found, "text in UTF-8, UTF-16 or Shift-JIS") from None
+
+
+def _cells(line: str) -> list[str]:
+    cells = line.split("\t") if "\t" in line else _SPACED_CELL.findall(line)
+    return [_unquoted(cell.strip()) for cell in cells]
+
+
+def _is_csv(lines: Iterable[str]) -> bool:
+    """Whether commas or semicolons part the cells: a decimal comma comes once a cell at most."""
+    lines = list(lines)
+    return not any("\t" in line for line in lines) and any(
+        line.count(",") + line.count(";") > len(_cells(line)) for line in lines
+    )
+
+
+def _unquoted(cell: str) -> str:
+    if len(cell) >= 2 and cell[0] == cell[-1] == '"':
+        return cell[1:-1].replace('""', '"')
+    return cell
+
+
+def _refused(name: str, found: str, expected: str) -> FileRefused:
+    return FileRefused([Mistake(file=name, found=found, expected=expected)])

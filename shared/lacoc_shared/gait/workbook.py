@@ -1,0 +1,253 @@
+"""Loco-data.xlsx: postures in a workbook (workshop 4-1, Fig. 4-1, rules 2).
+
+The sheet "EX (input)" is edited. "Loco-data" shows the same cells by formulas; it is
+what a spreadsheet program can save as text. The software reads the edited sheet itself.
+"""
+
+import io
+import warnings
+import zipfile
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+from xml.parsers import expat
+
+import msgspec
+import openpyxl
+import xlsxwriter
+from openpyxl.utils import get_column_letter
+
+from lacoc_shared.gait.cells import RANGE_DEG, Row, narrow, number_text, posture_cells
+from lacoc_shared.gait.reader import POSTURES_HEADER, Legs, Range, read_cells
+from lacoc_shared.gait.sheets import INPUT_SHEET, MIRROR_SHEET, add_sheets
+from lacoc_shared.gait.tables import LocomotionTable, PostureTable
+from lacoc_shared.gait.text import read_gait
+from lacoc_shared.mistakes import FileRefused, Mistake, UserError, printable
+
+MAX_BYTES = 1024 * 1024
+
+_MAX_UNPACKED_BYTES = 8 * MAX_BYTES  # a sheet of angles has a hundredth of that
+_MAX_PARTS = 200  # files in the zip; a workbook has a dozen
+_MAX_ELEMENTS = 50_000  # XML elements in all of them; a table has two thousand
+_MAX_ROWS, _MAX_COLUMNS = 1000, 100  # what is looked at; a table has 14 rows, 25 columns
+_ZIP = b"PK\x03\x04"
+_COMPOUND_FILE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"  # .xls, or a workbook with a password
+_OTHERS = {
+    "content.xml": "an OpenDocument file, such as .ods",
+    "word/document.xml": "a Word document (.docx)",
+    "ppt/presentation.xml": "a presentation (.pptx)",
+    "xl/workbook.bin": "a binary workbook (.xlsb)",
+}
+"""The part by which another kind of document is known -> what that is."""
+_WANTED = "an .xlsx workbook without a password, as spreadsheet programs save it"
+
+
+def read_gait_file(
+    path: Path,
+    *,
+    legs: Legs = None,
+    range_deg: Range = RANGE_DEG,
+    notes: list[str] | None = None,
+) -> PostureTable | LocomotionTable:
+    """Read any gait file: text or workbook, told apart by what is in it, not by its name.
+
+    Args:
+        path: the file.
+        legs: the robot that it must fit; see `text.read_gait`.
+        range_deg: range of the angles; see `text.read_gait`.
+        notes: takes what is no mistake, but may not be meant.
+
+    Raises:
+        FileRefused: with every mistake in the file.
+        UserError: if the file can't be opened.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise UserError(f"Cannot read {path}: {error.strerror or error}.") from error
+    read = read_workbook if data.startswith((_ZIP, _COMPOUND_FILE)) else read_gait
+    return read(data, path.name, legs=legs, range_deg=range_deg, notes=notes)
+
+
+def read_workbook(
+    data: bytes,
+    name: str,
+    *,
+    legs: Legs = None,
+    range_deg: Range = RANGE_DEG,
+    notes: list[str] | None = None,
+) -> PostureTable:
+    """Read a Loco-data workbook: the values of its sheet "EX (input)".
+
+    Args:
+        data: the .xlsx file, at most 1 MiB. "Loco-data" is read where it is the only sheet.
+        name: the file's name, for the mistakes.
+        legs: the robot that it must fit; see `text.read_gait`.
+        range_deg: range of the angles; see `text.read_gait`.
+        notes: takes what is no mistake, but may not be meant.
+
+    Raises:
+        FileRefused: with every mistake in the file; each names its cell.
+    """
+    _require_harmless(data, name)
+    try:
+        with warnings.catch_warnings(action="ignore"):  # about styles that nobody asked for
+            sheet, rows = _sheet(data, name)
+    except FileRefused:
+        raise
+    except Exception:  # openpyxl meets a broken workbook with any error at all
+        raise _refused(name, "a workbook that can't be read", _WANTED) from None
+    try:
+        table = read_cells(
+            rows, name, legs=legs, range_deg=range_deg, headers=POSTURES_HEADER, notes=notes
+        )
+    except FileRefused as error:
+        raise FileRefused([_at_cell(mistake, sheet) for mistake in error.mistakes]) from None
+    if isinstance(table, LocomotionTable):
+        raise _refused(
+            name,
+            "sequences of postures",
+            '"Num of Posture" in cell A1 (Loco-data); sequences are a text file (LocoTra-data.txt)',
+        )
+    return table
+
+
+def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
+    """Write a Loco-data workbook, ready to edit; numbers keep the 15 digits of spreadsheets.
+
+    Args:
+        table: the postures.
+        legs: labels of the robot's legs, for the legend.
+
+    Raises:
+        ValueError: if the table is not for a robot with these legs.
+    """
+    cells = posture_cells(table, legs)
+    stream = io.BytesIO()
+    with xlsxwriter.Workbook(stream, {"in_memory": True}) as book:
+        # A fixed date: the same table is the same file.
+        book.set_properties({"title": "Loco-data", "created": datetime(2020, 1, 1, tzinfo=UTC)})
+        add_sheets(book, cells, len(legs))
+    return stream.getvalue()
+
+
+def _require_harmless(data: bytes, name: str) -> None:
+    """Look at the zip's list before anything is unpacked, and at the XML before openpyxl does.
+
+    Raises:
+        FileRefused: if it is no zip, has a password, or would fill the memory or take long.
+    """
+    if len(data) > MAX_BYTES:
+        raise _refused(name, f"more than {MAX_BYTES} bytes", "a workbook of at most 1 MiB")
+    if data.startswith(_COMPOUND_FILE):
+        raise _refused(name, "an old .xls workbook, or one with a password", _WANTED)
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            parts = archive.infolist()
+            if sum(part.file_size for part in parts) > _MAX_UNPACKED_BYTES:
+                found = "a workbook that unpacks to more than 8 MiB"
+                raise _refused(name, found, "a table of angles")
+            if any(part.flag_bits & 1 for part in parts):
+                raise _refused(name, "a file with a password", _WANTED)
+            packed = {part.compress_type for part in parts}
+            for part in parts:
+                if (other := _OTHERS.get(part.filename)) is not None:
+                    raise _refused(name, other, "the table saved as .xlsx, or as text with tabs")
+            if len(parts) > _MAX_PARTS or packed - {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
+                raise _refused(name, "a zip that is no workbook", _WANTED)
+            counter = _ElementCounter()
+            for part in parts:
+                counter.look_at(archive.read(part))
+    except FileRefused:
+        raise
+    except _TooMuchXmlError as error:
+        raise _refused(name, str(error), "a table of angles") from None
+    except Exception:  # a damaged list of contents raises more than BadZipFile
+        raise _refused(name, "a damaged file, or no workbook", _WANTED) from None
+
+
+class _TooMuchXmlError(Exception):
+    """XML that no spreadsheet program writes; the message says what is in it."""
+
+
+class _ElementCounter:
+    """Counts the XML elements of a workbook: openpyxl makes objects of each."""
+
+    def __init__(self) -> None:
+        self._left = _MAX_ELEMENTS
+
+    def look_at(self, part: bytes) -> None:
+        """Go through a part of the workbook; one that is no XML is had up to where it stops.
+
+        Raises:
+            _TooMuchXmlError: if there is too much, or a definition of entities.
+        """
+        parser = expat.ParserCreate()
+        parser.StartElementHandler = self._element
+        parser.StartDoctypeDeclHandler = self._doctype
+        try:
+            parser.Parse(part, True)
+        except expat.ExpatError:
+            return
+
+    def _element(self, name: str, attributes: dict[str, str]) -> None:
+        self._left -= 1 + len(attributes) // 8
+        if self._left < 0:
+            raise _TooMuchXmlError(f"a workbook of more than {_MAX_ELEMENTS} elements")
+
+    def _doctype(self, *_: Any) -> None:
+        raise _TooMuchXmlError("a workbook that defines XML entities")
+
+
+def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
+    """The name and the rows of the sheet to read."""
+    books = [
+        openpyxl.load_workbook(
+            io.BytesIO(data), read_only=True, data_only=data_only, keep_links=False
+        )
+        for data_only in (True, False)
+    ]
+    names = books[0].sheetnames
+    sheet = MIRROR_SHEET if names == [MIRROR_SHEET] else INPUT_SHEET
+    if sheet not in names:
+        found = "the sheets " + ", ".join(f'"{printable(title)}"' for title in names[:10])
+        raise _refused(name, found, f'a sheet "{INPUT_SHEET}", or "{MIRROR_SHEET}" alone')
+    values, formulas = (
+        book[sheet].iter_rows(max_row=_MAX_ROWS, max_col=_MAX_COLUMNS, values_only=True)
+        for book in books
+    )
+    rows = [list(zip(*pair, strict=True)) for pair in zip(values, formulas, strict=True)]
+    # Programs keep the values of all formulas or of none. An empty value looks like none.
+    calculated = any(
+        value is not None and str(formula).startswith("=") for row in rows for value, formula in row
+    )
+    return sheet, [
+        Row(number, [_text(value, None if calculated else formula) for value, formula in row])
+        for number, row in enumerate(rows, start=1)
+    ]
+
+
+def _text(value: object, formula: object) -> str:
+    """A cell as a text file would have it; `formula` is told where no value was kept."""
+    match value:
+        case None:
+            return "" if formula is None else f"uncalculated {formula}"
+        case bool():
+            return str(value).upper()
+        case int() | float():
+            return number_text(value)
+        case _:
+            return narrow(str(value))
+
+
+def _at_cell(mistake: Mistake, sheet: str) -> Mistake:
+    if mistake.row is None or mistake.column is None:
+        return msgspec.structs.replace(mistake, field=sheet)
+    cell = f"{sheet}!{get_column_letter(mistake.column)}{mistake.row}"
+    return msgspec.structs.replace(mistake, field=cell)
+
+
+def _refused(name: str, found: str, expected: str) -> FileRefused:
+    return FileRefused([Mistake(file=name, found=found, expected=expected)])

@@ -1,0 +1,126 @@
+"""Who may say what to a court: Zenoh's access rules, made from the court's users.
+
+Zenoh tells a court nothing trustworthy about a sender. These rules are its own proof:
+what a user may not send never reaches the court, nor anybody else.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from lacoc_shared.keyspace import Keys
+
+Rules = dict[str, dict[str, Any]]
+"""Rules by name."""
+
+
+class Credentials(NamedTuple):
+    """What proves a client to a court's network, and the court to the client."""
+
+    user: str
+    password: str
+    ca: str
+    """Certificate of the contest's authority (PEM)."""
+
+    def __repr__(self) -> str:
+        return f"Credentials(user={self.user!r})"  # what is printed by accident has no secret
+
+
+class Protection(NamedTuple):
+    """What a court with keys proves itself with, and whom it lets in."""
+
+    court: str
+    certificate: Path
+    private_key: Path
+    passwords: Mapping[str, str]
+    """By user."""
+    seats: Mapping[str, str]
+    """The user of each seat, by the seat's name."""
+    referee: str
+    """The referee's user."""
+
+
+def access_control(protection: Protection | None) -> dict[str, Any]:
+    """Zenoh's access control for a court: all that is not allowed is denied.
+
+    Nobody but the court sends frames, events, sheets or health, or answers requests.
+
+    Args:
+        protection: whose rules; None: anybody may act, and tokens and seals alone tell who is who.
+    """
+    if protection is None:
+        anyone = _acting(["lacoc/*/seat/*/key"], ["lacoc/*/seat/*/*", "lacoc/*/referee/*"])
+        groups: dict[str, tuple[dict[str, Any], Rules]] = {"anyone": ({}, _watching() | anyone)}
+    else:
+        groups = {"anyone": ({"usernames": list(protection.passwords)}, _watching())}
+        groups |= {
+            user: ({"usernames": [user]}, rules) for user, rules in _actors(protection).items()
+        }
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": [
+            {"id": f"{group} {name}", **rule}
+            for group, (_, rules) in groups.items()
+            for name, rule in rules.items()
+        ],
+        "subjects": [{"id": group, **subject} for group, (subject, _) in groups.items()],
+        "policies": [
+            {"rules": [f"{group} {name}" for name in rules], "subjects": [group]}
+            for group, (_, rules) in groups.items()
+        ],
+    }
+
+
+def _watching() -> Rules:
+    return {
+        "court-to-all": _rule(
+            "egress",
+            ["lacoc/**"],
+            [
+                *("put", "delete", "reply", "query", "declare_subscriber", "declare_queryable"),
+                *("liveliness_token", "liveliness_query", "declare_liveliness_subscriber"),
+            ],
+        ),
+        "watch": _rule(
+            "ingress",
+            [f"lacoc/*/{what}" for what in ("frame", "event", "sheet", "health")],
+            ["declare_subscriber"],
+        ),
+        "fetch": _rule(
+            "ingress",
+            [f"lacoc/*/{what}" for what in ("sheet", "scene", "event")],
+            ["query"],
+        ),
+        "presence": _rule(
+            "ingress",
+            ["lacoc/*/live/**"],
+            ["liveliness_query", "declare_liveliness_subscriber"],
+        ),
+    }
+
+
+def _actors(protection: Protection) -> dict[str, Rules]:
+    """What users may do beyond watching: a seat's steers it, the referee's decides."""
+    keys = Keys(protection.court)
+    seats = {
+        user: _acting(
+            [keys.command(seat)], [keys.request(seat, what) for what in ("join", "ready", "leave")]
+        )
+        for seat, user in protection.seats.items()
+    }
+    return seats | {protection.referee: _acting([], [keys.decision("*")])}
+
+
+def _acting(commands: list[str], requests: list[str]) -> Rules:
+    rules = {"request": _rule("ingress", requests, ["query"])}
+    return rules | ({"command": _rule("ingress", commands, ["put"])} if commands else {})
+
+
+def _rule(flow: str, key_expressions: list[str], messages: list[str]) -> dict[str, Any]:
+    return {
+        "permission": "allow",
+        "flows": [flow],
+        "key_exprs": key_expressions,
+        "messages": messages,
+    }

@@ -1,0 +1,149 @@
+"""Zenoh's configuration for courts and for everyone else, each entry with its reason.
+
+Six of Zenoh's defaults are dangerous for a public court: a memory limit of 351
+clients, unlimited messages, blocking sends, peers that go round the access rules.
+This is the one place where they are set right.
+"""
+
+import base64
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from lacoc_shared.keyspace import COMMAND_MAX_BYTES, DECISION_MAX_BYTES, JOIN_MAX_BYTES
+from lacoc_shared.network.access_rules import Credentials, Protection, access_control
+
+Config = dict[str, Any]
+
+RUNTIME_POOLS = (
+    "(rx:(worker_threads:16),acc:(worker_threads:8),net:(worker_threads:8),"
+    "tx:(worker_threads:1),app:(worker_threads:4))"
+)
+"""Value of ZENOH_RUNTIME for a court: with the default pools three clients that vanish silently
+hold up everybody's commands for ten seconds."""
+
+MAX_SESSIONS = 1100
+"""Of a court: 1,000 who watch it directly, which it can serve (docs/reliability.md), and room for
+seats, referees and gateways. More pages go through gateways, of which each is one session."""
+
+_HEADERS_BYTES = 2048
+_CLIENT_MAX_BYTES = 1 << 20  # a scene is far above what a court needs to take in
+_LEASE_MS = 3000
+
+
+def court_config(
+    listen: Sequence[str], protection: Protection | None = None, users: Path | None = None
+) -> Config:
+    """The configuration of a court's own session.
+
+    Args:
+        listen: complete addresses.
+        protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
+        users: file of the users' passwords, which Zenoh reads when it opens.
+    """
+    return {
+        **_common("router"),
+        "listen": {"endpoints": list(listen)},
+        # Read by the court itself, to learn the port it got; the access rules deny it to others.
+        "adminspace": {"enabled": True, "permissions": {"read": True, "write": False}},
+        "access_control": access_control(protection),
+        "low_pass_filter": [
+            _limit("commands", "lacoc/*/seat/*/key", COMMAND_MAX_BYTES),
+            _limit("ready", "lacoc/*/seat/*/ready", COMMAND_MAX_BYTES),
+            _limit("leave", "lacoc/*/seat/*/leave", COMMAND_MAX_BYTES),
+            _limit("decisions", "lacoc/*/referee/*", DECISION_MAX_BYTES),
+            _limit("joins", "lacoc/*/seat/*/join", JOIN_MAX_BYTES),
+        ],
+        "transport": _transport(JOIN_MAX_BYTES + _HEADERS_BYTES, _court_tls(protection))
+        | _court_users(users)
+        | {
+            # Connections that never say anything must not keep others waiting.
+            "unicast": {
+                "max_sessions": MAX_SESSIONS,
+                "accept_pending": 1000,
+                "accept_timeout": 3000,
+            }
+        },
+    }
+
+
+def client_config(
+    connect: Sequence[str], timeout_s: float, credentials: Credentials | None = None
+) -> Config:
+    """The configuration of everyone who is not a court.
+
+    Args:
+        connect: complete addresses; the first that answers is taken.
+        timeout_s: how long the first connection may take; later ones are tried for ever.
+        credentials: for a court with keys.
+    """
+    return {
+        **_common("client"),
+        "connect": {
+            "endpoints": list(connect),
+            "timeout_ms": round(timeout_s * 1000),
+            # A court that comes back is found within half a second.
+            "retry": {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 1.5},
+        },
+        "transport": _transport(_CLIENT_MAX_BYTES, _client_tls(credentials))
+        | _client_user(credentials),
+    }
+
+
+def _common(mode: str) -> Config:
+    return {
+        "mode": mode,  # a peer would not be brokered, or would go round the access rules
+        # Nobody is searched for, so there is nothing to wait half a second for either.
+        "scouting": {"delay": 0, "multicast": {"enabled": False}, "gossip": {"enabled": False}},
+    }
+
+
+def _court_tls(protection: Protection | None) -> Config:
+    if protection is None:
+        return {}
+    certificate, key = str(protection.certificate), str(protection.private_key)
+    return {"tls": {"listen_certificate": certificate, "listen_private_key": key}}
+
+
+def _court_users(users: Path | None) -> Config:
+    return {} if users is None else {"auth": {"usrpwd": {"dictionary_file": str(users)}}}
+
+
+def _client_tls(credentials: Credentials | None) -> Config:
+    if credentials is None:
+        return {}
+    ca = base64.b64encode(credentials.ca.encode()).decode()
+    return {"tls": {"root_ca_certificate_base64": ca}}
+
+
+def _client_user(credentials: Credentials | None) -> Config:
+    if credentials is None:
+        return {}
+    return {"auth": {"usrpwd": {"user": credentials.user, "password": credentials.password}}}
+
+
+def _transport(max_message_bytes: int, tls: Config) -> Config:
+    return {
+        # Shared memory ends at 351 clients and leaves litter behind killed ones.
+        "shared_memory": {"enabled": False},
+        "link": {
+            "tx": {
+                "lease": _LEASE_MS,
+                "keep_alive": 4,
+                # Replies always block: 0.2 s for a client that does not read, then it is cut off.
+                "queue": {"congestion_control": {"block": {"wait_before_close": 200_000}}},
+            },
+            "rx": {"max_message_size": max_message_bytes},
+            **tls,
+        },
+    }
+
+
+def _limit(name: str, key_expression: str, max_bytes: int) -> Config:
+    return {
+        "id": name,
+        "flows": ["ingress"],
+        "messages": ["put", "delete", "query"],
+        "key_exprs": [key_expression],
+        "size_limit": max_bytes,
+    }

@@ -1,0 +1,1 @@
+"""What a record gives to other programs."""

@@ -1,0 +1,242 @@
+"""A record as an MCAP that Foxglove and Lichtblick draw by themselves, 25 pictures a second.
+
+Topics: /tf (where the robots' parts are), /scene (shapes; again when the scene changes),
+/board (all markers as they look now; at each change), /events. /scene and /board are
+complete in each message, so a viewer may jump to any time.
+"""
+
+from collections.abc import Iterator, Sequence
+from datetime import datetime
+from io import BytesIO
+from itertools import pairwise
+from typing import Any
+
+import msgspec
+import numpy as np
+from mcap.writer import Writer
+
+from lacoc_shared import __version__, codec
+from lacoc_shared.marker_states import unpack_states
+from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.export.foxglove_messages import (
+    INFO,
+    WARNING,
+    Color,
+    CubePrimitive,
+    CylinderPrimitive,
+    FrameTransform,
+    FrameTransforms,
+    Log,
+    Pose,
+    Quaternion,
+    SceneEntity,
+    SceneEntityDeletion,
+    SceneUpdate,
+    SpherePrimitive,
+    Time,
+    Vector3,
+    json_schema,
+)
+from lacoc_shared.record.export.kinematics import (
+    ForwardKinematics,
+    joints_per_seat,
+    multiply,
+    rotate,
+)
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import BEAT_NS
+
+_TOPICS: dict[str, type[msgspec.Struct]] = {
+    "/tf": FrameTransforms,
+    "/scene": SceneUpdate,
+    "/board": SceneUpdate,
+    "/events": Log,
+}
+_EVERY = 2
+"""Of the frames every second one."""
+_WORLD = "world"
+_PLANE_M = 10.0
+"""Edge of a plane without end."""
+_THIN_M = 0.001
+
+
+def foxglove(record: Record) -> bytes:
+    """Make the MCAP file.
+
+    Raises:
+        UserError: if the record has no scene.
+    """
+    if not record.scenes:
+        raise UserError(f"Match {record.header.match_id} has no scene: there is nothing to draw.")
+    file = BytesIO()
+    writer = Writer(file)
+    writer.start(library=f"lacoc {__version__}")
+    schemas = {
+        kind: writer.register_schema(f"foxglove.{kind.__name__}", "jsonschema", json_schema(kind))
+        for kind in _TOPICS.values()
+    }
+    channels = {
+        topic: writer.register_channel(topic, "json", schemas[kind])
+        for topic, kind in _TOPICS.items()
+    }
+    started_ns = int(datetime.fromisoformat(record.header.started).timestamp()) * 10**9
+    for beat, topic, message in _messages(record, started_ns):
+        time_ns = started_ns + beat * BEAT_NS
+        writer.add_message(channels[topic], time_ns, msgspec.json.encode(message), time_ns)
+    writer.finish()
+    return file.getvalue()
+
+
+def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, msgspec.Struct]]:
+    """Everything to be written: (beat, topic, message)."""
+    for event in record.events:
+        time = Time.of_ns(started_ns + event.beat * BEAT_NS)
+        yield event.beat, "/events", _log(event, time)
+    frames = [(beat, codec.decode(data, Frame)) for beat, data in record.frames]
+    begins = [beat for beat, _ in record.scenes] + [record.last_beat + 1]
+    for (_, scene), (begin, end) in zip(record.scenes, pairwise(begins), strict=True):
+        shown = [(beat, frame) for beat, frame in frames if begin <= beat < end]
+        sheet = record.sheet_at(shown[-1][0] if shown else begin)
+        if sheet is None:
+            continue
+        picture = _Picture(scene, sheet)
+        yield begin, "/scene", picture.shapes(Time.of_ns(started_ns + begin * BEAT_NS))
+        moving = [item for item in shown[::_EVERY] if item[1].poses]
+        for (beat, _), transforms in zip(
+            moving, picture.transforms(moving, started_ns), strict=True
+        ):
+            yield beat, "/tf", transforms
+        board = b""
+        for beat, frame in shown:
+            if frame.markers != board:
+                board = frame.markers
+                time = Time.of_ns(started_ns + beat * BEAT_NS)
+                yield beat, "/board", picture.board(board, time)
+
+
+def _log(event: Event, time: Time) -> Log:
+    level = WARNING if event.kind == "fault" else INFO
+    return Log(timestamp=time, level=level, message=event.text, name=event.kind)
+
+
+class _Picture:
+    """A scene with the colours of a sheet."""
+
+    def __init__(self, scene: Scene, sheet: Sheet) -> None:
+        self._scene = scene
+        self._sheet = sheet
+        self._kinematics = ForwardKinematics(scene, joints_per_seat(sheet))
+        self._rest = self._kinematics.poses(self._kinematics.rest)
+
+    def transforms(
+        self, frames: Sequence[tuple[int, Frame]], started_ns: int
+    ) -> Iterator[FrameTransforms]:
+        """Where each moving body is in the world, frame by frame."""
+        if not frames:
+            return
+        numbers = np.array([np.frombuffer(frame.poses, "<f4") for _, frame in frames])
+        pos_w, quat_w = (array.round(6).tolist() for array in self._kinematics.poses(numbers))
+        names = {index: self._scene.bodies[index].name for index in self._kinematics.moving}
+        for (beat, _), positions, quaternions in zip(frames, pos_w, quat_w, strict=True):
+            time = Time.of_ns(started_ns + beat * BEAT_NS)
+            yield FrameTransforms(
+                tuple(
+                    FrameTransform(
+                        timestamp=time,
+                        parent_frame_id=_WORLD,
+                        child_frame_id=name,
+                        translation=Vector3(*positions[index]),
+                        rotation=_quaternion(quaternions[index]),
+                    )
+                    for index, name in names.items()
+                )
+            )
+
+    def shapes(self, time: Time) -> SceneUpdate:
+        """Everything but the markers, in place of all that was drawn before."""
+        geoms: dict[int, list[SceneGeom]] = {}
+        for geom in self._scene.geoms:
+            if geom.marker < 0:
+                geoms.setdefault(geom.body, []).append(geom)
+        return SceneUpdate(
+            deletions=(SceneEntityDeletion(time),),
+            entities=tuple(
+                self._entity(self._scene.bodies[body].name or f"body{body}", shapes, time)
+                for body, shapes in geoms.items()
+            ),
+        )
+
+    def board(self, packed: bytes, time: Time) -> SceneUpdate:
+        """All markers in their present states."""
+        markers = self._sheet.markers
+        states = unpack_states(packed, len(markers))
+        geoms: list[list[SceneGeom]] = [[] for _ in markers]
+        for geom in self._scene.geoms:
+            if geom.marker >= 0 and geom.state in (-1, states[geom.marker]):
+                geoms[geom.marker].append(geom)
+        return SceneUpdate(
+            deletions=(SceneEntityDeletion(time),),
+            entities=tuple(
+                self._entity(marker.name, shapes, time)
+                for marker, shapes in zip(markers, geoms, strict=True)
+                if shapes
+            ),
+        )
+
+    def _entity(self, name: str, geoms: Sequence[SceneGeom], time: Time) -> SceneEntity:
+        """Shapes that lie on one body, or that all stand still."""
+        moves = any(geom.body in self._kinematics.moving for geom in geoms)
+        primitives: list[Any] = [
+            primitive for geom in geoms for primitive in self._primitives(geom, moves)
+        ]
+        return SceneEntity(
+            timestamp=time,
+            frame_id=self._scene.bodies[geoms[0].body].name if moves else _WORLD,
+            id=name,
+            cubes=tuple(p for p in primitives if isinstance(p, CubePrimitive)),
+            spheres=tuple(p for p in primitives if isinstance(p, SpherePrimitive)),
+            cylinders=tuple(p for p in primitives if isinstance(p, CylinderPrimitive)),
+        )
+
+    def _primitives(self, geom: SceneGeom, moves: bool) -> Iterator[Any]:
+        """A shape as primitives, in its body's frame, or in the world's if it stands still."""
+        pos, quat = np.array(geom.pos), np.array(geom.quat)
+        if not moves:
+            pos_w, quat_w = (array[geom.body] for array in self._rest)
+            pos, quat = pos_w + rotate(quat_w, pos), multiply(quat_w, quat)
+
+        def pose(z: float = 0.0) -> Pose:
+            along = rotate(quat, np.array([0.0, 0.0, z]))
+            return Pose(Vector3(*(pos + along).tolist()), _quaternion(quat.tolist()))
+
+        color = self._color(geom)
+        a, b, c = (2 * half for half in geom.size)
+        match geom.type:
+            case "plane":
+                size = Vector3(a or _PLANE_M, b or _PLANE_M, _THIN_M)
+                yield CubePrimitive(pose(-_THIN_M / 2), size, color)
+            case "box":
+                yield CubePrimitive(pose(), Vector3(a, b, c), color)
+            case "sphere":
+                yield SpherePrimitive(pose(), Vector3(a, a, a), color)
+            case "ellipsoid":
+                yield SpherePrimitive(pose(), Vector3(a, b, c), color)
+            case "cylinder":
+                yield CylinderPrimitive(pose(), Vector3(a, a, b), 1.0, 1.0, color)
+            case "capsule":
+                yield CylinderPrimitive(pose(), Vector3(a, a, b), 1.0, 1.0, color)
+                for end in (-b / 2, b / 2):
+                    yield SpherePrimitive(pose(end), Vector3(a, a, a), color)
+
+    def _color(self, geom: SceneGeom) -> Color:
+        r, g, b, a = geom.rgba
+        if geom.seat >= 0:
+            team = bytes.fromhex(self._sheet.seats[geom.seat].colour.removeprefix("#"))
+            r, g, b = (part / 255 for part in team)
+        return Color(r, g, b, a)
+
+
+def _quaternion(quat: Sequence[float]) -> Quaternion:
+    w, x, y, z = quat
+    return Quaternion(x, y, z, w)

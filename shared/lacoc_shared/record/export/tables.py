@@ -1,0 +1,87 @@
+"""What a record gives to other programs: tables and JSON. `foxglove` gives the 3D view."""
+
+import csv
+import io
+
+import msgspec
+
+from lacoc_shared import codec
+from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.export.kinematics import joints_per_seat
+from lacoc_shared.record.export.pos_data import PosData
+from lacoc_shared.record.reader import Record
+from lacoc_shared.seat import BEATS_PER_S
+
+
+def pos_data(record: Record, seat: str) -> bytes:
+    """The Pos-data.txt of a seat (rules 2).
+
+    Raises:
+        UserError: if there is no such seat, or no robot ever moved in it.
+    """
+    index = seat_index(record, seat)
+    data: PosData | None = None
+    for beat, encoded in record.frames:
+        frame = codec.decode(encoded, Frame)
+        sheet = record.sheet_at(beat)
+        if sheet is None or not frame.poses:
+            continue
+        joints = joints_per_seat(sheet)
+        if data is None or data.joints != joints:  # a team came back with another robot
+            data = PosData(index, joints)
+        data.add(frame)
+    if data is None:
+        raise UserError(f"Match {record.header.match_id} has no Pos-data: no robot ever moved.")
+    return data.text().encode()
+
+
+def events_csv(record: Record) -> bytes:
+    """All events as a table with one header row."""
+    file = io.StringIO()
+    table = csv.writer(file, lineterminator="\n")
+    table.writerow(("number", "beat", "clock_s", "kind", "seat", "team", "text"))
+    for event in record.events:
+        sheet = record.sheet_at(event.beat)
+        seat = sheet.seats[event.seat] if sheet is not None and event.seat >= 0 else None
+        table.writerow(
+            (
+                event.number,
+                event.beat,
+                f"{event.clock_ticks / BEATS_PER_S:.2f}",
+                event.kind,
+                seat.id if seat else "",
+                seat.team if seat else "",
+                event.text,
+            )
+        )
+    return file.getvalue().encode()
+
+
+def result_json(record: Record) -> bytes:
+    """The result as JSON, with how well the match was held as `health`; null: headless.
+
+    Raises:
+        UserError: if the match has none.
+    """
+    if record.result is None:
+        raise UserError(f"Match {record.header.match_id} has no result: it was never finished.")
+    found = msgspec.structs.asdict(record.result) | {"health": record.health}
+    return msgspec.json.format(msgspec.json.encode(found), indent=2) + b"\n"
+
+
+def seat_index(record: Record, seat: str) -> int:
+    """Index of a seat.
+
+    Raises:
+        UserError: if the match has no such seat; the message lists those it has.
+    """
+    seats = seat_ids(record)
+    if seat not in seats:
+        raise UserError(f"There is no seat {seat!r} in this match. It has: {', '.join(seats)}.")
+    return seats.index(seat)
+
+
+def seat_ids(record: Record) -> list[str]:
+    """The seats of a match, in their order."""
+    return [seat.id for seat in record.sheets[-1][1].seats] if record.sheets else []
