@@ -204,7 +204,7 @@ def _is_say(function: ast.expr) -> bool:
 def _wrong_call(node: ast.Call) -> list[str]:
     if len(node.args) != 1 or not isinstance(node.args[0], ast.Constant):
         return ["the code must be a literal: one call for each"]
-    code = node.args[0].value
+    code = str(node.args[0].value)
     if code not in table():
         return [f"there is no code {code!r}"]
     given_names = {keyword.arg for keyword in node.keywords}

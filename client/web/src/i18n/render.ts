@@ -42,12 +42,12 @@ function rendered(phrase: Phrase, language: Language, depth: number): string {
   const shown = (part: Part): string => {
     if (typeof part === "string") return part;
     if (!Array.isArray(part)) return filled(own(values, part.name), part.formats, language, depth);
-    const there = part.every(
-      (one) => typeof one === "string" || !isMissing(own(values, one.name)),
-    );
+    const there = part.every((one) => typeof one === "string" || !isMissing(own(values, one.name)));
     return there ? part.map(shown).join("") : "";
   };
-  return parse(entry[language === "ja" ? 1 : 0]).map(shown).join("");
+  return parse(entry[language === "ja" ? 1 : 0])
+    .map(shown)
+    .join("");
 }
 
 function found(code: string): readonly [string, string] | undefined {
@@ -107,8 +107,7 @@ function one(value: Value, formats: string[], language: Language, depth: number)
 
 function plain(value: Value, formats: string[], language: Language, depth: number): string {
   if (typeof value === "boolean") return word(value ? "word.yes" : "word.no", language);
-  if (typeof value === "number" || typeof value === "bigint")
-    return number(Number(value), formats);
+  if (typeof value === "number" || typeof value === "bigint") return number(Number(value), formats);
   if (typeof value === "string") {
     for (const format of formats) {
       const code = format.slice(0, -1) + value;
