@@ -14,6 +14,10 @@ class Phrase(msgspec.Struct, frozen=True, omit_defaults=True):
     values: dict[str, "Value"] = {}
     """What fills the holes of the sentence, by name."""
 
+    def with_values(self, **values: "Value") -> "Phrase":
+        """Return the phrase with these values: for what only a later place knows."""
+        return Phrase(self.code, {**self.values, **values})
+
     def __hash__(self) -> int:
         return hash((self.code, tuple(sorted(self.values))))
 

@@ -100,6 +100,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "event.strike": ["{team} strikes {marker} for {points} {points:plural point|points}.", "{team} が {marker} を倒しました（{points} 点）。"],
   "event.judged-again": ["Judged again: {event}", "再判定：{event}"],
   "event.decided": ["Referee {by}: {did}< Reason: {reason}>", "審判 {by}：{did}<理由：{reason}>"],
+  "event.other": ["{team} {en}", "{team}{ja}"],
   "over.time": ["time is up", "時間切れ"],
   "over.no-disc": ["the {seat:seat.*} team has no disc left", "{seat:seat.*}チームのディスクがなくなりました"],
   "over.all-corners": ["the {seat:seat.*} team holds all corners", "{seat:seat.*}チームがすべてのコーナーを獲得しました"],
