@@ -27,7 +27,9 @@ NODE = Path(sys.executable).with_name("node")
 CODES = sorted(table())
 KINDS = {"text", "number", "phrase", "list", "any"}
 
-TEXTS = st.text(max_size=20) | st.sampled_from(["left", "draw", "playing", "start", "constructor"])
+TEXTS = st.text(st.characters(exclude_characters="{}<>", codec="utf-8"), max_size=20) | (
+    st.sampled_from(["left", "draw", "playing", "start", "constructor"])
+)
 NUMBERS = (
     st.integers(-(2**53), 2**53)
     | st.floats(width=64)
@@ -86,10 +88,7 @@ def _is_plural(formats: tuple[str, ...]) -> bool:
 @given(phrases(CODES), st.sampled_from(LANGUAGES))
 def test_every_phrase_renders_without_an_open_hole(phrase: Phrase, chosen: Any) -> None:
     assert faults(phrase) == []
-    plain = Phrase(
-        phrase.code, {n: "x" if isinstance(v, str) else v for n, v in phrase.values.items()}
-    )
-    text = render(plain, chosen)
+    text = render(phrase, chosen)
     assert not set("{}<>") & set(text)
     assert codec.decode(codec.encode(phrase), Phrase).code == phrase.code
 
