@@ -57,6 +57,11 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
             expected=self.expected,
         )
 
+    def in_words(self) -> "Mistake":
+        """Return the mistake in the language of the process: for output that programs read."""
+        found, expected = render(self.found), render(self.expected)
+        return msgspec.structs.replace(self, found=found, expected=expected)
+
     def __str__(self) -> str:
         return render(self.phrase)
 

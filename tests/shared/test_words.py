@@ -242,7 +242,7 @@ def test_faults_find_wrong_kinds_within_lists() -> None:
         ),
         (
             say("decision.adjust", points=-1, team="Ants"),
-            "-1 points for Ants.",
+            "-1 point for Ants.",
             "Ants の得点を -1 点修正しました。",
         ),
         (
@@ -288,6 +288,7 @@ def test_errors_speak_the_language_of_the_process() -> None:
     assert "exists already" in str(error)
     assert str(mistake) == "g.txt, row 2: found nothing, expected x"
     assert codec.decode(codec.encode(mistake), Mistake) == mistake
+    assert mistake.in_words().found == "nothing"
     words.use("ja")
     try:
         assert "すでにあります" in str(error)

@@ -138,7 +138,7 @@ def _number(value: float, formats: tuple[str, ...]) -> str:
     plural = next((one for one in formats if one.startswith("plural ")), "")
     if plural:
         one, _, many = plural.removeprefix("plural ").partition("|")
-        return one if value == 1 else many
+        return one if abs(value) == 1 else many
     if not math.isfinite(value) or abs(value) >= LARGEST:
         return "?"
     if "clock" in formats:

@@ -4,7 +4,7 @@
     {seconds:.1}         a number with so many decimals
     {points:+}           a number with its sign
     {left_s:clock}       seconds as minutes and seconds: 0:38
-    {n:plural disc|discs}  the first word for 1, else the second; the number is not shown
+    {n:plural disc|discs}  the first word for 1 or -1, else the second; the number is not shown
     {names:or}           a list joined with "or"; `and` likewise; without either with commas
     {name:quoted}        in the quotation marks of the language
     {seat:seat.*}        a word of a program, said as the code "seat." and the word has it

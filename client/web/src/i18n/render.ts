@@ -132,7 +132,7 @@ function number(value: number, formats: string[]): string {
   const plural = formats.find((format) => format.startsWith("plural "));
   if (plural) {
     const [single, many] = plural.slice("plural ".length).split("|");
-    return (value === 1 ? single : many) ?? "";
+    return (Math.abs(value) === 1 ? single : many) ?? "";
   }
   if (!Number.isFinite(value) || Math.abs(value) >= LARGEST) return "?";
   if (formats.includes("clock")) {
