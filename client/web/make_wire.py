@@ -130,7 +130,7 @@ def words() -> str:
         for code, entry in table(ON_PAGES).items()
     )
     return (
-        "// Made by client/web/make_wire.py from lacoc_shared/words/table; not edited by hand.\n\n"
+        "// Made by client/web/make_wire.py from lacoc_shared/words/texts; not edited by hand.\n\n"
         "/** Each code with its templates: English, Japanese. */\n"
         f"export const WORDS: Record<string, readonly [string, string]> = {{\n{lines}}};\n"
     )

@@ -1,7 +1,7 @@
 """Everything that LACOC says to people: a code and its values, and one table of both languages.
 
 A program says a `Phrase` (`say`); a page or a terminal renders it (`render`). Nobody reads a
-sentence back into meaning. The table is in `table/*.toml`; docs/decisions/0016-words.md states
+sentence back into meaning. The table is in `texts/*.toml`; docs/decisions/0016-words.md states
 the template language. Pure: the language of a process is set from outside (`use`).
 """
 

@@ -37,7 +37,7 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def table(files: tuple[str, ...] = FILES) -> Mapping[str, Entry]:
     """Read the table: every code with its entry."""
     entries: dict[str, Entry] = {}
-    folder = resources.files("lacoc_shared.words") / "table"
+    folder = resources.files("lacoc_shared.words") / "texts"
     for file in files:
         subjects = tomllib.loads((folder / f"{file}.toml").read_text(encoding="utf-8"))
         for subject, codes in subjects.items():

@@ -1,4 +1,4 @@
-// Made by client/web/make_wire.py from lacoc_shared/words/table; not edited by hand.
+// Made by client/web/make_wire.py from lacoc_shared/words/texts; not edited by hand.
 
 /** Each code with its templates: English, Japanese. */
 export const WORDS: Record<string, readonly [string, string]> = {
