@@ -20,8 +20,8 @@ import typer
 from rich.markup import escape
 from typer.core import TyperCommand, TyperGroup
 
-from lacoc_shared import __version__
-from lacoc_shared.command import plugins, screen
+from lacoc_shared import __version__, words
+from lacoc_shared.command import language, plugins, screen
 from lacoc_shared.mistakes import FileRefused, UserError
 
 WRONG_USE = 2
@@ -182,6 +182,7 @@ def main(args: Sequence[str] | None = None) -> int:
         SystemExit: with such a code, where the command-line library ends the command.
         Exception: what nobody foresaw: a bug, shown with its traceback.
     """
+    words.use(language.of_process())
     try:
         typer.main.get_command(app).main(args=args, prog_name="lacoc")
     except UserError as error:
