@@ -11,7 +11,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from lacoc_server.match.match import Beat, Match
-from lacoc_server.world.world import MUJOCO_VERSION, World
+from lacoc_server.world import arithmetic
+from lacoc_server.world.world import MUJOCO_VERSION
 from lacoc_shared import __version__
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import Input
@@ -90,7 +91,7 @@ class Journal:
             writer.frame(number, encoded)
         if beat.ticked:
             self._ticks += 1
-            if self._ticks % SNAPSHOT_TICKS == 1 and isinstance(match.physics, World):
+            if self._ticks % SNAPSHOT_TICKS == 1:
                 writer.snapshot(number, match.physics.save())
         return beat, encoded
 
@@ -138,5 +139,6 @@ def _header(setup: Setup, segment: int, first_beat: int) -> Header:
             "mujoco": MUJOCO_VERSION,
             "machine": platform.machine(),
         },
+        arithmetic=dict(arithmetic.here()),
         setup=setup,
     )
