@@ -22,7 +22,8 @@ from lacoc_arenas import arena as arenas
 from lacoc_server.commands.verify import app as verify_app
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
@@ -106,7 +107,7 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
     """It verifies up to there, and a court goes on from there."""
     path = segment(folder, left_behind[: round(share * len(left_behind))])
     found = verdict(path)
-    assert found.text == "same"
+    assert found.kind is Kind.SAME
     left = unfinished(folder, "main", OTHELLO)
     assert left is not None
     assert left.match.beats + 1 == found.beats
@@ -127,7 +128,7 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder:
         path = segment(folder, bytes(data))
         try:
             found = verdict(path)
-            told["verify"] += found.text != "same" or found.beats < BEATS
+            told["verify"] += found.kind is not Kind.SAME or found.beats < BEATS
         except UserError:
             told["verify"] += 1
         try:
@@ -172,7 +173,8 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
         assert words in " ".join(done.stderr.split())
     done = CliRunner().invoke(verify_app, [str(first), "--json"])
     found = json.loads(done.stdout)
-    assert (found["same"], found["beats"]) == (True, BEATS)
+    assert done.exit_code == 1
+    assert (found["same"], found["verdict"], found["beats"]) == (False, "same", BEATS)
     assert words in found["cut"]
 
 
@@ -223,7 +225,7 @@ def setup_of(arena: str) -> Setup:
 
 def other_model(data: bytes) -> tuple[bytes, bytes]:
     """The model's hash in the event of READY, and another one."""
-    at = data.index(b"\xa5model\xb0") + 7
+    at = data.rindex(b"\xa5model\xb0") + 7
     return data[at : at + 16], b"0" * 16
 
 
@@ -255,7 +257,7 @@ def test_a_folder_that_the_user_names_plays_its_record(tmp_path: Path) -> None:
     path.write_bytes(play(tmp_path / "running", made, here).read_bytes())
     here.rename(there)
     done = CliRunner().invoke(verify_app, [str(path), "--arena", str(there)])
-    assert done.stdout.startswith("same: 120 beats"), done.output
+    assert done.stdout.startswith("same, bit for bit: 120 beats"), done.output
     left = unfinished(path.parent, "main", arenas.load(str(there)))
     assert left is not None
     assert (left.match.beats, left.match.arena.folder) == (BEATS - 1, there)

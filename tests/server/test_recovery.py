@@ -15,7 +15,8 @@ from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_shared.contest.file import load
 from lacoc_shared.decisions import Declare, Halt, Next, Official, Resume, Start
 from lacoc_shared.gait.tables import Level
@@ -142,7 +143,7 @@ def packed(folder: Path) -> Record:
 def assert_same(record: Record) -> None:
     *_, verdict = verify(record)
     assert isinstance(verdict, Verdict)
-    assert verdict.text == "same"
+    assert verdict.kind is Kind.SAME
 
 
 def played(controller: Controller) -> int:

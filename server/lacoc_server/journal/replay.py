@@ -16,7 +16,7 @@ from pathlib import Path
 
 from lacoc_server.journal.judge import Judge, fits_together
 from lacoc_server.journal.section import BOUND, Finding, Section, Worlds, simulate
-from lacoc_server.journal.verdict import Verdict, conclude
+from lacoc_server.journal.verdict import Kind, Verdict, conclude
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import MUJOCO_VERSION, World
 from lacoc_shared.mistakes import UserError
@@ -103,26 +103,23 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
     )
     for _ in judge.sections():
         pass
-    distance = None
     match, section = judge.match, judge.section
     findings: list[Finding] = []
+    physics = match.physics
     if section is not None:
         with fits_together(record):
-            world = judge.worlds.at_start(section)
+            physics = world = judge.worlds.at_start(section)
         if section.steps:
             findings.append(simulate(section, judge.worlds))
-            world.digest = section.steps[-1].digest
-        match.staging.physics = world
+            world.digest = section.steps[-1].digest  # the chain goes on as it was published
     verdict = conclude(record.headers, judge.beats, judge.frames, [judge.difference], findings)
     if not verdict.same:
         raise UserError(
             f"{verdict.text.capitalize()}: the record is damaged, or this is not the software "
             f"that wrote it ({_versions(record)})."
         )
-    match.staging.make_physics = World
-    if any(finding.bits for finding in findings) or judge.other_model:
-        distance = verdict.distance
-    return Resumed(match, distance)
+    match.take_up(physics, World)
+    return Resumed(match, None if verdict.kind is Kind.SAME else verdict.distance)
 
 
 def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[Finding]:

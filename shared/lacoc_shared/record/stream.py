@@ -111,8 +111,11 @@ def walk(path: Path, take: Take) -> Stop | None:
             whole = file.tell()
     except _DAMAGE as error:
         if not _is_cut(data, whole):
-            text = f"is damaged at byte {whole} of {len(data)} ({error})"
-            return Stop(f"{text}. Copy it again from where it was made.", damaged=True)
+            text = (
+                f"is damaged at byte {whole} of {len(data)} ({error}); its last "
+                f"{len(data) - whole} bytes can't be read. Copy it again from where it was made."
+            )
+            return Stop(text, damaged=True)
     left = max(0, len(data) - whole)
     rest = f"; its last {left} bytes can't be read" if left else ""
     return Stop(
