@@ -372,7 +372,7 @@ def _touch(copy: _Copy) -> None:
             raise Harmless
         touches[beat] = structs.replace(touch, touched=((),) * len(touch.touched))
         return
-    touched = [(), ()]
+    touched: list[tuple[int, ...]] = [(), ()]
     touched[copy.chance.randrange(2)] = (copy.chance.randrange(4),)
     touches[beat] = Touch(tuple(touched), (None, None))
 

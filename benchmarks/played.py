@@ -89,6 +89,7 @@ def elsewhere(module: str, words: Iterable[str]) -> str:
     done = subprocess.run(
         [sys.executable, "-m", module, *words],
         env={**os.environ, **OTHER_ARITHMETIC},
+        cwd=Path(__file__).parents[1],
         stdout=subprocess.PIPE,
         text=True,
         check=True,

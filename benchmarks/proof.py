@@ -30,11 +30,14 @@ from lacoc_server.journal.replay import verify
 from lacoc_server.journal.section import Finding, Worlds, simulate
 from lacoc_server.journal.verdict import Kind, Verdict, conclude
 from lacoc_server.match.match import Match
+from lacoc_server.world import arithmetic
 from lacoc_server.world.world import World
 from lacoc_shared.codec import encode
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 
+_WHAT = ("honest", "forged", "time", "fingerprint", "verdicts", "forge")
+"""The last three are run under the other arithmetic."""
 _CORES = 2
 _FORGED_S = 12.0
 """Length of the matches that are forged: three sections."""
@@ -106,7 +109,7 @@ def forge(paths: Sequence[Path], count: int, seed: int) -> Forged:
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.proof", description=__doc__)
-    parser.add_argument("what", choices=("honest", "forged", "time", "verdicts", "forge"))
+    parser.add_argument("what", choices=_WHAT)
     parser.add_argument("records", nargs="*", type=Path)
     parser.add_argument("--matches", type=int, default=40)
     parser.add_argument("--seconds", type=float, default=60.0)
@@ -122,7 +125,9 @@ def main() -> None:
             right = _forged(options.forgeries, options.seed)
         case "time":
             _time(options.seconds, options.rounds)
-        case "verdicts":  # what this program runs under the other arithmetic
+        case "fingerprint":
+            print(json.dumps(dict(arithmetic.here())))
+        case "verdicts":
             for path in options.records:
                 print(json.dumps(_verdict(path)), flush=True)
         case "forge":

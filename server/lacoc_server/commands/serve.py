@@ -99,6 +99,8 @@ def serve_command(
             screen.note("It keeps the settings that it was opened with; the next has the new ones.")
         if left.cut:
             screen.note(left.cut)
+        if left.other_arithmetic:
+            screen.warn(left.other_arithmetic)
     admission = Admission(
         SentFile(*find_robot(plan.robot)),
         *sample_gait_files(plan.robot),

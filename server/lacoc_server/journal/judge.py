@@ -275,6 +275,11 @@ class Judge:
         record, match = self._record, self.match
         recorded = self._frames.get(number)
         events = self._events.pop(number, [])
+        if any(
+            event.data.get("model", match.physics.model_hash) != match.physics.model_hash
+            for event in events
+        ):
+            yield "the model"
         if recorded is not None and encode(beat.frame) != recorded:
             yield from _frame_differences(decode(recorded, Frame), beat.frame)
         happened = beat.ticked or beat.events or beat.sheet_changed or number in record.inputs

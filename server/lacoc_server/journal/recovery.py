@@ -48,7 +48,9 @@ class Unfinished:
     def inputs(self) -> list[Input]:
         """What the court does first: nobody may find a match already running."""
         if self.match.phase in IN_PLAY:
-            return [Decide("court", "the court was started again", Halt())]
+            why = "the court was started again"
+            where = ", with another arithmetic" if self.other_arithmetic else ""
+            return [Decide("court", f"{why}{where}", Halt())]
         return []
 
 
