@@ -472,14 +472,16 @@ def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: P
 def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed: Path) -> None:
     """A file is packed before it gets its name: no kill can have cut it."""
     path = tmp_path / "part.mcap"
-    path.write_bytes(packed.read_bytes()[:-200])
+    data = packed.read_bytes()
+    path.write_bytes(data[: len(data) // 2])
     assert Record.read(path).lost
 
 
 def test_what_a_killed_court_leaves_is_not_lost(tmp_path: Path, segment: Path) -> None:
     """It has each message that was written."""
     path = tmp_path / "m.000.live.mcap"
-    path.write_bytes(segment.read_bytes()[:-200])
+    data = segment.read_bytes()
+    path.write_bytes(data[: len(data) // 2])
     record = Record.read(path)
     assert record.cut
     assert not record.lost
