@@ -6,15 +6,14 @@ What can be had is had, it is said in words, and the record stays as it is.
 import json
 import random
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import pytest
-from running import WAIT_S, served, write_contest
+from lacoc_process import run_lacoc
+from running import served, write_contest
 from stage import FORWARD, LEFT, QUICK, RIGHT, X, decide, join, key, setup
 from typer.testing import CliRunner
 
@@ -203,13 +202,7 @@ def test_a_record_of_another_version_is_refused(
         unfinished(folder, "main", OTHELLO)
     assert words in str(refused.value)
     serve = ["serve", "--contest", str(contest), "--recordings", str(folder)]
-    done = subprocess.run(
-        [sys.executable, "-m", "lacoc_shared", *serve],
-        capture_output=True,
-        text=True,
-        timeout=WAIT_S,
-        check=False,
-    )
+    done = run_lacoc(*serve)
     assert done.returncode == 2
     assert words in " ".join(done.stderr.split())
     assert "--fresh" in done.stderr
