@@ -10,7 +10,7 @@ from lacoc_shared.gait.tables import JOINTS_PER_LEG, LocomotionTable, PostureTab
 from lacoc_shared.gait.text import write_gait
 from lacoc_shared.gait.workbook import read_gait_file, read_workbook
 from lacoc_shared.messages import SentFile
-from lacoc_shared.mistakes import FileRefused, Mistake, UserError
+from lacoc_shared.mistakes import FileRefused, Mistake, UserError, text_of
 
 _POSTURES = ("Loco-data.txt", "Loco-data.xlsx", "Loco-data-6legs.txt")
 _LOCOMOTION = ("LocoTra-data.txt", "LocoTra-data*.txt")
@@ -118,8 +118,8 @@ def _read(paths: Iterable[Path]) -> tuple[SentFile | None, SentFile | None]:
 def _sent(path: Path, table: _Table) -> SentFile:
     data = path.read_bytes()
     if not data.startswith(_ZIP):
-        return SentFile(path.name, data)
-    return _text(path.name, table)
+        return SentFile(text_of(path.name), data)
+    return _text(text_of(path.name), table)
 
 
 def _text(name: str, table: _Table) -> SentFile:
