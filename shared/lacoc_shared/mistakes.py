@@ -9,6 +9,7 @@ line prints it and exits with code 2.
 import codecs
 import json
 import os
+import unicodedata
 
 import msgspec
 
@@ -71,9 +72,18 @@ class UserError(Exception):
 
 
 def printable(text: str, longest: int = 40) -> str:
-    """Somebody else's text as a mistake may quote it: short, and safe on a terminal."""
-    safe = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text[:longest])
+    """Make somebody else's text short and safe on a terminal, as a mistake may quote it.
+
+    A space that is no plain one, or a mark that nobody sees, is written as its name.
+    """
+    safe = "".join(c if c.isprintable() else _named(c) for c in text[:longest])
     return safe if len(text) <= longest else f"{safe}…"
+
+
+def _named(character: str) -> str:
+    if unicodedata.category(character) in ("Zs", "Cf"):
+        return f"<{unicodedata.name(character, 'invisible mark').lower()}>"
+    return "\N{REPLACEMENT CHARACTER}"
 
 
 def text_of(name: str | os.PathLike[str]) -> str:

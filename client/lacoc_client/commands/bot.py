@@ -15,7 +15,7 @@ from lacoc_client.controller import Controller, Hold
 from lacoc_client.seat_files import SeatFiles, gather
 from lacoc_client.stopping import stop_signals
 from lacoc_shared.command import options, screen
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.network.session import open_client
 
 app = typer.Typer()
@@ -69,7 +69,10 @@ def bot_command(
     function bot(sheet, seat) that returns a function from a frame to a key.
     """
     access = entrance.seat(invitation, contest, court, connect, seat, token)
-    files, own_team = _brings(name, robot, gait or [])
+    notes: list[str] = []
+    files, own_team = _brings(name, robot, gait or [], notes)
+    for note in notes:
+        screen.show(note)
     with (
         open_client([access.connect], credentials=access.credentials) as session,
         stop_signals() as stopping,
@@ -95,14 +98,16 @@ def bot_command(
                 _leave(controller)
 
 
-def _brings(name: str, robot: str | None, gaits: list[Path]) -> tuple[SeatFiles, str]:
+def _brings(
+    name: str, robot: str | None, gaits: list[Path], notes: list[str]
+) -> tuple[SeatFiles, str]:
     """The files a bot plays with, and its name; a ghost has those of its match."""
     if not name.startswith(brains.GHOST):
-        return gather(robot, gaits), Path(name).stem
+        return gather(robot, gaits, notes), text_of(Path(name).stem)
     join = brains.ghost_join(*brains.open_ghost(name))
     ghost = f"{join.team}'s ghost"
     if robot or gaits:
-        return gather(robot, gaits), ghost
+        return gather(robot, gaits, notes), ghost
     return SeatFiles(join.robot, join.postures, join.locomotion), ghost
 
 

@@ -65,8 +65,8 @@ def read_toml(
         reason = str(error).replace(place[0], "") if place else str(error)
         raise BadToml(reason[:80], int(place[1]) if place else None) from None
     except ValueError:  # Python reads integers of at most 4,300 digits
-        line = _row_of_long_number(text)
-        raise BadToml(_LONG_NUMBER, line, "write it with at most 15 digits") from None
+        long_row = _row_of_long_number(text)
+        raise BadToml(_LONG_NUMBER, long_row, "write it with at most 15 digits") from None
     except RecursionError:
         raise BadToml("brackets in brackets, too deep") from None
     _check_values(table, any_integers)
