@@ -15,11 +15,12 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from lacoc_arenas.bot import BotFactory
+from lacoc_arenas.checked_game import Source, checked
 from lacoc_arenas.game import AnyGame
 from lacoc_shared.command import plugins
 from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.gait.tables import Level
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import Colour, Pattern
 
 _GROUP = "lacoc.arenas"
@@ -86,12 +87,13 @@ class Arena:
         self.folder = folder
         """Where it lies if it is not installed; its code was run because a user named it."""
         self._module = module.__name__
+        self._source = Source(name, str(plugins.folder_of(module)))
         try:
             file = msgspec.convert(settings, _File)
         except msgspec.ValidationError as error:
             raise UserError(f"The file of arena {name!r} is wrong: {error}.") from None
         try:
-            self.game: AnyGame = importlib.import_module(f"{self._module}.rules").make(file.game)
+            self.game: AnyGame = self._make(file.game)
         except ValueError as error:  # msgspec.ValidationError is one
             raise UserError(f"The table [game] of arena {name!r} is wrong: {error}.") from None
         ids = [seat.id for seat in file.seat]
@@ -104,6 +106,25 @@ class Arena:
         self.match = file.match
         self.seats = file.seat
 
+    def _make(self, settings: dict[str, Any]) -> AnyGame:
+        """Make the game of these settings; see `checked`."""
+        game = self._source.call("make", self._part("rules", "make"), settings, refuses=True)
+        ours = self._module.startswith(f"{__package__}.")
+        return game if ours else checked(self._source, game)
+
+    def _part(self, part: str, name: str) -> Any:
+        """Import a module of the arena and take what every arena has in it.
+
+        Raises:
+            UserError: if it can't be imported, or lacks that.
+        """
+        module = self._source.call(f"{part}.py", importlib.import_module, f"{self._module}.{part}")
+        if not hasattr(module, name):
+            raise self._source.wrong(
+                f"{part}.py has no {name}. docs/write-an-arena.md says what stands in it."
+            )
+        return getattr(module, name)
+
     def plays(self, recorded: str) -> bool:
         """Whether a record's arena is this one, by the name that the record has.
 
@@ -114,12 +135,17 @@ class Arena:
 
     def build_field(self, spec: Any) -> None:
         """Add floor, walls and markers to an `MjSpec`."""
-        importlib.import_module(f"{self._module}.field").build(spec, self.game)
+        self._source.call("build", self._part("field", "build"), spec, self.game)
 
     @property
     def bots(self) -> dict[str, BotFactory]:
         """The game's own bots by name, the weakest first."""
-        bots: dict[str, BotFactory] = importlib.import_module(f"{self._module}.bots").BOTS
+        bots: dict[str, BotFactory] = self._part("bots", "BOTS")
+        if not (isinstance(bots, dict) and all(map(callable, bots.values()))):
+            raise self._source.wrong(
+                f"BOTS in bots.py is {printable(repr(bots), 80)}. Expected a dict from a name to a "
+                "function (sheet, seat) that makes a brain; {} for a game without bots."
+            )
         return bots
 
 

@@ -10,7 +10,7 @@ from lacoc_shared.gait.tables import JOINTS_PER_LEG, LocomotionTable, PostureTab
 from lacoc_shared.gait.text import write_gait
 from lacoc_shared.gait.workbook import read_gait_file, read_workbook
 from lacoc_shared.messages import SentFile
-from lacoc_shared.mistakes import FileRefused, Mistake, UserError
+from lacoc_shared.mistakes import FileRefused, Mistake, UserError, text_of
 
 _POSTURES = ("Loco-data.txt", "Loco-data.xlsx", "Loco-data-6legs.txt")
 _LOCOMOTION = ("LocoTra-data.txt", "LocoTra-data*.txt")
@@ -28,12 +28,14 @@ class SeatFiles(NamedTuple):
     locomotion: SentFile | None = None
 
 
-def gather(robot: str | None, gaits: Sequence[Path]) -> SeatFiles:
+def gather(robot: str | None, gaits: Sequence[Path], notes: list[str] | None = None) -> SeatFiles:
     """Read the files that were named.
 
     Args:
         robot: an installed robot, a folder or a robot file; None: the contest's.
         gaits: gait files, at most one for each level; none: those beside the robot file.
+        notes: takes what is no mistake in a workbook, but may not be meant. The court says the
+            same of a text.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -41,14 +43,15 @@ def gather(robot: str | None, gaits: Sequence[Path]) -> SeatFiles:
     """
     robot_file = SentFile(*find_robot(robot)) if robot else None
     if gaits:
-        return SeatFiles(robot_file, *_read(gaits))
+        return SeatFiles(robot_file, *_read(gaits, notes))
     return SeatFiles(robot_file, *(sample_gait_files(robot) if robot else (None, None)))
 
 
-def as_text(files: SeatFiles) -> SeatFiles:
+def as_text(files: SeatFiles, notes: list[str] | None = None) -> SeatFiles:
     """Turn workbooks into the text that they stand for: that is what a court reads.
 
-    Each keeps its name, by which mistakes are told to its contestant.
+    Each keeps its name, by which mistakes are told to its contestant. `notes` takes what is no
+    mistake in a workbook, but may not be meant.
 
     Raises:
         FileRefused: with every mistake of every workbook.
@@ -60,7 +63,7 @@ def as_text(files: SeatFiles) -> SeatFiles:
             texts.append(file)
             continue
         try:
-            texts.append(_text(file.name, read_workbook(file.data, file.name)))
+            texts.append(_text(file.name, read_workbook(file.data, file.name, notes=notes)))
         except FileRefused as refused:
             mistakes += refused.mistakes
     if mistakes:
@@ -94,13 +97,16 @@ def remarks(folder: Path, taken: Sequence[Path]) -> list[str]:
     return said
 
 
-def _read(paths: Iterable[Path]) -> tuple[SentFile | None, SentFile | None]:
+def _read(
+    paths: Iterable[Path], notes: list[str] | None
+) -> tuple[SentFile | None, SentFile | None]:
     """The posture file and the locomotion file, a workbook as the text it stands for."""
     files: dict[type[_Table], SentFile] = {}
     mistakes: list[Mistake] = []
     for path in paths:
         try:
-            table = read_gait_file(path)
+            noted: list[str] = []
+            table = read_gait_file(path, notes=noted)
         except FileRefused as refused:
             mistakes += refused.mistakes
             continue
@@ -109,17 +115,17 @@ def _read(paths: Iterable[Path]) -> tuple[SentFile | None, SentFile | None]:
                 f"{files[type(table)].name} and {path.name} are for the same keys: choose one. "
                 "A robot has one Loco-data file (level A) and one LocoTra-data file (level B)."
             )
-        files[type(table)] = _sent(path, table)
+        data = path.read_bytes()
+        name = text_of(path.name)
+        if data.startswith(_ZIP):
+            files[type(table)] = _text(name, table)
+            if notes is not None:
+                notes += noted  # the text has its own legend, so the court can't say it
+        else:
+            files[type(table)] = SentFile(name, data)
     if mistakes:
         raise FileRefused(mistakes)
     return files.get(PostureTable), files.get(LocomotionTable)
-
-
-def _sent(path: Path, table: _Table) -> SentFile:
-    data = path.read_bytes()
-    if not data.startswith(_ZIP):
-        return SentFile(path.name, data)
-    return _text(path.name, table)
 
 
 def _text(name: str, table: _Table) -> SentFile:

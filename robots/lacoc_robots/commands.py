@@ -15,6 +15,7 @@ from lacoc_robots.robot_file import read_robot
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import file as contests
+from lacoc_shared.mistakes import FileRefused
 
 app = typer.Typer(
     help="Check a robot file, export it as MJCF, list the robots there are.",
@@ -33,12 +34,19 @@ _Robot = Annotated[
 def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json = False) -> None:
     """Weigh a robot in: name every mistake in its file, or say what it is.
 
-    With --contest the contest's limits count, else those of the rules.
+    With --contest the contest's limits count, else those of the rules. With --json the mistakes
+    are a list, empty for a robot that is right.
     """
-    spec = _read(robot, contest)
+    try:
+        spec = _read(robot, contest)
+    except FileRefused as refused:
+        if not json:
+            raise
+        screen.print_json({"mistakes": refused.mistakes})
+        raise typer.Exit(2) from None
     facts = _facts(spec)
     if json:
-        screen.print_json(facts)
+        screen.print_json({**facts, "mistakes": []})
         return
     width_m, length_m, height_m = facts["footprint_m"]
     table = Table(title=Text(f"{spec.name} is right"), title_justify="left", show_header=False)

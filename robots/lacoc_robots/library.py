@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from lacoc_shared.command import plugins
 from lacoc_shared.messages import SentFile
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import UserError, text_of
 
 GROUP = "lacoc.robots"
 
@@ -41,7 +41,7 @@ def find_robot(name_or_path: str) -> tuple[str, bytes]:
         UserError: if there is no such robot, or its file can't be read.
     """
     file = _robot_file(name_or_path)
-    return file.name, _content(file)
+    return text_of(file.name), _content(file)
 
 
 def sample_gait_files(name_or_path: str) -> GaitFiles:

@@ -58,7 +58,9 @@ def _parse(text: str | bytes, file: str) -> dict[str, object]:
     try:
         return read_toml(text, LARGEST_FILE, any_integers=True)
     except BadToml as error:
-        expected = f"TOML of at most {LARGEST_FILE} bytes: lines such as  name = value"
+        expected = (
+            error.remedy or f"TOML of at most {LARGEST_FILE} bytes: lines such as  name = value"
+        )
         mistake = Mistake(file=file, found=error.reason, expected=expected, row=error.row)
         raise FileRefused([mistake]) from None
 

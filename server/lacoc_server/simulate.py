@@ -22,7 +22,7 @@ from lacoc_server.world.world import World
 from lacoc_shared.decisions import Abort, Official, Start
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.messages import Frame, Refusal, SentFile
-from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.mistakes import FileRefused, UserError, text_of
 from lacoc_shared.record.pack import pack
 from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
@@ -76,8 +76,8 @@ def player(
     else:
         bot, brought, folder = bot.partition(_BROUGHT)
         files = _of_folder(arena, Path(folder), robot) if brought else _of_robot(arena, robot)
-        team = team or Path(folder).resolve().name if brought else team
-    join = JoinSeat(seat, team or Path(bot).stem, *files, token_hash="")
+        team = team or text_of(Path(folder).resolve().name) if brought else team
+    join = JoinSeat(seat, team or text_of(Path(bot).stem), *files, token_hash="")
     return Player(join, brains.find(arena, bot), late_ticks)
 
 
@@ -96,7 +96,8 @@ def _of_folder(arena: arenas.Arena, folder: Path, robot: str) -> _Files:
     files = (SentFile(*find_robot(str(own) if own.exists() else robot)), *gait_files_in(folder))
     _require_gait(arena, files, folder)
     sent, postures, locomotion = (
-        file and msgspec.structs.replace(file, name=f"{folder.name}/{file.name}") for file in files
+        file and msgspec.structs.replace(file, name=f"{text_of(folder.name)}/{file.name}")
+        for file in files
     )
     assert sent is not None
     return sent, postures, locomotion
@@ -152,8 +153,12 @@ def simulate(
         for beat in _play(match, journal, players):
             if watch is not None:
                 watch(beat.frame)
-    finally:
+    except BaseException:  # Ctrl-C too: the match can be played again
         journal.close()
+        if journal.writer is not None:
+            journal.writer.path.unlink()
+        raise
+    journal.close()
     if journal.writer is not None and packed is not None:
         pack([journal.writer.path], packed)
     return match.result()

@@ -7,9 +7,21 @@ line prints it and exits with code 2. Both carry phrases (`lacoc_shared.words`),
 words in the language of the process; a plain text is shown as it is.
 """
 
+import codecs
+import json
+import os
+import unicodedata
+
 import msgspec
 
 from lacoc_shared.words import Phrase, render, say
+
+ESCAPED = "lacoc-escaped"
+r"""Error handler of `str.encode`: what an encoding lacks is written as numbers.
+
+A character becomes what JSON has for it (`\u30c1`), so that a line of JSON stays one. A byte of
+a file name that is not UTF-8 becomes `\x98`.
+"""
 
 
 class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -90,6 +102,39 @@ class UserError(Exception):
 
 
 def printable(text: str, longest: int = 40) -> str:
-    """Somebody else's text as a mistake may quote it: short, and safe on a terminal."""
-    safe = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text[:longest])
+    """Make somebody else's text short and safe on a terminal, as a mistake may quote it.
+
+    A space that is no plain one, or a mark that nobody sees, is written as its name.
+    """
+    safe = "".join(c if c.isprintable() else _named(c) for c in text[:longest])
     return safe if len(text) <= longest else f"{safe}…"
+
+
+def _named(character: str) -> str:
+    if unicodedata.category(character) in ("Zs", "Cf"):
+        return f"<{unicodedata.name(character, 'invisible mark').lower()}>"
+    return "\N{REPLACEMENT CHARACTER}"
+
+
+def text_of(name: str | os.PathLike[str]) -> str:
+    r"""Turn a file name or a word of the command line into text that can be sent and stored.
+
+    The system gives names as bytes, and Python keeps those that are not UTF-8 as characters
+    that no encoding takes. Here each such byte becomes `\x98`.
+    """
+    return os.fspath(name).encode("utf-8", ESCAPED).decode()
+
+
+def _escape(error: UnicodeError) -> tuple[str, int]:
+    assert isinstance(error, UnicodeEncodeError)
+    return "".join(map(_as_number, error.object[error.start : error.end])), error.end
+
+
+def _as_number(character: str) -> str:
+    code = ord(character)
+    if 0xDC80 <= code <= 0xDCFF:  # how Python keeps a byte that is not UTF-8
+        return f"\\x{code - 0xDC00:02x}"
+    return json.dumps(character)[1:-1]
+
+
+codecs.register_error(ESCAPED, _escape)

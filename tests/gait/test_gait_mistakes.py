@@ -212,6 +212,26 @@ def test_what_is_no_number(cell):
             id="a posture below the legend",
         ),
         pytest.param(
+            loco([posture() + "\t\tforward", posture("1 Key")]),
+            [(2, 21, '"forward"', "nothing after the 18 angles (3 for each of 6 legs)")],
+            id="a remark beside the angles",
+        ),
+        pytest.param(
+            loco([posture(j0="4\u200b5")]),
+            [(2, 2, '"4<zero width space>5"', ANGLE)],
+            id="a mark that nobody sees",
+        ),
+        pytest.param(
+            loco([posture(j0="4\u00a05")]),
+            [(2, 2, '"4 5"', ANGLE)],
+            id="a space that breaks no line",
+        ),
+        pytest.param(
+            loco([posture(j0="x"), posture("1 Key")]) + "\nPosition\tR,F\nmade by Anna\t2026\n",
+            [(2, 2, '"x"', ANGLE)],
+            id="a row below the legend is not among the mistakes",
+        ),
+        pytest.param(
             loco([posture(), posture("", j0="\t1").strip("\n")], announced=1),
             [
                 (1, 2, "1, but 2 postures below", "as many rows as announced"),

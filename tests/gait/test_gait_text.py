@@ -150,6 +150,7 @@ def test_zero_has_one_sign():
         ),
         pytest.param(lambda t: t.replace("Key", "KEY").replace("Num", "num"), id="case"),
         pytest.param(lambda t: t.replace(" Key", "Key"), id="no space in the keys"),
+        pytest.param(lambda t: t.replace(" ", "\u00a0"), id="spaces that break no line"),
     ],
 )
 def test_layouts_that_mean_the_same(text, change):
@@ -248,3 +249,39 @@ def test_garbage_is_refused_soon(data: bytes, count: int) -> None:
     with pytest.raises(FileRefused) as refusal:
         read_gait(data, "Loco-data.txt")
     assert len(refusal.value.mistakes) == count
+
+
+def test_a_mirrored_sheet_shows_empty_cells_as_0():
+    """LibreOffice saves them so, in the header, in the legend and in whole rows below it."""
+    rows = [line.split("\t") for line in [*FIGURE_4_1.splitlines(), "", "", ""]]
+    mirrored = "\n".join("\t".join(c or "0" for c in (row + [""] * 19)[:19]) for row in rows)
+    assert mirrored.startswith("Num of Posture\t9\t0\t0")
+    assert read_gait(mirrored.encode(), "x") == read_gait(FIGURE_4_1.encode(), "x")
+
+
+def test_what_stands_below_the_legend_is_said():
+    """It is not read, and a row of zeros says nothing: a sheet shows empty cells so."""
+    notes: list[str] = []
+    text = f"{FIGURE_4_1.rstrip()}\nmade by Anna\t2026\n" + "\t".join("0" * 19)
+    read_gait(text.encode(), "x", notes=notes)
+    row = len(FIGURE_4_1.rstrip().splitlines()) + 1
+    assert notes == [f'x, row {row}: "made by Anna" stands below the legend and is not read.']
+
+
+@pytest.mark.parametrize(
+    ("was", "now", "said"),
+    [
+        ("ID of Joint\t0\t1", "ID of Joint\t1\t0", "says 1, and this is the column of joint 0"),
+        ("Position\tR,F", "Position\tLB", "says LB, and joint 0 is a joint of leg R,F"),
+        ("\tRoot\t", "\t2nd\t", "says 2nd, and joint 0 is a joint of level Root"),
+    ],
+)
+def test_a_legend_that_contradicts_the_columns_is_said(was, now, said):
+    """The columns count; a contestant who thinks otherwise finds out before the match."""
+    notes: list[str] = []
+    assert was in FIGURE_4_1
+    text = FIGURE_4_1.replace(was, now)
+    assert read_gait(text.encode(), "x", notes=notes) == read_gait(FIGURE_4_1.encode(), "x")
+    (note,) = notes
+    assert said in note
+    assert note.endswith("The order of the columns counts, not the legend.")

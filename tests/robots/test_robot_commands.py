@@ -50,6 +50,44 @@ def test_check_names_every_mistake(tmp_path: Path, capsys: pytest.CaptureFixture
         assert word in printed.err
 
 
+def test_mistakes_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """--json prints every mistake as `gait check --json` does; a right robot has none."""
+    file = tmp_path / "mine.toml"
+    file.write_text(HEXAPOD.replace("kp = 20.0", "kp = nan").replace('"Hexapod"', "6"))
+    assert lacoc("robot", "check", "--json", str(file)) == 2
+    printed = capsys.readouterr()
+    mistakes = json.loads(printed.out)["mistakes"]
+    assert [mistake["field"] for mistake in mistakes] == ["name", "servo.kp"]
+    assert mistakes[1]["found"] == "nan"
+    assert printed.err == ""
+
+
+@pytest.mark.parametrize("encoding", ["cp932", "utf-16", "utf-16-le"])
+def test_a_robot_file_that_is_not_utf_8(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], encoding: str
+) -> None:
+    """An old editor saves Shift-JIS or UTF-16: the mistake says how to save it."""
+    file = tmp_path / "mine.toml"
+    file.write_bytes(HEXAPOD.replace("Hexapod", "六足").encode(encoding, "ignore"))
+    assert lacoc("robot", "check", "--json", str(file)) == 2
+    (mistake,) = json.loads(capsys.readouterr().out)["mistakes"]
+    assert (mistake["found"], mistake["expected"]) == (
+        "text that is not in UTF-8",
+        "save it as UTF-8",
+    )
+
+
+def test_an_integer_of_many_digits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Python refuses to read one of 6,000 digits; the mistake names the line and what to write."""
+    file = tmp_path / "mine.toml"
+    file.write_text(HEXAPOD.replace("kp = 20.0", "kp = 2" + "0" * 6000))
+    assert lacoc("robot", "check", "--json", str(file)) == 2
+    (mistake,) = json.loads(capsys.readouterr().out)["mistakes"]
+    assert mistake["found"] == "a number of very many digits"
+    assert mistake["expected"] == "write it with at most 15 digits"
+    assert HEXAPOD.splitlines()[mistake["row"] - 1].startswith("kp = ")
+
+
 def test_check_by_a_contest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Rules 1: with --contest the contest's limits count."""
     contest = tmp_path / "contest.toml"

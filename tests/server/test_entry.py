@@ -103,3 +103,12 @@ def test_the_contests_limits() -> None:
     """Rules 1: each limit is a setting of the contest."""
     (mistake,) = mistakes_of(None, HEXAPOD.postures, ang_min_deg_s=100.0)
     assert mistake.field == "drive.ang_min_deg_s"
+
+
+def test_a_legend_that_contradicts_the_columns_is_told_with_the_join() -> None:
+    """Rules 2: the columns count; the contestant hears it when she joins."""
+    assert HEXAPOD.postures is not None
+    exchanged = HEXAPOD.postures.data.replace(b"R,F", b"x").replace(b"L,F", b"R,F")
+    (note,) = weigh_in(HEXAPOD.robot, SentFile("mine.txt", exchanged), None).notes
+    assert "the legend says R,F, and joint 5 is a joint of leg L,F" in note
+    assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, HEXAPOD.locomotion).notes == ()

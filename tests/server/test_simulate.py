@@ -1,5 +1,6 @@
 """Headless matches: bots and ghosts in the seats, as fast as the machine can."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -162,3 +163,25 @@ def test_everybody_s_mistakes_are_listed_before_anything_begins(tmp_path: Path) 
     assert {mistake.file for mistake in refused.value.mistakes} == {
         f"{name}/LocoTra-data.txt" for name in ("anna", "ben", "chie")
     }
+
+
+def test_a_folder_whose_name_is_no_text(tmp_path: Path) -> None:
+    """A zip from Japanese Windows: the team is called by the numbers of the bytes."""
+    folder = tmp_path / os.fsdecode(b"team\x98\x8b")
+    handed_in(folder, sample())
+    players = [player(OTHELLO, 0, f"straight@{folder}"), player(OTHELLO, 1, "straight")]
+    result = simulate(setup("othello", SHORT), players, tmp_path / "records")
+    assert result.teams == (r"team\x98\x8b", "straight")
+
+
+def test_a_match_that_breaks_off_leaves_no_record(tmp_path: Path) -> None:
+    """It can be played again; what is left behind would only stand in the way."""
+
+    def stop(frame: Frame) -> None:
+        if frame.phase == Phase.PLAYING:
+            raise KeyboardInterrupt
+
+    players = [player(OTHELLO, seat, "straight") for seat in (0, 1)]
+    with pytest.raises(KeyboardInterrupt):
+        simulate(setup("othello", SHORT), players, tmp_path, stop)
+    assert list(tmp_path.iterdir()) == []

@@ -114,3 +114,25 @@ def test_a_pipe_that_nobody_reads_holds_nothing() -> None:
         rest = process.stdout.read().splitlines()
     assert numbers == [*range(5000)]
     assert 5000 <= len(rest) < 25_000
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+def test_the_stack_of_a_crash_is_not_lost(as_json: bool) -> None:
+    """A person finds it in the log; a program's log stays lines of JSON."""
+    code = f"""
+import faulthandler, time
+from lacoc_shared.command import log, screen
+screen.show_crashes(None)
+log.start({as_json})
+log.get().info("one")
+time.sleep(0.2)
+faulthandler._sigsegv()
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert done.returncode != 0
+    first, *rest = done.stdout.splitlines()
+    assert "one" in first
+    assert ("Fatal Python error: Segmentation fault" in rest) is not as_json
+    assert ("Fatal Python error: Segmentation fault" in done.stderr) is as_json

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -14,8 +15,9 @@ from lacoc_client.commands import entrance
 from lacoc_client.controller import Controller, Hold
 from lacoc_client.seat_files import SeatFiles, gather
 from lacoc_client.stopping import stop_signals
+from lacoc_client.waiting import Patience
 from lacoc_shared.command import options, screen
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.network.session import open_client
 
 app = typer.Typer()
@@ -62,51 +64,64 @@ def bot_command(
             help="A gait file; give it again for the other level. By default the robot's own.",
         ),
     ] = None,
+    wait: options.WaitForCourt = None,
 ) -> None:
     """Let a bot hold a seat: it joins, says ready and plays, match after match.
 
-    It ends with Ctrl-C, or when the court is gone for two minutes. A bot is a Python file with a
+    It ends with Ctrl-C, or when the court is gone for two minutes (or for the time of --wait, if
+    that is longer). A bot is a Python file with a
     function bot(sheet, seat) that returns a function from a frame to a key.
     """
     access = entrance.seat(invitation, contest, court, connect, seat, token)
-    files, own_team = _brings(name, robot, gait or [])
-    with (
-        open_client([access.connect], credentials=access.credentials) as session,
-        stop_signals() as stopping,
-    ):
-        controller = Controller(
-            session,
-            access.court,
-            access.seat,
-            access.token,
-            team or own_team[:_NAME_MAX],
-            **files._asdict(),
+    notes: list[str] = []
+    files, own_team = _brings(name, robot, gait or [], notes)
+    for note in notes:
+        screen.show(note)
+    with ExitStack() as stack:
+        stopping = stack.enter_context(stop_signals())
+        patience = Patience(wait, stopping)
+        session = stack.enter_context(
+            patience.until(lambda: open_client([access.connect], credentials=access.credentials))
+        )
+        controller = patience.until(
+            lambda: Controller(
+                session,
+                access.court,
+                access.seat,
+                access.token,
+                team or own_team[:_NAME_MAX],
+                **files._asdict(),
+            )
         )
         sheet = controller.view.sheet
         ground = arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
         player = BotPlayer(controller, ground, name)
-        for note in controller.join():
+        for note in patience.until(controller.join):
             screen.show(note)
         screen.show(f"{name} holds seat {access.seat} of court {access.court}.")
         try:
-            _play(controller, player, stopping)
+            _play(controller, player, stopping, max(_GONE_S, wait or 0.0))
         finally:
             if controller.hold is Hold.HELD:
                 _leave(controller)
 
 
-def _brings(name: str, robot: str | None, gaits: list[Path]) -> tuple[SeatFiles, str]:
+def _brings(
+    name: str, robot: str | None, gaits: list[Path], notes: list[str]
+) -> tuple[SeatFiles, str]:
     """The files a bot plays with, and its name; a ghost has those of its match."""
     if not name.startswith(brains.GHOST):
-        return gather(robot, gaits), Path(name).stem
+        return gather(robot, gaits, notes), text_of(Path(name).stem)
     join = brains.ghost_join(*brains.open_ghost(name))
     ghost = f"{join.team}'s ghost"
     if robot or gaits:
-        return gather(robot, gaits), ghost
+        return gather(robot, gaits, notes), ghost
     return SeatFiles(join.robot, join.postures, join.locomotion), ghost
 
 
-def _play(controller: Controller, player: BotPlayer, stopping: Callable[[], bool]) -> None:
+def _play(
+    controller: Controller, player: BotPlayer, stopping: Callable[[], bool], gone_s: float
+) -> None:
     well = True
     while not stopping():
         frame = controller.wait_frame(0.1)
@@ -125,8 +140,8 @@ def _play(controller: Controller, player: BotPlayer, stopping: Callable[[], bool
             well = not link
             waits = f"Link: {link}. The robot stands; when the court is back this goes on."
             screen.note("The court is back." if well else waits)
-        if controller.view.silent_s(now_s) > _GONE_S:
-            raise UserError(f"No word from the court for {_GONE_S:.0f} s.")
+        if controller.view.silent_s(now_s) > gone_s:
+            raise UserError(f"No word from the court for {gone_s:.0f} s.")
 
 
 def _leave(controller: Controller) -> None:

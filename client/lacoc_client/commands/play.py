@@ -100,7 +100,11 @@ def choose_files(robot: str | None, gaits: list[Path]) -> SeatFiles:
         screen.note(f"Taken from this folder: {', '.join(path.name for path in found)}.")
     for remark in [] if gaits else remarks(Path(), found):
         screen.warn(remark)
-    return gather(robot, gaits or found)
+    notes: list[str] = []
+    files = gather(robot, gaits or found, notes)
+    for note in notes:
+        screen.warn(note)
+    return files
 
 
 def play(

@@ -18,6 +18,7 @@ from lacoc_client.commands import pages
 from lacoc_client.commands.play import Gaits, Robot, TeamName, choose_files, play
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles
+from lacoc_shared.command import screen
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
 
@@ -98,6 +99,8 @@ def _court(folder: Path, recordings: Path) -> Iterator[Access]:
         ((seat, token),) = opened["tokens"].items()
         access = Access(court=opened["court"], connect=opened["locators"][0])
         yield access.of_seat(seat, token)
+        if court.poll():  # it crashed: the stack of the crash lies in a folder that goes now
+            screen.note(_text(complained))
     finally:
         court.terminate()
         try:

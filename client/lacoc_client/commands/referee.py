@@ -24,13 +24,13 @@ from lacoc_client.stopping import stop_signals
 from lacoc_client.terminal import words
 from lacoc_client.terminal.line_view import event_columns
 from lacoc_client.terminal.plain import event_dict, frame_dict
+from lacoc_client.waiting import Patience
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.log import log_clock
-from lacoc_shared.contest.invitation import Access
 from lacoc_shared.decisions import DECISIONS, Decision
 from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.session import Session, open_client
+from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase, SeatFlag
 
 app = typer.Typer(
@@ -87,7 +87,9 @@ _COMMON: dict[str, tuple[Any, Any]] = {
         Annotated[
             float | None,
             typer.Option(
-                metavar="SECONDS", min=0, help="Wait so long until the decision is legal."
+                metavar="SECONDS",
+                min=0,
+                help="Wait so long for the court, and until the decision is legal.",
             ),
         ],
         None,
@@ -211,7 +213,10 @@ def _decide(
     **where: Any,
 ) -> None:
     access = entrance.referee(**where)
-    with open_client([access.connect], credentials=access.credentials) as session:
+    patience = Patience(wait)
+    with patience.until(
+        lambda: open_client([access.connect], credentials=access.credentials)
+    ) as session:
         referee = RefereeClient(session, access.court, access.token)
 
         def decide() -> DecisionReply:
@@ -221,7 +226,8 @@ def _decide(
             if wait is None:
                 reply = decide()
             else:
-                reply = _decide_when_legal(session, access, wait, name, decide)
+                view = patience.until(lambda: Spectator(session, access.court))
+                reply = _decide_when_legal(view, wait, name, decide)
         except NoAnswer as error:
             raise UserError(f"{error} {name}: 'lacoc referee log' says if it was done.") from None
     if json:
@@ -231,8 +237,7 @@ def _decide(
 
 
 def _decide_when_legal(
-    session: Session,
-    access: Access,
+    view: Spectator,
     wait_s: float,
     name: str,
     decide: Callable[[], DecisionReply],
@@ -242,7 +247,6 @@ def _decide_when_legal(
     What it says is half a second old at most: a decision that is refused although it was legal is
     tried again if it is no longer.
     """
-    view = Spectator(session, access.court)
     deadline_s = time.monotonic() + wait_s
     seen: Health | None = None
     refused: UserError | None = None

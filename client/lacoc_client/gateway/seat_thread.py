@@ -84,6 +84,8 @@ class SeatThread:
     def _run(self, joined: Answer) -> None:
         access = self._access
         try:
+            noted: list[str] = []
+            files = as_text(self._files, noted)
             with open_client([access.connect], credentials=access.credentials) as session:
                 controller = Controller(
                     session,
@@ -91,11 +93,11 @@ class SeatThread:
                     access.seat,
                     access.token,
                     self._team,
-                    **as_text(self._files)._asdict(),
+                    **files._asdict(),
                     notify=lambda: self._jobs.put(None),
                 )
                 notes = controller.join()
-                joined({"notes": notes, "index": controller.index}, None)
+                joined({"notes": (*noted, *notes), "index": controller.index}, None)
                 self._report(controller)
                 self._hold(controller)
         except Exception as error:

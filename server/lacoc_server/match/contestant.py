@@ -49,7 +49,7 @@ def _sit_down(match: MatchState, seat: Seat, item: JoinSeat) -> Done | Refusal:
     match.sheet_changed()
     text = f"{item.team} takes the {seat.id} seat with {entry.robot.name}."
     match.tell("join", text, seat=seat.index)
-    return Done()
+    return Done("\n".join(entry.notes))
 
 
 def ready(match: MatchState, seat: Seat, is_ready: bool) -> Done | Refusal:

@@ -29,6 +29,8 @@ class Entry:
 
     robot: RobotSpec
     gait: Gait
+    notes: tuple[str, ...] = ()
+    """What is no mistake in its files, but may not be meant; sentences."""
 
 
 def weigh_in(
@@ -57,11 +59,12 @@ def weigh_in(
     except FileRefused as refused:
         mistakes += refused.mistakes
     tables: list[PostureTable | LocomotionTable] = []
+    notes: list[str] = []
     for file, (kind, what) in zip((postures, locomotion), _TABLES.values(), strict=True):
         if file is None:
             continue
         try:
-            table = _read_gait(file, spec)
+            table = _read_gait(file, spec, notes)
         except FileRefused as refused:
             mistakes += refused.mistakes
             continue
@@ -78,7 +81,7 @@ def weigh_in(
         mistakes.append(Mistake(file="gait files", found="none for this arena", expected=expected))
     if spec is None or mistakes:
         raise FileRefused(mistakes)
-    return Entry(spec, gait)
+    return Entry(spec, gait, tuple(notes))
 
 
 @dataclass(frozen=True)
@@ -112,8 +115,11 @@ class Admission:
         return msgspec.structs.replace(join, robot=robot, postures=postures, locomotion=locomotion)
 
 
-def _read_gait(file: SentFile, robot: RobotSpec | None) -> PostureTable | LocomotionTable:
+def _read_gait(
+    file: SentFile, robot: RobotSpec | None, notes: list[str]
+) -> PostureTable | LocomotionTable:
     """Read a gait for a robot, or for any where the robot file itself is refused."""
     if robot is None:
         return read_gait(file.data, file.name)
-    return read_gait(file.data, file.name, legs=robot.labels, range_deg=robot.ranges_deg)
+    labels, ranges_deg = robot.labels, robot.ranges_deg
+    return read_gait(file.data, file.name, legs=labels, range_deg=ranges_deg, notes=notes)

@@ -6,8 +6,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from lacoc_arenas.checked_game import marker_of_geom
 from lacoc_arenas.game import AnyGame
-from lacoc_shared.messages import MARKER_STATES, Scene, SceneBody, SceneGeom
+from lacoc_shared.messages import Scene, SceneBody, SceneGeom
 from lacoc_shared.mistakes import UserError
 
 _TYPES = {
@@ -30,16 +31,15 @@ def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
 
     Raises:
         UserError: if a body has a joint that pages can't draw (they know free roots and one
-            hinge through a body's origin), or a geom is of another type.
+            hinge through a body's origin), a geom is of another type, or no marker has its name.
     """
-    markers = {marker.name: index for index, marker in enumerate(game.markers)}
     bodies = tuple(_body(model, index, seats) for index in range(model.nbody))
     geoms = []
     for index in range(model.ngeom):
         geom = model.geom(index)
         if geom.rgba[3] == 0:  # walls and probes
             continue
-        marker, state = _marker(geom.name, markers)
+        marker, state = marker_of_geom(game, geom.name)
         kind = _TYPES.get(mujoco.mjtGeom(int(geom.type[0])))
         if kind is None:
             raise UserError(f"Geom {geom.name!r} has a type that pages can't draw.")
@@ -82,14 +82,6 @@ def _body(model: Any, index: int, seats: Sequence[str]) -> SceneBody:
         joint=joint,
         axis=axis,
     )
-
-
-def _marker(name: str, markers: dict[str, int]) -> tuple[int, int]:
-    kind, _, rest = name.partition(":")
-    if kind != "marker":
-        return -1, -1
-    marker, state = rest.split(":")[:2]
-    return markers[marker], MARKER_STATES.index(state)
 
 
 def _seat(name: str, seats: Sequence[str]) -> int:

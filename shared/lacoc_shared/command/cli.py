@@ -22,7 +22,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from lacoc_shared import __version__, words
 from lacoc_shared.command import language, plugins, screen
-from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.mistakes import FileRefused, UserError, printable, text_of
 
 WRONG_USE = 2
 """Exit code: something that a person can put right."""
@@ -183,6 +183,8 @@ def main(args: Sequence[str] | None = None) -> int:
         Exception: what nobody foresaw: a bug, shown with its traceback.
     """
     words.use(language.of_process())
+    screen.accept_any_text()
+    screen.show_crashes(sys.stderr)
     try:
         typer.main.get_command(app).main(args=args, prog_name="lacoc")
     except UserError as error:
@@ -197,11 +199,22 @@ def main(args: Sequence[str] | None = None) -> int:
             raise
         screen.error(sentence)
         return WRONG_USE
+    except UnicodeEncodeError as error:
+        screen.error(_no_text(error))
+        return WRONG_USE
     except KeyboardInterrupt:
         return INTERRUPTED
     finally:
         _flush()
     return 0
+
+
+def _no_text(error: UnicodeEncodeError) -> str:
+    """Say which name or word of the system can't be sent or stored, because it is no text."""
+    return (
+        f"{printable(text_of(error.object))!r} holds bytes that are not text in UTF-8. "
+        "Rename the file or folder, or write the word again."
+    )
 
 
 def _flush() -> None:

@@ -6,16 +6,13 @@ never hold a beat.
 """
 
 import atexit
-import codecs
-import json
 import logging
 import queue
 import sys
 import threading
 from datetime import datetime
-from typing import Any, TextIO
+from typing import Any
 
-import msgspec
 import structlog
 from structlog.typing import FilteringBoundLogger
 
@@ -26,7 +23,6 @@ _WAITING_MOST = 10_000
 """Lines that wait for a reader; what comes then is lost, and it is said how much."""
 _END_S = 1.0
 """At the end a reader gets so long to take what waits."""
-_ESCAPED = "lacoc-escaped"
 _CLOCK = "%H:%M:%S"
 _DIM, _WARN, _PLAIN = "\x1b[2m", "\x1b[33m", "\x1b[0m"
 
@@ -64,33 +60,21 @@ class _Writer:
     def _run(self) -> None:
         while (line := self._lines.get()) is not None:
             try:
-                sys.stdout.write(f"{_for(sys.stdout, line)}\n")
+                sys.stdout.write(f"{line}\n")
                 sys.stdout.flush()
             except (OSError, ValueError):  # who read it has gone
                 return
 
 
-def _for(stream: TextIO, line: str) -> str:
-    """A line with what a stream can't encode written as numbers: a name ends no log."""
-    encoding = stream.encoding or "utf-8"
-    return line.encode(encoding, _ESCAPED).decode(encoding)
-
-
-def _escape(error: UnicodeError) -> tuple[str, int]:
-    """Python's `backslashreplace`, but in the form that JSON has too: a line stays an object."""
-    assert isinstance(error, UnicodeEncodeError)
-    return json.dumps(error.object[error.start : error.end])[1:-1], error.end
-
-
-codecs.register_error(_ESCAPED, _escape)
-
-
 def start(as_json: bool) -> None:
-    """Switch the log on.
+    """Switch the log on. Where a person reads it, the stack of a crash goes there too.
 
     Args:
         as_json: lines of JSON for a program; else words for a person.
     """
+    screen.accept_any_text()
+    if not as_json:  # a program reads objects: there the stack goes to standard error
+        screen.show_crashes(sys.stdout)
     writer = _Writer()
     structlog.configure(
         processors=[
@@ -112,7 +96,7 @@ def get(**always: Any) -> FilteringBoundLogger:
 
 
 def _json(_: Any, __: str, line: structlog.typing.EventDict) -> str:
-    return msgspec.json.encode(line).decode()
+    return screen.json_line(line)
 
 
 def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:

@@ -62,6 +62,16 @@ Token = Annotated[
         "can't read it.",
     ),
 ]
+WaitForCourt = Annotated[
+    float | None,
+    typer.Option(
+        "--wait",
+        envvar="LACOC_WAIT",
+        metavar="SECONDS",
+        min=0,
+        help="Wait so long for a court that is not there, as a service does.",
+    ),
+]
 Metrics = Annotated[
     str | None,
     typer.Option(

@@ -5,9 +5,13 @@ pipe carries results only. Colours and tables are for terminals; in a pipe a lin
 long as it needs to be, because a program reads it.
 """
 
+import contextlib
+import faulthandler
+import io
+import json
 import sys
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TextIO
 
 import msgspec
 from rich.console import Console, RenderableType
@@ -15,7 +19,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_shared.mistakes import Mistake
+from lacoc_shared.mistakes import ESCAPED, Mistake, text_of
 from lacoc_shared.words import render
 
 _UNLIMITED = 10_000  # characters in a line that no eye must follow
@@ -26,6 +30,23 @@ def _console(stderr: bool) -> Console:
     if not console.is_terminal:
         console.width = _UNLIMITED
     return console
+
+
+def accept_any_text() -> None:
+    """Let standard output and standard error take every character.
+
+    A terminal of Japanese Windows has no "ö", and a file name may hold bytes that are no text.
+    Such a character is written as its number: a name never ends a program.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors=ESCAPED)
+
+
+def show_crashes(stream: TextIO | None) -> None:
+    """Let the stack of every thread be written where a library crashes the process (SIGSEGV)."""
+    with contextlib.suppress(io.UnsupportedOperation, RuntimeError):  # no stream, or no file
+        faulthandler.enable(stream or sys.stderr)
 
 
 stdout = _console(stderr=False)
@@ -86,8 +107,28 @@ def mistakes_table(mistakes: Sequence[Mistake]) -> Table:
 
 def print_json(value: Any) -> None:
     """Print a value as one line of JSON: plain values, tuples and messages; bytes as base64."""
-    sys.stdout.write(msgspec.json.encode(value).decode() + "\n")
+    sys.stdout.write(json_line(value) + "\n")
     sys.stdout.flush()
+
+
+def json_line(value: Any) -> str:
+    """Turn a value into one line of JSON; names that are not UTF-8 are written by `text_of`."""
+    try:
+        return msgspec.json.encode(value).decode()
+    except UnicodeEncodeError:
+        plain = msgspec.to_builtins(value, str_keys=True)
+        return json.dumps(_encodable(plain), ensure_ascii=False, separators=(",", ":"))
+
+
+def _encodable(value: Any) -> Any:
+    match value:
+        case str():
+            return text_of(value)
+        case Mapping():
+            return {text_of(key): _encodable(item) for key, item in value.items()}
+        case list() | tuple():
+            return [*map(_encodable, value)]
+    return value
 
 
 def progress() -> Progress:

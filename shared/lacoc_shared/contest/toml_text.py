@@ -15,16 +15,23 @@ MAX_BYTES = 1 << 20
 _DOTS = 100  # a line with more: a key of so many parts costs its square in time and memory
 _DEEPEST = 32
 _INTEGERS = range(-(2**63), 2**64)  # what a message can carry
+_LONG_NUMBER = "a number of very many digits"
+_TOO_LONG = re.compile(r"[0-9][0-9_]{4000,}")
 _PLACE = re.compile(r" \(at line (\d+), column \d+\)")
 
 
 class BadToml(ValueError):
-    """It can't be read as TOML; `row` is the line, counted from 1, where that is known."""
+    """It can't be read as TOML; `row` is the line, counted from 1, where that is known.
 
-    def __init__(self, reason: str, row: int | None = None) -> None:
-        super().__init__(reason if row is None else f"{reason} (line {row})")
+    `remedy` says what to do, where that is more than to write TOML.
+    """
+
+    def __init__(self, reason: str, row: int | None = None, remedy: str = "") -> None:
+        where = "" if row is None else f" (line {row})"
+        super().__init__(f"{reason}{where}" + (f": {remedy}" if remedy else ""))
         self.reason = reason
         self.row = row
+        self.remedy = remedy
 
 
 def read_toml(
@@ -45,20 +52,34 @@ def read_toml(
     try:
         text = text if isinstance(text, str) else text.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise BadToml("bytes that are no text in UTF-8") from None
+        raise _not_utf_8() from None
+    if "\0" in text:  # UTF-16 without a byte order mark
+        raise _not_utf_8()
     for row, line in enumerate(text.split("\n"), start=1):
         if line.count(".") > _DOTS:
             raise BadToml(f"more than {_DOTS} dots in a line", row)
     try:
         table = tomllib.loads(text)
-    except ValueError as error:  # also a number too long for Python
+    except tomllib.TOMLDecodeError as error:
         place = _PLACE.search(str(error))
         reason = str(error).replace(place[0], "") if place else str(error)
         raise BadToml(reason[:80], int(place[1]) if place else None) from None
+    except ValueError:  # Python reads integers of at most 4,300 digits
+        long_row = _row_of_long_number(text)
+        raise BadToml(_LONG_NUMBER, long_row, "write it with at most 15 digits") from None
     except RecursionError:
         raise BadToml("brackets in brackets, too deep") from None
     _check_values(table, any_integers)
     return table
+
+
+def _not_utf_8() -> BadToml:
+    return BadToml("text that is not in UTF-8", remedy="save it as UTF-8")
+
+
+def _row_of_long_number(text: str) -> int | None:
+    found = _TOO_LONG.search(text)
+    return found and text.count("\n", 0, found.start()) + 1
 
 
 def _check_values(table: dict[str, Any], any_integers: bool) -> None:
@@ -76,7 +97,7 @@ def _check_values(table: dict[str, Any], any_integers: bool) -> None:
             elif isinstance(value, list):
                 inner += value
             elif isinstance(value, int) and not any_integers and value not in _INTEGERS:
-                raise BadToml("a number of very many digits")
+                raise BadToml(_LONG_NUMBER)
         if not inner:
             return
         level = inner

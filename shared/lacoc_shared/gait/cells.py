@@ -31,9 +31,11 @@ LEG_LABELS: dict[int, tuple[str, ...]] = {
 }
 """Number of legs -> their labels, for the robots whose gaits are told apart by their columns."""
 
-# Full-width forms (what a Japanese input method types) to ASCII, the ideographic space
-# to a space, the minus sign U+2212 to a hyphen. U+FF0D is among the full-width forms.
-_NARROW = {0xFF01 + i: 0x21 + i for i in range(94)} | {0x3000: " ", 0x2212: "-"}
+# Full-width forms (what a Japanese input method types) to ASCII, the ideographic space and
+# those that break no line (a web page's) to a space, the minus sign U+2212 to a hyphen. U+FF0D
+# is among the full-width forms.
+_SPACES = "\u3000\u00a0\u2007\u202f"
+_NARROW = {0xFF01 + i: 0x21 + i for i in range(94)} | {ord(c): " " for c in _SPACES} | {0x2212: "-"}
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
 
 

@@ -19,6 +19,7 @@ from lacoc_shared.gait.cells import (
 )
 from lacoc_shared.gait.tables import (
     JOINTS_PER_LEG,
+    LEVEL_NAMES,
     LocomotionTable,
     Posture,
     PostureTable,
@@ -43,7 +44,8 @@ ANY_HEADER = (
     '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)'
 )
 
-_LEGEND_LABELS = ("id of joint", "position")
+_IDS_LABEL = "id of joint"
+_LEGEND_LABELS = (_IDS_LABEL, "position")
 
 
 def read_cells(
@@ -87,6 +89,31 @@ def _is_legend(cells: Sequence[str]) -> bool:
         return False
     numbers = [number_of(cell) for cell in others]
     return all(n is None for n in numbers) or numbers == [*range(len(numbers))]
+
+
+def _without_zeros(cells: Sequence[str]) -> list[str]:
+    """A row without what a sheet shows where it mirrors an empty cell: 0."""
+    return _trimmed(["" if number_of(cell) == 0 else cell for cell in cells])
+
+
+def _find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
+    """Part the rows of Loco-data: postures, the legend, and what else stands below it.
+
+    Below the last row with a key the legend begins at the first row that can be one. What
+    follows it is never a posture: a remark, or the empty rows of a sheet.
+    """
+    keys = [index for index, row in enumerate(rows) if _KEY.fullmatch(row.cells[0])]
+    table_end = keys[-1] + 1 if keys else 0
+    starts = (i for i in range(table_end, len(rows)) if _is_legend(rows[i].cells))
+    start = next(starts, len(rows))
+    legend, below = [], []
+    for row in rows[start:]:
+        cells = _without_zeros(row.cells)
+        if _is_legend(row.cells) or (cells and _is_legend(cells)):
+            legend.append(row)
+        elif cells:
+            below.append(row)
+    return list(rows[:start]), legend, below
 
 
 class _Reader:
@@ -164,9 +191,10 @@ class _Reader:
             self._missing_header(rows[0])
             if not _KEY.fullmatch(rows[0].cells[0]):
                 body.pop(0)
-        legend = []
-        while body and _is_legend(body[-1].cells):
-            legend.append(body.pop())
+        body, legend, below = _find_legend(body)
+        filled = [row for row in body if _without_zeros(row.cells)]
+        if announced == len(filled):
+            body = filled  # the others are empty rows of a sheet that was mirrored
         if announced is not None and announced != len(body):
             self._add(
                 row=rows[0],
@@ -177,6 +205,11 @@ class _Reader:
         joints = self._joints(body, first=1)
         for row in legend:
             self._compare_labels(row, joints)
+        for row in below:
+            self.notes.append(
+                f"{self._file}, row {row.number}: {shown(row.cells[0])} stands below the legend "
+                "and is not read."
+            )
         postures: dict[int, Posture] = {}
         row_of: dict[int, int] = {}
         for row in body:
@@ -244,7 +277,7 @@ class _Reader:
     def _count(self, row: Row, column: int, highest: int, what: str) -> int | None:
         """The whole number that ends a row, from 1 to `highest`; None after a mistake."""
         cell = row.cells[column - 1] if len(row.cells) >= column else ""
-        if len(row.cells) > column:
+        if _without_zeros(row.cells[column:]):
             self._add(
                 row=row,
                 column=column + 1,
@@ -279,13 +312,18 @@ class _Reader:
     def _angles(self, row: Row, first: int, joints: int) -> Posture:
         """The angles [rad] of a row from the cell with index `first` on; 0 in place of mistakes."""
         cells = row.cells[first:]
-        if len(cells) != joints:
-            legs = joints // JOINTS_PER_LEG
+        legs = joints // JOINTS_PER_LEG
+        angles = f"{joints} angles ({JOINTS_PER_LEG} for each of {legs} legs)"
+        beside = [i for i in range(joints, len(cells)) if cells[i] and number_of(cells[i]) is None]
+        if beside:
             self._add(
                 row=row,
-                found=_counted(len(cells), "angle"),
-                expected=f"{joints} angles ({JOINTS_PER_LEG} for each of {legs} legs)",
+                column=first + beside[0] + 1,
+                found=shown(cells[beside[0]]),
+                expected=f"nothing after the {angles}",
             )
+        elif len(cells) != joints:
+            self._add(row=row, found=_counted(len(cells), "angle"), expected=angles)
         return tuple(
             self._angle(row, first + joint + 1, joint, joints)
             for joint in range(min(joints, len(cells)))
@@ -313,18 +351,29 @@ class _Reader:
         return self._labels if self._labels and self._legs == legs else leg_labels(legs)
 
     def _compare_labels(self, row: Row, joints: int) -> None:
-        """Note a leg's label over another leg's joint: the columns count, whatever they say."""
+        """Note a label over another joint's column: the columns count, whatever they say."""
         labels = self._labels_of(joints // JOINTS_PER_LEG)
+        known = {_plain(label): label for label in labels}
+        levels = {_plain(name): name for name in LEVEL_NAMES}
+        ids = row.cells[0].casefold() == _IDS_LABEL
         for joint, cell in enumerate(row.cells[1 : joints + 1]):
-            label = labels[leg_and_level(joint, len(labels))[0]]
-            if "".join(cell.split()).upper() not in {*labels} - {label}:
-                continue
-            self.notes.append(
-                f"{self._file}, row {row.number}, column {joint + 2}: the legend says {cell}, and "
-                f"joint {joint} is a joint of leg {label}. The order of the columns counts, not "
-                "the legend."
-            )
-            return  # one shows what is meant; exchanged labels come in dozens
+            leg, level = leg_and_level(joint, len(labels))
+            if ids:
+                number = number_of(cell)
+                wrong = number is not None and number != joint
+                is_what = f"this is the column of joint {joint}"
+            elif _plain(cell) in levels:
+                wrong = levels[_plain(cell)] != LEVEL_NAMES[level]
+                is_what = f"joint {joint} is a joint of level {LEVEL_NAMES[level]}"
+            else:
+                wrong = known.get(_plain(cell), labels[leg]) != labels[leg]
+                is_what = f"joint {joint} is a joint of leg {labels[leg]}"
+            if wrong:
+                self.notes.append(
+                    f"{self._file}, row {row.number}, column {joint + 2}: the legend says {cell}, "
+                    f"and {is_what}. The order of the columns counts, not the legend."
+                )
+                return  # one shows what is meant; exchanged labels come in dozens
 
     def _limits_deg(self, joint: int, joints: int) -> tuple[float, float]:
         if isinstance(self._range_deg, int | float):
@@ -332,6 +381,11 @@ class _Reader:
         if len(self._range_deg) == joints:
             return self._range_deg[joint]
         return -RANGE_DEG, RANGE_DEG  # another robot's gait, which is a mistake already
+
+
+def _plain(label: str) -> str:
+    """A label without what people write differently: "R,F", "R.F" and "rf" are one leg."""
+    return "".join(filter(str.isalnum, label)).casefold()
 
 
 def _counted(number: int, noun: str) -> str:

@@ -85,18 +85,15 @@ def check_protocols(endpoints: Sequence[str], *, keys: bool) -> None:
             )
 
 
-def check_names(endpoints: Sequence[str]) -> None:
-    """Look up the names in complete addresses.
-
-    Raises:
-        UserError: if no address in the list has a name that is known.
-    """
+def why_not_known(endpoints: Sequence[str]) -> str | None:
+    """Look up the names in complete addresses; say so if no address has a name that is known."""
     unknown = [host for host, port in map(_split, endpoints) if not _resolves(host, port)]
     if unknown and len(unknown) == len(endpoints):
-        raise UserError(
+        return (
             f"The name {unknown[0]!r} is not known on this network. "
             "Check its spelling, or use the number (such as 192.168.1.5) instead."
         )
+    return None
 
 
 def why_not_connected(endpoints: Sequence[str], ca: str = "") -> str:

@@ -30,6 +30,10 @@ _OTHER_FILES = 200
 """That a court's process opens besides one for each session: records, modules, Zenoh's own."""
 
 
+class NotConnected(UserError):
+    """There is no connection now; there may be one later."""
+
+
 class NoReply(Exception):
     """Nobody answered: no such court, not allowed to ask, or too late."""
 
@@ -302,17 +306,19 @@ def open_client(
         credentials: for a court with keys.
 
     Raises:
-        UserError: if there is no connection; the message says why.
+        NotConnected: if there is no connection; the message says why.
+        UserError: if an address is none, or needs keys that are not there.
     """
     endpoints = [address.endpoint(one, "tls" if credentials else "tcp") for one in connect]
     address.check_protocols(endpoints, keys=credentials is not None)
-    address.check_names(endpoints)
+    if (unknown := address.why_not_known(endpoints)) is not None:
+        raise NotConnected(unknown)
     try:
         config = network_config.client_config(endpoints, timeout_s, credentials)
         return Session(_open(config), endpoints)
     except zenoh.ZError:
         ca = credentials.ca if credentials else ""
-        raise UserError(address.why_not_connected(endpoints, ca)) from None
+        raise NotConnected(address.why_not_connected(endpoints, ca)) from None
 
 
 @contextmanager

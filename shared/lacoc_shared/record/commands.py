@@ -18,7 +18,6 @@ from lacoc_shared.inputs import KeySeat
 from lacoc_shared.messages import HealthVerdict
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export import tables as exports
-from lacoc_shared.record.export.foxglove import foxglove
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEAT_S
 
@@ -63,7 +62,7 @@ def export(
     events: Annotated[bool, typer.Option("--events", help="All events as CSV.")] = False,
     result: Annotated[bool, typer.Option("--result", help="The result as JSON.")] = False,
     picture: Annotated[
-        bool, typer.Option("--foxglove", help="An MCAP that Foxglove and Lichtblick draw.")
+        bool, typer.Option("--foxglove", help="An MCAP that Foxglove, Lichtblick and Rerun draw.")
     ] = False,
     out: Annotated[
         Path, typer.Option(metavar="DIR", help="Folder for the files; made if it is not there.")
@@ -86,7 +85,7 @@ def export(
     if result or everything:
         makers.append(("result.json", exports.result_json))
     if picture or everything:
-        makers.append(("foxglove.mcap", foxglove))
+        makers.append(("foxglove.mcap", _foxglove))
     made: list[tuple[str, bytes]] = []
     for name, make in makers:
         try:
@@ -96,6 +95,12 @@ def export(
                 raise
             screen.warn(str(error))
     _save(out, record.header.match_id, made)
+
+
+def _foxglove(record: Record) -> bytes:
+    from lacoc_shared.record.export.foxglove import foxglove  # 30 modules, for this alone
+
+    return foxglove(record)
 
 
 def _made(make: Callable[[Record], bytes], record: Record) -> bytes:

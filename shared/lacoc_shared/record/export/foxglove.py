@@ -1,8 +1,9 @@
-"""A record as an MCAP that Foxglove and Lichtblick draw by themselves, 25 pictures a second.
+"""A record as an MCAP that Foxglove, Lichtblick and Rerun draw by themselves, 25 pictures a second.
 
 Topics: /tf (where the robots' parts are), /scene (shapes; again when the scene changes),
 /board (all markers as they look now; at each change), /events. /scene and /board are
-complete in each message, so a viewer may jump to any time.
+complete in each message, so a viewer may jump to any time. The messages are Foxglove's own
+schemas in protobuf: Rerun takes its transforms from no other encoding.
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,33 +12,29 @@ from io import BytesIO
 from itertools import pairwise
 from typing import Any
 
-import msgspec
 import numpy as np
+from foxglove_schemas_protobuf.Color_pb2 import Color
+from foxglove_schemas_protobuf.CubePrimitive_pb2 import CubePrimitive
+from foxglove_schemas_protobuf.CylinderPrimitive_pb2 import CylinderPrimitive
+from foxglove_schemas_protobuf.FrameTransform_pb2 import FrameTransform
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.Log_pb2 import Log
+from foxglove_schemas_protobuf.Pose_pb2 import Pose
+from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion
+from foxglove_schemas_protobuf.SceneEntity_pb2 import SceneEntity
+from foxglove_schemas_protobuf.SceneEntityDeletion_pb2 import SceneEntityDeletion
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
+from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
+from google.protobuf.message import Message
+from google.protobuf.timestamp_pb2 import Timestamp
 from mcap.writer import Writer
+from mcap_protobuf.schema import register_schema
 
 from lacoc_shared import __version__, codec
 from lacoc_shared.marker_states import unpack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, Sheet
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record.export.foxglove_messages import (
-    INFO,
-    WARNING,
-    Color,
-    CubePrimitive,
-    CylinderPrimitive,
-    FrameTransform,
-    FrameTransforms,
-    Log,
-    Pose,
-    Quaternion,
-    SceneEntity,
-    SceneEntityDeletion,
-    SceneUpdate,
-    SpherePrimitive,
-    Time,
-    Vector3,
-    json_schema,
-)
 from lacoc_shared.record.export.kinematics import (
     ForwardKinematics,
     joints_per_seat,
@@ -47,7 +44,7 @@ from lacoc_shared.record.export.kinematics import (
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import BEAT_NS
 
-_TOPICS: dict[str, type[msgspec.Struct]] = {
+_TOPICS: dict[str, type[Message]] = {
     "/tf": FrameTransforms,
     "/scene": SceneUpdate,
     "/board": SceneUpdate,
@@ -72,26 +69,23 @@ def foxglove(record: Record) -> bytes:
     file = BytesIO()
     writer = Writer(file)
     writer.start(library=f"lacoc {__version__}")
-    schemas = {
-        kind: writer.register_schema(f"foxglove.{kind.__name__}", "jsonschema", json_schema(kind))
-        for kind in _TOPICS.values()
-    }
+    schemas = {kind: register_schema(writer, kind) for kind in dict.fromkeys(_TOPICS.values())}
     channels = {
-        topic: writer.register_channel(topic, "json", schemas[kind])
+        topic: writer.register_channel(topic, "protobuf", schemas[kind])
         for topic, kind in _TOPICS.items()
     }
     started_ns = int(datetime.fromisoformat(record.header.started).timestamp()) * 10**9
     for beat, topic, message in _messages(record, started_ns):
         time_ns = started_ns + beat * BEAT_NS
-        writer.add_message(channels[topic], time_ns, msgspec.json.encode(message), time_ns)
+        writer.add_message(channels[topic], time_ns, message.SerializeToString(), time_ns)
     writer.finish()
     return file.getvalue()
 
 
-def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, msgspec.Struct]]:
+def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, Message]]:
     """Everything to be written: (beat, topic, message)."""
     for event in record.events:
-        time = Time.of_ns(started_ns + event.beat * BEAT_NS)
+        time = _time(started_ns + event.beat * BEAT_NS)
         yield event.beat, "/events", _log(event, time)
     frames = [(beat, codec.decode(data, Frame)) for beat, data in record.frames]
     begins = [beat for beat, _ in record.scenes] + [record.last_beat + 1]
@@ -101,7 +95,7 @@ def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, msgsp
         if sheet is None:
             continue
         picture = _Picture(scene, sheet)
-        yield begin, "/scene", picture.shapes(Time.of_ns(started_ns + begin * BEAT_NS))
+        yield begin, "/scene", picture.shapes(_time(started_ns + begin * BEAT_NS))
         moving = [item for item in shown[::_EVERY] if item[1].poses]
         for (beat, _), transforms in zip(
             moving, picture.transforms(moving, started_ns), strict=True
@@ -111,12 +105,12 @@ def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, msgsp
         for beat, frame in shown:
             if frame.markers != board:
                 board = frame.markers
-                time = Time.of_ns(started_ns + beat * BEAT_NS)
+                time = _time(started_ns + beat * BEAT_NS)
                 yield beat, "/board", picture.board(board, time)
 
 
-def _log(event: Event, time: Time) -> Log:
-    level = WARNING if event.kind == "fault" else INFO
+def _log(event: Event, time: Timestamp) -> Log:
+    level = Log.WARNING if event.kind == "fault" else Log.INFO
     return Log(timestamp=time, level=level, message=event.text, name=event.kind)
 
 
@@ -139,35 +133,35 @@ class _Picture:
         pos_w, quat_w = (array.round(6).tolist() for array in self._kinematics.poses(numbers))
         names = {index: self._scene.bodies[index].name for index in self._kinematics.moving}
         for (beat, _), positions, quaternions in zip(frames, pos_w, quat_w, strict=True):
-            time = Time.of_ns(started_ns + beat * BEAT_NS)
+            time = _time(started_ns + beat * BEAT_NS)
             yield FrameTransforms(
-                tuple(
+                transforms=(
                     FrameTransform(
                         timestamp=time,
                         parent_frame_id=_WORLD,
                         child_frame_id=name,
-                        translation=Vector3(*positions[index]),
+                        translation=_vector(*positions[index]),
                         rotation=_quaternion(quaternions[index]),
                     )
                     for index, name in names.items()
                 )
             )
 
-    def shapes(self, time: Time) -> SceneUpdate:
+    def shapes(self, time: Timestamp) -> SceneUpdate:
         """Everything but the markers, in place of all that was drawn before."""
         geoms: dict[int, list[SceneGeom]] = {}
         for geom in self._scene.geoms:
             if geom.marker < 0:
                 geoms.setdefault(geom.body, []).append(geom)
         return SceneUpdate(
-            deletions=(SceneEntityDeletion(time),),
-            entities=tuple(
+            deletions=(_everything(time),),
+            entities=(
                 self._entity(self._scene.bodies[body].name or f"body{body}", shapes, time)
                 for body, shapes in geoms.items()
             ),
         )
 
-    def board(self, packed: bytes, time: Time) -> SceneUpdate:
+    def board(self, packed: bytes, time: Timestamp) -> SceneUpdate:
         """All markers in their present states."""
         markers = self._sheet.markers
         states = unpack_states(packed, len(markers))
@@ -176,15 +170,15 @@ class _Picture:
             if geom.marker >= 0 and geom.state in (-1, states[geom.marker]):
                 geoms[geom.marker].append(geom)
         return SceneUpdate(
-            deletions=(SceneEntityDeletion(time),),
-            entities=tuple(
+            deletions=(_everything(time),),
+            entities=(
                 self._entity(marker.name, shapes, time)
                 for marker, shapes in zip(markers, geoms, strict=True)
                 if shapes
             ),
         )
 
-    def _entity(self, name: str, geoms: Sequence[SceneGeom], time: Time) -> SceneEntity:
+    def _entity(self, name: str, geoms: Sequence[SceneGeom], time: Timestamp) -> SceneEntity:
         """Shapes that lie on one body, or that all stand still."""
         moves = any(geom.body in self._kinematics.moving for geom in geoms)
         primitives: list[Any] = [
@@ -194,9 +188,10 @@ class _Picture:
             timestamp=time,
             frame_id=self._scene.bodies[geoms[0].body].name if moves else _WORLD,
             id=name,
-            cubes=tuple(p for p in primitives if isinstance(p, CubePrimitive)),
-            spheres=tuple(p for p in primitives if isinstance(p, SpherePrimitive)),
-            cylinders=tuple(p for p in primitives if isinstance(p, CylinderPrimitive)),
+            frame_locked=True,
+            cubes=(p for p in primitives if isinstance(p, CubePrimitive)),
+            spheres=(p for p in primitives if isinstance(p, SpherePrimitive)),
+            cylinders=(p for p in primitives if isinstance(p, CylinderPrimitive)),
         )
 
     def _primitives(self, geom: SceneGeom, moves: bool) -> Iterator[Any]:
@@ -208,35 +203,55 @@ class _Picture:
 
         def pose(z: float = 0.0) -> Pose:
             along = rotate(quat, np.array([0.0, 0.0, z]))
-            return Pose(Vector3(*(pos + along).tolist()), _quaternion(quat.tolist()))
+            return Pose(
+                position=_vector(*(pos + along).tolist()), orientation=_quaternion(quat.tolist())
+            )
 
         color = self._color(geom)
         a, b, c = (2 * half for half in geom.size)
+
+        def ball(size: Vector3, z: float = 0.0) -> SpherePrimitive:
+            return SpherePrimitive(pose=pose(z), size=size, color=color)
+
         match geom.type:
             case "plane":
-                size = Vector3(a or _PLANE_M, b or _PLANE_M, _THIN_M)
-                yield CubePrimitive(pose(-_THIN_M / 2), size, color)
+                size = _vector(a or _PLANE_M, b or _PLANE_M, _THIN_M)
+                yield CubePrimitive(pose=pose(-_THIN_M / 2), size=size, color=color)
             case "box":
-                yield CubePrimitive(pose(), Vector3(a, b, c), color)
+                yield CubePrimitive(pose=pose(), size=_vector(a, b, c), color=color)
             case "sphere":
-                yield SpherePrimitive(pose(), Vector3(a, a, a), color)
+                yield ball(_vector(a, a, a))
             case "ellipsoid":
-                yield SpherePrimitive(pose(), Vector3(a, b, c), color)
-            case "cylinder":
-                yield CylinderPrimitive(pose(), Vector3(a, a, b), 1.0, 1.0, color)
-            case "capsule":
-                yield CylinderPrimitive(pose(), Vector3(a, a, b), 1.0, 1.0, color)
-                for end in (-b / 2, b / 2):
-                    yield SpherePrimitive(pose(end), Vector3(a, a, a), color)
+                yield ball(_vector(a, b, c))
+            case "cylinder" | "capsule":
+                yield CylinderPrimitive(
+                    pose=pose(), size=_vector(a, a, b), bottom_scale=1.0, top_scale=1.0, color=color
+                )
+                for end in (-b / 2, b / 2) if geom.type == "capsule" else ():
+                    yield ball(_vector(a, a, a), end)
 
     def _color(self, geom: SceneGeom) -> Color:
         r, g, b, a = geom.rgba
         if geom.seat >= 0:
             team = bytes.fromhex(self._sheet.seats[geom.seat].colour.removeprefix("#"))
             r, g, b = (part / 255 for part in team)
-        return Color(r, g, b, a)
+        return Color(r=r, g=g, b=b, a=a)
+
+
+def _time(time_ns: int) -> Timestamp:
+    seconds, nanos = divmod(time_ns, 10**9)
+    return Timestamp(seconds=seconds, nanos=nanos)
+
+
+def _everything(time: Timestamp) -> SceneEntityDeletion:
+    """Make the deletion that clears a topic."""
+    return SceneEntityDeletion(timestamp=time, type=SceneEntityDeletion.ALL)
+
+
+def _vector(x: float, y: float, z: float) -> Vector3:
+    return Vector3(x=x, y=y, z=z)
 
 
 def _quaternion(quat: Sequence[float]) -> Quaternion:
     w, x, y, z = quat
-    return Quaternion(x, y, z, w)
+    return Quaternion(x=x, y=y, z=z, w=w)

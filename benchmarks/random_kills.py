@@ -1,0 +1,223 @@
+"""`python -m benchmarks.random_kills`: whatever runs is killed at any moment, and all goes on.
+
+A court, a gateway, two bots and a referee, each a process of its own over plain TCP, as a
+contest runs them. Every second or so one of them is killed (SIGKILL) and started again at once.
+Counted: kills, and processes that ended by themselves, with what they said last (a crash writes
+the stack of every thread). At the end every record must verify.
+
+With `--cores FOLDER` a crash leaves its memory there, for gdb (Linux, where the system's pattern
+is a plain file name).
+"""
+
+import argparse
+import json
+import os
+import random
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from contextlib import ExitStack
+from pathlib import Path
+
+from benchmarks.processes import LACOC
+from lacoc_client.asking import NoCourt, NotNow
+from lacoc_client.referee import RefereeClient
+from lacoc_client.spectator import Spectator
+from lacoc_shared.contest.file import load
+from lacoc_shared.decisions import DECISIONS, Decision
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import open_client
+from lacoc_shared.record.files import segment_name
+
+_WAIT = ("--wait", "600")
+_BETWEEN_S = (0.2, 2.0)
+_END_S = 60.0
+_SAID_BYTES = 20_000
+"""Of what a process said before it ended."""
+_GOES_ON: dict[str, Decision] = {
+    name: DECISIONS[name]() for name in ("official", "next", "start", "resume")
+}
+"""What the referee decides, as soon as it is legal."""
+
+
+def main() -> None:
+    """Kill, count and verify."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.random_kills", description=__doc__)
+    parser.add_argument("--seconds", type=float, default=600.0)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--cores", type=Path)
+    parser.add_argument("--referee", type=Path, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.referee:
+        _referee(options.referee)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        found = run(Path(folder), options.seconds, random.Random(options.seed), options.cores)
+    print(json.dumps(found))
+    sys.exit(bool(found["ended"] or found["not_same"] or not found["same"]))
+
+
+def run(
+    folder: Path, seconds: float, chance: random.Random, cores: Path | None = None
+) -> dict[str, object]:
+    """Kill for so long, and verify what was recorded.
+
+    Args:
+        folder: an empty folder.
+        seconds: how long.
+        chance: who is killed, and when.
+        cores: where a crash leaves its memory; None: nowhere.
+
+    Returns:
+        Kills by process, what each that ended by itself said, records that are the same and those
+        that are not.
+    """
+    contest = folder / "contest.toml"
+    contest.write_text(_contest(), encoding="utf-8")
+    records = folder / "recordings"
+    of_contest = ("--contest", str(contest))
+    services = [
+        _Service("court", folder, cores, "serve", *of_contest, "--recordings", str(records)),
+        _Service("gateway", folder, cores, "web", *of_contest, "--listen", "127.0.0.1:0"),
+        *(
+            _Service(seat, folder, cores, "bot", bot, "--seat", seat, *of_contest, *_WAIT)
+            for seat, bot in (("left", "planner"), ("right", "nearest"))
+        ),
+        _Service("referee", folder, cores, "--referee", str(contest), module=__spec__.name),
+    ]
+    kills: Counter[str] = Counter()
+    ended: list[str] = []
+    end_s = time.monotonic() + seconds
+    with ExitStack() as stack:
+        for service in services:
+            service.start()
+            stack.callback(service.stop)
+        while time.monotonic() < end_s:
+            time.sleep(chance.uniform(*_BETWEEN_S))
+            for service in services:
+                if (said := service.ended()) is not None:
+                    ended.append(said)
+                    print(said, file=sys.stderr, flush=True)
+                    service.start()
+            service = chance.choice(services)
+            service.kill()
+            service.start()
+            kills[service.name] += 1
+    same, not_same = _verify(records)
+    return {"kills": dict(kills), "ended": ended, "same": same, "not_same": not_same}
+
+
+class _Service:
+    """A process that is started again."""
+
+    def __init__(
+        self, name: str, folder: Path, cores: Path | None, *words: str, module: str = LACOC
+    ) -> None:
+        self.name = name
+        self._log = folder / f"{name}.log"
+        self._cores = cores
+        self._words = [sys.executable, "-m", module, *words]
+        self._process: subprocess.Popen[bytes]
+
+    def start(self) -> None:
+        kept = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
+        with self._log.open("wb") as log:
+            self._process = subprocess.Popen(
+                self._words,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                env=kept | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+                cwd=self._cores,
+                preexec_fn=_allow_cores if self._cores else None,
+            )
+
+    def kill(self) -> None:
+        self._process.kill()
+        self._process.wait()
+
+    def stop(self) -> None:
+        self._process.terminate()
+        try:
+            self._process.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            raise
+
+    def ended(self) -> str | None:
+        """What a process said that ended by itself; None while it runs."""
+        if (code := self._process.poll()) is None:
+            return None
+        said = self._log.read_bytes()[-_SAID_BYTES:].decode(errors="replace")
+        return f"{self.name} (process {self._process.pid}) ended with {code}:\n{said}"
+
+
+def _allow_cores() -> None:
+    import resource
+
+    resource.setrlimit(resource.RLIMIT_CORE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+
+
+def _referee(contest: Path) -> None:
+    """Decide what lets the matches go on, until the process is killed."""
+    name, court = load(contest).court()
+    while True:
+        try:
+            with open_client([court.address()]) as session:
+                view = Spectator(session, name)
+                hand = RefereeClient(session, name, court.referee.token)
+                while view.silent_s(time.monotonic()) < _END_S:
+                    view.wait_frame(0.1)
+                    legal = {} if view.health is None else view.health.decisions
+                    for word, decision in _GOES_ON.items():
+                        if legal.get(word) == "":
+                            view.health = None
+                            hand.decide(decision, "a trial", "trial")
+        except (NoCourt, NotNow):
+            continue  # it is being started again
+        except UserError as error:  # it was legal half a second ago
+            print(error, flush=True)
+            time.sleep(0.1)
+
+
+def _verify(folder: Path) -> tuple[int, list[str]]:
+    """Verify each match; one that was not packed yet by its segments."""
+    segments = {
+        name[0]: path for path in folder.glob("*.live.mcap") if (name := segment_name(path))
+    }
+    packed = {path.stem: path for path in folder.glob("*.mcap") if not segment_name(path)}
+    same, not_same = 0, []
+    for path in {**segments, **packed}.values():
+        said = subprocess.run(
+            [sys.executable, "-m", LACOC, "replay", "verify", "--json", str(path)],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if said.returncode == 0:
+            same += 1
+        else:
+            not_same.append(f"{path.name}: {said.stdout}{said.stderr}")
+    return same, not_same
+
+
+def _contest() -> str:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    return f"""
+[court.main]
+arena = "othello"
+listen = ["tcp/127.0.0.1:{port}"]
+settings.match = {{ duration_s = 20, countdown_s = 0.7 }}
+seat.left.token = "the token of left"
+seat.right.token = "the token of right"
+referee.token = "the token of the referee"
+"""
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,100 @@
+"""Services that start before their court, or while a killed one is started again."""
+
+import socket
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+
+from lacoc_client.asking import NoCourt, NotNow
+from lacoc_client.waiting import Patience
+from lacoc_shared.command import cli
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.session import NotConnected, Session, open_client, open_court
+
+
+def coming(*errors: UserError) -> Callable[[], str]:
+    """Something that fails with these errors, and then is there."""
+    left = list(errors)
+
+    def do() -> str:
+        if left:
+            raise left.pop(0)
+        return "there"
+
+    return do
+
+
+def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
+    """Each new reason is told; the same one is told once."""
+    errors = (NotConnected("No link."), NotConnected("No link."), NoCourt("None."), NotNow("Soon."))
+    assert Patience(60.0).until(coming(*errors)) == "there"
+    assert capsys.readouterr().err.splitlines() == [
+        f"{why} This waits for it, up to 60 s." for why in ("No link.", "None.", "Soon.")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("wait_s", "error"),
+    [(None, NotConnected("No link.")), (0.0, NoCourt("None.")), (60.0, UserError("Wrong token."))],
+    ids=["a person", "the time is over", "for good"],
+)
+def test_it_does_not_wait_in_vain(wait_s: float | None, error: UserError) -> None:
+    """A person hears at once that nobody is there; a wrong token opens nothing later either."""
+    with pytest.raises(type(error), match=str(error)):
+        Patience(wait_s).until(coming(error))
+
+
+def test_who_asks_it_to_end_is_heard() -> None:
+    """Ctrl-C, or a service that is stopped."""
+    with pytest.raises(KeyboardInterrupt):
+        Patience(60.0, stopping=lambda: True).until(coming(NotConnected("No link.")))
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        return int(free.getsockname()[1])
+
+
+def test_a_court_that_is_opened_later_is_found() -> None:
+    """The real network: nobody listens, then a court does."""
+    port = free_port()
+    refused = threading.Event()
+    courts: list[Session] = []
+
+    def open_later() -> None:
+        assert refused.wait(60)
+        courts.append(open_court([f"127.0.0.1:{port}"]))
+
+    def connect() -> Session:
+        try:
+            return open_client([f"127.0.0.1:{port}"], timeout_s=0.2)
+        except NotConnected:
+            refused.set()
+            raise
+
+    opener = threading.Thread(target=open_later)
+    opener.start()
+    with Patience(60.0).until(connect) as session:
+        opener.join()
+        assert session.routers()
+    courts[0].close()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("bot", "straight", "--seat", "left", "--token", "x"), ("referee", "start", "--token", "x")],
+    ids=["bot", "referee"],
+)
+def test_services_take_the_option(
+    words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """They try for the time that was given, and end as without it."""
+    begin_s = time.monotonic()
+    where = ("--connect", f"tcp/127.0.0.1:{free_port()}", "--wait", "2.5")
+    assert cli.main([*words, *where]) == 2
+    assert time.monotonic() - begin_s > 2.5
+    note, error = capsys.readouterr().err.splitlines()
+    assert note.startswith("Nobody listens at tcp/127.0.0.1:")
+    assert error.startswith("Error: Nobody listens at tcp/127.0.0.1:")

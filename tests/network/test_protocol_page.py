@@ -1,0 +1,95 @@
+"""What docs/protocol.md says of Zenoh itself, tried with Zenoh and nothing of ours."""
+
+import base64
+import hashlib
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import zenoh
+from court_stub import TOKENS
+from keyed import KeyedCourt, keyed_file
+
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.keyspace import JOIN_MAX_BYTES, Keys
+from lacoc_shared.messages import Refusal
+from lacoc_shared.network.session import Session, open_court
+
+PAGE = (Path(__file__).parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
+JOIN = Keys("main").request("left", "join")
+
+
+def of_page(court: str, user: str = "", password: str = "", ca: str = "") -> zenoh.Config:
+    """The configuration on the page, for this court; without a user the part with keys is out."""
+    (text,) = re.findall(r"```json5\n(.*?)```", PAGE, re.DOTALL)
+    for there, here in (
+        ("tls/court.example.org:7447", court),
+        ("main.left", user),
+        ("0123456789abcdef0123456789abcdef01234567", password),
+        ("LS0tLS1CRUdJTi...", base64.b64encode(ca.encode()).decode()),
+    ):
+        assert text.count(there) == 1
+        text = text.replace(there, here)
+    if not user:
+        text = re.sub(r"  transport: \{.*", "}", text, flags=re.DOTALL)
+    return zenoh.Config.from_json5(text)
+
+
+@pytest.fixture
+def court() -> Iterator[Session]:
+    with open_court(["127.0.0.1:0"]) as session:
+        yield session
+
+
+@pytest.fixture
+def stranger(court: Session) -> Iterator[zenoh.Session]:
+    with zenoh.open(of_page(court.locators()[0])) as session:
+        yield session
+
+
+def ask(stranger: zenoh.Session, payload: bytes, timeout_s: float = 10.0) -> list[bytes | None]:
+    """The error replies to a join; None for a reply that is none."""
+    replies = stranger.get(JOIN, payload=payload, timeout=timeout_s)
+    return [reply.err and reply.err.payload.to_bytes() for reply in replies]
+
+
+@pytest.mark.slow
+def test_a_stranger_enters_a_court_with_keys(tmp_path: Path) -> None:
+    """User, password and certificate where the page has them; the password as it makes it."""
+    with KeyedCourt(keyed_file(tmp_path)) as court:
+        credentials = court.people["left"].credentials
+        assert credentials is not None
+        told = f"main.left {TOKENS['left']}".encode()
+        password = hashlib.blake2b(told, digest_size=20, person=b"lacoc password").hexdigest()
+        config = of_page(court.address, "main.left", password, credentials.ca)
+        with zenoh.open(config) as stranger:
+            (error,) = ask(stranger, b"no join")
+            assert error is not None
+            assert decode(error, Refusal).reason
+        with pytest.raises(zenoh.ZError):
+            zenoh.open(of_page(court.address, "main.left", "x" * 40, credentials.ca))
+
+
+def test_what_comes_back(court: Session, stranger: zenoh.Session) -> None:
+    """A refusal is an error reply in msgpack; silence is the text Timeout; nobody is nothing."""
+    assert ask(stranger, b"") == []
+    desk = court.desk(JOIN, 4)
+    assert ask(stranger, b"x", 0.3) == [b"Timeout"]
+    assert (request := desk.take()) is not None
+    assert request.payload == b"x"
+    replies = stranger.get(JOIN, payload=b"y", timeout=10.0)
+    while (request := desk.take()) is None:
+        pass
+    request.refuse(encode(Refusal("no")))
+    assert [r.err and r.err.payload.to_bytes() for r in replies] == [encode(Refusal("no"))]
+
+
+def test_a_join_that_is_too_long_is_dropped(court: Session, stranger: zenoh.Session) -> None:
+    """It is no refusal: the court never sees it."""
+    desk = court.desk(JOIN, 4)
+    assert ask(stranger, bytes(JOIN_MAX_BYTES), 0.3) == [b"Timeout"]
+    assert desk.take() is not None
+    assert ask(stranger, bytes(JOIN_MAX_BYTES + 1)) == []
+    assert ask(stranger, bytes(JOIN_MAX_BYTES + 5000), 0.3) == [b"Timeout"]
+    assert desk.take() is None
