@@ -21,6 +21,10 @@ FLOOR_CONAFFINITY = 0xFFFE
 MOST_SEATS = 15
 """As many robots as there are collision bits left."""
 
+# What goes wrong is in `MjData.warning`; without this MuJoCo writes MUJOCO_LOG.TXT into the current
+# folder.
+mj.set_mju_user_warning(lambda text: None)
+
 _SOLREF = (0.01, 1.0)  # contact time constant [s] and damping ratio
 _SHORTEST_CAPSULE_M = 1e-6  # a shorter one is a sphere
 _TORSION_AND_ROLL = (0.005, 0.0001)  # MuJoCo's defaults; unused with condim 3
