@@ -10,6 +10,7 @@ import msgspec
 
 from lacoc_shared.gait.tables import Gait, Level, Posture
 from lacoc_shared.mistakes import Mistake
+from lacoc_shared.words import Phrase, say
 
 TRIAL_S = 2.0
 """A robot is tried for so long."""
@@ -70,33 +71,36 @@ def mistakes_of(stood: Stood, file: str, levels: Sequence[Level]) -> list[Mistak
     Returns:
         One mistake for each thing that was wrong; none for a robot that stays where it is.
     """
-    key = " and ".join(f"level {'AB'[level]}" for level in levels)
-    where = f"to stand with key 0 of {key}"
     book = []
 
-    def note(found: str, expected: str) -> None:
-        book.append(Mistake(file=file, field=where, found=found, expected=expected))
+    def note(found: Phrase, expected: Phrase) -> None:
+        where = say("robot.stands", levels=["AB"[level] for level in levels], found=found)
+        book.append(Mistake(file=file, field="start.posture_deg", found=where, expected=expected))
 
     if stood.fault:
-        note("a robot that physics can't follow", "heavier links, or a servo that is less stiff")
+        note(say("robot.unstable"), say("robot.stable"))
     if stood.moved_m > FARTHEST_M:
         note(
-            f"a robot that goes {stood.moved_m:.3f} m from its start within {TRIAL_S:g} s",
-            f"at most {FARTHEST_M:g} m: make posture_deg under [start] nearer to key 0, "
-            "and let every foot be on the floor",
+            say("robot.strays", moved_m=stood.moved_m, within_s=TRIAL_S),
+            say("robot.stays", farthest_m=FARTHEST_M),
         )
     if stood.tilt_rad > MOST_TILT_RAD:
         note(
-            f"a robot that leans {math.degrees(stood.tilt_rad):.0f} degrees",
-            f"at most {math.degrees(MOST_TILT_RAD):.0f} degrees: let the feet stand around "
-            "the body's middle",
+            say("robot.leans", tilt_deg=math.degrees(stood.tilt_rad)),
+            say("robot.upright", most_deg=round(math.degrees(MOST_TILT_RAD), 6)),
         )
     if stood.joint_rad_s > REST_RAD_S or stood.centre_m_s > REST_M_S:
         note(
-            f"a robot that still moves after {TRIAL_S:g} s: a joint at "
-            f"{math.degrees(stood.joint_rad_s):.0f} degrees/s, its middle at "
-            f"{1000 * stood.centre_m_s:.0f} mm/s",
-            f"rest, at most {math.degrees(REST_RAD_S):.0f} degrees/s and "
-            f"{1000 * REST_M_S:.0f} mm/s: make posture_deg nearer to key 0, or kv larger",
+            say(
+                "robot.moves",
+                after_s=TRIAL_S,
+                joint_deg_s=math.degrees(stood.joint_rad_s),
+                centre_mm_s=1000 * stood.centre_m_s,
+            ),
+            say(
+                "robot.rests",
+                joint_deg_s=round(math.degrees(REST_RAD_S), 6),
+                centre_mm_s=1000 * REST_M_S,
+            ),
         )
     return book

@@ -1,8 +1,8 @@
 """A short search of `benchmarks.leaps`: no robot that is let in leaves its start place."""
 
 import pytest
-
 from benchmarks.leaps import at_random, changed, judge
+
 from lacoc_robots.standing import FARTHEST_M
 
 
