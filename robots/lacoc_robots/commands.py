@@ -47,7 +47,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
     except FileRefused as refused:
         if not json:
             raise
-        screen.print_json({"mistakes": refused.mistakes})
+        screen.print_json({"mistakes": [one.in_words() for one in refused.mistakes]})
         raise typer.Exit(2) from None
     facts = _facts(spec)
     for note in notes:
