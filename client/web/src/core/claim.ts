@@ -142,7 +142,7 @@ export const TRANSITIONS: Readonly<Record<ClaimState, Row>> = {
   lost: { ...WITHOUT_WISH, forget: ["none"] },
 };
 
-/** Whether a state has a wish; in the others the tab forgets it. */
+/** States with a wish. */
 const WANTS: ReadonlySet<ClaimState> = new Set(["joining", "holding", "changing", "leaving"]);
 
 /** A claim at the start of a page. `wish` was granted before a reload; null if none was. */
