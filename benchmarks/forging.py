@@ -35,6 +35,7 @@ from lacoc_shared.command import cli
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.invitation import Access
+from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.decisions import Adjust, Start
 from lacoc_shared.inputs import Decide, KeySeat
 from lacoc_shared.keyspace import Keys
@@ -42,7 +43,7 @@ from lacoc_shared.messages import Command, DecisionRequest
 from lacoc_shared.network import config as network_config
 from lacoc_shared.network.session import NoReply, Refused, Session, open_client
 from lacoc_shared.record.reader import Record
-from lacoc_shared.seal import MAC_BYTES, SECRET_BYTES, command_mac, new_token
+from lacoc_shared.seal import MAC_BYTES, SECRET_BYTES, command_mac
 from lacoc_shared.seat import Phase
 
 KEYS = Keys("main")

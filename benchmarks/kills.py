@@ -26,7 +26,8 @@ from pathlib import Path
 
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_shared.codec import decode
 from lacoc_shared.contest.file import Court, load
 from lacoc_shared.decisions import Adjust, Decision, Declare, Halt, Official, Resume, Start
@@ -256,7 +257,7 @@ class _Trial:
             figures.lost_decisions += found is None or found.beat != reply.beat
         *_, verdict = verify(record)
         assert isinstance(verdict, Verdict)
-        if verdict.text == "same":
+        if verdict.kind is Kind.SAME:
             figures.verified += 1
         else:
             figures.not_same.append(verdict.text)

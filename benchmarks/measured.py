@@ -8,6 +8,7 @@ since the last one.
 
 import json
 import os
+import secrets
 import sys
 import tempfile
 import time
@@ -25,9 +26,9 @@ from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.match.entry import Admission
+from lacoc_shared.contest.tokens import hash_token, new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
-from lacoc_shared.seal import hash_token, new_token
 from lacoc_shared.seat import Phase
 
 NAME = "measured"
@@ -84,7 +85,7 @@ def measured_court() -> Iterator[Measured]:
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     admission = Admission(*files, Limits(), loaded.match.open_levels)
     hashes = {seat: hash_token(token) for seat, token in tokens.items()}
-    inbox = Inbox(keys, list(tokens), hashes, admission)
+    inbox = Inbox(keys, list(tokens), hashes, admission, secrets.token_bytes)
     desk = DecisionDesk([hash_token(referee)])
     with (
         tempfile.TemporaryDirectory() as folder,

@@ -1,11 +1,16 @@
 """What holds for all tests."""
 
+import os
+
 import pytest
 from hypothesis import settings
 
 # How long an example takes says more about the machine than about the code.
 settings.register_profile("lacoc", deadline=None)
 settings.load_profile("lacoc")
+
+# Also a developer whose machine speaks Japanese runs the commands of these tests in English.
+os.environ["LACOC_LANGUAGE"] = "en"
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

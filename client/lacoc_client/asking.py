@@ -1,10 +1,13 @@
 """Requests to a court, and its refusals put into words."""
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TypeVar
 
 import msgspec
 
+from lacoc_client.court_view import MAX_BYTES
 from lacoc_shared import codec
 from lacoc_shared.keyspace import EVERY_COURT, Keys
 from lacoc_shared.messages import PROTOCOL, Refusal
@@ -18,7 +21,6 @@ ANSWER_S = 5.0
 
 _COMING_BACK_S = 0.5
 _AGAIN_S = 0.05
-_MAX_BYTES = 1 << 20
 
 
 class NoCourt(UserError):
@@ -96,8 +98,19 @@ def understand(payload: bytes, kind: type[T]) -> T:
     Raises:
         UserError: if it is not understood, because the court has another version.
     """
+    with understood():
+        return codec.decode(payload, kind, MAX_BYTES)
+
+
+@contextmanager
+def understood() -> Iterator[None]:
+    """Say in words that a court's message makes no sense.
+
+    Raises:
+        UserError: in place of `BadMessage`.
+    """
     try:
-        return codec.decode(payload, kind, _MAX_BYTES)
+        yield
     except codec.BadMessage as error:
         raise UserError(
             f"The court's answer is not understood ({error}). This program speaks version "

@@ -4,10 +4,8 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-import msgspec
-
-from lacoc_client.asking import fetch, understand
-from lacoc_client.event_log import EventLog
+from lacoc_client.asking import fetch, understand, understood
+from lacoc_client.court_view import CourtView, Told
 from lacoc_shared.codec import message_hash
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
@@ -24,10 +22,6 @@ _SHEET_S = 0.2
 _OTHER_SCENE_S = 3.0
 _ANSWER_S = 2.0
 """What lacks is asked for again when it has not come by then."""
-
-
-class _Version(msgspec.Struct):
-    protocol: int
 
 
 class Spectator:
@@ -56,9 +50,9 @@ class Spectator:
         self._healths = session.mailbox(self.keys.health, 1)
         self._events = session.mailbox(self.keys.event, _EVENTS_DEPTH)
         self._new_events: list[Event] = []
+        self._view: CourtView[Event] = CourtView(lambda event, _: event)
         self.sheet: Sheet
         """Who plays what; always that of the newest frame's scene."""
-        self._sheet_hash = b""
         self._lacking_sheet = _Lacking(session, self.keys.sheet)
         self._read_sheet(fetch(session, self.keys, self.keys.sheet))
         self.frame: Frame | None = None
@@ -69,7 +63,6 @@ class Spectator:
         """Since when frames come without their sheet."""
         self.health: Health | None = None
         """The newest health."""
-        self._log: EventLog[Event] = EventLog()
         self._strays = 0
         """Messages in a row that make no sense."""
         self._lacking_events = _Lacking(session, self.keys.event)
@@ -78,7 +71,7 @@ class Spectator:
     @property
     def events(self) -> tuple[Event, ...]:
         """All events of the match so far."""
-        return tuple(self._log)
+        return tuple(self._view.log)
 
     def poll(self) -> Frame | None:
         """Take in what arrived.
@@ -150,13 +143,13 @@ class Spectator:
         raise UserError(_OTHER_SCENE)
 
     def _read(self, mail: Mail, kind: type[T]) -> T | None:
-        """Decode what the court sent, or nothing if it makes no sense.
+        """Decode what the court sent; None if it makes no sense.
 
         Then the sheet is asked for: it says whether this court speaks another version. A single
         message that went astray ends no match.
 
         Raises:
-            UserError: if it does, or if nothing makes sense any more.
+            UserError: if nothing makes sense any more.
         """
         try:
             message = understand(mail.payload, kind)
@@ -170,19 +163,22 @@ class Spectator:
         return message
 
     def _read_sheet(self, payload: bytes) -> None:
-        version = understand(payload, _Version).protocol
-        if version != PROTOCOL:
+        view = self._view
+        with understood():
+            view.take_sheet(payload)
+        if view.other_version is not None:
             raise UserError(
-                f"The court speaks version {version} of the protocol, this program version "
-                f"{PROTOCOL}: install the version of lacoc that the organiser uses."
+                f"The court speaks version {view.other_version} of the protocol, this program "
+                f"version {PROTOCOL}: install the version of lacoc that the organiser uses."
             )
-        self.sheet, self._sheet_hash = understand(payload, Sheet), message_hash(payload)
+        self.sheet = understand(payload, Sheet)
 
     def _ask_for_what_lacks(self, told: Health) -> None:
         """Get what was sent while this was away, or was dropped on a slow link."""
-        if self._log.differs(told.match, told.beat, told.events):
+        self._view.see_health(Told(told.match, told.beat, told.events, told.sheet))
+        if self._view.lacks_events:
             self._lacking_events.ask()
-        if told.sheet not in (b"", self._sheet_hash):
+        if self._view.has_older_sheet:
             self._lacking_sheet.ask()
 
     def _has_sheet_of(self, frame: Frame) -> bool:
@@ -191,7 +187,8 @@ class Spectator:
         The court sends the frame a moment before the sheet, and the scene may change again: a
         frame whose sheet is not there is passed over.
         """
-        if frame.scene == self.sheet.scene:
+        self._view.see_frame(frame.scene)
+        if self._view.fits:
             self._other_since_s = None
             return True
         self._other_since_s = self._other_since_s or self.frame_s
@@ -203,7 +200,8 @@ class Spectator:
         return False
 
     def _read_events(self, payload: bytes) -> None:
-        new = self._log.restore([(one, one) for one in understand(payload, tuple[Event, ...])])
+        with understood():
+            new = self._view.take_log(payload)
         for event in new:
             self._keep(event)
         self._new_events.sort(key=lambda event: (event.match, event.number))
@@ -219,7 +217,7 @@ class Spectator:
         """Take in those that came; while a list is under way they wait, since it is older."""
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
-            if event is not None and self._log.add(event, event):
+            if event is not None and self._view.add_event(event, mail.payload):
                 self._keep(event)
 
     def _keep(self, event: Event) -> None:

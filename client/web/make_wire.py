@@ -1,10 +1,13 @@
-"""Writes src/core/wire.gen.ts: the court's messages as TypeScript types, from the Python structs.
+"""Writes what the pages have of the Python code, as TypeScript.
 
     python client/web/make_wire.py
 
-A test says when the file is behind the structs.
+src/core/wire.gen.ts has the court's messages as types, from the Python structs, and
+src/i18n/words.gen.ts the table of everything that is said, without what only commands say.
+A test says when a file is behind.
 """
 
+import json
 import types
 import typing
 from enum import IntEnum
@@ -17,8 +20,10 @@ from lacoc_shared import decisions, messages, mistakes
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.record import schema
 from lacoc_shared.seat import No, Phase, SeatFlag
+from lacoc_shared.words.phrase import Phrase
+from lacoc_shared.words.table import ON_PAGES, table
 
-TARGET = Path(__file__).parent / "src" / "core" / "wire.gen.ts"
+_SOURCE = Path(__file__).parent / "src"
 
 STRUCTS = (
     messages.SeatFrame,
@@ -41,12 +46,15 @@ STRUCTS = (
     schema.Result,
 )
 ENUMS: tuple[type[IntEnum] | type[SeatFlag], ...] = (Phase, SeatFlag, No, Level)
+_IMPORTS = {Phrase: "../i18n/render"}
+"""Types that pages write themselves, with the module that has them."""
 _SIMPLE = {int: "number", float: "number", str: "string", bool: "boolean", bytes: "Uint8Array"}
 
 
 def wire_types() -> str:
     """The whole file."""
     parts = ["// Made by client/web/make_wire.py from the Python structs; not edited by hand."]
+    parts += [f'import type {{ {k.__name__} }} from "{m}";' for k, m in _IMPORTS.items()]
     parts += [f"export const PROTOCOL = {messages.PROTOCOL};"]
     parts += [_enum(kind) for kind in ENUMS]
     names = ", ".join(f'"{name}"' for name in messages.MARKER_STATES)
@@ -98,7 +106,7 @@ def _decisions() -> str:
 def _type(hint: Any) -> str:
     if hint in _SIMPLE:
         return _SIMPLE[hint]
-    if hint in STRUCTS:
+    if hint in STRUCTS or hint in _IMPORTS:
         return str(hint.__name__)
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     if origin is tuple:
@@ -115,5 +123,24 @@ def _type(hint: Any) -> str:
     return "unknown"
 
 
+def words() -> str:
+    """Write the table of what is said, for pages."""
+    lines = "".join(
+        f"  {json.dumps(code)}: {json.dumps([entry.en, entry.ja], ensure_ascii=False)},\n"
+        for code, entry in table(ON_PAGES).items()
+    )
+    return (
+        "// Made by client/web/make_wire.py from lacoc_shared/words/texts; not edited by hand.\n\n"
+        "/** Each code with its templates: English, Japanese. */\n"
+        f"export const WORDS: Record<string, readonly [string, string]> = {{\n{lines}}};\n"
+    )
+
+
+FILES = {
+    _SOURCE / "core" / "wire.gen.ts": wire_types,
+    _SOURCE / "i18n" / "words.gen.ts": words,
+}
+
 if __name__ == "__main__":
-    TARGET.write_text(wire_types(), encoding="utf-8")
+    for path, text in FILES.items():
+        path.write_text(text(), encoding="utf-8")

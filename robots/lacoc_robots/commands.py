@@ -42,7 +42,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
     except FileRefused as refused:
         if not json:
             raise
-        screen.print_json({"mistakes": refused.mistakes})
+        screen.print_json({"mistakes": [mistake.in_words() for mistake in refused.mistakes]})
         raise typer.Exit(2) from None
     facts = _facts(spec)
     if json:

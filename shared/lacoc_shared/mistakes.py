@@ -3,7 +3,8 @@
 Two families. `FileRefused` carries every mistake of a file, each with its place: a
 file is refused whole (rules 2), so all its mistakes are listed at once.
 `UserError` is one sentence that says what was found and what to do; the command
-line prints it and exits with code 2.
+line prints it and exits with code 2. Both carry phrases (`lacoc_shared.words`), which become
+words in the language of the process; a plain text is shown as it is.
 """
 
 import codecs
@@ -12,6 +13,8 @@ import os
 import unicodedata
 
 import msgspec
+
+from lacoc_shared.words import Phrase, render, say
 
 ESCAPED = "lacoc-escaped"
 r"""Error handler of `str.encode`: what an encoding lacks is written as numbers.
@@ -26,9 +29,9 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     file: str
     """Name of the file as the person knows it."""
-    found: str
-    """What stands there."""
-    expected: str
+    found: Phrase | str
+    """What stands there; a text is quoted from the file."""
+    expected: Phrase | str
     """What should stand there, or what to do."""
     row: int | None = None
     """Row (text file: line) counted from 1."""
@@ -43,20 +46,36 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     @property
     def place(self) -> str:
-        """The place in one phrase: "row 3, column 7, joint 5 (L,F)"."""
-        parts = [
-            f"row {self.row}" if self.row is not None else "",
-            f"column {self.column}" if self.column is not None else "",
-            self.field or "",
-            f"joint {self.joint}" + (f" ({self.leg})" if self.leg else "")
-            if self.joint is not None
-            else "",
+        """Say the place: "row 3, column 7, joint 5 (L,F)"."""
+        return ", ".join(map(render, self._places()))
+
+    def _places(self) -> list[Phrase | str]:
+        places: list[Phrase | str | None] = [
+            None if self.row is None else say("place.row", row=self.row),
+            None if self.column is None else say("place.column", column=self.column),
+            self.field,
+            None if self.joint is None else say("place.joint", joint=self.joint, leg=self.leg),
         ]
-        return ", ".join(part for part in parts if part)
+        return [place for place in places if place]
+
+    @property
+    def phrase(self) -> Phrase:
+        """The whole mistake as one phrase."""
+        return say(
+            "mistake.line",
+            file=self.file,
+            place=self._places(),
+            found=self.found,
+            expected=self.expected,
+        )
+
+    def in_words(self) -> "Mistake":
+        """Return the mistake in the language of the process: for output that programs read."""
+        found, expected = render(self.found), render(self.expected)
+        return msgspec.structs.replace(self, found=found, expected=expected)
 
     def __str__(self) -> str:
-        place = f", {self.place}" if self.place else ""
-        return f"{self.file}{place}: found {self.found}, expected {self.expected}"
+        return render(self.phrase)
 
 
 class FileRefused(ValueError):
@@ -68,7 +87,18 @@ class FileRefused(ValueError):
 
 
 class UserError(Exception):
-    """Something a person can put right; the message says how."""
+    """Something a person can put right; the message says how.
+
+    Args:
+        said: what was found and what to do; a text for what is not in the table yet.
+    """
+
+    def __init__(self, said: Phrase | str = "") -> None:
+        super().__init__(said)
+        self.said = said
+
+    def __str__(self) -> str:
+        return render(self.said)
 
 
 def printable(text: str, longest: int = 40) -> str:

@@ -1,45 +1,30 @@
-"""Tokens, their hashes, and the seals that prove whose a command is.
+"""Hashed tokens, and the seals that prove whose a command is.
 
 A token opens a seat (or the referee's desk) and travels once, with the join. Then the
 session's secret, 16 bytes from the court, seals every command: a keyed BLAKE2b of 8
 bytes over the key expression and the numbers as text, joined by spaces.
 """
 
-import base64
 import hashlib
 import hmac
-import secrets
 
 MAC_BYTES = 8
 SECRET_BYTES = 16
-_SALT_BYTES = 16
 _HASH_BYTES = 32
 _PASSWORD_BYTES = 20
 
 
-def new_token() -> str:
-    """Make a random token of 128 bits: 26 letters a-z and digits 2-7."""
-    return base64.b32encode(secrets.token_bytes(16)).decode().rstrip("=").lower()
-
-
-def new_secret() -> bytes:
-    """Make a session's secret."""
-    return secrets.token_bytes(SECRET_BYTES)
-
-
-def new_session() -> int:
-    """Make a session's number: random, so that a restarted court does not mistake an old one."""
-    return 1 + secrets.randbelow(2**32 - 1)
-
-
-def hash_token(token: str) -> str:
+def hash_token(token: str, salt: bytes) -> str:
     """Hash a token for keeping: "salt$hash", both hexadecimal.
 
-    The hash is a fast one, because a court verifies within a beat. That is right for the random
-    tokens of `new_token`; a short word that a person chose can be guessed by whoever gets hold of
-    the hash, so records are not to be published with such tokens in use.
+    The hash is fast, because a court verifies within a beat. That is right for random tokens
+    (`lacoc_shared.contest.tokens`). Whoever gets hold of the hash can guess a short word that a
+    person chose, so records with such tokens are not to be published while the tokens are in use.
+
+    Args:
+        token: the token.
+        salt: 16 random bytes.
     """
-    salt = secrets.token_bytes(_SALT_BYTES)
     return f"{salt.hex()}${_hash(token, salt).hex()}"
 
 

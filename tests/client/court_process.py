@@ -3,12 +3,11 @@
 import json
 import os
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-LACOC = (sys.executable, "-m", "lacoc_shared")
+from lacoc_process import Lacoc
 
 
 def environment(**changes: str) -> dict[str, str]:
@@ -24,8 +23,8 @@ class CourtProcess:
         self.folder = folder
         where = ("--listen", "tcp/127.0.0.1:0", "--recordings", str(folder / "recordings"))
         with (folder / "court.log").open("wb") as log:
-            self.process = subprocess.Popen(
-                [*LACOC, "serve", "--json", *where, *words],
+            self.process = Lacoc(
+                *("serve", "--json", *where, *words),
                 stdout=subprocess.PIPE,
                 stderr=log,
                 text=True,
@@ -36,7 +35,7 @@ class CourtProcess:
         self.address: str = opened["locators"][0]
         self.tokens: dict[str, str] = opened["tokens"]
         self.referee: str = opened["referee"]
-        self._commands: list[subprocess.Popen[str]] = []
+        self._commands: list[Lacoc] = []
 
     def where(self, seat: str = "") -> list[str]:
         """Options that lead to the court, and to one of its seats."""
@@ -44,7 +43,7 @@ class CourtProcess:
             return ["--connect", self.address]
         return ["--connect", self.address, "--seat", seat, "--token", self.tokens[seat]]
 
-    def start(self, *words: str, **options: Any) -> subprocess.Popen[str]:
+    def start(self, *words: str, **options: Any) -> Lacoc:
         """Start a command; it ends with the court."""
         settings: dict[str, Any] = {
             "stdin": subprocess.DEVNULL,
@@ -54,7 +53,7 @@ class CourtProcess:
             "cwd": self.folder,
             "env": environment(),
         }
-        command = subprocess.Popen([*LACOC, *words], **settings | options)
+        command = Lacoc(*words, **settings | options)
         self._commands.append(command)
         return command
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from court_process import LACOC, CourtProcess, OpenCourt, environment
+from court_process import CourtProcess, OpenCourt, environment
+from lacoc_process import COMMAND, run_lacoc
 
 from lacoc_robots.library import sample_gait_files
 
@@ -26,7 +27,7 @@ class Terminal:
 
     def __init__(self, folder: Path, *words: str) -> None:
         self.child = pexpect.spawn(
-            *(LACOC[0], [*LACOC[1:], *words]),
+            *(COMMAND[0], [*COMMAND[1:], *words]),
             cwd=str(folder),
             timeout=TIMEOUT_S,
             dimensions=(30, 110),
@@ -150,15 +151,7 @@ def test_a_court_that_is_gone_is_said_and_comes_back(
 
 def piped(folder: Path, script: str, *words: str, **options: Any) -> tuple[int, str]:
     """Run a command with keys from a pipe: exit code, and all that it said."""
-    done = subprocess.run(
-        [*LACOC, *words],
-        input=script,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        cwd=folder,
-        **{"env": environment()} | options,
-    )
+    done = run_lacoc(*words, input=script, cwd=folder, **{"env": environment()} | options)
     return done.returncode, done.stdout + done.stderr
 
 

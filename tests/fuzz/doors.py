@@ -147,8 +147,8 @@ class Doors:
         self._session = _Session()
         real, court_network.open_court = court_network.open_court, lambda *_: self._session  # type: ignore[assignment,return-value]
         try:
-            self._inbox = Inbox(KEYS, SEATS, self._hashes, self._admission)
-            self._inbox._sessions = _Sessions()
+            self._inbox = Inbox(KEYS, SEATS, self._hashes, self._admission, bytes)
+            self._inbox._sessions = _Sessions(bytes)
             self._desk = DecisionDesk([_hash(REFEREE)])
             self._network = CourtNetwork(KEYS, [], self._inbox, self._desk)
         finally:

@@ -9,7 +9,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from court_process import LACOC, CourtProcess, environment
+from court_process import CourtProcess, environment
+from lacoc_process import Lacoc, run_lacoc
 from page_client import PageClient
 
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
@@ -26,8 +27,8 @@ class Command:
     """A command that says where its page is."""
 
     def __init__(self, folder: Path, *words: str) -> None:
-        self.process = subprocess.Popen(
-            [*LACOC, *words, "--no-open"],
+        self.process = Lacoc(
+            *(*words, "--no-open"),
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,
@@ -94,13 +95,13 @@ exit 0
 """
 
 
-def browse(folder: Path, home: Path) -> tuple[subprocess.Popen[str], str, str]:
+def browse(folder: Path, home: Path) -> tuple[Lacoc, str, str]:
     """Start `lacoc play` with a browser that does nothing: it, its page's key, what was opened."""
     browser = folder / "browser"
     browser.write_text(BROWSER)
     browser.chmod(0o755)
-    play = subprocess.Popen(
-        [*LACOC, "play", "--connect", "tcp/127.0.0.1:1"],
+    play = Lacoc(
+        *("play", "--connect", "tcp/127.0.0.1:1"),
         stdout=subprocess.PIPE,
         stdin=subprocess.DEVNULL,
         text=True,
@@ -187,15 +188,8 @@ def test_watch_shows_a_court(tmp_path: Path, stack: ExitStack) -> None:
 def test_demo_says_where_its_page_is_early(tmp_path: Path) -> None:
     """The page comes before the match; everything ends with it."""
     words = ("demo", "--seconds", "2", "--speed", "4")
-    done = subprocess.run(
-        [*LACOC, *words],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        env={**environment(), "DISPLAY": "", "WAYLAND_DISPLAY": "", "BROWSER": ""},
-        timeout=90,
-        check=False,
-    )
+    no_screen = {**environment(), "DISPLAY": "", "WAYLAND_DISPLAY": "", "BROWSER": ""}
+    done = run_lacoc(*words, cwd=tmp_path, env=no_screen, timeout_s=90)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("Watch at http://127.0.0.1:")
     assert "OFFICIAL." in done.stdout
@@ -204,9 +198,6 @@ def test_demo_says_where_its_page_is_early(tmp_path: Path) -> None:
 def test_demo_without_a_head_opens_nothing(tmp_path: Path) -> None:
     """For servers and continuous integration."""
     words = ("demo", "--headless", "--seconds", "2", "--speed", "4")
-    done = subprocess.run(
-        [*LACOC, *words], capture_output=True, text=True, cwd=tmp_path, env=environment(),
-        timeout=90, check=False,
-    )  # fmt: skip
+    done = run_lacoc(*words, cwd=tmp_path, env=environment(), timeout_s=90)
     assert done.returncode == 0, done.stderr
     assert "http://" not in done.stdout

@@ -6,7 +6,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from court_process import LACOC, environment
+from court_process import environment
+from lacoc_process import Lacoc
 from mcap.reader import make_reader
 from page_client import PageClient, Refused
 from venue import REFEREE, TOKENS, Venue
@@ -58,10 +59,10 @@ class KeyedVenue(Venue):
             open_client([access.connect], credentials=access.credentials)
         )
 
-    def start(self, *words: str) -> "subprocess.Popen[bytes]":
+    def start(self, *words: str) -> Lacoc:
         """A command that ends with the test."""
-        process = subprocess.Popen(
-            [*LACOC, *words],
+        process = Lacoc(
+            *words,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

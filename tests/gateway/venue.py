@@ -8,7 +8,8 @@ import subprocess
 from contextlib import ExitStack
 from pathlib import Path
 
-from court_process import LACOC, environment
+from court_process import environment
+from lacoc_process import Lacoc
 from page_client import PageClient
 
 TOKENS = {"left": "l" * 26, "right": "r" * 26}
@@ -27,8 +28,8 @@ class Process:
 
     def __init__(self, folder: Path, *words: str, name: str = "process") -> None:
         with (folder / f"{name}.log").open("ab") as log:
-            self.process = subprocess.Popen(
-                [*LACOC, *words],
+            self.process = Lacoc(
+                *words,
                 stdout=subprocess.PIPE,
                 stderr=log,
                 stdin=subprocess.DEVNULL,

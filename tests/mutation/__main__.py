@@ -61,6 +61,7 @@ AREAS = (
         "match",
         (
             "lacoc_server/match/match.py",
+            "lacoc_server/match/state.py",
             "lacoc_server/match/contestant.py",
             "lacoc_server/match/referee.py",
             "lacoc_server/match/history.py",

@@ -1,5 +1,6 @@
 """A court for tests: real network, real inbox; a match that says yes and counts."""
 
+import secrets
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -10,8 +11,8 @@ import msgspec
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork, Outcome
-from lacoc_shared import seal
 from lacoc_shared.codec import encode, message_hash
+from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import Decide, HeardSeat, Input, JoinSeat, KeySeat, SilentSeat
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import (
@@ -37,7 +38,7 @@ from lacoc_shared.seat import No, Phase
 KEYS = Keys("main")
 SEATS = ("left", "right")
 TOKENS = {"left": "token of left", "right": "token of right"}
-HASHES = {seat: seal.hash_token(token) for seat, token in TOKENS.items()}
+HASHES = {seat: tokens.hash_token(token) for seat, token in TOKENS.items()}
 WHISTLE = "the referee's whistle"
 WRONG = SentFile("mine.txt", b"wrong")
 
@@ -80,8 +81,8 @@ class CourtStub:
         **restored: Any,
     ) -> None:
         token_hashes = restored.pop("token_hashes", HASHES)
-        inbox = Inbox(KEYS, SEATS, token_hashes, check_files, **restored)
-        desk = DecisionDesk([seal.hash_token(WHISTLE)])
+        inbox = Inbox(KEYS, SEATS, token_hashes, check_files, secrets.token_bytes, **restored)
+        desk = DecisionDesk([tokens.hash_token(WHISTLE)])
         self.network = CourtNetwork(KEYS, [listen], inbox, desk, protection)
         self.trouble = ""
         """Why it makes no beat and sends its last one again, as while the disk is full; "": it

@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -10,6 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
+from lacoc_process import Lacoc
 from slow_link import SlowLink
 
 from lacoc_client.controller import Controller
@@ -116,11 +116,7 @@ def play(
     words = ("serve", "--json", "--contest", str(contest), "--recordings", str(folder))
     stopping = threading.Event()
     with ExitStack() as stack:
-        court = stack.enter_context(
-            subprocess.Popen(
-                [sys.executable, "-m", "lacoc_shared", *words], stdout=subprocess.PIPE, text=True
-            )
-        )
+        court = stack.enter_context(Lacoc(*words, stdout=subprocess.PIPE, text=True))
         stack.callback(court.terminate)
         assert court.stdout is not None
         address = json.loads(court.stdout.readline())["locators"][0]

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_shared import decisions as d
-from lacoc_shared import seal
 from lacoc_shared.codec import encode
+from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import DecisionRequest, Done, Enter, Refusal
 
-HASHES = [seal.hash_token("other"), seal.hash_token("whistle")]
+HASHES = [tokens.hash_token("other"), tokens.hash_token("whistle")]
 
 
 def request(decision: d.Decision, token: str = "whistle", by: str = "Kubota") -> bytes:

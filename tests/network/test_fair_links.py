@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 from mirrored_pair import play
 
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
 
 FAR = (0.1, 0.025)
 """Delay and jitter of the slow link, one way [s]: 200 ± 50 ms there and back."""
@@ -28,7 +29,7 @@ def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) 
     assert sum(map(any, (pair.late for pair in pairs))) <= fast.late + slow.late
     *_, verdict = verify(played.record)
     assert isinstance(verdict, Verdict)
-    assert verdict.text == "same"
+    assert verdict.kind is Kind.SAME
 
 
 @pytest.mark.slow

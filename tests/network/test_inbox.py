@@ -1,5 +1,6 @@
 """The court's inbox, with a time that the test gives."""
 
+import secrets
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,6 +13,7 @@ from lacoc_server.doors.inbox import COMMANDS_HZ, COMMANDS_PER_BEAT, LOOKED_AT_P
 from lacoc_server.doors.links import FRESH_BEATS
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
+from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import (
     HeardSeat,
     Input,
@@ -37,7 +39,7 @@ from lacoc_shared.seat import RESTART_KEY
 KEYS = Keys("main")
 SEATS = ("left", "right")
 TOKENS = {"left": "token of left", "right": "token of right"}
-HASHES = {seat: seal.hash_token(token) for seat, token in TOKENS.items()}
+HASHES = {seat: tokens.hash_token(token) for seat, token in TOKENS.items()}
 LEFT, RIGHT = 0, 1
 CONTEST_ROBOT = SentFile("hexapod.toml", b"the contest's robot")
 
@@ -65,7 +67,7 @@ class Court(Inbox):
 
 
 def make(**more: Any) -> Court:
-    return Court(KEYS, SEATS, HASHES, check_files, **more)
+    return Court(KEYS, SEATS, HASHES, check_files, secrets.token_bytes, **more)
 
 
 def join_bytes(seat: int = LEFT, **changes: Any) -> bytes:
@@ -148,7 +150,7 @@ def test_a_join_is_refused_with_its_reason(payload: bytes, words: str, why: str)
 
 def test_a_seat_without_a_token_is_closed() -> None:
     """No token was given out for it, so none opens it."""
-    inbox = Inbox(KEYS, SEATS, {}, check_files)
+    inbox = Inbox(KEYS, SEATS, {}, check_files, secrets.token_bytes)
     assert isinstance(inbox.join(LEFT, join_bytes(token="")), Refusal)
 
 

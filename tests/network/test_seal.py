@@ -2,22 +2,25 @@
 
 import base64
 import hashlib
+import secrets
 
 import pytest
 
+from lacoc_server.doors.sessions import Sessions
 from lacoc_shared import seal
+from lacoc_shared.contest.tokens import hash_token, new_token
 
 
 def test_tokens_are_random_and_safe_to_type() -> None:
     """128 bits, no sign that a shell or a reader mistakes."""
-    tokens = {seal.new_token() for _ in range(100)}
+    tokens = {new_token() for _ in range(100)}
     assert len(tokens) == 100
     assert all(len(token) == 26 and token.isalnum() and token.islower() for token in tokens)
 
 
 def test_a_hash_knows_its_token_only() -> None:
     """Salted: the same token has another hash each time, and both know it."""
-    one, two = seal.hash_token("secret"), seal.hash_token("secret")
+    one, two = hash_token("secret"), hash_token("secret")
     assert one != two
     assert seal.verify_token("secret", one)
     assert seal.verify_token("secret", two)
@@ -27,18 +30,26 @@ def test_a_hash_knows_its_token_only() -> None:
 
 def test_a_token_has_128_bits() -> None:
     """Base32 in small letters, without padding: it comes back as 16 bytes."""
-    token = seal.new_token()
+    token = new_token()
     assert len(base64.b32decode(token.upper() + "======")) == 16
 
 
 def test_a_session_has_a_number_of_32_bits_and_a_secret_of_16_bytes() -> None:
     """docs/protocol.md, Joined: a session's number is at least 1; its secret is a BLAKE2b key."""
-    numbers = {seal.new_session() for _ in range(100)}
-    secrets = {seal.new_secret() for _ in range(100)}
-    assert len(numbers) == len(secrets) == 100
+    sessions = Sessions(secrets.token_bytes)
+    begun = [sessions.begin(0) for _ in range(100)]
+    numbers, keys = ({one[i] for one in begun} for i in (0, 1))
+    assert len(numbers) == len(keys) == 100
     assert all(1 <= number < 2**32 for number in numbers)
     assert max(numbers) > 2**24
-    assert {len(secret) for secret in secrets} == {16}
+    assert {len(key) for key in keys} == {16}
+
+
+@pytest.mark.parametrize("byte", [0, 255])
+def test_no_random_number_makes_a_session_without_a_number(byte: int) -> None:
+    """0 stands for "nobody" on the wire."""
+    number, _ = Sessions(lambda count: bytes([byte]) * count).begin(0)
+    assert 1 <= number < 2**32
 
 
 def test_a_kept_hash_opens_its_seat_in_later_versions_too() -> None:
@@ -46,9 +57,9 @@ def test_a_kept_hash_opens_its_seat_in_later_versions_too() -> None:
     salt = bytes(range(16))
     digest = hashlib.blake2b(b"secret", salt=salt, digest_size=32, person=b"lacoc token")
     assert seal.verify_token("secret", f"{salt.hex()}${digest.hexdigest()}")
-    kept_salt, _, kept = seal.hash_token("secret").partition("$")
+    kept_salt, _, kept = hash_token("secret").partition("$")
     assert (len(bytes.fromhex(kept_salt)), len(bytes.fromhex(kept))) == (16, 32)
-    assert seal.verify_token("\udcff", seal.hash_token("\udcff")), "whatever a shell hands over"
+    assert seal.verify_token("\udcff", hash_token("\udcff")), "whatever a shell hands over"
 
 
 @pytest.mark.parametrize("stored", ["", "$", "zz$zz", "00", "00" * 17 + "$00", "é$é"])

@@ -10,7 +10,8 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from chromium import OpenPage
-from court_process import LACOC, environment
+from court_process import environment
+from lacoc_process import Lacoc
 from playwright.sync_api import Locator, Page, expect
 
 from lacoc_shared.seat import Phase
@@ -109,8 +110,8 @@ class Contestant:
 @contextmanager
 def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
     """Run a command that opens a page for one person; the gateway's address and its key."""
-    process = subprocess.Popen(
-        [*LACOC, *words, "--no-open"],
+    process = Lacoc(
+        *(*words, "--no-open"),
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         stdin=subprocess.DEVNULL,

@@ -18,6 +18,7 @@ from typing import Any
 
 import pytest
 import yaml
+from lacoc_process import Lacoc
 
 ROOT = Path(__file__).parents[2]
 COMPOSE = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text(encoding="utf-8"))
@@ -108,11 +109,11 @@ def test_the_composition_plays(tmp_path: Path) -> None:
 @contextmanager
 def lacoc(
     command: list[str], environment: dict[str, str], lines: "queue.Queue[str]", folder: Path
-) -> Iterator[subprocess.Popen[str]]:
+) -> Iterator[Lacoc]:
     """A running subcommand whose output goes to a queue."""
     clean = {key: value for key, value in os.environ.items() if not key.startswith("LACOC_")}
-    with subprocess.Popen(
-        [sys.executable, "-u", "-m", "lacoc_shared", *command],
+    with Lacoc(
+        *command,
         env={**clean, **environment},
         cwd=folder,
         stdout=subprocess.PIPE,

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -17,15 +17,16 @@ import pytest
 import zstandard
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from mcap.opcode import Opcode
 from mcap.reader import make_reader
-from mcap.writer import Writer
+from mcap.writer import MCAP0_MAGIC, Writer
 
 from lacoc_shared import codec
 from lacoc_shared.inputs import Input, KeySeat
 from lacoc_shared.messages import Frame, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files, pack
-from lacoc_shared.record.reader import Record
+from lacoc_shared.record.reader import NoMatch, Record
 from lacoc_shared.record.schema import BEAT_NS, KINDS, Header, Result, Touch
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import BEATS_PER_S
@@ -157,7 +158,8 @@ def test_a_damaged_closed_file_says_so(tmp_path: Path, segment: Path) -> None:
     path.write_bytes(data)
     record = Record.read(path)
     assert [beat for beat, _ in record.frames] == list(range(23))
-    assert "stops after beat 22, and is damaged there" in record.cut
+    assert "stops after beat 22, and is damaged at byte" in record.cut
+    assert record.lost
     assert "Copy it again" in record.cut
     with pytest.raises(UserError, match=r"not packed, and its segments are kept.*beat 22"):
         pack.pack([path], tmp_path / "m.mcap")
@@ -214,7 +216,7 @@ def test_an_unfinished_segment_ends_where_it_stops_making_sense(
     path.write_bytes(data[:start] + bytes(100) + data[start + 100 :])
     before = Record.read(path)
     assert [beat for beat, _ in before.frames] == list(range(38))
-    assert "stops after beat 37, and has no end there" in before.cut
+    assert "stops after beat 37, and is damaged at byte" in before.cut
     assert re.search(r"its last 4\d\d\d bytes can't be read", before.cut)
     with_next = RecordWriter(tmp_path, header(segment=1, first_beat=38))
     with_next.frame(38, codec.encode(frame(38)))
@@ -415,7 +417,9 @@ def test_a_bomb_is_no_record(segment: Path, tmp_path: Path) -> None:
         path = tmp_path / "m.mcap"
         data = segment.read_bytes()
         path.write_bytes(data[:8] + struct.pack("<BQ", 6, len(body)) + body + data[-8:])
-        with pytest.raises(UserError, match="There is no match in"):
+        with pytest.raises(
+            UserError, match=r"Nothing can be read of the match: .*damaged at byte 8"
+        ):
             Record.read(path)
 
 
@@ -439,8 +443,53 @@ def test_a_damaged_time_ends_what_is_read(
         writer.frame(beat, codec.encode(frame(0)))
     record = Record.read(writer.path)
     assert record.last_beat == 1
-    assert "stops after beat 1, and has no end there" in record.cut
+    assert "stops after beat 1, and is damaged at byte" in record.cut
     writer.close()
     record = Record.read(writer.path)
     assert record.last_beat == 1
-    assert "stops after beat 1, and is damaged there" in record.cut
+    assert "stops after beat 1, and is damaged at byte" in record.cut
+
+
+@pytest.mark.parametrize("part", [0.0, 0.4, 0.8])
+def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: Path) -> None:
+    """A byte in its first, a middle or its last chunk: whole chunks before it are read."""
+    data = bytearray(packed.read_bytes())
+    chunks = [at for at, opcode in _records_of(data) if opcode == Opcode.CHUNK]
+    at = chunks[int(part * len(chunks))]
+    data[at + 100] ^= 1
+    path = tmp_path / "damaged.mcap"
+    path.write_bytes(data)
+    words = f"is damaged at byte {at} of {len(data)} "
+    if at == chunks[0]:
+        with pytest.raises(NoMatch, match=f"Nothing can be read of the match: .*{words}"):
+            Record.read(path)
+        return
+    record = Record.read(path)
+    assert record.lost
+    assert words in record.cut
+
+
+def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed: Path) -> None:
+    """A file is packed before it gets its name: no kill can have cut it."""
+    path = tmp_path / "part.mcap"
+    data = packed.read_bytes()
+    path.write_bytes(data[: len(data) // 2])
+    assert Record.read(path).lost
+
+
+def test_what_a_killed_court_leaves_is_not_lost(tmp_path: Path, segment: Path) -> None:
+    """It has each message that was written."""
+    path = tmp_path / "m.000.live.mcap"
+    data = segment.read_bytes()
+    path.write_bytes(data[: len(data) // 2])
+    record = Record.read(path)
+    assert record.cut
+    assert not record.lost
+
+
+def _records_of(data: bytes) -> Iterator[tuple[int, int]]:
+    """Where the records of an MCAP file begin, each with its opcode."""
+    at = len(MCAP0_MAGIC)
+    while at < len(data) - len(MCAP0_MAGIC):
+        yield at, data[at]
+        at += 9 + int.from_bytes(data[at + 1 : at + 9], "little")

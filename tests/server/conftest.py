@@ -1,5 +1,6 @@
 """Makes `stage`, the builders that the tests of the court share, importable; and the log."""
 
+import json
 import logging
 import sys
 from collections.abc import Iterator
@@ -9,6 +10,10 @@ import pytest
 import structlog
 
 sys.path.append(str(Path(__file__).parent))
+sys.path.append(str(Path(__file__).parents[2]))
+from benchmarks.played import elsewhere
+
+from lacoc_server.world import arithmetic
 
 
 @pytest.fixture
@@ -18,3 +23,11 @@ def loud() -> Iterator[None]:
     structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.INFO))
     yield
     structlog.configure(**before)
+
+
+@pytest.fixture(scope="session")
+def has_other_arithmetic() -> None:
+    """Skip where the C library or the processor knows no second arithmetic."""
+    there = json.loads(elsewhere("benchmarks.proof", ["fingerprint"]))
+    if arithmetic.same(arithmetic.here(), there):
+        pytest.skip("the second arithmetic of this machine is the first")

@@ -2,11 +2,11 @@
 
 import signal
 import subprocess
-import sys
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
+from lacoc_process import started
 from running import WAIT_S, served, until, write_contest
 
 from lacoc_client.asking import fetch
@@ -41,8 +41,9 @@ class Hall:
 
     def lacoc(self, *words: str, before: tuple[str, ...] = ()) -> subprocess.Popen[bytes]:
         """Start a command; it ends with the test."""
-        process = subprocess.Popen(
-            [*before, sys.executable, "-m", "lacoc_shared", *words],
+        process = started(
+            *words,
+            before=before,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,

@@ -3,11 +3,12 @@
 import json
 import socket
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+
+from lacoc_process import started
 
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
@@ -55,9 +56,7 @@ def served(
         before: a command that runs it.
     """
     serve = ["serve", "--json", "--contest", str(contest), "--recordings", str(folder), *words]
-    process = subprocess.Popen(
-        [*before, sys.executable, "-m", "lacoc_shared", *serve], stdout=subprocess.PIPE, text=True
-    )
+    process = started(*serve, before=before, stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
         assert json.loads(process.stdout.readline())["kind"] == "open"

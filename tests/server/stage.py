@@ -119,6 +119,9 @@ class ScriptedPhysics:
         self.digest = hashlib.blake2b(self.poses(), key=self.digest, digest_size=8).digest()
         return None
 
+    def save(self) -> bytes:
+        return self.digest + self.poses()
+
     def poses(self) -> bytes:
         return b"".join(
             struct.pack(f"<{7 + len(angles)}f", x_m, y_m, 0.07, 1.0, 0.0, 0.0, 0.0, *angles)

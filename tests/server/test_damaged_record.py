@@ -6,15 +6,14 @@ What can be had is had, it is said in words, and the record stays as it is.
 import json
 import random
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import pytest
-from running import WAIT_S, served, write_contest
+from lacoc_process import run_lacoc
+from running import served, write_contest
 from stage import FORWARD, LEFT, QUICK, RIGHT, X, decide, join, key, setup
 from typer.testing import CliRunner
 
@@ -22,7 +21,8 @@ from lacoc_arenas import arena as arenas
 from lacoc_server.commands.verify import app as verify_app
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
@@ -106,7 +106,7 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
     """It verifies up to there, and a court goes on from there."""
     path = segment(folder, left_behind[: round(share * len(left_behind))])
     found = verdict(path)
-    assert found.text == "same"
+    assert found.kind is Kind.SAME
     left = unfinished(folder, "main", OTHELLO)
     assert left is not None
     assert left.match.beats + 1 == found.beats
@@ -127,7 +127,7 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder:
         path = segment(folder, bytes(data))
         try:
             found = verdict(path)
-            told["verify"] += found.text != "same" or found.beats < BEATS
+            told["verify"] += found.kind is not Kind.SAME or found.beats < BEATS
         except UserError:
             told["verify"] += 1
         try:
@@ -172,7 +172,8 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
         assert words in " ".join(done.stderr.split())
     done = CliRunner().invoke(verify_app, [str(first), "--json"])
     found = json.loads(done.stdout)
-    assert (found["same"], found["beats"]) == (True, BEATS)
+    assert done.exit_code == 1
+    assert (found["same"], found["verdict"], found["beats"]) == (False, "same", BEATS)
     assert words in found["cut"]
 
 
@@ -201,13 +202,7 @@ def test_a_record_of_another_version_is_refused(
         unfinished(folder, "main", OTHELLO)
     assert words in str(refused.value)
     serve = ["serve", "--contest", str(contest), "--recordings", str(folder)]
-    done = subprocess.run(
-        [sys.executable, "-m", "lacoc_shared", *serve],
-        capture_output=True,
-        text=True,
-        timeout=WAIT_S,
-        check=False,
-    )
+    done = run_lacoc(*serve)
     assert done.returncode == 2
     assert words in " ".join(done.stderr.split())
     assert "--fresh" in done.stderr
@@ -223,7 +218,7 @@ def setup_of(arena: str) -> Setup:
 
 def other_model(data: bytes) -> tuple[bytes, bytes]:
     """The model's hash in the event of READY, and another one."""
-    at = data.index(b"\xa5model\xb0") + 7
+    at = data.rindex(b"\xa5model\xb0") + 7
     return data[at : at + 16], b"0" * 16
 
 
@@ -255,7 +250,7 @@ def test_a_folder_that_the_user_names_plays_its_record(tmp_path: Path) -> None:
     path.write_bytes(play(tmp_path / "running", made, here).read_bytes())
     here.rename(there)
     done = CliRunner().invoke(verify_app, [str(path), "--arena", str(there)])
-    assert done.stdout.startswith("same: 120 beats"), done.output
+    assert done.stdout.startswith("same, bit for bit: 120 beats"), done.output
     left = unfinished(path.parent, "main", arenas.load(str(there)))
     assert left is not None
     assert (left.match.beats, left.match.arena.folder) == (BEATS - 1, there)

@@ -14,7 +14,8 @@ import pytest
 from running import WAIT_S, Party, party, served, write_contest
 
 from lacoc_server.doors.inbox import SILENT_AFTER_S
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_shared.codec import decode
 from lacoc_shared.decisions import Abort, Halt, Next, Resume
 from lacoc_shared.gait.tables import Level
@@ -136,7 +137,7 @@ def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: P
         shutil.copytree(disk.records, kept)
     *_, verdict = verify(read(kept))
     assert isinstance(verdict, Verdict)
-    assert verdict.text == "same"
+    assert verdict.kind is Kind.SAME
 
 
 SYNC = """

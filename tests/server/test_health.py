@@ -14,12 +14,13 @@ from lacoc_arenas import arena as arenas
 from lacoc_server.court.health import MatchHealth, advice
 from lacoc_server.doors.inbox import Door
 from lacoc_server.journal.journal import Journal
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_server.match.match import Match
 from lacoc_server.match.physics import Fault
 from lacoc_server.simulate import player, simulate
 from lacoc_server.world.world import World
-from lacoc_shared.contest.file import HealthLimits
+from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.decisions import Declare, Halt, Resume, Start
 from lacoc_shared.inputs import Advice, HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import HealthVerdict, LinkVerdict
@@ -63,7 +64,7 @@ class Held:
     def beat(self, *inputs: Input, took_s: float = 0.02, late_s: float = 0.0) -> None:
         self.now_s += took_s
         self.health.begin(self.now_s, late_s, self.doors())
-        self.health.take(inputs, self.stage.beat(*inputs))
+        self.health.measure(inputs, self.stage.beat(*inputs))
 
     def seconds(self, count: int, repeats: int = 10) -> None:
         for beat in range(50 * count):
@@ -265,14 +266,15 @@ def test_advice_is_an_event_of_the_match() -> None:
 @pytest.mark.slow
 def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
     """It stands beside the result, not in it: `replay verify` simulates no wall clock."""
-    journal = Journal(Match(setup("othello", QUICK), World), tmp_path)
+    match = Match(setup("othello", QUICK), World)
+    health = MatchHealth(match, HealthLimits(), [Door(0, {})] * 2)
+    journal = Journal(match, tmp_path, measure=health.measure)
     assert journal.writer is not None
-    journal.health = MatchHealth(journal.match, HealthLimits(), [Door(0, {})] * 2)
     seated = [(join(LEFT), join(RIGHT)), (ReadySeat(LEFT, True), ReadySeat(RIGHT, True))]
     played = [(decide(Start()),), *[()] * 120, (decide(Halt()),), (decide(Declare("left")),)]
     for beat, inputs in enumerate([*seated, *played]):
         late_s = 0.3 if beat == 60 else 0.0
-        journal.health.begin(0.02 * beat + late_s, late_s, [Door(0, {})] * 2)
+        health.begin(0.02 * beat + late_s, late_s, [Door(0, {})] * 2)
         journal.beat(inputs)
     journal.close()
     path = journal.writer.path
@@ -282,7 +284,7 @@ def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
     assert record.health.worst_late_ms == 300.0
     *_, verdict = verify(record)
     assert isinstance(verdict, Verdict)
-    assert verdict.text == "same"
+    assert verdict.kind is Kind.SAME
     said = CliRunner().invoke(app, ["info", str(path)]).output
     assert "Replay advised: a beat began 300 ms late" in said
     exported = json.loads(result_json(record))

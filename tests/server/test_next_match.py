@@ -2,6 +2,7 @@
 
 import errno
 import os
+import secrets
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -21,12 +22,12 @@ from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.match.entry import Admission
+from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.decisions import Abort, Next, Start
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SeatFrame, SentFile, Sheet
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.record.writer import RecordWriter
-from lacoc_shared.seal import hash_token
 from lacoc_shared.seat import Phase, SeatFlag
 
 pytestmark = pytest.mark.slow
@@ -66,7 +67,7 @@ def room(tmp_path: Path) -> Iterator[Room]:
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     admission = Admission(*files, Limits(), arena.match.open_levels)
     hashes = {seat: hash_token(token) for seat, token in TOKENS.items()}
-    inbox = Inbox(Keys("main"), list(TOKENS), hashes, admission)
+    inbox = Inbox(Keys("main"), list(TOKENS), hashes, admission, secrets.token_bytes)
     desk = DecisionDesk([hash_token(WHISTLE)])
     over = threading.Event()
     with (

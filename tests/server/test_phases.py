@@ -3,8 +3,8 @@
 import pytest
 from stage import FORWARD, LEFT, RIGHT, B, Script, Stage, X, decide, join, key, seen
 
-from lacoc_server.match.match import TRANSITIONS
 from lacoc_server.match.physics import Fault
+from lacoc_server.match.state import TRANSITIONS
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat

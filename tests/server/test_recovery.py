@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from benchmarks.played import OTHER_ARITHMETIC
 from running import WAIT_S, party, served, write_contest
 
 from lacoc_arenas import arena as arenas
@@ -15,7 +16,8 @@ from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_shared.contest.file import load
 from lacoc_shared.decisions import Declare, Halt, Next, Official, Resume, Start
 from lacoc_shared.gait.tables import Level
@@ -63,6 +65,36 @@ def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
         seq = those.left.press(Level.LOCOMOTION, 1)
         those.until(lambda: those.frame.seats[0].applied_seq == seq)
     assert_same(packed(folder))
+
+
+@pytest.mark.usefixtures("has_other_arithmetic")
+def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: Path) -> None:
+    """As on another machine: from the newest snapshot, and it says so; both parts verify."""
+    elsewhere = ["env", *(f"{name}={value}" for name, value in OTHER_ARITHMETIC.items())]
+    with ExitStack() as stack:
+        first = stack.enter_context(served(contest, folder))
+        those = stack.enter_context(party(contest))
+        those.play()
+        for controller in those.controllers:
+            controller.press(Level.LOCOMOTION, 2)
+        those.until(lambda: those.frame.clock_ticks > 60)
+        kill(first)
+        seen = those.frame
+        stack.enter_context(served(contest, folder, before=elsewhere))
+        those.reach(Phase.HALTED)
+        if those.frame.clock_ticks == seen.clock_ticks:
+            assert (those.frame.poses, those.frame.digest) == (seen.poses, seen.digest)
+        words = "the court was started again, with another arithmetic"
+        those.until(lambda: any(words in event.text for event in those.view.events))
+        those.decide(Resume(), Phase.PLAYING)
+        began = those.frame.clock_ticks
+        those.until(lambda: those.frame.clock_ticks > began + 30)
+    record = packed(folder)
+    made_by = [header.arithmetic["functions"] for header in record.headers]
+    assert len(set(made_by)) == 2
+    *_, verdict = verify(record)
+    assert isinstance(verdict, Verdict)
+    assert verdict.kind is Kind.OTHER_ARITHMETIC, verdict.text
 
 
 def test_settings_that_were_changed_count_from_the_next_match(contest: Path, folder: Path) -> None:
@@ -142,7 +174,7 @@ def packed(folder: Path) -> Record:
 def assert_same(record: Record) -> None:
     *_, verdict = verify(record)
     assert isinstance(verdict, Verdict)
-    assert verdict.text == "same"
+    assert verdict.kind is Kind.SAME
 
 
 def played(controller: Controller) -> int:

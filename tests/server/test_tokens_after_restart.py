@@ -2,13 +2,13 @@
 
 import json
 import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
+from lacoc_process import Lacoc, run_lacoc
 from running import WAIT_S, frame, party, phase, served, until, write_contest
 
 from lacoc_client.controller import Controller
@@ -23,13 +23,13 @@ pytestmark = pytest.mark.slow
 
 def serving(folder: Path, arena: str) -> list[str]:
     court = ["serve", "--json", "--arena", arena, "--listen", "tcp/127.0.0.1:0"]
-    return [sys.executable, "-m", "lacoc_shared", *court, "--recordings", str(folder)]
+    return [*court, "--recordings", str(folder)]
 
 
 @contextmanager
 def opened(folder: Path, arena: str = "practice") -> Iterator[dict[str, Any]]:
     """A court without a contest file, killed in the end; what it says when it opens."""
-    process = subprocess.Popen(serving(folder, arena), stdout=subprocess.PIPE, text=True)
+    process = Lacoc(*serving(folder, arena), stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
         yield json.loads(process.stdout.readline())
@@ -73,9 +73,7 @@ def test_another_arenas_match_is_not_gone_on_with(tmp_path: Path) -> None:
     """Its seats are others: the tokens that are printed would open none."""
     with opened(tmp_path, "othello") as first:
         pass
-    done = subprocess.run(
-        serving(tmp_path, "practice"), capture_output=True, text=True, timeout=WAIT_S, check=False
-    )
+    done = run_lacoc(*serving(tmp_path, "practice"))
     assert (done.returncode, done.stdout) == (2, "")
     said = " ".join(done.stderr.split())
     assert f"{first['match_id']}.000.live.mcap was not finished" in said

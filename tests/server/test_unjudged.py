@@ -13,7 +13,8 @@ from lacoc_server.court.court import Court, CourtSettings
 from lacoc_server.doors.inbox import Door
 from lacoc_server.doors.network import Arrival
 from lacoc_server.journal.recovery import unfinished
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_server.match.match import Match, Outcome
 from lacoc_server.match.physics import Fault
 from lacoc_server.world.world import World
@@ -133,7 +134,7 @@ def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena:
     held.kill()
     *_, verdict = verify(Record.read(sorted(tmp_path.iterdir())))
     assert isinstance(verdict, Verdict)
-    assert verdict.text == "same"
+    assert verdict.kind is Kind.SAME
 
 
 def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> None:

@@ -85,7 +85,7 @@ class CourtFeed:
 
     def log(self, text: str, kind: str, **particulars: object) -> None:
         """Log something of this court."""
-        self._say.info(text, kind=kind, match_id=self.picture.match_id, **particulars)
+        self._say.info(text, kind=kind, match_id=self.picture.view.match_id, **particulars)
 
     def add(self, viewer: Viewer) -> None:
         """Let a page watch; it gets all there is at once."""
@@ -141,7 +141,7 @@ class CourtFeed:
                 "connected": self._connected,
                 "silent_s": round(silent_s, 1),
                 "text": text,
-                "log": self.picture.log_number,
+                "log": self._log_number,
             },
         )
 
@@ -191,29 +191,29 @@ class CourtFeed:
             self._stray()
             return
         now_s = self._frame_s = time.monotonic()
-        if not (self._connected or self.picture.other_version):
+        if not self._connected and self._other_version is None:
             self._come_back()
         if self._connected:
             self.audience.offer(framed, now_s)
-        if self.picture.lacks_scene or self.picture.lacks_sheet:
+        if self.picture.view.lacks_scene or self.picture.view.lacks_sheet:
             self._catch_up()
 
     def _take_event(self, payload: bytes) -> None:
-        number = self.picture.log_number
+        number = self._log_number
         try:
             framed = self.picture.take_event(payload)
         except BadMessage:
             self._stray()
             return
-        if self.picture.log_number != number:
+        if self._log_number != number:
             self._send_log()
         elif framed is not None:
             self.audience.send(framed)
 
     def _take_log(self, payload: bytes) -> None:
-        number = self.picture.log_number
-        self.picture.take_log(payload)
-        if self.picture.log_number != number:
+        number = self._log_number
+        self.picture.view.take_log(payload)
+        if self._log_number != number:
             self._send_log()
 
     def _send_log(self) -> None:
@@ -232,7 +232,7 @@ class CourtFeed:
             self._stray()
 
     def _take_sheet(self, payload: bytes) -> None:
-        before = self.picture.other_version
+        before = self._other_version
         framed = self.picture.take_sheet(payload)
         if framed is not None:
             self.audience.send(framed)
@@ -244,28 +244,40 @@ class CourtFeed:
         except BadMessage:
             self._stray()
             return
-        if self.picture.lacks_events or self.picture.lacks_sheet:
+        if self.picture.view.lacks_events or self.picture.view.lacks_sheet:
             self._catch_up()
         if framed is not None:
             self.audience.send_if_fast(framed)
 
     def _stray(self) -> None:
         """Something made no sense: the sheet says whether the court has another version."""
-        if not self.picture.other_version:
-            self.picture.doubt()
+        if self._other_version is None:
+            self.picture.view.doubt()
             self._catch_up()
 
-    def _look_at_version(self, before: str) -> None:
+    def _look_at_version(self, before: int | None) -> None:
         """Show nothing of a court of another version until it has another sheet."""
-        if self.picture.other_version not in ("", before):
+        if self._other_version not in (None, before):
             self._connected = False
             self.log(self._wrong_version, "link", connected=False)
             self.audience.send(self._link())
 
     @property
+    def _other_version(self) -> int | None:
+        return self.picture.view.other_version
+
+    @property
+    def _log_number(self) -> int:
+        """Another number: the log began anew."""
+        return self.picture.view.log.number
+
+    @property
     def _wrong_version(self) -> str:
-        speaks = self.picture.other_version
-        return speaks and (
+        """Why a court of another version is not shown; "" for one of this version."""
+        if self._other_version is None:
+            return ""
+        speaks = f"version {self._other_version}" if self._other_version else "another version"
+        return (
             f"Court {self.court!r} speaks {speaks} of the protocol, this gateway version "
             f"{PROTOCOL}: install the version of lacoc that the court has."
         )
@@ -276,25 +288,25 @@ class CourtFeed:
             self._restoring = asyncio.get_running_loop().create_task(self._restore())
 
     async def _restore(self) -> None:
-        picture = self.picture
-        while picture.lacks:
+        view = self.picture.view
+        while view.lacks_events or view.lacks_scene or view.lacks_sheet:
             with contextlib.suppress(UserError, BadMessage):  # it went away just now
-                if picture.lacks_events:
+                if view.lacks_events:
                     self._take_log(await self._ask(self._keys.event))
-                if picture.lacks_scene:
+                if view.lacks_scene:
                     self._take_scene(await self._ask(self._keys.scene))
-                if picture.lacks_sheet:
+                if view.lacks_sheet:
                     await self._fetch_sheet()
             await asyncio.sleep(_FETCH_AGAIN_S)
             if not self._connected:
                 return  # the next frame or health asks again
 
     async def _fetch_sheet(self) -> None:
-        payload, before = await self._ask(self._keys.sheet), self.picture.other_version
+        payload, before = await self._ask(self._keys.sheet), self._other_version
         try:
             self._take_sheet(payload)
         except BadMessage:
-            self.picture.other_version = "another version"
+            self.picture.view.refuse_sheet()
             self._look_at_version(before)
 
     async def _ask(self, key: str) -> bytes:

@@ -14,9 +14,9 @@ from lacoc_shared.command.keep import save
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Court
+from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.seal import new_token
 
 app = typer.Typer(
     help="Write, check and show the contest file: courts, addresses, tokens, limits.",

@@ -1,5 +1,6 @@
 """`lacoc serve`: a court."""
 
+import secrets
 import signal
 from contextlib import ExitStack
 from pathlib import Path
@@ -23,11 +24,11 @@ from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
+from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint
-from lacoc_shared.seal import hash_token
 
 app = typer.Typer()
 
@@ -98,6 +99,8 @@ def serve_command(
             screen.note("It keeps the settings that it was opened with; the next has the new ones.")
         if left.cut:
             screen.note(left.cut)
+        if left.other_arithmetic:
+            screen.warn(left.other_arithmetic)
     admission = Admission(
         SentFile(*find_robot(plan.robot)),
         *sample_gait_files(plan.robot),
@@ -109,6 +112,7 @@ def serve_command(
         [seat.id for seat in loaded.seats],
         {seat: hash_token(holder.token) for seat, holder in entry.seat.items()},
         admission,
+        secrets.token_bytes,
         last_seqs=left.last_seqs if left else None,
         joined=left.token_hashes if left else (),
         # A contest file's word is the last: who lost a token gets another one there.

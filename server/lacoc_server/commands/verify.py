@@ -1,19 +1,22 @@
-"""`lacoc replay verify`: simulate a record again and compare it bit for bit."""
+"""`lacoc replay verify`: judge a record again, simulate its sections again, and compare."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from lacoc_server.journal.replay import Verdict, verify
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.section import BOUND
+from lacoc_server.journal.verdict import Kind, Verdict, other_arithmetic
+from lacoc_server.world import arithmetic
 from lacoc_shared.command import options, screen
 from lacoc_shared.record.files import record_paths
 from lacoc_shared.record.reader import Record
 
 app = typer.Typer()
 
-DIFFERENT = 1
-"""Exit code: the record is not what its inputs give."""
+NOT_PROVEN = 1
+"""Exit code: the record differs from what its inputs give, or a part of it is lost."""
 
 
 @app.command(name="verify")
@@ -28,34 +31,74 @@ def verify_command(
             file_okay=False,
         ),
     ] = None,
+    bound: Annotated[
+        float,
+        typer.Option(
+            metavar="M",
+            help="How far another machine may be from the record [m, rad].",
+            min=0.0,
+            max=1e-3,
+        ),
+    ] = BOUND,
     json: options.Json = False,
 ) -> None:
-    """Simulate a record again and say "same", or name the first beat that differs.
+    """Judge a record again, simulate it again section by section, and say one of three verdicts.
+
+    "same, bit for bit": this machine computes every bit of the record.
+
+    "same match, other arithmetic": another machine recorded it, whose last bits are others. The
+    games and the result are what the inputs give, and no robot is farther from where it was
+    recorded than --bound.
+
+    "beat N differs": the record is not what its inputs give. Exit code 1, also where a part of the
+    record is lost or damaged.
 
     No folder is used because a record names it: its code would run.
     """
     record = Record.read(record_paths(file))
-    verdict = Verdict(0, 0)
+    verdict: Verdict | None = None
     with screen.progress() as progress:
         task = progress.add_task("simulating", total=record.last_beat + 1)
-        for step in verify(record, arena):
+        for step in verify(record, arena, bound):
             if isinstance(step, Verdict):
                 verdict = step
             else:
-                progress.update(task, completed=step + 1)
+                progress.update(task, completed=step)
+    assert verdict is not None
+    proven = verdict.same and not record.lost
     if json:
-        screen.print_json(
-            {
-                "same": verdict.differs_at is None,
-                "beats": verdict.beats,
-                "frames": verdict.frames,
-                "differs_at": verdict.differs_at,
-                "text": verdict.text,
-                "cut": record.cut,
-            }
-        )
+        screen.print_json({"same": proven, **_told(record, verdict)})
     else:
-        cut = f" {record.cut}" if record.cut else ""
-        screen.show(f"{verdict.text}: {verdict.beats} beats, {verdict.frames} frames.{cut}")
-    if verdict.differs_at is not None:
-        raise typer.Exit(DIFFERENT)
+        for line in _lines(record, verdict):
+            screen.show(line)
+    if not proven:
+        raise typer.Exit(NOT_PROVEN)
+
+
+def _told(record: Record, verdict: Verdict) -> dict[str, Any]:
+    return {
+        "verdict": verdict.kind.value,
+        "lost": record.lost,
+        "beats": verdict.beats,
+        "frames": verdict.frames,
+        "sections": verdict.sections,
+        "differs_at": verdict.differs_at,
+        "distance": verdict.distance,
+        "worst_section": verdict.worst,
+        "text": verdict.text,
+        "cut": record.cut,
+        "arithmetic": {"record": record.header.arithmetic, "here": dict(arithmetic.here())},
+    }
+
+
+def _lines(record: Record, verdict: Verdict) -> list[str]:
+    counts = f"{verdict.beats} beats, {verdict.frames} frames, {verdict.sections} sections"
+    lines = [f"{verdict.text}: {counts}."]
+    if verdict.kind is not Kind.SAME:
+        there = record.headers[-1].arithmetic
+        lines.append(other_arithmetic(there, arithmetic.here()))
+    if record.lost:
+        lines.append(f"A part of the record is lost, and was not verified. {record.cut}")
+    else:
+        lines.append(record.cut)
+    return [line for line in lines if line]

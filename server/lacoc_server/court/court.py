@@ -25,7 +25,7 @@ from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import IN_PLAY, Unfinished
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.world.world import World
-from lacoc_shared.contest.file import HealthLimits
+from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Advice, Decide, Input
 from lacoc_shared.messages import Health, HealthVerdict
@@ -231,8 +231,7 @@ class Court:
         self, match: Match, segment: int = 0, before: HealthVerdict | None = None
     ) -> Journal:
         settings = self._settings
-        journal = Journal(match, settings.recordings, segment)
-        journal.health = self._health = MatchHealth(
+        self._health = MatchHealth(
             match,
             settings.health,
             self._network.doors(),
@@ -240,7 +239,7 @@ class Court:
             before=before,
             resumptions=segment,
         )
-        return journal
+        return Journal(match, settings.recordings, segment, self._health.measure)
 
     def _close(self) -> None:
         """Finish the record of this match."""

@@ -13,7 +13,7 @@ import msgspec
 from lacoc_server.court.pace import SLOW_S
 from lacoc_server.doors.inbox import Door
 from lacoc_server.match.match import Beat, Match
-from lacoc_shared.contest.file import HealthLimits
+from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.inputs import Input, KeySeat
 from lacoc_shared.messages import HealthVerdict, LinkVerdict, Refusal
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, REPEATS_HZ, Phase
@@ -112,8 +112,18 @@ class MatchHealth:
         """
         self._now_s, self._late_s, self._doors = now_s, late_s, doors
 
-    def take(self, inputs: Sequence[Input], beat: Beat) -> None:
-        """Take in what the beat made of its inputs."""
+    def measure(self, inputs: Sequence[Input], beat: Beat) -> HealthVerdict | None:
+        """Count what a beat made of its inputs.
+
+        Returns:
+            The verdict, where the record wants one: every second of PLAYING, and with each result.
+        """
+        self._count(inputs, beat)
+        playing = beat.frame.phase == Phase.PLAYING
+        due = playing and beat.frame.beat % BEATS_PER_S == 0
+        return self.verdict() if due or beat.result is not None else None
+
+    def _count(self, inputs: Sequence[Input], beat: Beat) -> None:
         self._faults += sum(event.kind == "fault" for event in beat.events)
         for item, outcome in zip(inputs, beat.outcomes, strict=True):
             if isinstance(item, KeySeat) and isinstance(outcome, Refusal):

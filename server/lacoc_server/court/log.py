@@ -27,27 +27,29 @@ class CourtLog:
 
     def event(self, match_id: str, event: Event) -> None:
         """Log an event of the match."""
-        say = self._log.warning if event.kind in _TROUBLE else self._log.info
+        write = self._log.warning if event.kind in _TROUBLE else self._log.info
         fields = msgspec.structs.asdict(event)
-        say(fields.pop("text"), match_id=match_id, **fields)
+        write(fields.pop("text"), match_id=match_id, **fields)
 
     def health(self, match_id: str, health: Health) -> None:
         """Log what went wrong since this was last called: refusals, slow beats, the disk."""
-        say = self._log.bind(match_id=match_id, match=health.match, beat=health.beat).warning
+        write = self._log.bind(match_id=match_id, match=health.match, beat=health.beat).warning
         refused = Counter(dict(_refused(health)))
         for (seat, why), count in (refused - self._refused).items():
             who = f"Seat {seat}" if seat else "Referee's desk"
-            say(f"{who}: {count} refused, {why}.", kind="refused", seat=seat, why=why, count=count)
+            write(
+                f"{who}: {count} refused, {why}.", kind="refused", seat=seat, why=why, count=count
+            )
         self._refused = refused
         if slow := health.slow_beats - self._slow_beats:
             worst_ms = health.worst_late_ms
             in_all = f"{health.slow_beats} in all; the latest by {worst_ms:.0f} ms"
             text = f"Slow beats: {slow}, {in_all}."
-            say(text, kind="slow", count=slow, worst_late_ms=worst_ms)
+            write(text, kind="slow", count=slow, worst_late_ms=worst_ms)
         self._slow_beats = health.slow_beats
         if health.record_trouble != self._trouble:
             self._trouble = health.record_trouble
-            say(self._trouble or "The record is written again.", kind="record")
+            write(self._trouble or "The record is written again.", kind="record")
 
     def disk(self, match_id: str, trouble: str) -> None:
         """Log what the disk said of the record of a match that is over, if anything."""

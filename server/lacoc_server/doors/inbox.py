@@ -107,6 +107,7 @@ class Inbox:
             can't be joined.
         check_files: weighs a join's files in; returns the join with the robot file filled in, or
             raises `FileRefused`.
+        random_bytes: makes that many random bytes, for the sessions' numbers and secrets.
         last_seqs: for a restarted court, the newest sequence numbers of its record, by seat.
         joined: for a restarted court, the seats that are held.
         former: hashes of tokens that open seats too: of who held them before a restart of the
@@ -120,6 +121,7 @@ class Inbox:
         seats: Sequence[str],
         token_hashes: Mapping[str, str],
         check_files: Callable[[Join], Join],
+        random_bytes: Callable[[int], bytes],
         *,
         last_seqs: Mapping[str, int] | None = None,
         joined: Collection[str] = (),
@@ -135,7 +137,7 @@ class Inbox:
         ]
         self.links = Links(len(seats), most_delay_ms)
         """Told of every beat by the network."""
-        self._sessions = Sessions()
+        self._sessions = Sessions(random_bytes)
         self._now_s = 0.0
 
     @property

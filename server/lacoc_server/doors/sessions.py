@@ -1,9 +1,10 @@
 """Who holds which seat: sessions, each a number with a secret, and why one ended."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from lacoc_shared import seal
+from lacoc_shared.seal import SECRET_BYTES
 
 _REMEMBERED = 64
 
@@ -39,9 +40,14 @@ class _Held:
 
 
 class Sessions:
-    """The sessions of a court: at most one holds a seat."""
+    """The sessions of a court: at most one holds a seat.
 
-    def __init__(self) -> None:
+    Args:
+        random_bytes: makes that many random bytes.
+    """
+
+    def __init__(self, random_bytes: Callable[[int], bytes]) -> None:
+        self._random_bytes = random_bytes
         self._held: dict[int, _Held] = {}
         """Each session that holds a seat."""
         self._ended: dict[int, tuple[int, Why]] = {}
@@ -54,7 +60,9 @@ class Sessions:
             The session's number and its secret.
         """
         self.end(seat, Why.REPLACED)
-        number, secret = seal.new_session(), seal.new_secret()
+        # Random, so that a restarted court does not mistake an old number for a new one.
+        number = 1 + int.from_bytes(self._random_bytes(4)) % (2**32 - 1)
+        secret = self._random_bytes(SECRET_BYTES)
         self._held[number] = _Held(seat, secret)
         return number, secret
 

@@ -6,23 +6,26 @@ Only beats in which nothing happened at all have no frame.
 """
 
 import platform
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from lacoc_server.court.health import MatchHealth
 from lacoc_server.match.match import Beat, Match
-from lacoc_server.world.world import MUJOCO_VERSION, World
+from lacoc_server.world import arithmetic
+from lacoc_server.world.world import MUJOCO_VERSION
 from lacoc_shared import __version__
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import Input
-from lacoc_shared.messages import PROTOCOL, Frame
+from lacoc_shared.messages import PROTOCOL, Frame, HealthVerdict
 from lacoc_shared.record.schema import FORMAT, Header, Setup
 from lacoc_shared.record.writer import RecordWriter
-from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.seat import BEATS_PER_S
 
 SNAPSHOT_TICKS = 250
 """A full snapshot every 5 s of physics."""
+
+Measure = Callable[[Sequence[Input], Beat], HealthVerdict | None]
+"""Measures how well a beat was held; gives the verdict on the match where one is due."""
 
 
 class Journal:
@@ -32,18 +35,25 @@ class Journal:
         match: the match; may have run some beats already.
         folder: where the record goes; None: no record.
         segment: how many segments of this match's record came before.
+        measure: measures how well the match is held; None: it runs headless, and nothing can be
+            late.
 
     Raises:
         UserError: if the record can't be made.
     """
 
-    def __init__(self, match: Match, folder: Path | None, segment: int = 0) -> None:
+    def __init__(
+        self,
+        match: Match,
+        folder: Path | None,
+        segment: int = 0,
+        measure: Measure | None = None,
+    ) -> None:
         self.match = match
+        self._measure = measure
         self.writer = (
             RecordWriter(folder, _header(match.setup, segment, match.beats + 1)) if folder else None
         )
-        self.health: MatchHealth | None = None
-        """Measures how well the match is held; None: it runs headless, and nothing can be late."""
         self._ticks = 0
         self._last: tuple[object, ...] = ()
         self._scene = b""
@@ -56,8 +66,7 @@ class Journal:
         """
         match, writer = self.match, self.writer
         beat = match.beat(inputs)
-        if self.health is not None:
-            self.health.take(inputs, beat)
+        verdict = None if self._measure is None else self._measure(inputs, beat)
         encoded = encode(beat.frame)
         if writer is None:
             return beat, encoded
@@ -75,15 +84,14 @@ class Journal:
             writer.touch(number, beat.touch)
         if beat.result is not None:
             writer.result(beat.result)
-        playing = match.phase is Phase.PLAYING and number % BEATS_PER_S == 0
-        if self.health is not None and (playing or beat.result is not None):
-            writer.health(number, self.health.verdict())
+        if verdict is not None:
+            writer.health(number, verdict)
         happened = beat.ticked or inputs or beat.events or beat.sheet_changed
         if self._new(beat.frame) or happened or number % BEATS_PER_S == 0:
             writer.frame(number, encoded)
         if beat.ticked:
             self._ticks += 1
-            if self._ticks % SNAPSHOT_TICKS == 1 and isinstance(match.physics, World):
+            if self._ticks % SNAPSHOT_TICKS == 1:
                 writer.snapshot(number, match.physics.save())
         return beat, encoded
 
@@ -131,5 +139,6 @@ def _header(setup: Setup, segment: int, first_beat: int) -> Header:
             "mujoco": MUJOCO_VERSION,
             "machine": platform.machine(),
         },
+        arithmetic=dict(arithmetic.here()),
         setup=setup,
     )

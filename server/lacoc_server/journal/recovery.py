@@ -4,8 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lacoc_arenas.arena import Arena
-from lacoc_server.journal.replay import resume
+from lacoc_server.journal.replay import Resumed, resume
+from lacoc_server.journal.verdict import other_arithmetic
 from lacoc_server.match.match import Match
+from lacoc_server.world import arithmetic
 from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Decide, Input, KeySeat
 from lacoc_shared.messages import Event, HealthVerdict
@@ -38,12 +40,17 @@ class Unfinished:
     """How well it had been held until then."""
     cut: str
     """Where its record ends, in words."""
+    other_arithmetic: str = ""
+    """That and how this machine computes otherwise than the one that recorded it, in words; "" if
+    it does not."""
 
     @property
     def inputs(self) -> list[Input]:
         """What the court does first: nobody may find a match already running."""
         if self.match.phase in IN_PLAY:
-            return [Decide("court", "the court was started again", Halt())]
+            why = "the court was started again"
+            where = ", with another arithmetic" if self.other_arithmetic else ""
+            return [Decide("court", f"{why}{where}", Halt())]
         return []
 
 
@@ -73,15 +80,15 @@ def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
             _check_origin(record, name, arena)
             if record.gap:
                 raise UserError(record.cut)
-            match = resume(record, folder=arena.folder)
-            _check_seats(match, arena)
+            resumed = resume(record, folder=arena.folder)
+            _check_seats(resumed.match, arena)
         except NoMatch as error:
             if newest.stat().st_size < _OPENING_BYTES:
                 continue
             raise _can_not_go_on(newest, error) from None
         except UserError as error:
             raise _can_not_go_on(newest, error) from None
-        return _as_left(record, match, number + 1)
+        return _as_left(record, resumed, number + 1)
     return None
 
 
@@ -120,7 +127,8 @@ def _can_not_go_on(path: Path, error: UserError) -> UserError:
     )
 
 
-def _as_left(record: Record, match: Match, segment: int) -> Unfinished:
+def _as_left(record: Record, resumed: Resumed, segment: int) -> Unfinished:
+    match = resumed.match
     held = [seat for seat in match.seats if seat.join]
     return Unfinished(
         match,
@@ -130,7 +138,18 @@ def _as_left(record: Record, match: Match, segment: int) -> Unfinished:
         {seat.id: seat.join.token_hash for seat in held if seat.join},
         record.health,
         record.cut,
+        _other_arithmetic(record, resumed.distance),
     )
+
+
+def _other_arithmetic(record: Record, distance: float | None) -> str:
+    if distance is None:
+        return ""
+    why = other_arithmetic(record.headers[-1].arithmetic, arithmetic.here())
+    return (
+        "The match goes on with another arithmetic, from its newest snapshot: what follows it in "
+        f"the record is {distance:.1e} m or rad from what this machine computes. {why}"
+    ).strip()
 
 
 def _last_seq(record: Record, seat: int) -> int:

@@ -1,206 +1,86 @@
 """A record played again: verified by physics, or taken up where it ended.
 
-Both feed the recorded inputs to a new match. `verify` steps the physics again and
-compares all that was recorded, bit for bit. `resume` lets the recorded poses stand for
-physics up to the newest snapshot, and only from there on steps: the rules judge on
-exactly the poses that frames carry, so the match that comes out is the same; it is held
-against the record too. A last beat without its frame (`journal`) was not answered: both
-leave it out.
+The games are judged on the recorded poses, over the whole match (`judge`). Physics is simulated
+from each snapshot to the next (`section`): in this way it is exact with the same arithmetic, and
+with another one it has no time to get far from the record.
 """
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+import os
+import signal
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
 from pathlib import Path
 
-from msgspec.structs import replace
-
-from lacoc_arenas.arena import Arena
-from lacoc_arenas.game import Place
-from lacoc_server.match.entry import Entry
-from lacoc_server.match.match import Beat, Match
-from lacoc_server.match.physics import Fault, MakePhysics
+from lacoc_server.journal.judge import Judge, fits_together
+from lacoc_server.journal.section import BOUND, Finding, Section, Worlds, simulate
+from lacoc_server.journal.verdict import Kind, Verdict, conclude
+from lacoc_server.match.match import Match
 from lacoc_server.world.world import MUJOCO_VERSION, World
-from lacoc_shared.codec import decode, encode
-from lacoc_shared.gait.tables import Posture
-from lacoc_shared.messages import Event, Frame, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
-from lacoc_shared.record.schema import Result, Touch
 
-_NAMES = (
-    "match",
-    "beat",
-    "phase",
-    "countdown",
-    "clock",
-    "seats",
-    "board",
-    "poses",
-    "scene",
-    "state hash",
-)
+_SECTIONS_PER_PROCESS = 4
+"""To start a process takes as long as to simulate two or three sections."""
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """What a verification found."""
-
-    beats: int
-    """Beats that were simulated again."""
-    frames: int
-    """Frames that were compared."""
-    differs_at: int | None = None
-    """First beat that differs; None: all are the same."""
-    text: str = "same"
-
-
-class _Again:
-    """A record's match, made again beat by beat and held against it."""
-
-    def __init__(self, record: Record, make_physics: MakePhysics, folder: Path | None) -> None:
-        self._record = record
-        self.frames = dict(record.frames)
-        self._events: dict[int, list[Event]] = {}
-        for event in record.events:
-            self._events.setdefault(event.beat, []).append(event)
-        with _fits_together(record):
-            self.match = Match(record.header.setup, make_physics, folder)
-
-    def beat(self, number: int) -> tuple[Beat, list[str]]:
-        """Let one beat pass.
-
-        Returns:
-            What the beat made, and what of it the record has otherwise.
-
-        Raises:
-            UserError: if the record's messages do not fit together.
-        """
-        record = self._record
-        with _fits_together(record):
-            beat = self.match.beat(record.inputs.get(number, ()))
-        differs: list[str] = []
-        recorded = self.frames.get(number)
-        if recorded is not None and encode(beat.frame) != recorded:
-            differs += _differences(decode(recorded, Frame), beat.frame)
-        if encode(beat.events) != encode(self._events.get(number, [])):
-            differs.append("its events")
-        if beat.touch != record.touches.get(number):
-            differs.append("what the robots touched")
-        return beat, differs
-
-
-@contextmanager
-def _fits_together(record: Record) -> Iterator[None]:
-    """Say it in words where a record's messages contradict each other: it may be damaged."""
-    try:
-        yield
-    except (ValueError, ArithmeticError, LookupError, TypeError, AssertionError) as error:
-        raise UserError(
-            f"The messages of the record of match {record.header.match_id!r:.80} do not fit "
-            f"together ({type(error).__name__}: {error!s:.80}): it is damaged."
-        ) from None
-
-
-def verify(record: Record, folder: Path | None = None) -> Iterator[int | Verdict]:
-    """Simulate a record again and compare.
+def verify(
+    record: Record,
+    folder: Path | None = None,
+    bound: float = BOUND,
+    processes: int | None = None,
+) -> Iterator[int | Verdict]:
+    """Judge a record again, simulate its sections again, and compare.
 
     Args:
         record: what to verify.
         folder: of its arena, if that is not installed.
+        bound: how far from the record another arithmetic may end a section [m, rad].
+        processes: how many simulate side by side; 1: this one; None: one for each core.
 
     Yields:
-        The number of each beat (for a progress bar), and last the `Verdict`.
+        How many beats were simulated so far (for a progress bar), and last the `Verdict`.
 
     Raises:
         UserError: if its arena is not installed, another MuJoCo made it, or it is damaged in a
             way that no match can be made of it.
     """
     _same_physics(record)
-    again = _Again(record, World, folder)
-    match, snapshots = again.match, dict(record.snapshots)
-    sheets, scenes = dict(record.sheets), dict(record.scenes)
-    last = _last_beat(record)
-    compared = 0
-    result: Result | None = None
-    for number in range(last + 1):
-        beat, differs = again.beat(number)
-        result = beat.result or result
-        compared += number in again.frames
-        if (saved := snapshots.get(number)) is not None and _state(match) != saved:
-            differs.append("the snapshot")
-        if number in sheets and not _same_sheet(sheets[number], match.sheet()):
-            differs.append("the sheet")
-        if number in scenes and scenes[number] != match.physics.scene:
-            differs.append("the scene")
-        if number == last and not _same_result(record.result, result, last):
-            differs.append("the result")
-        if differs:
-            text = f"beat {number} differs: {', '.join(differs)}"
-            yield Verdict(number + 1, compared, number, text)
-            return
-        yield number
-    yield Verdict(last + 1, compared)
+    judge = Judge(record, folder, dict(record.snapshots))
+    findings: list[Finding] = []
+    beats = 0
+    for finding in _simulated(judge, bound, _processes(record, processes)):
+        findings.append(finding)
+        beats += finding.last_beat - finding.first_beat + 1
+        yield beats
+    yield conclude(
+        record.headers,
+        judge.beats,
+        judge.frames,
+        [judge.difference],
+        findings,
+        judge.other_model,
+        bound,
+    )
 
 
-@dataclass
-class _Cursor:
-    """Where a re-judged match is in its record."""
+@dataclass(frozen=True)
+class Resumed:
+    """A match that goes on."""
 
-    record: Record
-    frames: dict[int, bytes]
-    faults: dict[int, Event]
-    beat: int = 0
-    live: bool = False
-    """From here on physics is stepped."""
-    frame: Frame | None = field(default=None)
-
-    def move(self, beat: int) -> None:
-        self.beat = beat
-        if (encoded := self.frames.get(beat)) is not None:
-            self.frame = decode(encoded, Frame)
+    match: Match
+    distance: float | None = None
+    """How far this machine's arithmetic is from the record after its newest snapshot [m, rad];
+    None: every bit is the same."""
 
 
-class _Recorded:
-    """Recorded poses behind the protocol of physics, until the cursor says live."""
-
-    def __init__(self, arena: Arena, entries: Sequence[Entry], cursor: _Cursor) -> None:
-        self.world = World(arena, entries)
-        self.scene, self.scene_hash = self.world.scene, self.world.scene_hash
-        self.model_hash = self.world.model_hash
-        self._cursor = cursor
-        self._seats = len(entries)
-
-    @property
-    def digest(self) -> bytes:
-        frame = self._cursor.frame
-        return self.world.digest if self._cursor.live or frame is None else frame.digest
-
-    def place(self, seat: int, place: Place) -> None:
-        if self._cursor.live:
-            self.world.place(seat, place)
-
-    def step(self, angles: Sequence[Posture]) -> Fault | None:
-        if self._cursor.live:
-            return self.world.step(angles)
-        fault = self._cursor.faults.get(self._cursor.beat)
-        return None if fault is None else Fault(fault.seat, str(fault.data["words"]))
-
-    def poses(self) -> bytes:
-        frame = self._cursor.frame
-        if self._cursor.live or frame is None or not frame.poses:
-            return self.world.poses()
-        return frame.poses
-
-    def touched(self) -> Sequence[tuple[int, ...]]:
-        if self._cursor.live:
-            return self.world.touched()
-        touch: Touch | None = self._cursor.record.touches.get(self._cursor.beat)
-        return touch.touched if touch else ((),) * self._seats
-
-
-def resume(record: Record, at: int | None = None, folder: Path | None = None) -> Match:
+def resume(record: Record, at: int | None = None, folder: Path | None = None) -> Resumed:
     """Take a match up where its record ends.
+
+    Up to the newest snapshot the recorded poses stand for physics, and only from there on it is
+    simulated. Another arithmetic gets no farther from the record than `BOUND` on this way.
 
     Args:
         record: of a court that was killed; may be cut anywhere.
@@ -216,33 +96,67 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
             out is not the recorded one, because it is damaged or other software wrote it.
     """
     _same_physics(record)
-    snapshots = {beat: saved for beat, saved in record.snapshots if at is None or beat <= at}
-    newest = max(snapshots, default=-1)
-    cursor = _Cursor(
+    judge = Judge(
         record,
-        dict(record.frames),
-        {event.beat: event for event in record.events if event.kind == "fault"},
-        live=newest < 0,
+        folder,
+        {beat: saved for beat, saved in record.snapshots if at is None or beat <= at},
     )
-    again = _Again(record, lambda arena, entries: _Recorded(arena, entries, cursor), folder)
-    match = again.match
-    for number in range(_last_beat(record) + 1):
-        cursor.move(number)
-        _, differs = again.beat(number)
-        if differs:
-            raise UserError(
-                f"Beat {number} comes out otherwise than it is recorded ({', '.join(differs)}): "
-                f"the record is damaged, or this is not the software that wrote it "
-                f"({_versions(record)})."
-            )
-        if number == newest and isinstance(match.physics, _Recorded):
-            with _fits_together(record):
-                match.physics.world.load(snapshots[number])
-            cursor.live = True
-    if isinstance(match.physics, _Recorded):
-        match.staging.physics = match.physics.world
-    match.staging.make_physics = World
-    return match
+    for _ in judge.sections():
+        pass
+    match, section = judge.match, judge.section
+    findings: list[Finding] = []
+    physics = match.physics
+    if section is not None:
+        with fits_together(record):
+            physics = world = judge.worlds.at_start(section)
+        if section.steps:
+            findings.append(simulate(section, judge.worlds))
+            world.digest = section.steps[-1].digest  # the chain goes on as it was published
+    verdict = conclude(record.headers, judge.beats, judge.frames, [judge.difference], findings)
+    if not verdict.same:
+        raise UserError(
+            f"{verdict.text.capitalize()}: the record is damaged, or this is not the software "
+            f"that wrote it ({_versions(record)})."
+        )
+    match.take_up(physics, World)
+    return Resumed(match, None if verdict.kind is Kind.SAME else verdict.distance)
+
+
+def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[Finding]:
+    """Simulate the sections of a match while it is judged."""
+    if processes <= 1:
+        worlds = Worlds()
+        for section in judge.sections():
+            yield simulate(section, worlds, bound)
+        return
+    with ProcessPoolExecutor(processes, get_context("spawn"), _begin) as pool:
+        waiting: deque[Future[Finding]] = deque()
+        for section in judge.sections():
+            waiting.append(pool.submit(_simulate, section, bound))
+            while waiting and waiting[0].done():
+                yield waiting.popleft().result()
+        for future in waiting:
+            yield future.result()
+
+
+def _processes(record: Record, wanted: int | None) -> int:
+    if wanted is None:
+        cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+        wanted = min(cores or 1, len(record.snapshots) // _SECTIONS_PER_PROCESS)
+    return wanted
+
+
+_worlds = Worlds()
+"""Of a process that simulates sections."""
+
+
+def _begin() -> None:
+    """Begin a process that simulates sections; Ctrl-C is for the one that started it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _simulate(section: Section, bound: float) -> Finding:
+    return simulate(section, _worlds, bound)
 
 
 def _same_physics(record: Record) -> None:
@@ -256,38 +170,3 @@ def _same_physics(record: Record) -> None:
 
 def _versions(record: Record) -> str:
     return ", ".join(f"{what} {version}" for what, version in record.header.versions.items())
-
-
-def _state(match: Match) -> bytes:
-    return match.physics.save() if isinstance(match.physics, World) else b""
-
-
-def _same_result(recorded: Result | None, again: Result | None, last: int) -> bool:
-    """Whether a recorded result is the one."""
-    if recorded is None or recorded.beats > last + 1:  # of a beat that was not answered
-        return True
-    return recorded == again
-
-
-def _same_sheet(recorded: Sheet, again: Sheet) -> bool:
-    """Whether a recorded sheet is the one; it also says which software wrote it."""
-    return replace(recorded, version=again.version, protocol=again.protocol) == again
-
-
-def _last_beat(record: Record) -> int:
-    """The last beat that counts."""
-    sealed = not record.cut or any(beat == record.last_beat for beat, _ in record.frames[-1:])
-    return record.last_beat if sealed else record.last_beat - 1
-
-
-def _differences(recorded: Frame, again: Frame) -> list[str]:
-    return [
-        name
-        for name, old, new in zip(
-            _NAMES,
-            (getattr(recorded, f) for f in recorded.__struct_fields__),
-            (getattr(again, f) for f in again.__struct_fields__),
-            strict=True,
-        )
-        if old != new
-    ]

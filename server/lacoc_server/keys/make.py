@@ -13,10 +13,10 @@ from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access, invitation_text
 from lacoc_shared.contest.key_folder import KeyFolder
+from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import address
-from lacoc_shared.seal import new_token
 
 _ALWAYS = ("localhost", "127.0.0.1", "::1")
 _TABLE = "[contest]"

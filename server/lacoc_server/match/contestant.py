@@ -3,26 +3,22 @@
 Each is legal in some phases (rules 3 and 4); what is refused changes nothing and says why.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from lacoc_server.match.entry import weigh_in
+from lacoc_server.match.seat import Seat
+from lacoc_server.match.state import MatchState
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat, KeySeat
 from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.mistakes import FileRefused
 from lacoc_shared.seat import BEATS_PER_S, RESTART_KEY, No, Phase
 
-if TYPE_CHECKING:
-    from lacoc_server.match.match import Match
-    from lacoc_server.match.seat import Seat
-
 _BEFORE = frozenset({Phase.LOBBY, Phase.READY})
 _AFTER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
 
-def join(match: Match, item: JoinSeat) -> Done | Refusal:
+def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
     """Take a seat, or come back to it; the files of a match stay those that it began with."""
     seat = match.seats[item.seat]
     if match.phase in _BEFORE:
@@ -40,7 +36,7 @@ def join(match: Match, item: JoinSeat) -> Done | Refusal:
     return Done("The match is on with the files that it began with; the next takes your new ones.")
 
 
-def _sit_down(match: Match, seat: Seat, item: JoinSeat) -> Done | Refusal:
+def _sit_down(match: MatchState, seat: Seat, item: JoinSeat) -> Done | Refusal:
     files = (item.robot, item.postures, item.locomotion)
     try:
         entry = weigh_in(*files, match.limits, match.rules.open_levels)
@@ -56,7 +52,7 @@ def _sit_down(match: Match, seat: Seat, item: JoinSeat) -> Done | Refusal:
     return Done("\n".join(entry.notes))
 
 
-def ready(match: Match, seat: Seat, is_ready: bool) -> Done | Refusal:
+def ready(match: MatchState, seat: Seat, is_ready: bool) -> Done | Refusal:
     """Say ready, or take it back."""
     if match.phase not in _BEFORE:
         return Refusal(f"The match is on ({match.phase.name}).")
@@ -69,7 +65,7 @@ def ready(match: Match, seat: Seat, is_ready: bool) -> Done | Refusal:
     return Done()
 
 
-def leave(match: Match, seat: Seat) -> Done:
+def leave(match: MatchState, seat: Seat) -> Done:
     """Free the seat; during a match it stays the contestant's, and the robot stands."""
     if match.phase in _BEFORE:
         match.tell("leave", f"{seat.team} leaves the {seat.id} seat.", seat=seat.index)
@@ -83,7 +79,7 @@ def leave(match: Match, seat: Seat) -> Done:
     return Done("The seat stays yours.")
 
 
-def unattended(match: Match) -> str:
+def unattended(match: MatchState) -> str:
     """Why a match that nobody judges is over, though its game is not; "" while it goes on."""
     if match.rules.start != "ready":
         return ""
@@ -95,7 +91,7 @@ def unattended(match: Match) -> str:
     return ""
 
 
-def silent(match: Match, seat: Seat) -> Done:
+def silent(match: MatchState, seat: Seat) -> Done:
     """Let a robot stand whose controller is not heard any more (rules 3)."""
     if not seat.silent:
         seat.silent = True
@@ -105,7 +101,7 @@ def silent(match: Match, seat: Seat) -> Done:
     return Done()
 
 
-def heard(match: Match, seat: Seat) -> Done:
+def heard(match: MatchState, seat: Seat) -> Done:
     """Note that a controller is heard again; its robot stands until a new command."""
     if seat.silent:
         seat.silent = False
@@ -113,7 +109,7 @@ def heard(match: Match, seat: Seat) -> Done:
     return Done()
 
 
-def key(match: Match, seat: Seat, item: KeySeat) -> Done | Refusal:
+def key(match: MatchState, seat: Seat, item: KeySeat) -> Done | Refusal:
     """Take a digit or [x]."""
     why = No.NOT_PLAYING
     if match.phase is Phase.PLAYING:

@@ -56,6 +56,9 @@ class Physics(Protocol):
             None, or what went wrong; then nothing has changed.
         """
 
+    def save(self) -> bytes:
+        """The whole state after the last tick, from which the same physics goes on bit for bit."""
+
     def poses(self) -> bytes:
         """The robots as `Frame.poses`."""
 

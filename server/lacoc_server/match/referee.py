@@ -5,23 +5,19 @@ will consult and make a decision." Every decision is an event with who, beat and
 nothing is edited away (rules 4).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 
 from lacoc_server.match import contestant
+from lacoc_server.match.seat import Seat
+from lacoc_server.match.state import MatchState
 from lacoc_shared import decisions as d
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import MARKER_STATES, DecisionReply, Refusal
 from lacoc_shared.seat import BEATS_PER_S, Phase
-
-if TYPE_CHECKING:
-    from lacoc_server.match.match import Match
-    from lacoc_server.match.seat import Seat
 
 MAX_FREEZE_S = 600.0
 MAX_CLOCK_S = 3600.0
@@ -37,15 +33,15 @@ class _Rule:
     """When a decision is legal and what it does."""
 
     phases: frozenset[Phase]
-    act: Callable[[Match, Any], str]
+    act: Callable[[MatchState, Any], str]
     """Does it and returns the sentence for the log; raises `Illegal` before changing anything."""
-    then: Callable[[Match, Any], object] = lambda match, decision: None
+    then: Callable[[MatchState, Any], object] = lambda match, decision: None
     """What follows and is told as events of its own, after the decision."""
     needs_reason: bool = False
-    also: Callable[[Match], str] = lambda match: ""
+    also: Callable[[MatchState], str] = lambda match: ""
     """Further reason why not; "" if there is none."""
 
-    def why_not(self, match: Match) -> str:
+    def why_not(self, match: MatchState) -> str:
         """Why no decision of this kind is legal now; "" if one may be."""
         if match.phase not in self.phases:
             names = " or ".join(phase.name for phase in sorted(self.phases))
@@ -53,17 +49,17 @@ class _Rule:
             return f"only in {names}; the match is {match.phase.name}{missing}"
         return self.also(match)
 
-    def _missing(self, match: Match) -> list[str]:
+    def _missing(self, match: MatchState) -> list[str]:
         before_ready = match.phase is Phase.LOBBY and self.phases == {Phase.READY}
         return match.missing() if before_ready else []
 
 
-def legality(match: Match) -> dict[str, str]:
+def legality(match: MatchState) -> dict[str, str]:
     """Every decision by name: "" if it is legal now, else why not."""
     return {name: _RULES[kind].why_not(match) for name, kind in d.DECISIONS.items()}
 
 
-def decide(match: Match, item: Decide) -> DecisionReply | Refusal:
+def decide(match: MatchState, item: Decide) -> DecisionReply | Refusal:
     """Take a decision, or say why it can't be taken; an illegal one changes nothing."""
     rule, decision = _RULES[type(item.decision)], item.decision
     name = str(decision.__struct_config__.tag)
@@ -84,7 +80,7 @@ def decide(match: Match, item: Decide) -> DecisionReply | Refusal:
     return DecisionReply(beat=match.beats, event=number, text=text, scores=match.scores())
 
 
-def _log(match: Match, item: Decide, name: str, text: str, **data: Any) -> int:
+def _log(match: MatchState, item: Decide, name: str, text: str, **data: Any) -> int:
     because = f" Reason: {item.reason}" if item.reason else ""
     match.result_changed()
     return match.tell(
@@ -98,7 +94,7 @@ def _log(match: Match, item: Decide, name: str, text: str, **data: Any) -> int:
     )
 
 
-def _seat(match: Match, seat_id: str) -> Seat:
+def _seat(match: MatchState, seat_id: str) -> Seat:
     for seat in match.seats:
         if seat.id == seat_id:
             return seat
@@ -122,28 +118,28 @@ def _ticks(seconds: float) -> int:
     return ticks
 
 
-def _ready(match: Match, decision: d.Ready) -> str:
+def _ready(match: MatchState, decision: d.Ready) -> str:
     seat = _seat(match, decision.seat)
     if seat.join is None:
         raise Illegal(f"nobody has joined {seat.id}.")
     return f"ready for {seat.team}."
 
 
-def _start(match: Match, decision: d.Start) -> str:
+def _start(match: MatchState, decision: d.Start) -> str:
     return f"play begins in {match.rules.countdown_s:g} s."
 
 
-def _resume(match: Match, decision: d.Resume) -> str:
+def _resume(match: MatchState, decision: d.Resume) -> str:
     return f"play goes on in {match.rules.countdown_s:g} s."
 
 
-def _restart(match: Match, decision: d.Restart) -> str:
+def _restart(match: MatchState, decision: d.Restart) -> str:
     seat = _seat(match, decision.seat)
     seat.restart()
     return f"{seat.team} goes back to the start."
 
 
-def _freeze(match: Match, decision: d.Freeze) -> str:
+def _freeze(match: MatchState, decision: d.Freeze) -> str:
     seat = _seat(match, decision.seat)
     if not 0 < decision.seconds <= MAX_FREEZE_S:
         raise Illegal(f"{decision.seconds:g} s? Freeze for more than 0 and at most 600 s.")
@@ -152,7 +148,7 @@ def _freeze(match: Match, decision: d.Freeze) -> str:
     return f"{seat.team} is frozen for {decision.seconds:g} s."
 
 
-def _unfreeze(match: Match, decision: d.Unfreeze) -> str:
+def _unfreeze(match: MatchState, decision: d.Unfreeze) -> str:
     seat = _seat(match, decision.seat)
     if seat.frozen_until <= match.ticks:
         raise Illegal(f"{seat.team} is not frozen.")
@@ -160,14 +156,14 @@ def _unfreeze(match: Match, decision: d.Unfreeze) -> str:
     return f"{seat.team} may move again."
 
 
-def _adjust(match: Match, decision: d.Adjust) -> str:
+def _adjust(match: MatchState, decision: d.Adjust) -> str:
     seat = _seat(match, decision.seat)
     points = int(_number(decision.points, MAX_POINTS, "points"))
     match.adjustments[match.next_number] = (seat.index, points)
     return f"{points:+d} for {seat.team}."
 
 
-def _set(match: Match, decision: d.Set) -> str:
+def _set(match: MatchState, decision: d.Set) -> str:
     names = [marker.name for marker in match.game.markers]
     if decision.marker not in names:
         raise Illegal(f"there is no {decision.marker!r} on this board; there are {_list(names)}.")
@@ -184,18 +180,18 @@ def _set(match: Match, decision: d.Set) -> str:
     return f"{decision.marker} is set to {decision.state}."
 
 
-def _clock(match: Match, decision: d.Clock) -> str:
+def _clock(match: MatchState, decision: d.Clock) -> str:
     seconds = _number(decision.seconds, MAX_CLOCK_S, "s")
     match.clock_offset += _ticks(seconds)
     return f"the clock moves by {seconds:+g} s."
 
 
-def _abort(match: Match, decision: d.Abort) -> str:
+def _abort(match: MatchState, decision: d.Abort) -> str:
     match.ended = match.ended or "aborted by the referee"
     return "the match is void."
 
 
-def _declare(match: Match, decision: d.Declare) -> str:
+def _declare(match: MatchState, decision: d.Declare) -> str:
     choices = [*(seat.id for seat in match.seats), "draw"]
     if decision.winner not in choices:
         raise Illegal(f"{decision.winner!r} can't win; there are {_list(choices)}.")
@@ -205,21 +201,21 @@ def _declare(match: Match, decision: d.Declare) -> str:
     return f"{_seat(match, decision.winner).team} is declared the winner."
 
 
-def _end_play(match: Match, decision: d.Declare) -> None:
+def _end_play(match: MatchState, decision: d.Declare) -> None:
     if match.phase is Phase.HALTED:
         match.finish("ended by the referee")
 
 
-def _official(match: Match, decision: d.Official) -> str:
+def _official(match: MatchState, decision: d.Official) -> str:
     return f"the result is official: {match.declared or match.winner()}."
 
 
-def _next(match: Match, decision: d.Next) -> str:
+def _next(match: MatchState, decision: d.Next) -> str:
     match.next_wanted = True
     return "the next match opens."
 
 
-def _take_back(match: Match, item: Decide, decision: d.TakeBack) -> DecisionReply:
+def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> DecisionReply:
     """Strike out one event and judge the match again without it (rules 4, take-back)."""
     if decision.event in match.adjustments:
         adjustments = {n: a for n, a in match.adjustments.items() if n != decision.event}
@@ -266,7 +262,7 @@ def _take_back(match: Match, item: Decide, decision: d.TakeBack) -> DecisionRepl
     )
 
 
-def _follow(match: Match, over: str) -> None:
+def _follow(match: MatchState, over: str) -> None:
     """Let the phase follow from what the game is after a take-back."""
     if match.phase is Phase.HALTED and over:
         match.finish(over)
@@ -277,19 +273,19 @@ def _follow(match: Match, over: str) -> None:
         match.ended = over or "time is up"
 
 
-def _no_board(match: Match) -> str:
+def _no_board(match: MatchState) -> str:
     return "" if match.game.markers else "this game has no board"
 
 
-def _nobody(match: Match) -> str:
+def _nobody(match: MatchState) -> str:
     return "" if any(seat.join for seat in match.seats) else "nobody has joined"
 
 
-def _missing(match: Match) -> str:
+def _missing(match: MatchState) -> str:
     return "; ".join(match.missing())  # also what changed a moment ago, in this beat
 
 
-def _no_end(match: Match) -> str:
+def _no_end(match: MatchState) -> str:
     return "" if match.duration_ticks else "this match has no end"
 
 
@@ -298,11 +294,11 @@ _SCORED = _PLAY | {Phase.FINISHED}
 _OPEN = _SCORED | {Phase.LOBBY, Phase.READY, Phase.COUNTDOWN}
 
 
-def _begin_countdown(match: Match, decision: d.Decision) -> None:
+def _begin_countdown(match: MatchState, decision: d.Decision) -> None:
     match.begin_countdown()
 
 
-def _enter(phase: Phase) -> Callable[[Match, d.Decision], None]:
+def _enter(phase: Phase) -> Callable[[MatchState, d.Decision], None]:
     return lambda match, decision: match.enter(phase)
 
 

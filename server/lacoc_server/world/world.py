@@ -1,6 +1,7 @@
 """The world: the one place where physics is stepped (design.md, "Robot and world")."""
 
 import hashlib
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -108,6 +109,7 @@ class World:
         self._control = self.data.ctrl
         self._warned = self.data.warning.number
         self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
+        self._weights = _weights(self.model)
         for seat, robot in enumerate(self._robots):
             self._put(robot, arena.game.starts[seat][0])
         self._keep()
@@ -133,9 +135,7 @@ class World:
         if any(self._warned.tobytes()):
             return self._undo()
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
-        chain = hashlib.sha256(self.digest)
-        chain.update(self._state.data)
-        self.digest = chain.digest()[:8]
+        self.digest = _chained(self.digest, self._state.data)
         return None
 
     def poses(self) -> bytes:
@@ -143,13 +143,16 @@ class World:
         poses: npt.NDArray[np.float32] = self.data.qpos[self._pose_qpos].astype("<f4")
         return poses.tobytes()
 
-    def touched(self) -> Sequence[tuple[int, ...]]:
+    def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
         """For each seat the markers whose probes it touches now, in ascending order.
 
         A probe is a geom that exerts no force. Touch is MuJoCo's own distance between geoms being
         at most 0; the order of the contact list plays no part.
+
+        Args:
+            gap_m: the largest distance that counts as a touch; below 0: only deeper ones count.
         """
-        return self._touch()
+        return self._touch(gap_m)
 
     # Snapshots
 
@@ -169,6 +172,26 @@ class World:
         self.digest = saved[:8]
         self._state[:] = state
         mujoco.mj_setState(self.model, self.data, self._state, _STATE)
+
+    def apart(self, saved: bytes) -> float:
+        """Measure how far this state is from a saved one.
+
+        Returns:
+            The largest difference of a position [m] or an angle [rad], now or, by the difference
+            of velocities and accelerations, within the next tick. Infinite if anything else
+            differs: the time, the commanded angles, or what is always 0.
+        """
+        if len(saved) != 8 + self._state.nbytes:
+            return math.inf
+        gaps = np.abs(self._state - np.frombuffer(saved[8:]))
+        if not np.isfinite(gaps).all() or (gaps[self._weights == 0] != 0).any():
+            return math.inf
+        return float((gaps * self._weights).max(initial=0.0))
+
+    @staticmethod
+    def follows(saved: bytes, digest: bytes) -> bool:
+        """Say whether a saved state's digest is chained to that of the tick before it."""
+        return _chained(digest, saved[8:]) == saved[:8]
 
     # Private
 
@@ -192,8 +215,9 @@ class World:
         data, spec = self.data, robot.entry.robot
         at = robot.root_qpos
         data.qpos[at : at + 3] = place.x_m, place.y_m, spec.start_z_m
-        half_yaw = (place.heading_rad - np.pi / 2) / 2  # the body's forward is its +y
-        data.qpos[at + 3 : at + 7] = np.cos(half_yaw), 0, 0, np.sin(half_yaw)
+        half_yaw = (place.heading_rad - math.pi / 2) / 2  # the body's forward is its +y
+        # Not NumPy's, which pick their code by processor in a way of their own.
+        data.qpos[at + 3 : at + 7] = math.cos(half_yaw), 0, 0, math.sin(half_yaw)
         data.qpos[robot.joint_qpos] = spec.start_posture
         data.ctrl[robot.actuators] = spec.start_posture
         dofs = np.concatenate([np.arange(robot.root_dof, robot.root_dof + 6), robot.joint_dofs])
@@ -256,29 +280,53 @@ class _TouchTest:
         mujoco.mj_kinematics(model, data)
         self._x_m, self._y_m = data.geom_xpos[geoms, 0], data.geom_xpos[geoms, 1]
         reach_m = model.geom_rbound[self._geoms, None] + model.geom_size[geoms, 0]
-        self._reach_m2 = reach_m**2
+        self._reach_m, self._reach_m2 = reach_m, reach_m**2
         self._at = data.geom_xpos
 
-    def __call__(self) -> Sequence[tuple[int, ...]]:
-        """For each seat the markers it touches, in ascending order."""
+    def __call__(self, gap_m: float) -> Sequence[tuple[int, ...]]:
+        """For each seat the markers it touches, or that are this near, in ascending order."""
         if not (self._probes and self._seats):
             return self._none
         # After mj_step the geoms still stand where the last step began.
         mujoco.mj_kinematics(self._model, self._data)
         at = self._at[self._geoms]
-        gap_m2 = (at[:, 0, None] - self._x_m) ** 2 + (at[:, 1, None] - self._y_m) ** 2
-        close = gap_m2 <= self._reach_m2
+        apart_m2 = (at[:, 0, None] - self._x_m) ** 2 + (at[:, 1, None] - self._y_m) ** 2
+        close = apart_m2 <= (self._reach_m2 if gap_m <= 0 else (self._reach_m + gap_m) ** 2)
         if not close.any():
             return self._none
         touched: list[set[int]] = [set() for _ in self._none]
         for geom, probe in zip(*(places.tolist() for places in close.nonzero()), strict=True):
             marker, pole = self._probes[probe]
-            gap_m = mujoco.mj_geomDistance(
-                self._model, self._data, int(self._geoms[geom]), pole, _TOUCH_M, None
+            distance_m = mujoco.mj_geomDistance(
+                self._model, self._data, int(self._geoms[geom]), pole, _TOUCH_M + abs(gap_m), None
             )
-            if gap_m <= 0:
+            if distance_m <= gap_m:
                 touched[self._seats[geom]].add(marker)
         return [tuple(sorted(markers)) for markers in touched]
+
+
+def _chained(digest: bytes, state: bytes | memoryview) -> bytes:
+    """Chain a state to the digest of the tick before it."""
+    chain = hashlib.sha256(digest)
+    chain.update(state)
+    return chain.digest()[:8]
+
+
+def _weights(model: Any) -> npt.NDArray[np.float64]:
+    """What a difference of each number of the state makes of a position or angle in a tick.
+
+    0: no arithmetic may change this number.
+    """
+    tick_s = SUBSTEPS * model.opt.timestep
+    weight = {
+        int(mujoco.mjtState.mjSTATE_QPOS): 1.0,
+        int(mujoco.mjtState.mjSTATE_QVEL): tick_s,
+        int(mujoco.mjtState.mjSTATE_WARMSTART): tick_s**2,
+    }
+    parts = [1 << bit for bit in range(_STATE.bit_length()) if _STATE & 1 << bit]
+    return np.concatenate(
+        [np.full(mujoco.mj_stateSize(model, part), weight.get(part, 0.0)) for part in parts]
+    )
 
 
 def _rgba(colour: str) -> tuple[float, float, float, float]:

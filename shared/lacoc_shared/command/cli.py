@@ -20,8 +20,8 @@ import typer
 from rich.markup import escape
 from typer.core import TyperCommand, TyperGroup
 
-from lacoc_shared import __version__
-from lacoc_shared.command import plugins, screen
+from lacoc_shared import __version__, words
+from lacoc_shared.command import language, plugins, screen
 from lacoc_shared.mistakes import FileRefused, UserError, printable, text_of
 
 WRONG_USE = 2
@@ -184,6 +184,7 @@ def main(args: Sequence[str] | None = None) -> int:
     """
     screen.accept_any_text()
     screen.show_crashes(sys.stderr)
+    words.use(language.of_process())
     try:
         typer.main.get_command(app).main(args=args, prog_name="lacoc")
     except UserError as error:

@@ -20,6 +20,7 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_shared.mistakes import ESCAPED, Mistake, text_of
+from lacoc_shared.words import render
 
 _UNLIMITED = 10_000  # characters in a line that no eye must follow
 
@@ -93,8 +94,8 @@ def mistakes_table(mistakes: Sequence[Mistake]) -> Table:
         ("joint", lambda m: m.joint),
         ("leg", lambda m: m.leg),
         ("entry", lambda m: m.field),
-        ("found", lambda m: m.found),
-        ("expected", lambda m: m.expected),
+        ("found", lambda m: render(m.found)),
+        ("expected", lambda m: render(m.expected)),
     )
     used = [(title, get) for title, get in columns if any(get(m) is not None for m in mistakes)]
     table = Table(*(title for title, _ in used))

@@ -14,7 +14,9 @@ from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
+from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.contest.key_folder import KeyFolder
+from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
@@ -26,7 +28,6 @@ from lacoc_shared.network.address import (
     free_beside,
 )
 from lacoc_shared.network.address import host as address_host
-from lacoc_shared.seal import new_token
 from lacoc_shared.seat import Colour, Pattern
 
 T = TypeVar("T")
@@ -60,30 +61,6 @@ class SeatHolder(Holder, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """What of these is the team's own."""
         both = {"colour": self.colour, "pattern": self.pattern}
         return {name: own for name, own in both.items() if own}
-
-
-_Amount = Annotated[float, msgspec.Meta(ge=0)]
-_Percent = Annotated[float, msgspec.Meta(ge=0, le=100)]
-_Times = Annotated[int, msgspec.Meta(ge=0)]
-
-
-class HealthLimits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A match that was held worse than this gets the advice to be played again."""
-
-    real_time_factor: _Amount = 0.98
-    """Least over the whole of PLAYING."""
-    slow_beats_percent: _Percent = 1.0
-    """Most, of the beats of PLAYING."""
-    worst_late_ms: _Amount = 200.0
-    """The latest that a beat of PLAYING may begin; from 100 on the match runs late."""
-    silent_s: _Amount = 5.0
-    """Most that a seat may be silent in PLAYING."""
-    heard_percent: _Percent = 70.0
-    """Least of a seat's repeats that have to arrive."""
-    faults: _Times = 0
-    """Most stops of physics."""
-    resumptions: _Times = 2
-    """Most restarts of a killed court."""
 
 
 class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -1,1 +1,5 @@
 """Gaits: tables of postures and their files."""
+
+from lacoc_shared.gait.tables import Level
+
+__all__ = ["Level"]  # what bots of others import

@@ -79,7 +79,8 @@ def check(
             mistakes.append(Mistake(file=str(file), found=str(error), expected=_NAME_OF_A_FILE))
     if json:
         checked = [_checked(file, table) for file, table in tables]
-        screen.print_json({"files": checked, "mistakes": mistakes, "notes": notes})
+        in_words = [mistake.in_words() for mistake in mistakes]
+        screen.print_json({"files": checked, "mistakes": in_words, "notes": notes})
         if mistakes:
             raise typer.Exit(2)
         return

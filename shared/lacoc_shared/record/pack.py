@@ -20,7 +20,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE
-from lacoc_shared.record.stream import walk
+from lacoc_shared.record.stream import Stop, walk
 
 
 def pack(segments: Sequence[Path], out: Path) -> None:
@@ -96,14 +96,14 @@ def _compare(segments: Sequence[Path], packed: Path) -> None:
         )
 
 
-def _messages(paths: Sequence[Path]) -> tuple[list[bytes], str]:
+def _messages(paths: Sequence[Path]) -> tuple[list[bytes], Stop | None]:
     """A hash of each message of some files, and what is wrong with the end of the last file."""
     found: list[bytes] = []
 
     def add(topic: str, beat: int, data: bytes, message: Any) -> None:
         found.append(hashlib.blake2b(b"%s %d " % (topic.encode(), beat) + data).digest())
 
-    wrong = ""
+    wrong: Stop | None = None
     for path in paths:
         wrong = walk(path, add)
     return found, wrong

@@ -53,6 +53,9 @@ class Record:
 
     gap: bool = False
     """Whether it stops there because a later segment does not follow."""
+    lost: bool = False
+    """Whether a part is lost: a segment is missing, a file is damaged or not whole. The end that a
+    killed court did not write is no loss."""
 
     @property
     def header(self) -> Header:
@@ -92,7 +95,10 @@ class Record:
             for path in paths:
                 record._read_file(path)
         except _Gap as gap:
-            record.gap, record.cut = True, f"{record.cut} {gap}".lstrip()
+            record.gap = record.lost = True
+            record.cut = f"{record.cut} {gap}".lstrip()
+        if not record.headers and record.lost:
+            raise NoMatch(f"Nothing can be read of the match: {record.cut}")
         if not record.headers:
             raise NoMatch(
                 f"There is no match in {' '.join(map(str, paths)) or 'no files'}: a record begins "
@@ -102,10 +108,14 @@ class Record:
 
     def _read_file(self, path: Path) -> None:
         before = len(self.headers)
-        wrong = walk(path, partial(self._take, path))
-        if wrong and len(self.headers) == before and before:
+        stop = walk(path, partial(self._take, path))
+        if stop and len(self.headers) == before and before:
             return  # of a court that was killed before it had opened: nothing of it counts
-        self.cut = f"{path} stops after beat {self.last_beat}, and {wrong}" if wrong else ""
+        self.lost = stop is not None and stop.damaged
+        self.cut = ""
+        if stop is not None:
+            where = f"stops after beat {self.last_beat}, and " if self.last_beat >= 0 else ""
+            self.cut = f"{path} {where}{stop.text}"
 
     def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
         """Add one message."""

@@ -39,6 +39,9 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
     """Wall time of the segment's begin, ISO 8601, UTC."""
     versions: dict[str, str]
     """lacoc, protocol, mujoco, machine: a replay is exact only where they agree."""
+    arithmetic: dict[str, str] = {}
+    """Fingerprint of the arithmetic that made it (`functions`, `model`, `path`: hashes) and where
+    it comes from (`processor`, `libc`, `python`, `system`). Empty in records from before it."""
     setup: Setup
 
 

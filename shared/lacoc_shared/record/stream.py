@@ -4,11 +4,12 @@ import struct
 from collections.abc import Callable, Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import zstandard
 from mcap.exceptions import McapError
+from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, DataEnd, McapRecord, Message
 from mcap.records import Header as FileHeader
 from mcap.stream_reader import StreamReader, breakup_chunk
@@ -35,6 +36,8 @@ _DAMAGE = (
 _MAX_BYTES = 1 << 26
 """A longer message or chunk is no record's: the longest message, a scene, has some 30 kB, and a
 chunk 1 MiB."""
+_RECORD_HEAD_BYTES = 9
+"""A record's opcode and length."""
 _UNPACKED_BYTES, _UNPACKED_RATIO = 1 << 22, 50
 """A file unpacks to no more than this and so many times its own size: a match, and also a court
 where nothing happens, packs to a third or a quarter."""
@@ -47,22 +50,34 @@ Take = Callable[[str, int, bytes, Any], None]
 """Called with a message's topic, beat, bytes, and what they mean (a snapshot's: the bytes)."""
 
 
+class Stop(NamedTuple):
+    """Where a file can't be read any further, and why."""
+
+    text: str
+    """What is wrong with it, as the end of a sentence."""
+    damaged: bool
+    """Whether it is damaged or not whole; False: it was never closed, as by a killed court."""
+
+
 class _Format(msgspec.Struct):
     """The one entry that a header of any format has."""
 
     format: int
 
 
-def walk(path: Path, take: Take) -> str:
+def walk(path: Path, take: Take) -> Stop | None:
     """Give every whole message of a file to `take`, up to where it stops or is damaged.
+
+    A packed file's messages are in chunks, each with a checksum: of a damaged chunk nothing is
+    given.
 
     Args:
         path: a segment, or a packed file.
         take: gets the messages.
 
     Returns:
-        "" if the file was closed and is whole; else what is wrong with it, as the end of a
-        sentence: it may have held more.
+        None if the file was closed and is whole; else what is wrong with it: it may have held
+        more.
 
     Raises:
         UserError: if it can't be read, is not a record, or is of another format.
@@ -75,12 +90,11 @@ def walk(path: Path, take: Take) -> str:
         raise UserError(
             f"{path} is not a LACOC record: it is no MCAP file. Give the .mcap of a match."
         )
-    beat, whole = -1, 0
+    beat, whole = -1, len(MCAP0_MAGIC)
     topics: dict[int, str] = {}
     file = BytesIO(data)
     try:
         for record in _records(file, len(data)):
-            whole = file.tell()
             if isinstance(record, Message):
                 topic = topics[record.channel_id]
                 beat = _next_beat(beat, record.log_time // BEAT_NS, topic)
@@ -88,17 +102,42 @@ def walk(path: Path, take: Take) -> str:
             elif isinstance(record, Channel):
                 topics[record.id] = record.topic
             elif isinstance(record, DataEnd):
-                return ""
+                return None
             elif isinstance(record, FileHeader) and record.profile != PROFILE:
                 raise UserError(
                     f"{path} is an MCAP file, but not a LACOC record. Give the .mcap of a match "
                     "(one that was exported for Foxglove can't be read back)."
                 )
+            whole = file.tell()
     except _DAMAGE as error:
-        if data[len(MCAP0_MAGIC) :].endswith(MCAP0_MAGIC):
-            return f"is damaged there ({error}). Copy it again from where it was made."
-    rest = f"; its last {len(data) - whole} bytes can't be read" if whole < len(data) else ""
-    return f"has no end there: it was never closed, not copied whole, or is damaged{rest}."
+        if not _is_cut(data, whole):
+            text = (
+                f"is damaged at byte {whole} of {len(data)} ({error}); its last "
+                f"{len(data) - whole} bytes can't be read. Copy it again from where it was made."
+            )
+            return Stop(text, damaged=True)
+    left = max(0, len(data) - whole)
+    rest = f"; its last {left} bytes can't be read" if left else ""
+    return Stop(
+        f"has no end there: it was never closed, not copied whole, or is damaged{rest}.",
+        damaged=_is_packed(data),  # a file is packed whole before it gets its name
+    )
+
+
+def _is_packed(data: bytes) -> bool:
+    """Whether a file's messages are in chunks."""
+    at = len(MCAP0_MAGIC)
+    while at < len(data) and data[at] not in (Opcode.MESSAGE, Opcode.CHUNK):
+        at += _RECORD_HEAD_BYTES + int.from_bytes(data[at + 1 : at + 9], "little")
+    return data[at : at + 1] == bytes([Opcode.CHUNK])
+
+
+def _is_cut(data: bytes, at: int) -> bool:
+    """Whether a file ends in the middle of the record that begins at a byte."""
+    if data.endswith(MCAP0_MAGIC) and len(data) > at + len(MCAP0_MAGIC):
+        return False
+    length = int.from_bytes(data[at + 1 : at + _RECORD_HEAD_BYTES], "little")
+    return len(data) < at + _RECORD_HEAD_BYTES + length <= at + _MAX_BYTES
 
 
 def _next_beat(before: int, beat: int, topic: str) -> int:

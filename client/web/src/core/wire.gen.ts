@@ -1,5 +1,7 @@
 // Made by client/web/make_wire.py from the Python structs; not edited by hand.
 
+import type { Phrase } from "../i18n/render";
+
 export const PROTOCOL = 1;
 
 export const Phase = {
@@ -195,8 +197,8 @@ export interface DecisionReply {
 
 export interface Mistake {
   file: string;
-  found: string;
-  expected: string;
+  found: Phrase | string;
+  expected: Phrase | string;
   row?: number | null;
   column?: number | null;
   joint?: number | null;

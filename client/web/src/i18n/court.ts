@@ -62,6 +62,7 @@ const FRAMES: readonly Pattern[] = [
   ["network", "通信"],
   ["rule", "規則"],
   ["the court was started again", "コートの再起動"],
+  ["the court was started again, with another arithmetic", "演算の異なる環境でのコートの再起動"],
   ["physics stopped", "物理計算の停止"],
   ["Replay advised: {Reasons}.", "再試合を推奨します：{Reasons}。"],
 ];

@@ -6,6 +6,7 @@ import { remembered } from "../core/settings";
 import { common } from "./common";
 import { play } from "./play";
 import { referee } from "./referee";
+import { type Phrase, render } from "./render";
 import { replay } from "./replay";
 import { watch } from "./watch";
 
@@ -43,7 +44,8 @@ effect(() => {
   });
 });
 
-/** A sentence of the court, which speaks English. */
-export function said(text: string): string {
-  return language.value === "ja" ? translate.value(text) : text;
+/** What a court or a gateway says: a phrase, or a sentence in English from before phrases. */
+export function said(what: Phrase | string): string {
+  if (typeof what !== "string") return render(what, language.value);
+  return language.value === "ja" ? translate.value(what) : what;
 }

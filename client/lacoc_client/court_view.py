@@ -1,0 +1,133 @@
+"""What a court has said, from its bytes, and what of it is missing. No I/O, no clock.
+
+A spectator and a gateway both hold one: they hand it what arrives and ask the court for
+what it lacks.
+"""
+
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+import msgspec
+
+from lacoc_client.event_log import EventLog
+from lacoc_shared.codec import decode, encode, message_hash
+from lacoc_shared.messages import PROTOCOL, Event
+
+T = TypeVar("T")
+
+MAX_BYTES = 1 << 20
+"""A court's messages are shorter."""
+
+
+class _Sheet(msgspec.Struct):
+    protocol: int
+    scene: bytes = b""
+    match_id: str = ""
+
+
+class Told(msgspec.Struct):
+    """The fields of `Health` that say what a court has sent."""
+
+    match: int
+    beat: int
+    events: int = 0
+    sheet: bytes = b""
+
+
+class CourtView(Generic[T]):
+    """The newest sheet, scene and log of a court.
+
+    Whatever it takes comes from the network: each `take_...` raises `BadMessage` if the bytes make
+    no sense, and changes nothing then.
+
+    Args:
+        keep: makes what is kept of an event, from the event and its bytes.
+    """
+
+    def __init__(self, keep: Callable[[Event, bytes], T]) -> None:
+        self._keep = keep
+        self.log: EventLog[T] = EventLog()
+        """The events of the match."""
+        self.sheet: bytes | None = None
+        """The newest sheet that this version of the protocol understands."""
+        self.scene: bytes | None = None
+        """The newest scene that belongs to a frame."""
+        self.match_id = ""
+        """Name of the match's record."""
+        self.other_version: int | None = None
+        """Version of the protocol that the court speaks, if it is another; 0: it can't be read."""
+        self._sheet_hash = self._scene_hash = b""
+        self._frame_scene = self._sheet_scene = b""
+        """Hash of the scene that belongs to the newest frame, and to the sheet."""
+        self._told = Told(0, 0)
+        self._doubt = False
+
+    @property
+    def lacks_events(self) -> bool:
+        """Whether the court has sent an event that is not here."""
+        return self.log.differs(self._told.match, self._told.beat, self._told.events)
+
+    @property
+    def lacks_scene(self) -> bool:
+        """Whether the newest frame belongs to another scene."""
+        return self._frame_scene != self._scene_hash
+
+    @property
+    def lacks_sheet(self) -> bool:
+        """Whether the court has another sheet, or may have."""
+        return self._doubt or self.has_older_sheet or not self.fits
+
+    @property
+    def has_older_sheet(self) -> bool:
+        """Whether the court said that it has another sheet."""
+        return self._told.sheet not in (b"", self._sheet_hash)
+
+    @property
+    def fits(self) -> bool:
+        """Whether the sheet belongs to the newest frame."""
+        return self._frame_scene == self._sheet_scene
+
+    def doubt(self) -> None:
+        """Note that a message made no sense: the sheet will tell the court's version."""
+        self._doubt = True
+
+    def refuse_sheet(self) -> None:
+        """Note that the court's sheet itself can't be read."""
+        self.other_version = 0
+
+    def see_frame(self, scene: bytes) -> None:
+        """Note the newest frame's scene, by its hash."""
+        self._frame_scene = scene
+
+    def see_health(self, told: Told) -> None:
+        """Note what the court says that it has sent."""
+        self._told = told
+
+    def add_event(self, event: Event, payload: bytes) -> bool:
+        """Take an event; returns whether it is a new one."""
+        return self.log.add(event, self._keep(event, payload))
+
+    def take_log(self, payload: bytes) -> list[Event]:
+        """Take all events as the court lists them; returns those that are new, in their order."""
+        events = decode(payload, tuple[Event, ...], MAX_BYTES)
+        return self.log.restore([(event, self._keep(event, encode(event))) for event in events])
+
+    def take_sheet(self, payload: bytes) -> bool:
+        """Take a sheet; returns whether it is a new one of this version of the protocol."""
+        found = decode(payload, _Sheet, MAX_BYTES)
+        self._doubt = False
+        self._sheet_scene, self.match_id = found.scene, found.match_id
+        self._sheet_hash = message_hash(payload)
+        self.other_version = None if found.protocol == PROTOCOL else found.protocol
+        if self.other_version is not None or payload == self.sheet:
+            return False
+        self.sheet = payload
+        return True
+
+    def take_scene(self, payload: bytes) -> bool:
+        """Take a scene; returns whether it is a new one that belongs to the newest frame."""
+        found = message_hash(payload)
+        if found != self._frame_scene or found == self._scene_hash:
+            return False
+        self._scene_hash, self.scene = found, payload
+        return True

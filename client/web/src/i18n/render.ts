@@ -1,0 +1,148 @@
+/**
+ * Putting phrases into words, as lacoc_shared/words/render.py does: the same table, the same
+ * string. tests/shared/test_words.py holds the two together.
+ *
+ * Nothing that arrives raises here: an unknown code shows itself with its values, a missing value
+ * shows as "?", and what is nested too deep shows its code alone.
+ */
+
+import { WORDS } from "./words.gen.ts";
+
+export type Language = "en" | "ja";
+export interface Phrase {
+  code: string;
+  values?: Record<string, Value>;
+}
+export type Value = string | number | bigint | boolean | null | Phrase | Value[];
+
+type Hole = { name: string; formats: string[] };
+type Part = string | Hole | (string | Hole)[];
+
+const DEEPEST = 5;
+const LONGEST_LIST = 100;
+const LONGEST_TEXT = 2000;
+const LARGEST = 1e15;
+const DECIMALS = 6;
+const CONTROLS =
+  // biome-ignore lint/suspicious/noControlCharactersInRegex: these are what is taken out
+  /[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]/gu;
+const PIECE = /\{(\w+)(?::([^{}<>]*))?\}|([<>])|([^{}<>]+)/g;
+
+const parsed = new Map<string, Part[]>();
+
+/** A phrase in words; a plain text comes out as it is. */
+export function render(phrase: Phrase | string, language: Language): string {
+  return typeof phrase === "string" ? phrase : rendered(phrase, language, 0);
+}
+
+function rendered(phrase: Phrase, language: Language, depth: number): string {
+  const entry = found(phrase.code);
+  if (!entry || depth >= DEEPEST) return unknown(phrase, depth);
+  const values = phrase.values ?? {};
+  const shown = (part: Part): string => {
+    if (typeof part === "string") return part;
+    if (!Array.isArray(part)) return filled(own(values, part.name), part.formats, language, depth);
+    const there = part.every((one) => typeof one === "string" || !isMissing(own(values, one.name)));
+    return there ? part.map(shown).join("") : "";
+  };
+  return parse(entry[language === "ja" ? 1 : 0])
+    .map(shown)
+    .join("");
+}
+
+function found(code: string): readonly [string, string] | undefined {
+  return Object.hasOwn(WORDS, code) ? WORDS[code] : undefined;
+}
+
+function own(values: Record<string, Value>, name: string): Value {
+  return Object.hasOwn(values, name) ? (values[name] ?? null) : null;
+}
+
+function isMissing(value: Value): boolean {
+  return value === null || value === "" || (Array.isArray(value) && value.length === 0);
+}
+
+/** Templates of the table are held against their grammar by the test of the table. */
+function parse(template: string): Part[] {
+  const known = parsed.get(template);
+  if (known) return known;
+  const parts: Part[] = [];
+  let into: Part[] = parts;
+  for (const [, name, formats, bracket, words] of template.matchAll(PIECE)) {
+    if (bracket === "<") {
+      into = [];
+      parts.push(into as (string | Hole)[]);
+    } else if (bracket === ">") into = parts;
+    else into.push(name ? { name, formats: formats?.split(",") ?? [] } : (words ?? ""));
+  }
+  parsed.set(template, parts);
+  return parts;
+}
+
+function unknown(phrase: Phrase, depth: number): string {
+  const values = phrase.values ?? {};
+  const plain = Object.keys(values)
+    .sort()
+    .slice(0, LONGEST_LIST)
+    .map((name) => `${shownText(name)}: ${filled(own(values, name), [], "en", DEEPEST)}`);
+  const inside = depth < DEEPEST ? plain.join(", ") : "";
+  return shownText(phrase.code) + (inside && ` (${inside})`);
+}
+
+function filled(value: Value, formats: string[], language: Language, depth: number): string {
+  if (!Array.isArray(value)) return one(value, formats, language, depth);
+  const items = value.slice(0, LONGEST_LIST).map((item) => one(item, formats, language, depth));
+  const comma = word("join.comma", language);
+  const joins = formats.includes("or") ? "join.or" : formats.includes("and") ? "join.and" : "";
+  if (items.length < 2 || !joins) return items.join(comma);
+  return items.slice(0, -1).join(comma) + word(joins, language) + items.at(-1);
+}
+
+function one(value: Value, formats: string[], language: Language, depth: number): string {
+  const text = plain(value, formats, language, depth);
+  if (!formats.includes("quoted")) return text;
+  const [opening, closing] = word("quote.marks", language).split(" ");
+  return `${opening}${text}${closing}`;
+}
+
+function plain(value: Value, formats: string[], language: Language, depth: number): string {
+  if (typeof value === "boolean") return word(value ? "word.yes" : "word.no", language);
+  if (typeof value === "number" || typeof value === "bigint") return number(Number(value), formats);
+  if (typeof value === "string") {
+    for (const format of formats) {
+      const code = format.slice(0, -1) + value;
+      if (format.endsWith(".*") && found(code)) return word(code, language);
+    }
+    return shownText(value);
+  }
+  return value === null || Array.isArray(value) ? "?" : rendered(value, language, depth + 1);
+}
+
+function word(code: string, language: Language): string {
+  return found(code)?.[language === "ja" ? 1 : 0] ?? code;
+}
+
+function shownText(text: string): string {
+  const points = text.length > LONGEST_TEXT ? Array.from(text) : [];
+  const short = points.length > LONGEST_TEXT ? `${points.slice(0, LONGEST_TEXT).join("")}…` : text;
+  return short.replace(CONTROLS, "\ufffd");
+}
+
+function number(value: number, formats: string[]): string {
+  const plural = formats.find((format) => format.startsWith("plural "));
+  if (plural) {
+    const [single, many] = plural.slice("plural ".length).split("|");
+    return (Math.abs(value) === 1 ? single : many) ?? "";
+  }
+  if (!Number.isFinite(value) || Math.abs(value) >= LARGEST) return "?";
+  if (formats.includes("clock")) {
+    const seconds = Number(Math.abs(value).toFixed(0));
+    const sign = value < 0 && seconds ? "-" : "";
+    return `${sign}${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+  }
+  const digits = formats.find((format) => format.startsWith("."))?.slice(1);
+  let text = Math.abs(value).toFixed(digits === undefined ? DECIMALS : Number(digits));
+  if (digits === undefined) text = text.replace(/\.?0+$/, "");
+  if (!/[1-9]/.test(text)) return text;
+  return (value < 0 ? "-" : formats.includes("+") ? "+" : "") + text;
+}

@@ -1,0 +1,105 @@
+"""Finds references that a reader of the repository can't follow: `python docs/references.py`.
+
+It looks at every cited file, section, decision and link in the sources and the pages of
+the repository, prints what is not there, and ends with 1 if there is any.
+"""
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+READ = (".py", ".ts", ".tsx", ".css", ".md", ".toml", ".yaml", ".yml", ".sh", "Makefile", "run")
+"""Files whose text is looked at, by the end of their name."""
+
+CITED_FILE = re.compile(r"(?<![\w/.@*{}-])((?:[\w.-]+/)*[\w-]+\.(?:md|py|tsx?))\b(?![\w(*{-])")
+SECTION = re.compile(r"(docs/[\w/-]+\.md) (\d+(?:\.\d+)?)\b(?! (?:MB|kB|lines))")
+DECISION = re.compile(r"\b[Dd]ecision (\d+)\b")
+LINK = re.compile(r"\]\(([^)#\s]*)(?:#([\w-]+))?\)")
+ISSUE = re.compile(r"(?<![\w/-])[Ii]ssue #?\d+")
+BARE_RULE = re.compile(r"(?<![\w/.])[Rr]ules \d\b")
+
+OF_READERS = {"my_bot.py", "my_arena.py"}
+"""Files that a page asks its reader to write."""
+
+
+@cache
+def tracked() -> frozenset[str]:
+    """The repository's files: those that git knows, and those that it would add."""
+    words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
+    return frozenset(subprocess.check_output(words, cwd=ROOT, text=True).splitlines())
+
+
+@cache
+def names() -> frozenset[str]:
+    """Every end of a tracked path, as it may be cited: "court/pace.py" and "pace.py"."""
+    return frozenset(
+        "/".join(parts[start:])
+        for parts in (path.split("/") for path in tracked())
+        for start in range(len(parts))
+    )
+
+
+@cache
+def headings(page: str) -> frozenset[str]:
+    """The numbers and anchors of a page's headings."""
+    found = set()
+    for title in re.findall(r"^#+ (.+)$", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE):
+        if number := re.match(r"(\d+(?:\.\d+)?)\.? ", title):
+            found.add(number[1])
+        kept = re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+        found.add(kept)
+    return frozenset(found)
+
+
+def missing(path: str, line: str) -> Iterator[str]:
+    """What a line of a file cites that is not there."""
+    for name in CITED_FILE.findall(line):
+        known = name in names() or (ROOT / path).parent.joinpath(name).is_file()
+        if not known and name not in OF_READERS:
+            yield f"there is no {name}"
+    for page, number in SECTION.findall(line):
+        if page in tracked() and number not in headings(page):
+            yield f"{page} has no section {number}"
+    for number in DECISION.findall(line):
+        if not any(name.startswith(f"docs/decisions/{int(number):04}-") for name in tracked()):
+            yield f"there is no decision {number}"
+    for what in ISSUE.findall(line):
+        yield f"{what!r} is not in the repository"
+    for what in BARE_RULE.findall(line):
+        yield f"{what!r}: write docs/rules.md and the section"
+    if path.endswith(".md"):
+        yield from missing_links(path, line)
+
+
+def missing_links(path: str, line: str) -> Iterator[str]:
+    """What the links of a page lead to that is not there."""
+    for target, anchor in LINK.findall(line):
+        if target.startswith(("http:", "https:", "mailto:")):
+            continue
+        found = (ROOT / path).parent.joinpath(target).resolve() if target else ROOT / path
+        if not found.exists():
+            yield f"the link {target} leads nowhere"
+        elif anchor and anchor not in headings(str(found.relative_to(ROOT))):
+            yield f"{target or path} has no heading #{anchor}"
+
+
+def main() -> int:
+    """Print every reference that leads nowhere."""
+    found = 0
+    for path in sorted(tracked()):
+        file = ROOT / path
+        if not path.endswith(READ) or not file.is_file() or file == Path(__file__).resolve():
+            continue
+        for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
+            for what in missing(path, line):
+                found += 1
+                print(f"{path}:{number}: {what}")
+    return min(found, 1)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

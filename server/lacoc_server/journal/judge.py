@@ -1,0 +1,382 @@
+"""A record's match, judged again on the poses that it recorded.
+
+The rules judged exactly the poses that frames carry, so this is exact on any machine, and needs no
+physics. What the match asks of physics on the way is cut into sections, which are simulated apart.
+A last beat without its frame was never answered and does not count (`journal`).
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import msgspec
+from msgspec.structs import replace
+
+from lacoc_arenas.arena import Arena
+from lacoc_arenas.game import Place
+from lacoc_server.journal.section import Build, Difference, Section, Step, Worlds
+from lacoc_server.match.entry import Entry
+from lacoc_server.match.match import Beat, Match
+from lacoc_server.match.physics import Fault, Physics
+from lacoc_server.world import arithmetic
+from lacoc_server.world.world import World
+from lacoc_shared.codec import decode, encode, message_hash
+from lacoc_shared.gait.tables import Posture
+from lacoc_shared.messages import Event, Frame, Scene, Sheet
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import Header, Result
+
+_FRAME = (
+    "match",
+    "beat",
+    "phase",
+    "countdown",
+    "clock",
+    "seats",
+    "board",
+    "poses",
+    "scene",
+    "state hash",
+)
+"""What the parts of a frame are called, in its order."""
+_SCENE_BOUND = 1e-9
+"""Another arithmetic may build a model whose drawn lengths [m] differ by this much."""
+
+
+class RecordedPhysics:
+    """Recorded poses behind the protocol of physics; notes what the match asks for.
+
+    Args:
+        world: the robots as they are built here; it is not stepped.
+        record: what is recorded of them.
+        scene: as it is recorded; None: as it is built here.
+        model_hash: the same.
+    """
+
+    def __init__(
+        self, world: World, record: "Recorded", scene: Scene | None, model_hash: str | None
+    ) -> None:
+        self.world = world
+        self.scene = scene or world.scene
+        self.scene_hash = message_hash(encode(scene)) if scene else world.scene_hash
+        self.model_hash = model_hash or world.model_hash
+        self._record = record
+        self._places: list[tuple[int, Place]] = []
+        self._angles: tuple[Posture, ...] | None = None
+        self._asked = False
+
+    @property
+    def digest(self) -> bytes:
+        """The frame's."""
+        frame = self._record.frame
+        return frame.digest if frame else self.world.digest
+
+    def place(self, seat: int, place: Place) -> None:
+        """Note it."""
+        self._places.append((seat, place))
+
+    def step(self, angles: Sequence[Posture]) -> Fault | None:
+        """Note the angles; it fails where the record says so."""
+        self._angles = tuple(angles)
+        return self._record.fault
+
+    def save(self) -> bytes:
+        """The recorded snapshot of this beat, if there is one."""
+        return self._record.snapshot or b""
+
+    def poses(self) -> bytes:
+        """The frame's."""
+        frame = self._record.frame
+        return frame.poses if frame and frame.poses else self.world.poses()
+
+    def touched(self) -> Sequence[tuple[int, ...]]:
+        """As it is recorded."""
+        self._asked = True
+        return self._record.touched
+
+    def take(self) -> Step | None:
+        """Give what this beat asked for and what its frame says; None if that is nothing."""
+        record, frame = self._record, self._record.frame
+        places, angles, asked = tuple(self._places), self._angles, self._asked
+        self._places, self._angles, self._asked = [], None, False
+        here = record.has_frame
+        if not (places or angles or here):
+            return None
+        return Step(
+            record.beat,
+            places,
+            angles,
+            record.fault,
+            record.touched if asked else None,
+            frame.poses if frame and here else None,
+            frame.digest if frame else b"",
+        )
+
+
+class Recorded:
+    """What is recorded of one beat after another."""
+
+    def __init__(self, record: Record) -> None:
+        self.seats = 0
+        """Robots on the field."""
+        self.beat = -1
+        self.has_frame = False
+        """Whether this beat has a frame of its own."""
+        self.frame: Frame | None = None
+        """The newest so far."""
+        self.fault: Fault | None = None
+        self._frames = dict(record.frames)
+        self._touches = record.touches
+        self._snapshots = dict(record.snapshots)
+        self._faults = {event.beat: event for event in record.events if event.kind == "fault"}
+
+    def move(self, beat: int) -> None:
+        """Go to a beat."""
+        self.beat = beat
+        self.has_frame = beat in self._frames
+        if self.has_frame:
+            self.frame = decode(self._frames[beat], Frame)
+        fault = self._faults.get(beat)
+        self.fault = None if fault is None else Fault(fault.seat, str(fault.data["words"]))
+
+    @property
+    def touched(self) -> tuple[tuple[int, ...], ...]:
+        """For each seat the markers it touched in this beat."""
+        touch = self._touches.get(self.beat)
+        return touch.touched if touch else ((),) * self.seats
+
+    @property
+    def snapshot(self) -> bytes | None:
+        """The snapshot after this beat."""
+        return self._snapshots.get(self.beat)
+
+
+class Judge:
+    """Judges a record's match again.
+
+    Args:
+        record: what to judge.
+        folder: of its arena, if that is not installed.
+        snapshots: by beat, where sections begin and end.
+
+    Raises:
+        UserError: if no match can be made of the record.
+    """
+
+    def __init__(self, record: Record, folder: Path | None, snapshots: Mapping[int, bytes]) -> None:
+        self.worlds = Worlds()
+        """Has the world of the newest build."""
+        self.section: Section | None = None
+        """The section that goes on; its steps are none just after a snapshot."""
+        self.difference: Difference | None = None
+        """The first that was found; it ended the judging."""
+        self.other_model: Difference | None = None
+        """Where the model that is built here first has other bits than the recorded one."""
+        self.beats = self.frames = 0
+        """How many were compared."""
+        self._record = record
+        self._folder = folder
+        self._snapshots = snapshots
+        self._frames = dict(record.frames)
+        self._sheets, self._scenes = dict(record.sheets), dict(record.scenes)
+        self._events: dict[int, list[Event]] = {}
+        for event in record.events:
+            self._events.setdefault(event.beat, []).append(event)
+        self._result: Result | None = None
+        self._scene = b""
+        self._builds = 0
+        self._beat = -1
+        with fits_together(record):
+            self._recorded = Recorded(record)
+            self.match = Match(record.header.setup, self._make, folder)
+
+    def sections(self) -> Iterator[Section]:
+        """Judge beat by beat, up to the first difference.
+
+        Yields:
+            Each section when its last beat is judged.
+
+        Raises:
+            UserError: if the record's messages do not fit together.
+        """
+        last = last_beat(self._record)
+        for number in range(last + 1):
+            before = self.section
+            differs = self._judge(number)
+            if number == last:
+                differs += self._differs_at_the_end(last)
+            if before is not self.section and before is not None and before.steps:
+                yield before
+            if (section := self.section) is not None and number in self._snapshots:
+                section.end = self._snapshots[number]
+                self.section = Section(section.build, section.end, section.end[:8])
+                if section.steps:
+                    yield section
+            if differs:
+                self.difference = Difference(number, tuple(differs))
+                break
+        if self.section is not None and self.section.steps:
+            yield self.section
+
+    def _judge(self, number: int) -> list[str]:
+        """Let one beat pass; returns what of it the record has otherwise."""
+        record = self._record
+        self._beat = number
+        with fits_together(record):
+            self._recorded.move(number)
+            beat = self.match.beat(record.inputs.get(number, ()))
+            differs = list(self._differences(number, beat))
+            physics = self.match.physics
+            if not isinstance(physics, RecordedPhysics):
+                self.section = None
+                if number in self._snapshots:
+                    differs.append("the snapshot")
+            elif (step := physics.take()) is not None and self.section is not None:
+                self.section.steps.append(step)
+        self.beats = number + 1
+        self.frames += number in self._frames
+        return differs
+
+    def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
+        """Make the physics of a match: the world itself where there is nobody on it."""
+        world = World(arena, entries)
+        if not entries:
+            return world
+        setup = self._record.header.setup
+        build = Build(self._builds, setup, self._folder, tuple(entries))
+        self._builds += 1
+        self.worlds.keep(build, world)
+        self.section = Section(build, None, world.digest)
+        self._recorded.seats = len(entries)
+        return RecordedPhysics(world, self._recorded, *self._other_model(world))
+
+    def _other_model(self, world: World) -> tuple[Scene | None, str | None]:
+        """Find what another arithmetic built of the same robots.
+
+        Returns:
+            The recorded scene and hash of the model, where these may differ by their last bits.
+        """
+        made_by = header_at(self._record, self._beat).arithmetic.get("model")
+        if made_by in (None, arithmetic.here()["model"]):
+            return None, None
+        events = self._events.get(self._beat, ())
+        models = [event.data["model"] for event in events if "model" in event.data]
+        scene = self._scenes.get(self._beat)
+        if scene is not None and not _near(scene, world.scene):
+            return None, None
+        if [world.model_hash] == models and scene in (None, world.scene):
+            return None, None
+        self.other_model = self.other_model or Difference(self._beat, ("the model",))
+        return scene, str(models[0]) if models else None
+
+    def _differences(self, number: int, beat: Beat) -> Iterator[str]:
+        """What a beat's record has otherwise."""
+        record, match = self._record, self.match
+        recorded = self._frames.get(number)
+        events = self._events.pop(number, [])
+        if any(
+            event.data.get("model", match.physics.model_hash) != match.physics.model_hash
+            for event in events
+        ):
+            yield "the model"
+        if recorded is not None and encode(beat.frame) != recorded:
+            yield from _frame_differences(decode(recorded, Frame), beat.frame)
+        happened = beat.ticked or beat.events or beat.sheet_changed or number in record.inputs
+        if recorded is None and happened:
+            yield "its frame is missing"
+        if len(events) != len(beat.events) or not all(map(_same_event, events, beat.events)):
+            yield "its events"
+        if beat.touch != record.touches.get(number):
+            yield "what the robots touched"
+        sheet = self._sheets.get(number)
+        if (sheet or beat.sheet_changed) and not _same_sheet(sheet, match.sheet()):
+            yield "the sheet"
+        scene = self._scenes.get(number)
+        if scene or match.physics.scene_hash != self._scene:
+            self._scene = match.physics.scene_hash
+            if scene != match.physics.scene:
+                yield "the scene"
+        self._result = beat.result or self._result
+
+    def _differs_at_the_end(self, last: int) -> Iterator[str]:
+        """What the whole record has otherwise."""
+        record = self._record
+        if not _same_result(record, self._result, last):
+            yield "the result"
+        if any(number != last + 1 or not record.cut for number in self._events):
+            yield "events of no beat"
+        if len(self._frames) != len(record.frames):
+            yield "two frames of one beat"
+
+
+@contextmanager
+def fits_together(record: Record) -> Iterator[None]:
+    """Say it in words where a record's messages contradict each other: it may be damaged."""
+    try:
+        yield
+    except (ValueError, ArithmeticError, LookupError, TypeError, AssertionError) as error:
+        raise UserError(
+            f"The messages of the record of match {record.header.match_id!r:.80} do not fit "
+            f"together ({type(error).__name__}: {error!s:.80}): it is damaged."
+        ) from None
+
+
+def last_beat(record: Record) -> int:
+    """The last beat that counts."""
+    sealed = not record.cut or any(beat == record.last_beat for beat, _ in record.frames[-1:])
+    return record.last_beat if sealed else record.last_beat - 1
+
+
+def header_at(record: Record, beat: int) -> Header:
+    """The header of the segment that a beat is in."""
+    return next(
+        (header for header in reversed(record.headers) if header.first_beat <= beat), record.header
+    )
+
+
+def _same_event(recorded: Event, again: Event) -> bool:
+    """Whether a recorded event is the one; words count where this software makes any."""
+    known = again if again.text else replace(again, text=recorded.text)
+    return encode(recorded) == encode(known)
+
+
+def _same_result(record: Record, again: Result | None, last: int) -> bool:
+    """Whether a recorded result is the one, as far as it was answered."""
+    recorded = record.result
+    if recorded is None:  # or it was of a beat that was not answered, in an earlier segment
+        return again is None or len(record.headers) > 1
+    if recorded.beats == last + 2 and record.cut:
+        return True
+    return recorded == again
+
+
+def _same_sheet(recorded: Sheet | None, again: Sheet) -> bool:
+    """Whether a recorded sheet is the one; it also says which software wrote it."""
+    if recorded is None:
+        return False
+    return replace(recorded, version=again.version, protocol=again.protocol) == again
+
+
+def _frame_differences(recorded: Frame, again: Frame) -> list[str]:
+    return [
+        name
+        for name, old, new in zip(
+            _FRAME,
+            (getattr(recorded, f) for f in recorded.__struct_fields__),
+            (getattr(again, f) for f in again.__struct_fields__),
+            strict=True,
+        )
+        if old != new
+    ]
+
+
+def _near(one: object, other: object) -> bool:
+    """Whether two scenes are the same but for the last bits of their numbers."""
+    if isinstance(one, msgspec.Struct) and type(one) is type(other):
+        return all(_near(getattr(one, f), getattr(other, f)) for f in one.__struct_fields__)
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        return len(one) == len(other) and all(map(_near, one, other))
+    if isinstance(one, float) and isinstance(other, float):
+        return abs(one - other) <= _SCENE_BOUND
+    return one == other

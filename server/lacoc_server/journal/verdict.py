@@ -1,0 +1,145 @@
+"""What a verification comes to."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from lacoc_server.journal.section import BOUND, Difference, Finding
+from lacoc_server.world import arithmetic
+from lacoc_shared.record.schema import Header
+
+_ORDER = (
+    "its frame is missing",
+    "match",
+    "beat",
+    "phase",
+    "countdown",
+    "clock",
+    "seats",
+    "board",
+    "poses",
+    "scene",
+    "state hash",
+)
+"""In this order differences of a beat are told; all others come after them."""
+
+
+class Kind(StrEnum):
+    """The three verdicts."""
+
+    SAME = "same"
+    """Every bit is what its inputs give."""
+    OTHER_ARITHMETIC = "other-arithmetic"
+    """The games and the result are what the inputs give; poses are, but for their last bits."""
+    DIFFERS = "differs"
+    """The record is not what its inputs give."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a verification found."""
+
+    kind: Kind
+    beats: int
+    """Beats that were judged again."""
+    frames: int
+    """Frames that were compared."""
+    sections: int
+    """Sections that were simulated again."""
+    text: str
+    """The verdict in words."""
+    differs_at: int | None = None
+    """First beat that differs; None: none does."""
+    distance: float = 0.0
+    """How far the worst section is from the record [m, rad]."""
+    worst: tuple[int, int] | None = None
+    """First and last beat of that section; None: all bits are the same."""
+
+    @property
+    def same(self) -> bool:
+        """Whether the record is what its inputs give, on whichever arithmetic."""
+        return self.kind is not Kind.DIFFERS
+
+
+def conclude(
+    headers: Sequence[Header],
+    beats: int,
+    frames: int,
+    judged: Iterable[Difference | None],
+    findings: Sequence[Finding],
+    other_model: Difference | None = None,
+    bound: float = BOUND,
+) -> Verdict:
+    """Make a verdict of all that was found.
+
+    Bits may only differ where a segment was recorded with another arithmetic, or does not say with
+    which one.
+
+    Args:
+        headers: of the record's segments.
+        beats: how many were judged.
+        frames: how many were compared.
+        judged: differences of the games.
+        findings: what each section's simulation found.
+        other_model: where a model was built that has other bits.
+        bound: how far another arithmetic may be [m, rad].
+    """
+    found = [difference for difference in judged if difference is not None]
+    found += [
+        decisive
+        for finding in findings
+        if (decisive := finding.beyond if may_differ(headers, finding) else finding.bits)
+    ]
+    if found:
+        first = min(difference.beat for difference in found)
+        names = {name for difference in found if difference.beat == first for name in difference[1]}
+        text = f"beat {first} differs: {', '.join(sorted(names, key=_rank))}"
+        return Verdict(Kind.DIFFERS, beats, frames, len(findings), text, first)
+    others = [finding for finding in findings if finding.bits is not None]
+    if not others and other_model is None:
+        return Verdict(Kind.SAME, beats, frames, len(findings), "same, bit for bit")
+    worst = max(others, key=lambda finding: finding.distance, default=None)
+    text = "same match, other arithmetic"
+    if worst is not None:
+        text += (
+            f" (in {len(others)} of {len(findings)} sections; the farthest, beats "
+            f"{worst.first_beat} to {worst.last_beat}, is {worst.distance:.1e} m or rad from the "
+            f"record, at most {bound:g} may be)"
+        )
+    return Verdict(
+        Kind.OTHER_ARITHMETIC,
+        beats,
+        frames,
+        len(findings),
+        text,
+        distance=worst.distance if worst else 0.0,
+        worst=(worst.first_beat, worst.last_beat) if worst else None,
+    )
+
+
+def may_differ(headers: Sequence[Header], finding: Finding) -> bool:
+    """Say whether a section may have other bits here: not all of it was recorded this way."""
+    here = arithmetic.here()
+    ends = [header.first_beat for header in headers[1:]] + [finding.last_beat + 1]
+    return not all(
+        arithmetic.same(here, header.arithmetic)
+        for header, end in zip(headers, ends, strict=True)
+        if header.first_beat <= finding.last_beat and end > finding.first_beat
+    )
+
+
+def other_arithmetic(record: Mapping[str, str], here: Mapping[str, str]) -> str:
+    """Say in words how two arithmetics differ; "" if they do not."""
+    if not record:
+        return "The record does not say with which arithmetic it was made."
+    if arithmetic.same(record, here):
+        return ""
+    there, this = (
+        ", ".join(of[name] for name in ("processor", "libc", "system") if name in of)
+        for of in (record, here)
+    )
+    return f"It was recorded on {there}; this is {this}. Their C libraries compute other last bits."
+
+
+def _rank(name: str) -> tuple[int, str]:
+    return (_ORDER.index(name) if name in _ORDER else len(_ORDER), name)

@@ -1,0 +1,289 @@
+"""The state of a match: phase, seats, clock, score and log.
+
+What contestants and referees do works on it (`contestant`, `referee`); `match` lets its
+beats pass.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.limits import Limits
+from lacoc_server.match.history import History
+from lacoc_server.match.physics import Fault, MakePhysics, Physics
+from lacoc_server.match.seat import Seat
+from lacoc_server.match.staging import Staging
+from lacoc_shared import __version__
+from lacoc_shared.inputs import JoinSeat
+from lacoc_shared.messages import PROTOCOL, Event, Sheet
+from lacoc_shared.record.schema import Result, Setup
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, NOBODY, Phase
+
+TRANSITIONS: dict[Phase, frozenset[Phase]] = {
+    Phase.CREATED: frozenset({Phase.LOBBY}),
+    Phase.LOBBY: frozenset({Phase.READY, Phase.VOID}),
+    Phase.READY: frozenset({Phase.LOBBY, Phase.COUNTDOWN, Phase.VOID}),
+    Phase.COUNTDOWN: frozenset({Phase.PLAYING, Phase.HALTED, Phase.VOID}),
+    Phase.PLAYING: frozenset({Phase.HALTED, Phase.FINISHED, Phase.VOID}),
+    Phase.HALTED: frozenset({Phase.COUNTDOWN, Phase.FINISHED, Phase.VOID}),
+    Phase.FINISHED: frozenset({Phase.HALTED, Phase.OFFICIAL, Phase.VOID}),
+    Phase.OFFICIAL: frozenset(),
+    Phase.VOID: frozenset(),
+}
+"""The phases that can follow each phase; `next` opens a new match instead."""
+
+_ENDED = frozenset({Phase.FINISHED, Phase.OFFICIAL, Phase.VOID})
+"""A match has a result in these phases."""
+
+
+class MatchState:
+    """Phase, seats, clock, score and log of one match.
+
+    Args:
+        setup: what the match is made from.
+        make_physics: builds the robots on their field.
+        folder: the arena's folder, if the arena is not installed.
+
+    Raises:
+        UserError: if the arena is not installed or its settings are wrong.
+    """
+
+    def __init__(self, setup: Setup, make_physics: MakePhysics, folder: Path | None = None) -> None:
+        self.setup = setup
+        self.arena = arenas.from_settings(setup.arena, setup.settings, folder)
+        self.game = self.arena.game
+        self.limits = Limits.of(setup.limits)
+        self.rules = self.arena.match
+        self.phase = Phase.CREATED
+        self.beats = -1
+        """Number of the beat; the first is 0."""
+        self.entered_beat = 0
+        """The beat in which this phase began."""
+        self.countdown_beats = 0
+        self.ticks = 0
+        """Ticks of PLAYING."""
+        self.silent_beats = 0
+        """Beats since any seat was last heard."""
+        self.clock_offset = 0
+        """Ticks that a referee added to the clock."""
+        self.seats = [
+            Seat(index, seat.id, seat.colour, seat.pattern)
+            for index, seat in enumerate(self.arena.seats)
+        ]
+        self.history = History(self.game)
+        self.adjustments: dict[int, tuple[int, int]] = {}
+        """Seat and points of each correction, by the number of its event."""
+        self.declared: str | None = None
+        """The winner whom a referee declared: a seat's id or "draw"."""
+        self.ended = ""
+        """Why play ended; "" while it has not."""
+        self.advice: tuple[str, ...] = ()
+        """Why the court advises a replay."""
+        self.next_wanted = False
+        self.fault: Fault | None = None
+        """What stopped physics in the newest tick; None: nothing did."""
+        self.staging = Staging(self.arena, make_physics)
+        self._event_count = 0
+        # What this beat made so far.
+        self._events: list[Event] = []
+        self._result_changed = False
+        self._sheet_changed = True
+        self._told_result: tuple[str, tuple[int, ...]] | None = None
+        """Winner by the rules and scores that the log has; None: the log has none."""
+
+    # Questions.
+
+    @property
+    def physics(self) -> Physics:
+        """The robots on their field; before READY the empty field."""
+        return self.staging.physics
+
+    @property
+    def clock_ticks(self) -> int:
+        """Ticks of the clock that have been used."""
+        return self.ticks + self.clock_offset
+
+    @property
+    def duration_ticks(self) -> int:
+        """Ticks that the match lasts; 0: without end."""
+        return round(self.rules.duration_s * BEATS_PER_S)
+
+    @property
+    def time_is_up(self) -> bool:
+        """Whether the last tick has been played: none follows it (docs/rules.md 4)."""
+        return 0 < self.duration_ticks <= self.clock_ticks
+
+    @property
+    def next_number(self) -> int:
+        """The number that the next event will get."""
+        return self._event_count + 1
+
+    def scores(
+        self, state: Any = None, adjustments: Mapping[int, tuple[int, int]] | None = None
+    ) -> tuple[int, ...]:
+        """Add up each seat's points: the game's and the referee's.
+
+        Args:
+            state: a state of the game; None: the present one.
+            adjustments: corrections by event number; None: the present ones.
+        """
+        scores = list(self.game.score(self.history.state if state is None else state))
+        for seat, points in (self.adjustments if adjustments is None else adjustments).values():
+            scores[seat] += points
+        return tuple(scores)
+
+    def winner(self) -> str:
+        """Find who wins by the rules if the match ends now: a seat's id, or "draw"."""
+        seat = self.game.winner(self.history.state, self.scores())
+        return "draw" if seat is None else self.seats[seat].id
+
+    def missing(self) -> list[str]:
+        """List everything that the match still needs to be READY, in words."""
+        reasons = []
+        for seat in self.seats:
+            if seat.join is None:
+                reasons.append(f"nobody has joined {seat.id}")
+            elif not seat.ready:
+                reasons.append(f"{seat.id} ({seat.team}) has not said ready")
+        return reasons
+
+    def next_joins(self) -> list[JoinSeat]:
+        """List who sits where in the next match, with the files that they sent last."""
+        joins = [seat.coming or seat.join for seat in self.seats if not seat.left]
+        return [join for join in joins if join is not None]
+
+    def sheet(self) -> Sheet:
+        """Describe the match: everything that frames leave out."""
+        return Sheet(
+            protocol=PROTOCOL,
+            version=__version__,
+            court=self.setup.court,
+            match=self.setup.match,
+            match_id=self.setup.match_id,
+            arena=self.arena.name,
+            title=self.arena.title,
+            duration_s=self.rules.duration_s,
+            levels=tuple(int(level) for level in self.rules.open_levels),
+            settings=self.arena.settings,
+            seats=tuple(seat.sheet() for seat in self.seats),
+            markers=self.game.markers,
+            scene=self.physics.scene_hash,
+        )
+
+    def result(self) -> Result:
+        """Describe the result as it stands."""
+        official = {Phase.OFFICIAL: self.declared or self.winner(), Phase.VOID: "void"}
+        return Result(
+            match_id=self.setup.match_id,
+            court=self.setup.court,
+            match=self.setup.match,
+            arena=self.arena.name,
+            teams=tuple(seat.team for seat in self.seats),
+            scores=self.scores(),
+            computed=self.winner() if self.ended else "",
+            official=official.get(self.phase, ""),
+            reason=self.ended,
+            clock_s=self.clock_ticks * BEAT_S,
+            beats=self.beats + 1,
+            digest=self.physics.digest.hex(),
+            model=self.physics.model_hash,
+        )
+
+    # Changes.
+
+    def enter(self, phase: Phase, **data: Any) -> None:
+        """Change the phase."""
+        assert phase in TRANSITIONS[self.phase], f"{self.phase.name} to {phase.name}"
+        before, self.phase, self.entered_beat = self.phase, phase, self.beats
+        self.tell(
+            "phase",
+            f"{phase.name}" + (f": {self.ended}." if phase is Phase.FINISHED else "."),
+            before=before.name,
+            after=phase.name,
+            **data,
+        )
+        if phase in _ENDED:
+            self._result_changed = True
+
+    def build(self) -> None:
+        """Put the robots of all seats on the field, with their drives."""
+        self.staging.build(self.seats)
+        level = self.rules.open_levels[0]
+        for seat in self.seats:
+            seat.begin(self.rules.repeat, level)
+        self.sheet_changed()
+
+    def back_to_lobby(self) -> None:
+        """Leave READY: the field is empty until every seat is ready again."""
+        if self.phase is not Phase.READY:
+            return
+        self.staging.clear()
+        for seat in self.seats:
+            seat.drive = seat.state = None
+        self.sheet_changed()
+        self.enter(Phase.LOBBY)
+
+    def begin_countdown(self) -> None:
+        """Start or resume: play begins after the countdown."""
+        self.countdown_beats = round(self.rules.countdown_s * BEATS_PER_S)
+        self.enter(Phase.COUNTDOWN)
+
+    def finish(self, reason: str) -> None:
+        """End play."""
+        self.ended = reason
+        self.enter(Phase.FINISHED)
+        self._told_result = None
+        self.tell_result()
+
+    def take_up(self, physics: Physics, make_physics: MakePhysics) -> None:
+        """Go on with other physics: from the next beat on `physics` steps this match.
+
+        Args:
+            physics: the robots on their field, where they are now.
+            make_physics: builds the physics after that.
+        """
+        self.staging.physics = physics
+        self.staging.make_physics = make_physics
+
+    # The log.
+
+    def tell(self, kind: str, text: str, seat: int = NOBODY, **data: Any) -> int:
+        """Log an event; returns its number."""
+        self._event_count += 1
+        self._events.append(
+            Event(
+                number=self._event_count,
+                match=self.setup.match,
+                beat=self.beats,
+                clock_ticks=self.clock_ticks,
+                kind=kind,
+                text=text,
+                seat=seat,
+                data=data,
+            )
+        )
+        return self._event_count
+
+    def tell_result(self) -> None:
+        """Log winner and scores by the rules after play, whenever they differ from the log's."""
+        if self.phase is not Phase.FINISHED:
+            return
+        result = winner, scores = self.winner(), self.scores()
+        if result == self._told_result:
+            return
+        self._told_result = result
+        word = "a draw" if winner == "draw" else f"{self._team(winner)} wins"
+        text = f"By the rules: {word}, {' : '.join(map(str, scores))}."
+        self.tell("result", text, winner=winner, scores=scores)
+
+    def result_changed(self) -> None:
+        """Let this beat carry the result, if the match has one."""
+        self._result_changed = self.phase in _ENDED
+
+    def sheet_changed(self) -> None:
+        """Let this beat carry the sheet."""
+        self._sheet_changed = True
+
+    def _team(self, seat_id: str) -> str:
+        return next(seat.team for seat in self.seats if seat.id == seat_id)

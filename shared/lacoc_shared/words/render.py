@@ -1,0 +1,158 @@
+"""Putting phrases into words, in English or Japanese.
+
+client/web/src/i18n/render.ts does the same; tests/shared/test_words.py holds the two together.
+Nothing that arrives raises here: an unknown code shows itself with its values, a missing value
+shows as "?", and what is nested too deep shows its code alone.
+"""
+
+import math
+import re
+from decimal import ROUND_HALF_UP, Context, Decimal
+from typing import Literal, get_args
+
+from lacoc_shared.words.phrase import Phrase, Value
+from lacoc_shared.words.table import table
+from lacoc_shared.words.template import Clause, Hole, Part, parse
+
+Language = Literal["en", "ja"]
+LANGUAGES: tuple[Language, ...] = get_args(Language)
+
+DEEPEST = 5
+"""Phrases within phrases; a deeper one shows its code."""
+LONGEST_LIST = 100
+LONGEST_TEXT = 2000
+"""Characters of a value."""
+LARGEST = 1e15
+"""A number beyond it shows as "?"."""
+DECIMALS = 6
+"""Of a number whose template does not say how many; zeros at the end are left out."""
+
+_CONTROLS = re.compile(
+    "[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]"
+)
+_EXACT = Context(prec=40)  # enough for LARGEST with DECIMALS
+_current: Language = "en"
+
+
+def use(language: Language) -> None:
+    """Set the language of this process, for errors that are shown in it."""
+    global _current
+    _current = language
+
+
+def current() -> Language:
+    """Return the language of this process; English if nobody has set it."""
+    return _current
+
+
+def render(phrase: Phrase | str, language: Language | None = None) -> str:
+    """Put a phrase into words.
+
+    Args:
+        phrase: what is said; a plain text comes out as it is.
+        language: None takes that of the process.
+    """
+    if isinstance(phrase, str):
+        return phrase
+    return _rendered(phrase, language or _current, 0)
+
+
+def _rendered(phrase: Phrase, language: Language, depth: int) -> str:
+    entry = table().get(phrase.code)
+    if entry is None or depth >= DEEPEST:
+        return _unknown(phrase, depth)
+    template = entry.ja if language == "ja" else entry.en
+
+    def shown(part: Part) -> str:
+        if isinstance(part, str):
+            return part
+        if isinstance(part, Clause):
+            there = all(
+                phrase.values.get(one.name) not in (None, "", ())
+                for one in part.parts
+                if isinstance(one, Hole)
+            )
+            return "".join(map(shown, part.parts)) if there else ""
+        return _filled(phrase.values.get(part.name), part.formats, language, depth)
+
+    return "".join(map(shown, parse(template)))
+
+
+def _unknown(phrase: Phrase, depth: int) -> str:
+    """Show a code that the table does not have, with its plain values."""
+    names = sorted(phrase.values, key=lambda name: name.encode("utf-16-be", "surrogatepass"))
+    plain = (
+        f"{_text(name)}: {_filled(phrase.values[name], (), 'en', DEEPEST)}"
+        for name in names[:LONGEST_LIST]
+    )
+    values = ", ".join(plain) if depth < DEEPEST else ""
+    return _text(phrase.code) + (f" ({values})" if values else "")
+
+
+def _filled(value: Value, formats: tuple[str, ...], language: Language, depth: int) -> str:
+    if isinstance(value, tuple | list):
+        items = [_one(one, formats, language, depth) for one in value[:LONGEST_LIST]]
+        comma = _word("join.comma", language)
+        if len(items) < 2 or not {"or", "and"} & set(formats):
+            return comma.join(items)
+        last = _word("join.or" if "or" in formats else "join.and", language)
+        return comma.join(items[:-1]) + last + items[-1]
+    return _one(value, formats, language, depth)
+
+
+def _one(value: Value, formats: tuple[str, ...], language: Language, depth: int) -> str:
+    text = _plain(value, formats, language, depth)
+    if "quoted" in formats:
+        opening, _, closing = _word("quote.marks", language).partition(" ")
+        return opening + text + closing
+    return text
+
+
+def _plain(value: Value, formats: tuple[str, ...], language: Language, depth: int) -> str:
+    if isinstance(value, Phrase):
+        return _rendered(value, language, depth + 1)
+    if isinstance(value, bool):
+        return _word("word.yes" if value else "word.no", language)
+    if isinstance(value, int | float):
+        return _number(value, formats)
+    if isinstance(value, str):
+        for one in formats:
+            if one.endswith(".*") and (code := one[:-1] + value) in table():
+                return _word(code, language)
+        return _text(value)
+    return "?"
+
+
+def _word(code: str, language: Language) -> str:
+    entry = table()[code]
+    return entry.ja if language == "ja" else entry.en
+
+
+def _text(text: str) -> str:
+    """Show somebody else's text: short enough, with nothing that moves what stands around it."""
+    short = text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
+    return _CONTROLS.sub("\N{REPLACEMENT CHARACTER}", short)
+
+
+def _number(value: float, formats: tuple[str, ...]) -> str:
+    plural = next((one for one in formats if one.startswith("plural ")), "")
+    if plural:
+        one, _, many = plural.removeprefix("plural ").partition("|")
+        return one if abs(value) == 1 else many
+    if not math.isfinite(value) or abs(value) >= LARGEST:
+        return "?"
+    if "clock" in formats:
+        seconds = int(_fixed(abs(value), 0))
+        return f"{'-' if value < 0 and seconds else ''}{seconds // 60}:{seconds % 60:02d}"
+    digits = next((int(one[1:]) for one in formats if one[0] == "."), None)
+    text = _fixed(abs(value), DECIMALS if digits is None else digits)
+    if digits is None:
+        text = text.rstrip("0").rstrip(".")
+    if not text.strip("0."):
+        return text
+    return ("-" if value < 0 else "+" if "+" in formats else "") + text
+
+
+def _fixed(value: float, digits: int) -> str:
+    """Round half up on the exact value, as JavaScript's `toFixed` does."""
+    return str(Decimal(value).quantize(Decimal(1).scaleb(-digits), ROUND_HALF_UP, _EXACT))

@@ -1,0 +1,85 @@
+"""The table of everything that is said: for each code its values and both templates."""
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from functools import cache
+from importlib import resources
+
+import msgspec
+
+from lacoc_shared.words.phrase import Phrase, Value
+
+FILES = (
+    "general",
+    "match",
+    "referee",
+    "contestant",
+    "health",
+    "files",
+    "network",
+    "gateway",
+    "commands",
+)
+ON_PAGES = FILES[:-1]
+"""Pages never show what only commands say in a terminal."""
+
+
+class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What the table has for a code."""
+
+    en: str
+    ja: str
+    values: dict[str, str] = {}
+    """Kind of each value: text, number, phrase, list or any; with "?" it may be None."""
+
+
+@cache
+def table(files: tuple[str, ...] = FILES) -> Mapping[str, Entry]:
+    """Read the table: every code with its entry."""
+    entries: dict[str, Entry] = {}
+    folder = resources.files("lacoc_shared.words") / "texts"
+    for file in files:
+        subjects = tomllib.loads((folder / f"{file}.toml").read_text(encoding="utf-8"))
+        for subject, codes in subjects.items():
+            for name, entry in codes.items():
+                code = f"{subject}.{name}"
+                if code in entries:
+                    raise ValueError(f"the code {code} is in the table twice")
+                entries[code] = msgspec.convert(entry, Entry)
+    return entries
+
+
+def faults(phrase: Phrase) -> list[str]:
+    """List what is wrong with a phrase by the table; for tests of what programs say."""
+    return list(_faults(phrase))
+
+
+def _faults(phrase: Phrase) -> Iterator[str]:
+    entry = table().get(phrase.code)
+    if entry is None:
+        yield f"there is no code {phrase.code}"
+        return
+    if wrong := sorted(entry.values.keys() ^ phrase.values.keys()):
+        yield f"{phrase.code} lacks or has too many: {', '.join(wrong)}"
+    for name, value in phrase.values.items():
+        kind = entry.values.get(name, "any")
+        if not _is(value, kind):
+            yield f"{phrase.code}: {name} is {value!r}, which is no {kind}"
+        for one in value if isinstance(value, tuple) else (value,):
+            if isinstance(one, Phrase):
+                yield from _faults(one)
+
+
+def _is(value: Value, kind: str) -> bool:
+    if kind.endswith("?"):
+        return value is None or _is(value, kind[:-1])
+    match kind:
+        case "text":
+            return isinstance(value, str)
+        case "number":
+            return isinstance(value, int | float) and not isinstance(value, bool)
+        case "phrase":  # a plain text while the senders move to phrases, and what a disk says
+            return isinstance(value, Phrase | str)
+        case "list":
+            return isinstance(value, tuple)
+    return kind == "any"

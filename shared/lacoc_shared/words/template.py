@@ -1,0 +1,87 @@
+"""The template language of the table, parsed: text, holes and clauses.
+
+    {team}               the value as it is
+    {seconds:.1}         a number with so many decimals
+    {points:+}           a number with its sign
+    {left_s:clock}       seconds as minutes and seconds: 0:38
+    {n:plural disc|discs}  the first word for 1 or -1, else the second; the number is not shown
+    {names:or}           a list joined with "or"; `and` likewise; without either with commas
+    {name:quoted}        in the quotation marks of the language
+    {seat:seat.*}        a word of a program, said as the code "seat." and the word has it
+    <because of {why}>   a clause: only there when all its values are there
+
+Several formats of one hole are separated by commas: `{phases:phase.*,or}`.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+_PIECE = re.compile(r"\{(\w+)(?::([^{}<>]*))?\}|([<>])|([^{}<>]+)")
+_FORMAT = re.compile(r"\.\d|\+|clock|or|and|quoted|plural [^|,]*\|[^|,]*|[a-z][a-z-]*\.\*")
+
+
+class BadTemplate(ValueError):
+    """A template of the table is written wrong."""
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A place in a template that a value fills."""
+
+    name: str
+    formats: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Clause:
+    """A part of a template that is left out when a value of it is missing."""
+
+    parts: tuple[str | Hole, ...]
+
+
+Part = str | Hole | Clause
+
+
+@lru_cache(maxsize=2048)
+def parse(text: str) -> tuple[Part, ...]:
+    """Parse a template.
+
+    Raises:
+        BadTemplate: it does not follow the language; the table is read by a test.
+    """
+    parts: list[Part] = []
+    clause: list[str | Hole] | None = None
+    end = 0
+    for match in _PIECE.finditer(text):
+        if match.start() != end:
+            break
+        end = match.end()
+        name, formats, bracket, words = match.groups()
+        if bracket:
+            if (clause is None) == (bracket == ">"):
+                raise BadTemplate(f"a clause begins or ends where it can't: {text}")
+            if clause is not None:
+                parts.append(Clause(tuple(clause)))
+            clause = [] if bracket == "<" else None
+            continue
+        part = words or Hole(name, _formats(formats, text))
+        (parts if clause is None else clause).append(part)
+    if end != len(text) or clause is not None:
+        raise BadTemplate(f"a bracket is open or alone: {text}")
+    return tuple(parts)
+
+
+def holes(text: str) -> tuple[list[Hole], list[Hole]]:
+    """List the holes of a template: those outside of clauses, and those in clauses."""
+    parts = parse(text)
+    inside = [hole for part in parts if isinstance(part, Clause) for hole in part.parts]
+    return [p for p in parts if isinstance(p, Hole)], [p for p in inside if isinstance(p, Hole)]
+
+
+def _formats(text: str | None, template: str) -> tuple[str, ...]:
+    formats = tuple(text.split(",")) if text is not None else ()
+    for one in formats:
+        if not _FORMAT.fullmatch(one):
+            raise BadTemplate(f"there is no format {one!r}: {template}")
+    return formats

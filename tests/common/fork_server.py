@@ -1,0 +1,101 @@
+"""Forks `lacoc` processes for tests: Python and all libraries are loaded once, not by each.
+
+Started by `lacoc_process`, with the number of a Unix socket. A request comes with the file
+descriptors of the new process; the answer is its process id. When the process ends, its wait
+status goes through the last of the descriptors. The server ends when the socket is closed.
+"""
+
+import contextlib
+import gc
+import importlib.metadata
+import json
+import os
+import selectors
+import signal
+import socket
+import struct
+import sys
+
+from lacoc_shared.command.cli import main
+
+STATUS = struct.Struct("i")
+MOST_BYTES = 1 << 20
+
+
+def preload() -> None:
+    """Import what commands import, and the games and robots."""
+    for group in ("lacoc.commands", "lacoc.commands.replay", "lacoc.arenas", "lacoc.robots"):
+        for entry in importlib.metadata.entry_points(group=group):
+            entry.load()
+    import uvicorn.protocols.http.h11_impl  # noqa: F401
+
+    gc.freeze()  # a collection in a child then copies none of these pages
+
+
+def serve(door: socket.socket) -> int:
+    """Fork processes until the socket is closed; returns in each of them too.
+
+    Returns:
+        The exit code.
+    """
+    ring, rung = socket.socketpair()
+    rung.setblocking(False)
+    ring.setblocking(False)
+    signal.signal(signal.SIGCHLD, lambda *_: None)
+    signal.set_wakeup_fd(ring.fileno())
+    waiting: dict[int, int] = {}
+    with selectors.DefaultSelector() as selector:
+        selector.register(door, selectors.EVENT_READ)
+        selector.register(rung, selectors.EVENT_READ)
+        while True:
+            ready = {key.fileobj for key, _ in selector.select()}
+            if rung in ready:
+                rung.recv(4096)
+                reap(waiting)
+            if door not in ready:
+                continue
+            data, descriptors, _, _ = socket.recv_fds(door, MOST_BYTES, 4)
+            if not data:
+                return 0
+            *streams, status = descriptors
+            pid = os.fork()
+            if pid == 0:
+                for own in (selector, door, ring, rung):
+                    own.close()
+                for number in (status, *waiting.values()):
+                    os.close(number)
+                become(json.loads(data), streams)
+                return main()
+            waiting[pid] = status
+            for number in streams:
+                os.close(number)
+            door.send(STATUS.pack(pid))
+
+
+def reap(waiting: dict[int, int]) -> None:
+    """Pass on how processes ended."""
+    for pid in list(waiting):
+        ended, status = os.waitpid(pid, os.WNOHANG)
+        if ended:
+            number = waiting.pop(pid)
+            with contextlib.suppress(BrokenPipeError):  # nobody wants to know
+                os.write(number, STATUS.pack(status))
+            os.close(number)
+
+
+def become(request: dict[str, object], streams: list[int]) -> None:
+    """Take on the streams, folder, environment and arguments of the new process."""
+    signal.set_wakeup_fd(-1)
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    for number, stream in enumerate(streams):
+        os.dup2(stream, number)
+        os.close(stream)
+    os.chdir(request["folder"])
+    os.environ.clear()
+    os.environ.update(request["environment"])
+    sys.argv = ["lacoc", *request["words"]]
+
+
+if __name__ == "__main__":
+    preload()
+    sys.exit(serve(socket.socket(fileno=int(sys.argv[1]))))

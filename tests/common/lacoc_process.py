@@ -1,0 +1,127 @@
+"""`lacoc` as a process of its own, without the second that Python needs to load libraries."""
+
+import atexit
+import functools
+import json
+import os
+import select
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+COMMAND = (sys.executable, "-m", "lacoc_shared")
+"""Starts `lacoc` from nothing, as people do."""
+
+_SERVER = Path(__file__).with_name("fork_server.py")
+_STATUS = struct.Struct("i")
+
+
+class Lacoc(subprocess.Popen[Any]):
+    """A `lacoc` process: all that `Popen` has, but forked from a server that has loaded it.
+
+    Only the start differs: the process has its own memory, streams, signals and exit code.
+    """
+
+    _status = -1
+
+    def __init__(self, *words: str, **options: Any) -> None:
+        super().__init__([*COMMAND, *words], **options)
+
+    if hasattr(socket, "send_fds"):  # Windows has it not; there the process starts from nothing
+
+        def _execute_child(self, args: list[str], *options: Any) -> None:
+            folder, environment = options[4:6]
+            pipes = options[9:15]
+            request = {
+                "words": args[len(COMMAND) :],
+                "folder": str(Path(folder or ".").absolute()),
+                "environment": dict(os.environ if environment is None else environment),
+            }
+            streams = [
+                own if one == -1 else one for own, one in enumerate(pipes[i] for i in (0, 3, 5))
+            ]
+            self._status, status = os.pipe()
+            try:
+                self.pid = _server().fork(json.dumps(request).encode(), [*streams, status])
+            finally:
+                os.close(status)
+            self._child_created = True
+            self._close_pipe_fds(*pipes)
+
+        def _try_wait(self, wait_flags: int) -> tuple[int, int]:
+            """Do what `os.waitpid` does for a child of this process."""
+            if wait_flags & os.WNOHANG and not select.select([self._status], [], [], 0)[0]:
+                return 0, 0
+            data = os.read(self._status, _STATUS.size)
+            os.close(self._status)
+            return self.pid, _STATUS.unpack(data)[0] if data else signal.SIGKILL  # no server
+
+        def _internal_poll(self, _deadstate: int | None = None) -> int | None:
+            if self.returncode is None and self._waitpid_lock.acquire(False):
+                try:
+                    if self.returncode is None and self._status != -1:
+                        pid, status = self._try_wait(os.WNOHANG)
+                        if pid:
+                            self._handle_exitstatus(status)
+                finally:
+                    self._waitpid_lock.release()
+            return self.returncode
+
+
+def started(*words: str, before: Sequence[str] = (), **options: Any) -> subprocess.Popen[Any]:
+    """Start a `lacoc` command, if need be by another command that runs it."""
+    if before:
+        return subprocess.Popen([*before, *COMMAND, *words], **options)
+    return Lacoc(*words, **options)
+
+
+def run_lacoc(*words: str, input: str = "", timeout_s: float = 60.0, **options: Any) -> Any:
+    """Run a `lacoc` command to its end.
+
+    Returns:
+        A `subprocess.CompletedProcess` with its output as text.
+    """
+    streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with Lacoc(*words, text=True, **streams | options) as process:
+        try:
+            out, err = process.communicate(input, timeout=timeout_s)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            raise
+    return subprocess.CompletedProcess(process.args, process.returncode, out, err)
+
+
+class _ForkServer:
+    """The process that `lacoc` processes are forked from; it ends with this one."""
+
+    def __init__(self) -> None:
+        self._socket, its = socket.socketpair()
+        self._lock = threading.Lock()
+        with its:
+            command = [sys.executable, str(_SERVER), str(its.fileno())]
+            self._process = subprocess.Popen(command, pass_fds=[its.fileno()])
+
+    def fork(self, request: bytes, descriptors: list[int]) -> int:
+        """Fork a process; returns its id."""
+        with self._lock:
+            socket.send_fds(self._socket, [request], descriptors)
+            answer = self._socket.recv(_STATUS.size)
+        pid: int = _STATUS.unpack(answer)[0]
+        return pid
+
+    def close(self) -> None:
+        self._socket.close()
+        self._process.wait()
+
+
+@functools.cache
+def _server() -> _ForkServer:
+    server = _ForkServer()
+    atexit.register(server.close)
+    return server

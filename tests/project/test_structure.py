@@ -1,0 +1,29 @@
+"""The packages read from the outside: no circle of imports, few rooms on the first level."""
+
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import grimp
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lacoc_client")
+
+
+@pytest.fixture(scope="module")
+def imports() -> grimp.ImportGraph:
+    """Who imports whom, file by file, also where only types are needed."""
+    return grimp.build_graph(*PACKAGES, exclude_type_checking_imports=False, cache_dir=None)
+
+
+def test_no_imports_form_a_circle(imports: grimp.ImportGraph) -> None:
+    """Every file can be understood after those that it imports."""
+    before = {name: imports.find_modules_directly_imported_by(name) for name in imports.modules}
+
+    TopologicalSorter(before).prepare()  # names the files of a circle
+
+
+@pytest.mark.parametrize(("package", "most"), [("lacoc_server", 10), ("lacoc_shared", 16)])
+def test_a_newcomer_sees_few_rooms(imports: grimp.ImportGraph, package: str, most: int) -> None:
+    """The first level of a package is its architecture."""
+    assert len(imports.find_children(package)) <= most

@@ -1,0 +1,207 @@
+"""What a record proves, here and with another arithmetic (docs/reliability.md, "Proof")."""
+
+import json
+import struct
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+from benchmarks.played import elsewhere, play
+from benchmarks.proof import Prover, forge
+from mcap.writer import Writer
+from msgspec import structs
+from typer.testing import CliRunner
+
+from lacoc_server.commands.verify import app as verify_app
+from lacoc_server.journal.replay import verify
+from lacoc_server.journal.section import Difference, Finding
+from lacoc_server.journal.verdict import Kind, Verdict, conclude, other_arithmetic
+from lacoc_server.world import arithmetic
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.messages import Frame
+from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import FORMAT, Header, Setup
+
+SECONDS = 6.0
+FORGERIES = 50
+
+HERE = dict(arithmetic.here())
+THERE = {**HERE, "functions": "0" * 16, "path": "0" * 16}
+
+
+def header(first_beat: int = 0, made_by: Mapping[str, str] = HERE) -> Header:
+    setup = Setup(court="main", match=1, arena="othello", settings={}, limits={})
+    return Header(
+        format=FORMAT,
+        match_id="m",
+        segment=0,
+        first_beat=first_beat,
+        started="",
+        versions={},
+        setup=setup,
+        arithmetic=dict(made_by),
+    )
+
+
+@pytest.fixture(scope="module")
+def paths(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Two matches of each game, each two with the same robots; of each two one wrestles."""
+    folder = tmp_path_factory.mktemp("proof")
+    return [play(folder, number, SECONDS) for number in (0, 30, 1, 31)]
+
+
+def verdict(record: Record, **options: Any) -> Verdict:
+    *_, last = verify(record, **options)
+    assert isinstance(last, Verdict)
+    return last
+
+
+def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
+    record.headers = [structs.replace(h, arithmetic=dict(made_by)) for h in record.headers]
+    return record
+
+
+# What a finding comes to.
+
+
+@pytest.mark.parametrize(
+    ("made_by", "finding", "kind"),
+    [
+        (HERE, Finding(1, 9), Kind.SAME),
+        (THERE, Finding(1, 9), Kind.SAME),
+        ({}, Finding(1, 9), Kind.SAME),
+        (HERE, Finding(1, 9, Difference(5, ("poses",))), Kind.DIFFERS),
+        (THERE, Finding(1, 9, Difference(5, ("poses",)), None, 1e-9), Kind.OTHER_ARITHMETIC),
+        ({}, Finding(1, 9, Difference(5, ("poses",)), None, 1e-9), Kind.OTHER_ARITHMETIC),
+        (THERE, Finding(1, 9, *[Difference(5, ("poses",))] * 2, 1e-3), Kind.DIFFERS),
+    ],
+)
+def test_bits_may_differ_only_where_another_arithmetic_recorded(
+    made_by: Mapping[str, str], finding: Finding, kind: Kind
+) -> None:
+    """A record that says it was made with this arithmetic has this arithmetic's bits."""
+    found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
+    assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
+    assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
+    if kind is Kind.OTHER_ARITHMETIC:
+        assert found.worst == (1, 9)
+        assert "beats 1 to 9, is 1.0e-09 m or rad from the record" in found.text
+
+
+def test_each_segment_says_what_made_it() -> None:
+    """A section that another court went on with may have other bits; those before it may not."""
+    headers = [header(), header(100, THERE)]
+    bits = Difference(50, ("poses",))
+    for first, last, kind in ((1, 99, Kind.DIFFERS), (90, 110, Kind.OTHER_ARITHMETIC)):
+        found = conclude(headers, 200, 200, [None], [Finding(first, last, bits)])
+        assert found.kind is kind
+
+
+def test_the_first_difference_is_told_with_all_of_its_beat() -> None:
+    """In the order of a frame, whoever found them."""
+    findings = [
+        Finding(1, 9, Difference(7, ("state hash", "poses"))),
+        Finding(10, 19, Difference(12, ("poses",))),
+    ]
+    judged = [Difference(7, ("its events", "seats"))]
+    found = conclude([header()], 20, 20, judged, findings)
+    assert found.text == "beat 7 differs: seats, poses, state hash, its events"
+
+
+def test_a_fingerprint_names_the_machine() -> None:
+    """Its hashes decide; the rest says why."""
+    assert arithmetic.same(HERE, {**HERE, "python": "4"})
+    assert not arithmetic.same(HERE, THERE)
+    assert not arithmetic.same({}, {})
+    assert other_arithmetic(HERE, HERE) == ""
+    assert HERE["processor"] in other_arithmetic(THERE, HERE)
+    assert "does not say" in other_arithmetic({}, HERE)
+
+
+# Honest records, and forged ones.
+
+
+@pytest.mark.slow
+def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
+    """Side by side or in one process, with a fingerprint or, as older records, without."""
+    for path in paths:
+        assert verdict(Record.read(path)).kind is Kind.SAME
+    older = with_arithmetic(Record.read(paths[0]), {})
+    found = verdict(older, processes=2)
+    assert found.kind is Kind.SAME
+    assert found.sections == len(older.snapshots) + 1
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("has_other_arithmetic")
+def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> None:
+    """Other bits, the same match; nothing that a forger changes passes there either."""
+    lines = elsewhere("benchmarks.proof", ["verdicts", *map(str, paths)]).splitlines()
+    found = [json.loads(line) for line in lines]
+    assert [one["kind"] for one in found] == [Kind.OTHER_ARITHMETIC] * len(paths), found
+    assert all(0 < one["distance"] < 1e-5 for one in found)
+    words = ["forge", *map(str, paths), "--forgeries", str(FORGERIES), "--seed", "2"]
+    assert json.loads(elsewhere("benchmarks.proof", words))["passed"] == []
+
+
+@pytest.mark.slow
+def test_no_forgery_passes(paths: Sequence[Path]) -> None:
+    """Two of three also lie about the arithmetic that made them."""
+    found = forge(paths, FORGERIES, seed=1)
+    assert found.passed == []
+    assert len(found.kinds) > 15
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("made_by", [HERE, THERE, {}])
+def test_a_pose_is_told_beyond_the_bound_only(
+    made_by: Mapping[str, str], paths: Sequence[Path]
+) -> None:
+    """This arithmetic forgives no bit; another one what is below the bound."""
+    record = with_arithmetic(Record.read(paths[0]), made_by)
+    at = len(record.frames) // 2
+    beat, encoded = record.frames[at]
+    frame, prover = decode(encoded, Frame), Prover()
+    for change_m, told in ((1e-6, made_by == HERE), (1e-4, True)):
+        x_m = struct.unpack_from("<f", frame.poses)[0] + change_m
+        poses = struct.pack("<f", x_m) + frame.poses[4:]
+        record.frames[at] = beat, encode(structs.replace(frame, poses=poses))
+        found = prover.verdict(record)
+        assert isinstance(found, Verdict)
+        assert found.differs_at == (beat if told else None)
+
+
+# The command.
+
+
+@pytest.mark.slow
+def test_the_command_tells_the_verdict(paths: Sequence[Path]) -> None:
+    """With JSON and exit code."""
+    done = CliRunner().invoke(verify_app, [str(paths[0]), "--json"])
+    told = json.loads(done.stdout)
+    assert done.exit_code == 0
+    assert (told["same"], told["verdict"], told["lost"]) == (True, "same", False)
+    assert told["arithmetic"] == {"record": HERE, "here": HERE}
+
+
+@pytest.mark.slow
+def test_a_record_that_lost_a_part_is_not_proven(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What can be read is verified, and the rest is told: no program may take it for the same."""
+    monkeypatch.setattr("lacoc_shared.record.pack.Writer", partial(Writer, chunk_size=20_000))
+    path = play(tmp_path, 0, 2.0)
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+    done = CliRunner().invoke(verify_app, [str(path), "--json"])
+    told = json.loads(done.stdout)
+    assert done.exit_code == 1
+    assert (told["same"], told["verdict"], told["lost"]) == (False, "same", True)
+    assert 10 < told["beats"] < 150
+    assert "is damaged at byte" in told["cut"]
+    done = CliRunner().invoke(verify_app, [str(path)])
+    assert done.exit_code == 1
+    assert "A part of the record is lost" in done.stdout
