@@ -182,9 +182,9 @@ def main(args: Sequence[str] | None = None) -> int:
         SystemExit: with such a code, where the command-line library ends the command.
         Exception: what nobody foresaw: a bug, shown with its traceback.
     """
+    words.use(language.of_process())
     screen.accept_any_text()
     screen.show_crashes(sys.stderr)
-    words.use(language.of_process())
     try:
         typer.main.get_command(app).main(args=args, prog_name="lacoc")
     except UserError as error:
