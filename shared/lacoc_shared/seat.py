@@ -37,7 +37,7 @@ class SeatFlag(IntFlag):
 
 
 class No(IntEnum):
-    """Why a seat's command was refused; the sentence is in `NO_SENTENCES`."""
+    """Why a seat's command was refused."""
 
     NONE = 0
     NOT_PLAYING = 1
@@ -46,15 +46,12 @@ class No(IntEnum):
     RESTARTED = 4
     FROZEN = 5
 
+    @property
+    def word(self) -> str:
+        """The name of it in the table, after `key.` and `count.`: "no-such-key"."""
+        return self.name.lower().replace("_", "-")
 
-NO_SENTENCES: dict[No, str] = {
-    No.NONE: "",
-    No.NOT_PLAYING: "keys work only while the match is being played",
-    No.LEVEL_CLOSED: "this arena does not open that level of control",
-    No.NO_SUCH_KEY: "your gait file has no such key",
-    No.RESTARTED: "your robot was restarted a moment ago: wait until the pause is over",
-    No.FROZEN: "the referee has frozen your robot",
-}
+
 
 RESTART_KEY = 10
 """The key number of [x] in a command; digits are 0-9."""
@@ -68,3 +65,6 @@ BEAT_US = 20_000
 BEATS_PER_S = 50
 REPEATS_HZ = 10
 """A controller repeats its last command so often (rules 3)."""
+SILENT_AFTER_S = 1.0
+"""Whoever has sent nothing for longer than this is silent: a seat's controller to its court
+(rules 3), and a court to those who watch it."""

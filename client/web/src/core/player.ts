@@ -1,6 +1,7 @@
 /** A contestant: holds a seat through a gateway, sends keys, sees what became of them. */
 
 import { batch, computed, effect, type ReadonlySignal, signal, untracked } from "@preact/signals";
+import type { Phrase } from "../i18n/render";
 import { Refused } from "./connection";
 import type { Court } from "./court";
 import { chosenFiles, MOST_BYTES } from "./files";
@@ -22,12 +23,12 @@ export type Standing = "watching" | "outside" | "joining" | "seated" | "lost" | 
 
 /** What the player has to say: a sentence of the court, or the number of a refusal. */
 export type Word =
-  | { text: string; tone: "plain" | "yes" | "no" }
+  | { text: Phrase | string; tone: "plain" | "yes" | "no" }
   | { refused: number; key: number };
 
 const KEPT_AS = "lacoc.wish";
 const HELD = "held";
-const SILENT_COURT = "the court does not answer";
+const LOST = "lost";
 const AGAIN_MS = 1500;
 const MOST_TRIES = 8;
 const REMEMBERED = 64;
@@ -49,7 +50,7 @@ export class Player {
   /** Why a join was refused. */
   readonly refusal = signal<Refused | null>(null);
   /** Why the seat was lost. */
-  readonly lostWhy = signal("");
+  readonly lostWhy = signal<Phrase | string>("");
   /** From the newest key to the frame that shows it, as this page saw both. */
   readonly tripMs = signal<number | null>(null);
   /** The newest keys that were sent, the newest last. */
@@ -160,7 +161,7 @@ export class Player {
     try {
       await this.court.ask("ready", { ready });
     } catch (error) {
-      this.say({ text: (error as Refused).message, tone: "no" });
+      this.say({ text: (error as Refused).why, tone: "no" });
     }
   }
 
@@ -173,7 +174,7 @@ export class Player {
       // Practice and a lobby free the seat: that it stays one's own is news in a match only.
       if (!this.alone && text) this.say({ text, tone: "plain" });
     } catch (error) {
-      this.say({ text: (error as Refused).message, tone: "no" });
+      this.say({ text: (error as Refused).why, tone: "no" });
       if (this.isHeld()) {
         this.keep(wish);
         return;
@@ -212,13 +213,13 @@ export class Player {
       const seat = this.seatNow();
       if (seat) this.hearRefusal(seat);
     } catch (error) {
-      this.say({ text: (error as Refused).message, tone: "no" });
+      this.say({ text: (error as Refused).why, tone: "no" });
     }
   }
 
   private isHeld(): boolean {
     const hold = this.court.seat.value?.hold;
-    return hold === HELD || hold === SILENT_COURT;
+    return hold === HELD || hold === LOST;
   }
 
   private stand(): Standing {
@@ -263,7 +264,7 @@ export class Player {
       if (seat && (seat.hold === "replaced" || seat.hold === "refused")) {
         this.lastWish = this.wish.peek();
         this.keep(null);
-        this.lostWhy.value = seat.reason || seat.hold;
+        this.lostWhy.value = seat.reason || { code: `hold.${seat.hold}` };
       }
     });
     effect(() => {
@@ -280,7 +281,7 @@ export class Player {
       const files = chosenFiles();
       checkSizes(Object.values(files));
       const fields = { seat, token, name, ...files };
-      const joined = await this.court.ask<{ notes: string[]; index: number }>("join", fields);
+      const joined = await this.court.ask<{ notes: Phrase[]; index: number }>("join", fields);
       this.begin(wish, joined.index);
       for (const note of this.alone ? [] : joined.notes) this.say({ text: note, tone: "plain" });
     } catch (error) {
@@ -314,7 +315,10 @@ export class Player {
 
   private async notJoined(wish: Wish, refused: Refused): Promise<void> {
     const broke = !this.court.connection.state.peek().open;
-    const isFinal = refused.mistakes.length > 0 || /token|too large/i.test(refused.message);
+    const isFinal =
+      refused.mistakes.length > 0 ||
+      isAbout(refused, "refused.files-too-large") ||
+      isAboutToken(refused);
     const waits = refused.again || (!isFinal && ++this.tries < MOST_TRIES);
     if (broke || (waits && !this.first)) {
       await new Promise((resolve) => setTimeout(resolve, AGAIN_MS));
@@ -397,10 +401,10 @@ function checkSizes(files: readonly (SentFile | null)[]): void {
   const bytes = files.reduce((sum, file) => sum + (file?.data.length ?? 0), 0);
   if (bytes <= MOST_BYTES) return;
   const [size, most] = [bytes, MOST_BYTES].map((count) => Math.ceil(count / 1024));
-  throw new Refused(
-    `Your files are too large together: ${size} KiB, at most ${most} KiB travel. ` +
-      "Shorten the gait files.",
-  );
+  throw new Refused({
+    code: "refused.files-too-large",
+    values: { size_kib: size ?? 0, most_kib: most ?? 0 },
+  });
 }
 
 function kept(): Wish | null {
@@ -413,5 +417,9 @@ function kept(): Wish | null {
 
 /** Whether a refusal is about the token. */
 export function isAboutToken(refused: Refused): boolean {
-  return !refused.mistakes.length && /token/i.test(refused.message);
+  return isAbout(refused, "refused.wrong-token") || isAbout(refused, "gateway.no-token");
+}
+
+function isAbout(refused: Refused, code: string): boolean {
+  return typeof refused.why !== "string" && refused.why.code === code;
 }

@@ -2,9 +2,17 @@
 
 import { type MessageName, t } from "../i18n";
 import type { Match } from "./court";
-import { type Event, type Frame, Phase, SeatFlag, type SeatFrame, type Sheet } from "./wire";
+import {
+  BEATS_PER_S,
+  type Event,
+  type Frame,
+  Phase,
+  SeatFlag,
+  type SeatFrame,
+  type Sheet,
+} from "./wire";
 
-export const BEATS_PER_S = 50;
+export { BEATS_PER_S };
 
 /** A time of the clock, "2:05": the second that has begun counts. */
 export function clock(ticks: number): string {

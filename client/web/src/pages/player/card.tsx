@@ -7,6 +7,7 @@ import { remembered } from "../../core/settings";
 import { SeatFlag, type Sheet } from "../../core/wire";
 import { seatName, team } from "../../core/words";
 import { said, t } from "../../i18n";
+import type { Phrase } from "../../i18n/render";
 import { Mistakes } from "../../ui/mistakes";
 import { FilePicker } from "./files";
 
@@ -195,7 +196,7 @@ function JoinCard({ court, player, alone }: Props) {
           </div>
           <p class="error" id="join-token-error" role="alert">
             {complaint.value === "token" && t("join.tokenMissing")}
-            {!complaint.value && aboutToken && said(refusal.message)}
+            {!complaint.value && aboutToken && said(refusal.why)}
           </p>
         </div>
       </div>
@@ -203,7 +204,7 @@ function JoinCard({ court, player, alone }: Props) {
       {refusal && !aboutToken && (
         <div class="refusal" role="alert">
           <strong>{t("join.refused")}</strong>
-          <p>{said(refusal.message)}</p>
+          <p>{said(refusal.why)}</p>
           {refusal.mistakes.length > 0 && <Mistakes mistakes={refusal.mistakes} />}
         </div>
       )}
@@ -234,7 +235,7 @@ function go(court: string): void {
 }
 
 /** A reason of the controller's, which begins small and has no full stop, as a sentence. */
-function sentence(why: string): string {
+function sentence(why: Phrase | string): string {
   const text = said(why);
   const begun = text.slice(0, 1).toUpperCase() + text.slice(1);
   return /[.。!?]$/.test(begun) ? begun : `${begun}${/[^ -~]$/.test(begun) ? "。" : "."}`;
