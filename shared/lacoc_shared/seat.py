@@ -5,6 +5,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from lacoc_shared.words import Phrase, say
+
 Colour = Annotated[str, msgspec.Meta(pattern="^#[0-9a-fA-F]{6}$")]
 """Of a team, as in "#0072b2"."""
 Pattern = Literal["plain", "stripes", "dots"]
@@ -24,6 +26,11 @@ class Phase(IntEnum):
     OFFICIAL = 7
     VOID = 8
 
+    @property
+    def word(self) -> str:
+        """The name of it in the table, after `phase.`: "halted"."""
+        return self.name.lower()
+
 
 class SeatFlag(IntFlag):
     """What is true of a seat at a beat."""
@@ -37,7 +44,7 @@ class SeatFlag(IntFlag):
 
 
 class No(IntEnum):
-    """Why a seat's command was refused."""
+    """Why a seat's command was refused; `WHY_NO` says it."""
 
     NONE = 0
     NOT_PLAYING = 1
@@ -46,12 +53,15 @@ class No(IntEnum):
     RESTARTED = 4
     FROZEN = 5
 
-    @property
-    def word(self) -> str:
-        """The name of it in the table, after `key.` and `count.`: "no-such-key"."""
-        return self.name.lower().replace("_", "-")
 
-
+WHY_NO: dict[No, Phrase] = {
+    No.NOT_PLAYING: say("key.not-playing"),
+    No.LEVEL_CLOSED: say("key.level-closed"),
+    No.NO_SUCH_KEY: say("key.no-such-key"),
+    No.RESTARTED: say("key.restarted"),
+    No.FROZEN: say("key.frozen"),
+}
+"""What a contestant is told of it; `count.*` has the same names."""
 
 RESTART_KEY = 10
 """The key number of [x] in a command; digits are 0-9."""

@@ -17,6 +17,7 @@ from lacoc_client.stopping import stop_signals
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
+from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
@@ -113,20 +114,20 @@ def _play(controller: Controller, player: BotPlayer, stopping: Callable[[], bool
         if frame is not None:
             player.see(frame)
         for refused in controller.take_refused():
-            screen.show(f"Key {refused.key} was refused: {refused.why}.")
+            screen.show(f"Key {refused.key} was refused: {render(refused.why)}.")
         for event in controller.view.take_events():
             if event.kind in ("phase", "result"):
-                screen.show(event.text)
+                screen.show(event.said)
         if controller.hold in (Hold.REPLACED, Hold.REFUSED):
-            raise UserError(f"The seat is lost: {controller.reason}.")
+            raise UserError(say("play.lost", why=controller.why_not_held))
         now_s = time.monotonic()
         link = controller.link(now_s)
         if well == bool(link):
-            well = not link
-            waits = f"Link: {link}. The robot stands; when the court is back this goes on."
-            screen.note("The court is back." if well else waits)
+            well = link is None
+            waits = "The robot stands; when the court is back this goes on."
+            screen.note("The court is back." if link is None else f"Link: {render(link)}. {waits}")
         if controller.view.silent_s(now_s) > _GONE_S:
-            raise UserError(f"No word from the court for {_GONE_S:.0f} s.")
+            raise UserError(say("play.silent", seconds=_GONE_S))
 
 
 def _leave(controller: Controller) -> None:

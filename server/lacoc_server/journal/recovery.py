@@ -14,6 +14,7 @@ from lacoc_shared.record.files import is_held
 from lacoc_shared.record.matches import MatchName, court_matches, is_over
 from lacoc_shared.record.reader import NoMatch, Record
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
 
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 """What the court halts when its match was interrupted."""
@@ -43,7 +44,7 @@ class Unfinished:
     def inputs(self) -> list[Input]:
         """What the court does first: nobody may find a match already running."""
         if self.match.phase in IN_PLAY:
-            return [Decide("court", "the court was started again", Halt())]
+            return [Decide("court", say("reason.court-restarted"), Halt())]
         return []
 
 

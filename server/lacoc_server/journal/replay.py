@@ -25,6 +25,7 @@ from lacoc_shared.codec import decode, encode
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.messages import Event, Frame, Sheet
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.protocol_1 import fault_of, same_events, same_result
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Result, Touch
 
@@ -83,7 +84,7 @@ class _Again:
         recorded = self.frames.get(number)
         if recorded is not None and encode(beat.frame) != recorded:
             differs += _differences(decode(recorded, Frame), beat.frame)
-        if encode(beat.events) != encode(self._events.get(number, [])):
+        if not same_events(record, self._events.get(number, []), beat.events):
             differs.append("its events")
         if beat.touch != record.touches.get(number):
             differs.append("what the robots touched")
@@ -133,7 +134,7 @@ def verify(record: Record, folder: Path | None = None) -> Iterator[int | Verdict
             differs.append("the sheet")
         if number in scenes and scenes[number] != match.physics.scene:
             differs.append("the scene")
-        if number == last and not _same_result(record.result, result, last):
+        if number == last and not _same_result(record, result, last):
             differs.append("the result")
         if differs:
             text = f"beat {number} differs: {', '.join(differs)}"
@@ -184,7 +185,7 @@ class _Recorded:
         if self._cursor.live:
             return self.world.step(angles)
         fault = self._cursor.faults.get(self._cursor.beat)
-        return None if fault is None else Fault(fault.seat, str(fault.data["words"]))
+        return None if fault is None else Fault(fault.seat, fault_of(fault))
 
     def poses(self) -> bytes:
         frame = self._cursor.frame
@@ -262,11 +263,12 @@ def _state(match: Match) -> bytes:
     return match.physics.save() if isinstance(match.physics, World) else b""
 
 
-def _same_result(recorded: Result | None, again: Result | None, last: int) -> bool:
+def _same_result(record: Record, again: Result | None, last: int) -> bool:
     """Whether a recorded result is the one."""
+    recorded = record.result
     if recorded is None or recorded.beats > last + 1:  # of a beat that was not answered
         return True
-    return recorded == again
+    return again is not None and same_result(record, recorded, again)
 
 
 def _same_sheet(recorded: Sheet, again: Sheet) -> bool:

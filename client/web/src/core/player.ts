@@ -307,7 +307,7 @@ export class Player {
         seat: wish.seat,
         index,
         hold: HELD,
-        reason: "",
+        reason: null,
         round_trip_ms: null,
       };
     });
@@ -417,7 +417,8 @@ function kept(): Wish | null {
 
 /** Whether a refusal is about the token. */
 export function isAboutToken(refused: Refused): boolean {
-  return isAbout(refused, "refused.wrong-token") || isAbout(refused, "gateway.no-token");
+  const codes = ["refused.wrong-token", "gateway.no-token", "connect.token"];
+  return codes.some((code) => isAbout(refused, code));
 }
 
 function isAbout(refused: Refused, code: string): boolean {

@@ -41,7 +41,8 @@ export interface Link {
   court: string;
   connected: boolean;
   silent_s: number;
-  text: Phrase | string;
+  /** Why it is not connected. */
+  why: Phrase | null;
   /** Another number: the log of events begins anew, and all of it follows. */
   log: number;
 }
@@ -52,7 +53,7 @@ export interface HeldSeat {
   index: number;
   /** The name of `hold.*`. */
   hold: string;
-  reason: Phrase | string;
+  reason: Phrase | null;
   round_trip_ms: number | null;
 }
 
@@ -71,7 +72,7 @@ interface GoodReply {
 export interface BadReply {
   id: number;
   ok: false;
-  error: Phrase | string;
+  error: Phrase;
   mistakes: Mistake[];
   /** The court does not take this token: to show it again is of no use. */
   token_refused: boolean;

@@ -146,6 +146,8 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "why.no-board": ["this game has no board", "この競技には盤面がありません"],
   "why.nobody-joined": ["nobody has joined", "まだ誰も参加していません"],
   "why.no-end": ["this match has no time limit", "この試合には時間制限がありません"],
+  "why.no-health": ["the court does not say how it is", "コートから状態の知らせがありません"],
+  "why.unknown-decision": ["the court does not know this decision", "コートはこの判定を知りません"],
   "why.needs-reason": ["give a reason. It is written into the record", "理由を入力してください（記録に残ります）"],
   "why.no-seat": ["there is no seat {seat:quoted}. Choose {seats:seat.*,or}", "{seat:quoted}という席はありません。{seats:seat.*,or}から選んでください"],
   "why.bad-points": ["{points} points can't be given. Give a number from -{most} to {most}, but not 0", "{points} 点は指定できません。-{most} から {most} までの、0 以外の数を指定してください"],

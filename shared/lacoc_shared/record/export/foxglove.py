@@ -46,6 +46,7 @@ from lacoc_shared.record.export.kinematics import (
 )
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import BEAT_NS
+from lacoc_shared.words import render
 
 _TOPICS: dict[str, type[msgspec.Struct]] = {
     "/tf": FrameTransforms,
@@ -117,7 +118,7 @@ def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, msgsp
 
 def _log(event: Event, time: Time) -> Log:
     level = WARNING if event.kind == "fault" else INFO
-    return Log(timestamp=time, level=level, message=event.text, name=event.kind)
+    return Log(timestamp=time, level=level, message=render(event.said, "en"), name=event.kind)
 
 
 class _Picture:
