@@ -24,6 +24,7 @@ from lacoc_shared.codec import decode, encode, message_hash
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.messages import Event, Frame, Scene, Sheet
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.protocol_1 import fault_of, same_events, same_result
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header, Result
 
@@ -138,7 +139,7 @@ class Recorded:
         if self.has_frame:
             self.frame = decode(self._frames[beat], Frame)
         fault = self._faults.get(beat)
-        self.fault = None if fault is None else Fault(fault.seat, str(fault.data["words"]))
+        self.fault = None if fault is None else Fault(fault.seat, fault_of(fault))
 
     @property
     def touched(self) -> tuple[tuple[int, ...], ...]:
@@ -285,7 +286,7 @@ class Judge:
         happened = beat.ticked or beat.events or beat.sheet_changed or number in record.inputs
         if recorded is None and happened:
             yield "its frame is missing"
-        if len(events) != len(beat.events) or not all(map(_same_event, events, beat.events)):
+        if not same_events(record.header, events, beat.events):
             yield "its events"
         if beat.touch != record.touches.get(number):
             yield "what the robots touched"
@@ -335,12 +336,6 @@ def header_at(record: Record, beat: int) -> Header:
     )
 
 
-def _same_event(recorded: Event, again: Event) -> bool:
-    """Whether a recorded event is the one; words count where this software makes any."""
-    known = again if again.text else replace(again, text=recorded.text)
-    return encode(recorded) == encode(known)
-
-
 def _same_result(record: Record, again: Result | None, last: int) -> bool:
     """Whether a recorded result is the one, as far as it was answered."""
     recorded = record.result
@@ -348,7 +343,7 @@ def _same_result(record: Record, again: Result | None, last: int) -> bool:
         return again is None or len(record.headers) > 1
     if recorded.beats == last + 2 and record.cut:
         return True
-    return recorded == again
+    return again is not None and same_result(record.header, recorded, again)
 
 
 def _same_sheet(recorded: Sheet | None, again: Sheet) -> bool:

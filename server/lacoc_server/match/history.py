@@ -10,6 +10,7 @@ from typing import Any
 
 from lacoc_arenas.game import AnyGame, Claim, GameEvent, Observation
 from lacoc_shared.seat import BEAT_S
+from lacoc_shared.words import Phrase
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +33,7 @@ class Step:
     numbers: tuple[int, ...] = ()
     """Numbers of those events in the match's log; of a `SetMarker`, its decision's."""
     struck: frozenset[Claim] = frozenset()
-    over: str = ""
+    over: Phrase | None = None
     """Why the game was over after it; steps that come later are kept, but not judged."""
 
 
@@ -43,8 +44,8 @@ class Fold:
     steps: list[Step]
     """The whole history as judged again."""
     state: Any
-    over: str
-    """Why the game is over, "" if it is not."""
+    over: Phrase | None
+    """Why the game is over; None if it is not."""
     vanished: tuple[tuple[int, GameEvent], ...]
     """Events that are no more, with their numbers."""
     appeared: tuple[tuple[int, int, GameEvent], ...]
@@ -72,15 +73,15 @@ class History:
         return list(events)
 
     @property
-    def over(self) -> str:
-        """Why the game is over; "" while it is not."""
-        return self._steps[-1].over if self._steps else ""
+    def over(self) -> Phrase | None:
+        """Why the game is over; None while it is not."""
+        return self._steps[-1].over if self._steps else None
 
     def set(self, marker: int, value: int, number: int) -> None:
         """Set a marker, as the decision with this event number says.
 
         Raises:
-            ValueError: if the marker has no such state.
+            NoSuchState: if the marker has no such state.
         """
         before = self.state
         self.state = self._game.set(before, marker, value)
@@ -100,7 +101,7 @@ class History:
         first = self._step_of[number]
         steps = self._steps[:first]
         state = self._steps[first].before
-        over = self._steps[first - 1].over if first else ""
+        over = self._steps[first - 1].over if first else None
         vanished: list[tuple[int, GameEvent]] = []
         appeared: list[tuple[int, int, GameEvent]] = []
         for index in range(first, len(self._steps)):

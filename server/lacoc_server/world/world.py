@@ -19,6 +19,7 @@ from lacoc_server.world.scene import make_scene
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.seat import NOBODY
+from lacoc_shared.words import say
 
 SUBSTEPS = 10
 """Physics steps of 2 ms in a tick of 20 ms."""
@@ -33,13 +34,13 @@ _TOUCH_M = 1e-3
 """Distances between geoms are worked out up to here; farther apart is no touch."""
 
 _WARNINGS = {
-    mujoco.mjtWarning.mjWARN_BADQPOS: "a position became not a number or too large",
-    mujoco.mjtWarning.mjWARN_BADQVEL: "a velocity became not a number or too large",
-    mujoco.mjtWarning.mjWARN_BADQACC: "an acceleration became not a number or too large",
-    mujoco.mjtWarning.mjWARN_BADCTRL: "a commanded angle was not a number",
-    mujoco.mjtWarning.mjWARN_CONTACTFULL: "too many contacts",
-    mujoco.mjtWarning.mjWARN_CNSTRFULL: "too many constraints",
-    mujoco.mjtWarning.mjWARN_INERTIA: "the inertia matrix is singular",
+    mujoco.mjtWarning.mjWARN_BADQPOS: say("fault.position"),
+    mujoco.mjtWarning.mjWARN_BADQVEL: say("fault.velocity"),
+    mujoco.mjtWarning.mjWARN_BADQACC: say("fault.acceleration"),
+    mujoco.mjtWarning.mjWARN_BADCTRL: say("fault.control"),
+    mujoco.mjtWarning.mjWARN_CONTACTFULL: say("fault.contacts"),
+    mujoco.mjtWarning.mjWARN_CNSTRFULL: say("fault.constraints"),
+    mujoco.mjtWarning.mjWARN_INERTIA: say("fault.inertia"),
 }
 
 
@@ -229,10 +230,10 @@ class World:
         numbers = self.data.warning.number
         kind = int(np.flatnonzero(numbers)[0])
         where = int(self.data.warning[kind].lastinfo)
-        words = _WARNINGS.get(mujoco.mjtWarning(kind), f"MuJoCo's warning {kind}")
+        why = _WARNINGS.get(mujoco.mjtWarning(kind), say("fault.other", number=kind))
         numbers[:] = 0
         mujoco.mj_setState(self.model, self.data, self._state, _STATE)
-        return Fault(self._seat_of(mujoco.mjtWarning(kind), where), words)
+        return Fault(self._seat_of(mujoco.mjtWarning(kind), where), why)
 
     def _seat_of(self, kind: mujoco.mjtWarning, where: int) -> int:
         """The robot that a warning is about; `where` is the index that MuJoCo gives."""

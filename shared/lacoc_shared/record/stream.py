@@ -17,6 +17,7 @@ from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import codec
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.protocol_1 import read_event
 from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE
 from lacoc_shared.seat import BEATS_PER_S
 
@@ -190,5 +191,7 @@ def _decode(path: Path, topic: str, data: bytes) -> Any:
                 f"The record {path} has format {found}, and this software reads format {FORMAT}. "
                 "Install the version of lacoc that wrote it."
             )
+    if topic == "/lacoc/event":
+        return read_event(data, _MAX_BYTES)
     kind = KINDS[topic]
     return data if kind is None else codec.decode(data, kind, _MAX_BYTES)
