@@ -242,7 +242,10 @@ class Judge:
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
         """Make the physics of a match: the world itself where there is nobody on it."""
         world = World(arena, entries)
+        scene, model_hash = self._other_model(world)
         if not entries:
+            if scene is not None:
+                world.scene, world.scene_hash = scene, message_hash(encode(scene))
             return world
         setup = self._record.header.setup
         build = Build(self._builds, setup, self._folder, tuple(entries))
@@ -250,7 +253,7 @@ class Judge:
         self.worlds.keep(build, world)
         self.section = Section(build, None, world.digest)
         self._recorded.seats = len(entries)
-        return RecordedPhysics(world, self._recorded, *self._other_model(world))
+        return RecordedPhysics(world, self._recorded, scene, model_hash)
 
     def _other_model(self, world: World) -> tuple[Scene | None, str | None]:
         """Find what another arithmetic built of the same robots.
@@ -258,17 +261,18 @@ class Judge:
         Returns:
             The recorded scene and hash of the model, where these may differ by their last bits.
         """
-        made_by = header_at(self._record, self._beat).arithmetic.get("model")
+        beat = max(0, self._beat)
+        made_by = header_at(self._record, beat).arithmetic.get("model")
         if made_by in (None, arithmetic.here()["model"]):
             return None, None
-        events = self._events.get(self._beat, ())
+        events = self._events.get(beat, ())
         models = [event.data["model"] for event in events if "model" in event.data]
-        scene = self._scenes.get(self._beat)
+        scene = self._scenes.get(beat)
         if scene is not None and not _near(scene, world.scene):
             return None, None
-        if [world.model_hash] == models and scene in (None, world.scene):
+        if models in ([], [world.model_hash]) and scene in (None, world.scene):
             return None, None
-        self.other_model = self.other_model or Difference(self._beat, ("the model",))
+        self.other_model = self.other_model or Difference(beat, ("the model",))
         return scene, str(models[0]) if models else None
 
     def _differences(self, number: int, beat: Beat) -> Iterator[str]:
