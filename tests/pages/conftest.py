@@ -27,6 +27,12 @@ from contestant import Contestant, Sit
 from venue import Venue
 
 WAIT_MS = 45_000
+SLOW_SCREEN = """(() => {
+  const next = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (draw) => setTimeout(() => next(draw), 80);
+  window.cancelAnimationFrame = clearTimeout;
+})()"""
+"""A screen of about ten pictures a second, as the drawing of sixty is most of a test's work."""
 
 
 @pytest.fixture(scope="session")
@@ -94,6 +100,7 @@ def open_page(browser: Browser, console: Console) -> Iterator[OpenPage]:
         options.setdefault("locale", "en-GB")
         context = browser.new_context(**options)
         context.set_default_timeout(WAIT_MS)
+        context.add_init_script(SLOW_SCREEN)
         contexts.append(context)
         page = context.new_page()
         console.watch(page)
