@@ -110,7 +110,7 @@ def test_a_written_workbook_reads_back(table):
 @patient
 @given(posture_tables)
 def test_postures_to_locomotion_and_back(table):
-    """Issue 2: the different postures of a locomotion are the postures it was joined from."""
+    """The different postures of a locomotion are the postures it was joined from."""
     keys = tuple((digit,) for digit in table.postures)
     back = to_postures(to_locomotion(table, keys))
     assert set(back.postures.values()) == set(table.postures.values())

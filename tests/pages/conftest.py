@@ -91,7 +91,13 @@ def console() -> Iterator[Console]:
 
 
 @pytest.fixture
-def open_page(browser: Browser, console: Console) -> Iterator[OpenPage]:
+def slow_screen() -> bool:
+    """Whether pages draw seldom; a module whose subject is the drawing itself says no."""
+    return True
+
+
+@pytest.fixture
+def open_page(browser: Browser, console: Console, slow_screen: bool) -> Iterator[OpenPage]:
     """Opens pages, each in a fresh context, as if by different people."""
     contexts: list[BrowserContext] = []
 
@@ -100,7 +106,8 @@ def open_page(browser: Browser, console: Console) -> Iterator[OpenPage]:
         options.setdefault("locale", "en-GB")
         context = browser.new_context(**options)
         context.set_default_timeout(WAIT_MS)
-        context.add_init_script(SLOW_SCREEN)
+        if slow_screen:
+            context.add_init_script(SLOW_SCREEN)
         contexts.append(context)
         page = context.new_page()
         console.watch(page)

@@ -181,7 +181,7 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
 
 
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:
-    """Done means 2: axe-core finds no serious violation, with one picture and with two."""
+    """Axe-core finds no serious violation, with one picture and with two."""
     pytest.importorskip("axe_core_python")
     venue.court()
     venue.web()

@@ -629,7 +629,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
 
 
 def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: Referee) -> None:
-    """Issue 4: each seat's round trip as the court measures it, and the common delay."""
+    """Each seat's round trip as the court measures it, and the common delay."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     venue.court()

@@ -513,7 +513,7 @@ def test_a_phone(library: Venue, open_page: OpenPage) -> None:
 
 
 def test_accessible(library: Venue, open_page: OpenPage) -> None:
-    """Done means 2: axe-core finds no serious violation."""
+    """Axe-core finds no serious violation."""
     pytest.importorskip("axe_core_python")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     show.sees(".recordings li")

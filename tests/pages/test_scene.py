@@ -43,6 +43,12 @@ def address(site: Path) -> Iterator[str]:
 
 
 @pytest.fixture
+def slow_screen() -> bool:
+    """Draw as often as the browser can."""
+    return False
+
+
+@pytest.fixture
 def stand(page: Page, address: str) -> Stand:
     return Stand(page, address)
 
@@ -77,7 +83,7 @@ def entry(robot: str) -> Entry:
 def test_the_page_has_every_body_where_mujoco_has_it(
     stand: Stand, site: Path, arena: str, robots: tuple[str, str]
 ) -> None:
-    """Issue 3: forward kinematics in the browser agrees with MuJoCo to 1e-6 m."""
+    """Forward kinematics in the browser agrees with MuJoCo to 1e-6 m."""
     entries = [entry(robot) for robot in robots]
     world = World(arenas.load(arena), entries)
     seats = [

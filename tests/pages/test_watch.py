@@ -60,7 +60,7 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
 
 
 def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -> None:
-    """In each phase the page says how it stands and what comes next (issue 3, done means 4)."""
+    """In each phase the page says how it stands and what comes next."""
     venue.court("--seconds", "2")
     venue.web()
     show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
@@ -390,7 +390,7 @@ def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
 
 
 def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> None:
-    """Issue 3, settings: at once in picture, score bug, board and card, and after a reload."""
+    """Colours change at once in picture, score bug, board and card, and after a reload."""
     venue.court("--seconds", "1")
     venue.web()
     referee = playing(venue)
@@ -467,7 +467,7 @@ def test_who_wants_less_motion_sees_nothing_turn(venue: Venue, open_page: OpenPa
 
 
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:
-    """Done means 2: axe-core finds no serious violation."""
+    """Axe-core finds no serious violation."""
     pytest.importorskip("axe_core_python")
     venue.court("--seconds", "1")
     venue.web()

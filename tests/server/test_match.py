@@ -399,7 +399,7 @@ def test_a_key_takes_effect_in_its_tick() -> None:
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_a_frame_has_at_most_320_bytes(arena: str) -> None:
-    """Issue 2, "Network": at most 320 bytes for two hexapods in either game, in every phase."""
+    """At most 320 bytes for two hexapods in either game, in every phase."""
     sizes = {}
     for phase in list(P)[1:]:
         stage = Stage.real(arena, QUICK if phase is not P.COUNTDOWN else None)

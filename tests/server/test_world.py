@@ -59,7 +59,7 @@ def run(it: World, ticks: int) -> bytes:
 
 
 def test_the_same_bits_in_the_same_and_in_a_new_process() -> None:
-    """Issue 2, Done 5: the same angles give one state hash, also in a new process."""
+    """The same angles give one state hash, also in a new process."""
     digest = run(world(), 100)
     assert run(world(), 100) == digest
     code = "import sys; sys.path.append(sys.argv[1]); import test_world as t; "
