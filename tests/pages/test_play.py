@@ -159,6 +159,7 @@ def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path
     page.sees(".files li:has-text('Robot')", "mine.toml")
 
 
+@pytest.mark.long
 def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """It never makes the browser leave the match; before one it is offered, in one it is not."""
     page = seated(venue, sit, "--seconds", "120")
@@ -180,6 +181,7 @@ def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path)
     other.close()
 
 
+@pytest.mark.long
 def test_tabs_of_one_browser_have_their_own_files(
     venue: Venue, sit: Sit, tmp_path: Path, console: Any
 ) -> None:
@@ -212,6 +214,7 @@ def test_tabs_of_one_browser_have_their_own_files(
     left.misses(".files .name:not(.muted)")
 
 
+@pytest.mark.long
 def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
     """The tab's address may lead to another court later: there it sits down anew."""
     page = opened(venue, sit)
@@ -224,6 +227,7 @@ def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
     page.stands("seated")
 
 
+@pytest.mark.long
 def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """A court is chosen by the address, and from a list where there are several."""
     port = free_port()
@@ -269,6 +273,7 @@ def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
         yield address
 
 
+@pytest.mark.long
 def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
     """The own link as the court measures it, and the delay that both have."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
@@ -440,6 +445,7 @@ def test_the_key_test_and_the_language(venue: Venue, sit: Sit) -> None:
     assert page.find("html").get_attribute("lang") == "ja"
 
 
+@pytest.mark.long
 def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None:
     """The page follows the browser; what the court says is translated, too."""
     page = opened(venue, sit, locale="ja-JP")
@@ -468,6 +474,7 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
     elsewhere.wait(lambda: elsewhere.seat["hold"] == "replaced")
 
 
+@pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None:
     """Banner and grey keys while the link is lost; then all goes on by itself."""
     court = venue.court("--seconds", "120")
@@ -508,6 +515,7 @@ def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None
     assert sum("Ants takes the left seat" in one for one in said) == 1
 
 
+@pytest.mark.long
 def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
     """Never a stale picture as live."""
     court = venue.court()
@@ -546,6 +554,7 @@ def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: S
     other.close()
 
 
+@pytest.mark.long
 def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
     """Touch steers, and all that is needed fits a phone."""
     phone = {"width": 390, "height": 844}
@@ -595,6 +604,7 @@ def test_accessible(venue: Venue, sit: Sit) -> None:
     other.close()
 
 
+@pytest.mark.long
 def test_pos_data_is_of_the_seat_that_is_held(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """Who changes seats before a match does not take the other robot's way along."""
     page = seated(venue, sit)
@@ -642,6 +652,7 @@ def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
         assert "saved from 0:02.0 on, when this page was loaded" in shown["says"]
 
 
+@pytest.mark.long
 def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
     """Practice may run all day: the page keeps so many rows, and says where they begin."""
     frames = list(walk(random.Random(0), (12, 18)))

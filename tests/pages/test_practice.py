@@ -95,6 +95,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     page.phase(Phase.PLAYING)
 
 
+@pytest.mark.long
 def test_a_reload_goes_on(practise: Practise) -> None:
     """The tab keeps its seat and its level; the robot stands until the next key."""
     page = practise()
@@ -133,6 +134,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
     page.key_stands(4)
 
 
+@pytest.mark.long
 def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
     """The pad is there without scrolling, in the browser's language."""
     phone = {"width": 390, "height": 844}
@@ -148,6 +150,7 @@ def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
         assert box["y"] + box["height"] <= phone["height"]
 
 
+@pytest.mark.long
 def test_accessible(practise: Practise) -> None:
     """Axe-core finds no serious violation."""
     pytest.importorskip("axe_core_python")

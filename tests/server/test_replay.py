@@ -199,7 +199,10 @@ def go_on(match: Match, beats: list[Beat]) -> None:
         assert beat.touch == beats[number].touch
 
 
-@pytest.mark.parametrize("part", [0.12, 0.31, 0.5, 0.73, 0.9, 1.0])
+@pytest.mark.parametrize(
+    "part",
+    [0.12, 0.73, *(pytest.param(part, marks=pytest.mark.long) for part in (0.31, 0.5, 0.9, 1.0))],
+)
 def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
     """Verified to its end, resumed with the same hash, and on from there."""
     path, beats = live
@@ -217,27 +220,32 @@ def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_p
 
 
 @pytest.mark.slow
-def test_a_beat_is_whole_or_not_at_all(live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "beat",
+    [309, *(pytest.param(beat, marks=pytest.mark.long) for beat in (259, 329, 339, 340, 349, 352))],
+)
+def test_a_beat_is_whole_or_not_at_all(
+    beat: int, live: tuple[Path, list[Beat]], tmp_path: Path
+) -> None:
     """Design, "Record": a court killed in the middle of a beat does that beat again.
 
-    Cut after every single message around beats with inputs, decisions and events.
+    Cut after every single message around a beat with inputs, decisions and events.
     """
     path, beats = live
     data = path.read_bytes()
     whole = Record.read(path)
     frames = dict(whole.frames)
-    for beat in (259, 309, 329, 339, 340, 349, 352):
-        start = data.index(frames[max(at for at in frames if at <= beat)])
-        for cut in [at for at in boundaries(data) if start < at][:9]:
-            copy = tmp_path / path.name
-            copy.write_bytes(data[:cut])
-            record = Record.read(copy)
-            match = resume(record).match
-            answered = max(at for at, _ in record.frames)
-            assert match.beats == max(answered, record.last_beat - 1)
-            again = match.beat(INPUTS.get(match.beats + 1, ()))
-            assert encode(again.frame) == encode(beats[match.beats].frame)
-            assert encode(again.events) == encode(beats[match.beats].events)
+    start = data.index(frames[max(at for at in frames if at <= beat)])
+    for cut in [at for at in boundaries(data) if start < at][:9]:
+        copy = tmp_path / path.name
+        copy.write_bytes(data[:cut])
+        record = Record.read(copy)
+        match = resume(record).match
+        answered = max(at for at, _ in record.frames)
+        assert match.beats == max(answered, record.last_beat - 1)
+        again = match.beat(INPUTS.get(match.beats + 1, ()))
+        assert encode(again.frame) == encode(beats[match.beats].frame)
+        assert encode(again.events) == encode(beats[match.beats].events)
 
 
 @pytest.mark.slow

@@ -112,7 +112,7 @@ def test_a_state_of_another_model_is_refused() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("arena", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
 def test_flags_and_discs_change_no_bit_of_a_path(arena: str) -> None:
     """Rules 6, strike: the paths with and without flags are the same bits, touched or not."""
     full = arenas.load(arena)
