@@ -160,7 +160,7 @@ def test_friction_is_the_robots(hexapod_text: str, compile_world: Compile) -> No
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_export_opens_and_stands(name: str) -> None:
-    """Issue 2: plain MJCF that any MuJoCo opens, standing on its feet in the keyframe "stand"."""
+    """Plain MJCF that any MuJoCo opens, standing on its feet in the keyframe "stand"."""
     robot = sample(name)
     model = mj.MjModel.from_xml_string(export_mjcf(robot))
     data = mj.MjData(model)

@@ -59,7 +59,7 @@ def run(it: World, ticks: int) -> bytes:
 
 
 def test_the_same_bits_in_the_same_and_in_a_new_process() -> None:
-    """Issue 2, Done 5: the same angles give one state hash, also in a new process."""
+    """The same angles give one state hash, also in a new process."""
     digest = run(world(), 100)
     assert run(world(), 100) == digest
     code = "import sys; sys.path.append(sys.argv[1]); import test_world as t; "
@@ -112,7 +112,7 @@ def test_a_state_of_another_model_is_refused() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("arena", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
 def test_flags_and_discs_change_no_bit_of_a_path(arena: str) -> None:
     """Rules 6, strike: the paths with and without flags are the same bits, touched or not."""
     full = arenas.load(arena)
