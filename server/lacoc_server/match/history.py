@@ -5,16 +5,18 @@ an event back, the game is folded again from that tick with that event's claim s
 out. Paths, clock and all other decisions stay as they were.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
+
+import msgspec
+from msgspec.structs import replace
 
 from lacoc_arenas.game import AnyGame, Claim, GameEvent, Observation
 from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase
 
 
-@dataclass(frozen=True, slots=True)
-class SetMarker:
+class SetMarker(msgspec.Struct, frozen=True):
     """A referee set a marker between two ticks."""
 
     marker: int
@@ -22,8 +24,7 @@ class SetMarker:
     struck: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(msgspec.Struct, frozen=True):
     """One thing that the rules judged, with what they made of it."""
 
     seen: Observation | SetMarker
@@ -62,14 +63,17 @@ class History:
         self._steps: list[Step] = []
         """From the one before the first event that can be taken back."""
         self._step_of: dict[int, int] = {}
+        self._judged: tuple[Any, str] = (None, "")
+        """The newest state after a tick, and why the game was over in it."""
 
     def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
         """Judge one tick; its events get the numbers from `next_number` on."""
         before = self.state
         self.state, events = self._game.step(before, observation, BEAT_S)
-        numbers = tuple(range(next_number, next_number + len(events)))
-        over = self._game.over(self.state)
-        self._append(Step(observation, before, events, numbers, over=over))
+        numbers = tuple(range(next_number, next_number + len(events))) if events else ()
+        if self.state is not self._judged[0]:
+            self._judged = (self.state, self._game.over(self.state))
+        self._append(Step(observation, before, events, numbers, over=self._judged[1]))
         return list(events)
 
     @property

@@ -9,9 +9,10 @@ decisions, every seat's [x], every seat's digit, one tick of physics, the rules.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from lacoc_robots.standing import FARTHEST_M
 from lacoc_server.match import contestant, referee
@@ -40,8 +41,7 @@ MOST_STRAYS = 3
 """A robot that leaves its start place so often before play does not stand: it is not ready."""
 
 
-@dataclass(frozen=True)
-class Beat:
+class Beat(msgspec.Struct, frozen=True):
     """What a beat made."""
 
     frame: Frame
@@ -63,8 +63,8 @@ class Match(MatchState):
     def __init__(self, setup: Setup, make_physics: MakePhysics, folder: Path | None = None) -> None:
         super().__init__(setup, make_physics, folder)
         self._touch: Touch | None = None
-        self._shown: tuple[Any, bytes] = (None, b"")
-        """A state of the game and its board as frames carry it."""
+        self._shown: tuple[Any, bytes, tuple[int, ...]] = (None, b"", ())
+        """A state of the game, its board as frames carry it, and each seat's points."""
 
     def legality(self) -> dict[str, Phrase | None]:
         """List every decision: None if it is legal now, else the reason why not."""
@@ -80,9 +80,7 @@ class Match(MatchState):
             self.enter(Phase.LOBBY)
         if self.phase is Phase.COUNTDOWN:
             self.countdown_beats -= 1
-        outcomes: list[Outcome] = [Done()] * len(inputs)
-        for index in sorted(range(len(inputs)), key=lambda index: _rank(inputs[index])):
-            outcomes[index] = self._take(inputs[index])
+        outcomes = self._take_all(inputs) if inputs else ()
         self.staging.put_back(self.seats)
         self._move_on()
         ticked = self.phase in PHYSICS_RUNS and self._tick()
@@ -90,12 +88,19 @@ class Match(MatchState):
         return Beat(
             self._frame(),
             tuple(self._events),
-            tuple(outcomes),
+            outcomes,
             ticked,
             self._touch,
             self.result() if self._result_changed else None,
             sheet_changed,
         )
+
+    def _take_all(self, inputs: Sequence[Input]) -> tuple[Outcome, ...]:
+        """Take a beat's inputs in the order of their ranks; outcomes are in the inputs' order."""
+        outcomes: list[Outcome] = [Done()] * len(inputs)
+        for index in sorted(range(len(inputs)), key=lambda index: _rank(inputs[index])):
+            outcomes[index] = self._take(inputs[index])
+        return tuple(outcomes)
 
     def _take(self, item: Input) -> Outcome:
         match item:
@@ -191,21 +196,19 @@ class Match(MatchState):
                 seat.ready = False
 
     def _frame(self) -> Frame:
-        state = self.history.state
+        game, state = self.game, self.history.state
         if state is not self._shown[0]:  # it changes seldom, and frames are many
-            self._shown = (state, pack_states(self.game.board(state)))
-        scores = self.scores()
+            self._shown = (state, pack_states(game.board(state)), game.score(state))
+        _, board, points = self._shown
+        seats, scores, ticks = self.seats, self._adjusted(points), self.ticks
         return Frame(
             self.setup.match,
             self.beats,
             int(self.phase),
             self.countdown_beats if self.phase is Phase.COUNTDOWN else 0,
             self.clock_ticks,
-            tuple(
-                seat.frame(score, self.ticks)
-                for seat, score in zip(self.seats, scores, strict=True)
-            ),
-            self._shown[1],
+            tuple([seat.frame(score, ticks) for seat, score in zip(seats, scores, strict=True)]),
+            board,
             self.staging.poses,
             self.physics.scene_hash,
             self.physics.digest,

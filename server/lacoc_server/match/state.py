@@ -68,6 +68,8 @@ class MatchState:
         self.game = self.arena.game
         self.limits = Limits.of(setup.limits)
         self.rules = self.arena.match
+        self.duration_ticks = round(self.rules.duration_s * BEATS_PER_S)
+        """Ticks that the match lasts; 0: without end."""
         self.phase = Phase.CREATED
         self.beats = -1
         """Number of the beat; the first is 0."""
@@ -118,11 +120,6 @@ class MatchState:
         return self.ticks + self.clock_offset
 
     @property
-    def duration_ticks(self) -> int:
-        """Ticks that the match lasts; 0: without end."""
-        return round(self.rules.duration_s * BEATS_PER_S)
-
-    @property
     def time_is_up(self) -> bool:
         """Whether the last tick has been played: none follows it (docs/rules.md 4)."""
         return 0 < self.duration_ticks <= self.clock_ticks
@@ -141,9 +138,19 @@ class MatchState:
             state: a state of the game; None: the present one.
             adjustments: corrections by event number; None: the present ones.
         """
-        scores = list(self.game.score(self.history.state if state is None else state))
-        for seat, points in (self.adjustments if adjustments is None else adjustments).values():
-            scores[seat] += points
+        points = self.game.score(self.history.state if state is None else state)
+        return self._adjusted(points, adjustments)
+
+    def _adjusted(
+        self, points: tuple[int, ...], adjustments: Mapping[int, tuple[int, int]] | None = None
+    ) -> tuple[int, ...]:
+        """Add the referee's points to the game's."""
+        adjustments = self.adjustments if adjustments is None else adjustments
+        if not adjustments:
+            return points
+        scores = list(points)
+        for seat, more in adjustments.values():
+            scores[seat] += more
         return tuple(scores)
 
     def winner(self) -> str:
