@@ -9,8 +9,8 @@ import { type Pressed, RESTART_KEY } from "../../core/keys";
 import { Player, type Word } from "../../core/player";
 import { PosData } from "../../core/posdata";
 import { Level, Phase, readFrame } from "../../core/wire";
-import { logClock } from "../../core/words";
 import { type MessageName, said, t } from "../../i18n";
+import { logClock } from "../../i18n/words";
 import { LinkBanner } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
 import { useDrop } from "../../ui/drop";
@@ -244,10 +244,10 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
   const phase = court.frame.peek()?.phase ?? Phase.LOBBY;
   const hasData = Boolean(player.data?.length);
   const inMatch = phase > Phase.READY && phase < Phase.OFFICIAL;
-  const leave = async () => {
+  const leave = () => {
     saveData(player);
     onClose();
-    await player.leave();
+    player.leave();
   };
   return (
     <Dialog title={t("leave.title")} onClose={onClose}>
@@ -269,7 +269,7 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
             {t("leave.save")}
           </button>
         )}
-        <button class="button strong" type="button" autofocus onClick={() => void leave()}>
+        <button class="button strong" type="button" autofocus onClick={leave}>
           {t(hasData ? "leave.go" : "leave.goNoData")}
         </button>
       </div>
@@ -300,7 +300,7 @@ function Files({ court, player, alone, onClose }: DialogProps) {
             type="button"
             onClick={() => {
               onClose();
-              void player.rejoin();
+              player.rejoin();
             }}
           >
             {t("files.use")}
