@@ -1,7 +1,7 @@
 """Requests to a court, and its refusals put into words."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
@@ -9,10 +9,11 @@ import msgspec
 
 from lacoc_client.court_view import MAX_BYTES
 from lacoc_shared import codec
+from lacoc_shared.command import screen
 from lacoc_shared.keyspace import EVERY_COURT, Keys
 from lacoc_shared.messages import PROTOCOL, Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
-from lacoc_shared.network.session import NoReply, Refused, Session, TooLate
+from lacoc_shared.network.session import NoReply, NotConnected, Refused, Session, TooLate
 from lacoc_shared.words import Phrase, say
 
 T = TypeVar("T")
@@ -22,6 +23,7 @@ ANSWER_S = 5.0
 
 _COMING_BACK_S = 0.5
 _AGAIN_S = 0.05
+_WAIT_AGAIN_S = 0.5
 
 
 class NoCourt(UserError):
@@ -34,6 +36,44 @@ class NoAnswer(NoCourt):
 
 class NotNow(UserError):
     """The court refuses for now: the same request may be taken later."""
+
+
+class Patience:
+    """How long a command waits for its court; the time begins anew when the court was there.
+
+    Args:
+        wait_s: how long; None: not at all, as is right for a person.
+        stopping: says whether somebody asked the command to end.
+    """
+
+    def __init__(self, wait_s: float | None, stopping: Callable[[], bool] = lambda: False) -> None:
+        self.wait_s = wait_s
+        self._stopping = stopping
+        self._told = ""
+
+    def until(self, do: Callable[[], T]) -> T:
+        """Do what needs a court, again and again while there is none, or it says "not now".
+
+        Raises:
+            UserError: as `do`, for good or when the time is over.
+            KeyboardInterrupt: if the command is asked to end.
+        """
+        end_s = time.monotonic() + (self.wait_s or 0.0)
+        while True:
+            try:
+                return do()
+            except (NotConnected, NoCourt, NotNow) as error:
+                if self.wait_s is None or time.monotonic() >= end_s:
+                    raise
+                self._tell(error)
+            if self._stopping():
+                raise KeyboardInterrupt
+            time.sleep(_WAIT_AGAIN_S)
+
+    def _tell(self, error: UserError) -> None:
+        if str(error) != self._told:
+            self._told = str(error)
+            screen.note(f"{error} This waits for it, up to {self.wait_s:g} s.")
 
 
 def ask(

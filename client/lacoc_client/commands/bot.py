@@ -10,12 +10,12 @@ import typer
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
+from lacoc_client.asking import Patience
 from lacoc_client.bot_player import BotPlayer
 from lacoc_client.commands import entrance
 from lacoc_client.controller import Controller, Hold
 from lacoc_client.seat_files import SeatFiles, gather
 from lacoc_client.stopping import stop_signals
-from lacoc_client.waiting import Patience
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.network.session import open_client

@@ -16,7 +16,7 @@ from msgspec.structs import FieldInfo
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_client.asking import NoAnswer
+from lacoc_client.asking import NoAnswer, Patience
 from lacoc_client.commands import entrance
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
@@ -24,7 +24,6 @@ from lacoc_client.stopping import stop_signals
 from lacoc_client.terminal import words
 from lacoc_client.terminal.line_view import event_columns
 from lacoc_client.terminal.plain import event_dict, frame_dict, reply_dict
-from lacoc_client.waiting import Patience
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.log import log_clock
 from lacoc_shared.decisions import DECISIONS, Decision

@@ -63,7 +63,7 @@ class History:
         self._steps: list[Step] = []
         """From the one before the first event that can be taken back."""
         self._step_of: dict[int, int] = {}
-        self._judged: tuple[Any, str] = (None, "")
+        self._judged: tuple[Any, Phrase | None] = (None, None)
         """The newest state after a tick, and why the game was over in it."""
 
     def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
