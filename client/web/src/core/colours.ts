@@ -2,7 +2,7 @@
 
 import { computed, effect, type ReadonlySignal } from "@preact/signals";
 import { setting } from "./address";
-import type { Match } from "./court";
+import type { Match } from "./match";
 import { remembered } from "./settings";
 import type { Sheet } from "./wire";
 

@@ -1,9 +1,10 @@
 /** What a page knows of a court: signals that its parts draw from. */
 
-import { computed, type ReadonlySignal, type Signal, signal } from "@preact/signals";
+import { type ReadonlySignal, signal } from "@preact/signals";
 import { runKey, setting, socketUrl } from "./address";
 import { recoloured } from "./colours";
 import { Connection } from "./connection";
+import { type Match, part } from "./match";
 import { type Moment, Timeline } from "./timeline";
 import {
   type Event,
@@ -12,27 +13,14 @@ import {
   type HeldSeat,
   type Link,
   type Message,
-  Phase,
   PROTOCOL,
   type RefereeState,
   type Request,
   type Scene,
   type Sheet,
   sameBytes,
-  unpackStates,
   type Welcome,
 } from "./wire";
-
-/** What every view of a match needs, live or from a recording. */
-export interface Match {
-  readonly sheet: ReadonlySignal<Sheet | null>;
-  /** The drawable model that belongs to the sheet; null until it is here. */
-  readonly scene: ReadonlySignal<Scene | null>;
-  readonly frame: ReadonlySignal<Frame | null>;
-  readonly events: ReadonlySignal<readonly Event[]>;
-  /** What to draw at a time of `performance.now()`; null before the first frame. */
-  sample(nowMs: number): Moment | null;
-}
 
 /** A frame older than this is not shown as live. */
 const STALE_MS = 1000;
@@ -202,37 +190,3 @@ export class Court implements Match {
     if (nowMs - this.arrivedMs > STALE_MS) this.live.value = false;
   }
 }
-
-/** The states of the markers, as a signal that changes only when one of them does. */
-export function markerStates(match: Match): ReadonlySignal<readonly number[]> {
-  let last: readonly number[] = [];
-  return computed(() => {
-    const frame = match.frame.value;
-    const count = match.sheet.value?.markers.length ?? 0;
-    if (!frame || frame.markers.length * 4 < count) return last;
-    const states = unpackStates(frame.markers, count);
-    if (states.length !== last.length || states.some((state, index) => state !== last[index])) {
-      last = states;
-    }
-    return last;
-  });
-}
-
-/** A part of the newest frame, as a signal that changes only when the part does. */
-export function part<T extends string | number | boolean | null>(
-  match: Match,
-  of: (frame: Frame) => T,
-  otherwise: T,
-): ReadonlySignal<T> {
-  return computed(() => {
-    const frame = match.frame.value;
-    return frame ? of(frame) : otherwise;
-  });
-}
-
-/** The phase of a match; CREATED before its first frame. */
-export function phaseOf(match: Match): ReadonlySignal<number> {
-  return part(match, (frame) => frame.phase, Phase.CREATED);
-}
-
-export type { Signal };

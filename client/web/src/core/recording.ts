@@ -2,7 +2,7 @@
 
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { recoloured } from "./colours";
-import type { Match } from "./court";
+import type { Match } from "./match";
 import type { MatchRecord, PackedFrames, Since } from "./record";
 import type { Moment } from "./timeline";
 import { type Event, type Frame, Phase, readFrame, type Scene, type Sheet } from "./wire";

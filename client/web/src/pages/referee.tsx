@@ -3,7 +3,8 @@
 import { useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { followColours } from "../core/colours";
-import { Court, part } from "../core/court";
+import { Court } from "../core/court";
+import { part } from "../core/match";
 import { t } from "../i18n";
 import { LinkBanner } from "../ui/banner";
 import { Dialog } from "../ui/dialog";

@@ -3,10 +3,11 @@
 import { computed, signal } from "@preact/signals";
 import { amount, flag, setting } from "../core/address";
 import { followColours } from "../core/colours";
-import { Court, part } from "../core/court";
+import { Court } from "../core/court";
+import { part } from "../core/match";
 import { quality, remembered } from "../core/settings";
-import { team } from "../core/words";
 import { t } from "../i18n";
+import { team } from "../i18n/words";
 import { View } from "../scene/View";
 import { LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";

@@ -1,9 +1,7 @@
 /** Draws a match into an element, frame by frame: picture, cameras, names, pointing. */
 
-import type { ReadonlySignal } from "@preact/signals";
+import type { Match } from "../core/match";
 import type { Quality } from "../core/settings";
-import type { Moment } from "../core/timeline";
-import type { Scene, Sheet } from "../core/wire";
 import { type Aim, type CameraName, type Frame2d, Rig, type ViewAxes, viewOf } from "./cameras";
 import { type Action, Director } from "./director";
 import { Model } from "./model";
@@ -14,12 +12,7 @@ import { Tags } from "./tags";
 import { type Plan, planOf, TopView } from "./topview";
 
 /** What is drawn. */
-export interface Source {
-  sheet: ReadonlySignal<Sheet | null>;
-  /** Belongs to the sheet, or is null. */
-  scene: ReadonlySignal<Scene | null>;
-  sample(nowMs: number): Moment | null;
-}
+export type Source = Pick<Match, "sheet" | "scene" | "sample">;
 
 /** Kept free of the field at the edges, for what lies over the picture [px]. */
 export interface Inset {

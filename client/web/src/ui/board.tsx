@@ -2,11 +2,11 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
-import { type Match, markerStates } from "../core/court";
+import { type Match, markerStates } from "../core/match";
 import { floorOf, type Place, places } from "../core/poses";
 import { MARKER_STATES, type MarkerInfo, type Sheet } from "../core/wire";
-import { seatName, team } from "../core/words";
 import { said, t } from "../i18n";
+import { seatName, team } from "../i18n/words";
 
 interface Props {
   match: Match;

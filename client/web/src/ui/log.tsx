@@ -1,10 +1,10 @@
 /** The events of a match, the newest first. */
 
 import type { ComponentChildren } from "preact";
-import type { Match } from "../core/court";
+import type { Match } from "../core/match";
 import type { Event } from "../core/wire";
-import { logClock } from "../core/words";
 import { said, t } from "../i18n";
+import { logClock } from "../i18n/words";
 
 interface Props {
   match: Match;

@@ -2,10 +2,10 @@
 
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
-import { type Match, phaseOf } from "../core/court";
+import { type Match, phaseOf } from "../core/match";
 import { Phase, SeatFlag, type Sheet } from "../core/wire";
-import { BEATS_PER_S, clock, hint, team } from "../core/words";
 import { catalogue, type MessageName, t } from "../i18n";
+import { BEATS_PER_S, clock, hint, team } from "../i18n/words";
 import { SeatMark } from "./score";
 import "./opening.css";
 

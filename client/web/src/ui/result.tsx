@@ -2,10 +2,10 @@
 
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
-import { type Match, phaseOf } from "../core/court";
+import { type Match, phaseOf } from "../core/match";
 import { type Event, Phase, type Sheet } from "../core/wire";
-import { byRules, clock, team, winnerOf } from "../core/words";
 import { said, t } from "../i18n";
+import { byRules, clock, team, winnerOf } from "../i18n/words";
 import { SeatMark } from "./score";
 import "./result.css";
 

@@ -2,10 +2,10 @@
 
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
-import { type Match, part, phaseOf } from "../core/court";
+import { type Match, part, phaseOf } from "../core/match";
 import { type Frame, Phase, SeatFlag, type Sheet } from "../core/wire";
-import { clock, clockTicks, hint, seatState, team } from "../core/words";
 import { t } from "../i18n";
+import { clock, clockTicks, hint, seatState, team } from "../i18n/words";
 
 const LAST_TICKS = 10 * 50;
 

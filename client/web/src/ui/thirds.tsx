@@ -2,10 +2,10 @@
 
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
-import type { Match } from "../core/court";
+import type { Match } from "../core/match";
 import type { Event } from "../core/wire";
-import { BEATS_PER_S, markerName, team } from "../core/words";
 import { said, t } from "../i18n";
+import { BEATS_PER_S, markerName, team } from "../i18n/words";
 import { SeatMark } from "./score";
 import "./thirds.css";
 

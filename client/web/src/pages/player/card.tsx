@@ -5,8 +5,8 @@ import type { Court } from "../../core/court";
 import { isAboutToken, type Player } from "../../core/player";
 import { remembered } from "../../core/settings";
 import { SeatFlag, type Sheet } from "../../core/wire";
-import { seatName, team } from "../../core/words";
 import { said, t } from "../../i18n";
+import { seatName, team } from "../../i18n/words";
 import { Mistakes } from "../../ui/mistakes";
 import { FilePicker } from "./files";
 

@@ -3,12 +3,13 @@
 import { type Signal, useComputed, useSignal, useSignalEffect } from "@preact/signals";
 import type { Ref } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
-import { type Court, phaseOf } from "../../core/court";
+import type { Court } from "../../core/court";
+import { phaseOf } from "../../core/match";
 import type { Player } from "../../core/player";
 import { quality } from "../../core/settings";
 import { Phase } from "../../core/wire";
-import { BEATS_PER_S, team, winnerOf } from "../../core/words";
 import { t } from "../../i18n";
+import { BEATS_PER_S, team, winnerOf } from "../../i18n/words";
 import { View } from "../../scene/View";
 import { ScoreBug } from "../../ui/score";
 import { Thirds } from "../../ui/thirds";

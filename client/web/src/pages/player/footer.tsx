@@ -3,8 +3,8 @@
 import { useComputed } from "@preact/signals";
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
-import { seatName, team } from "../../core/words";
 import { t } from "../../i18n";
+import { seatName, team } from "../../i18n/words";
 import { canChange } from "./files";
 
 interface Props {

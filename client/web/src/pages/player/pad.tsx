@@ -6,8 +6,8 @@ import type { Court } from "../../core/court";
 import { ARROWS, RESTART_KEY } from "../../core/keys";
 import type { Player } from "../../core/player";
 import { Level, Phase, SeatFlag } from "../../core/wire";
-import { BEATS_PER_S } from "../../core/words";
 import { t } from "../../i18n";
+import { BEATS_PER_S } from "../../i18n/words";
 
 export const LEVEL_LETTERS = ["A", "B"] as const;
 

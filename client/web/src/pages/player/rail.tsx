@@ -2,7 +2,8 @@
 
 import { useComputed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
-import { type Court, phaseOf } from "../../core/court";
+import type { Court } from "../../core/court";
+import { phaseOf } from "../../core/match";
 import type { Player } from "../../core/player";
 import { Level, Phase, SeatFlag } from "../../core/wire";
 import { t } from "../../i18n";

@@ -3,8 +3,8 @@
 import type { Court } from "../../core/court";
 import type { Player } from "../../core/player";
 import { Phase, SeatFlag } from "../../core/wire";
-import { BEATS_PER_S, seatName, team } from "../../core/words";
 import { type MessageName, said, t } from "../../i18n";
+import { BEATS_PER_S, seatName, team } from "../../i18n/words";
 
 /** A line, and how much it matters. */
 export interface Step {

@@ -2,7 +2,8 @@
 
 import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Refused, Unanswered } from "../../core/connection";
-import { type Court, part, phaseOf } from "../../core/court";
+import type { Court } from "../../core/court";
+import { part, phaseOf } from "../../core/match";
 import { remembered } from "../../core/settings";
 import { tab } from "../../core/storage";
 import {

@@ -2,6 +2,7 @@
 
 import type { Court } from "../../core/court";
 import type { Decision, DecisionName } from "../../core/wire";
+import { t } from "../../i18n";
 import {
   BEATS_PER_S,
   clock,
@@ -10,8 +11,7 @@ import {
   outcome,
   seatName,
   team,
-} from "../../core/words";
-import { t } from "../../i18n";
+} from "../../i18n/words";
 
 /** A number that a decision needs. */
 interface Amount {

@@ -1,10 +1,10 @@
 /** The state of the match, the next sensible step as one big button, and all other decisions. */
 
 import { useMemo } from "preact/hooks";
-import { part } from "../../core/court";
+import { part } from "../../core/match";
 import { type DecisionName, Phase, SeatFlag } from "../../core/wire";
-import { seatName, team } from "../../core/words";
 import { type MessageName, t } from "../../i18n";
+import { seatName, team } from "../../i18n/words";
 import { Hint, PhaseWord, SeatMark } from "../../ui/score";
 import { Act } from "./act";
 import type { Answer, Desk, Step } from "./desk";

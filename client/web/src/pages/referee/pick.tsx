@@ -1,10 +1,10 @@
 /** The popover of what was clicked on the field: a disc, corner or flag, or a robot. */
 
 import { useLayoutEffect, useMemo, useRef } from "preact/hooks";
-import { markerStates } from "../../core/court";
+import { markerStates } from "../../core/match";
 import { MARKER_STATES } from "../../core/wire";
-import { team } from "../../core/words";
 import { t } from "../../i18n";
+import { team } from "../../i18n/words";
 import { SeatMark } from "../../ui/score";
 import { Act } from "./act";
 import type { Desk } from "./desk";

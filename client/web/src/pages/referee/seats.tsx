@@ -1,10 +1,10 @@
 /** Each contestant: link, key, ready state, and the decisions about their robot. */
 
 import { useMemo } from "preact/hooks";
-import { part } from "../../core/court";
+import { part } from "../../core/match";
 import { type Frame, SeatFlag, type SeatHealth, type Sheet } from "../../core/wire";
-import { seatName, seatState, team } from "../../core/words";
 import { said, t } from "../../i18n";
+import { seatName, seatState, team } from "../../i18n/words";
 import { SeatMark } from "../../ui/score";
 import { Act } from "./act";
 import type { Desk } from "./desk";

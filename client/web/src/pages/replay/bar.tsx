@@ -4,8 +4,8 @@ import { useSignal } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import type { Recording } from "../../core/recording";
 import { type Event, Phase } from "../../core/wire";
-import { BEATS_PER_S, logClock } from "../../core/words";
 import { t } from "../../i18n";
+import { BEATS_PER_S, logClock } from "../../i18n/words";
 import { sentence } from "../../ui/thirds";
 import type { Player } from "./player";
 

@@ -2,8 +2,8 @@
 
 import { computed } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
-import { logClock } from "../../core/words";
 import { said, t } from "../../i18n";
+import { logClock } from "../../i18n/words";
 import type { Player } from "./player";
 
 export function ReplayLog({ player }: { player: Player }) {

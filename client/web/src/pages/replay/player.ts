@@ -3,7 +3,7 @@
 import { computed, signal } from "@preact/signals";
 import type { Recording } from "../../core/recording";
 import type { Event } from "../../core/wire";
-import { BEATS_PER_S } from "../../core/words";
+import { BEATS_PER_S } from "../../i18n/words";
 import { isScoring, isTold } from "../../ui/thirds";
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8] as const;

@@ -1,8 +1,8 @@
 /** Clocks, scores and states in words, the same on every page. */
 
-import { type MessageName, t } from "../i18n";
-import type { Match } from "./court";
-import { type Event, type Frame, Phase, SeatFlag, type SeatFrame, type Sheet } from "./wire";
+import type { Match } from "../core/match";
+import { type Event, type Frame, Phase, SeatFlag, type SeatFrame, type Sheet } from "../core/wire";
+import { type MessageName, t } from "./index";
 
 export const BEATS_PER_S = 50;
 
