@@ -53,6 +53,7 @@ class PageClient:
         self.links: list[dict[str, Any]] = []
         self.seat: dict[str, Any] = {}
         self.referee: dict[str, Any] = {}
+        self.files: dict[str, Any] = {}
         self.sheet: Sheet | None = None
         self.scene: tuple[bytes, Scene] | None = None
         self.frame: Frame | None = None
@@ -166,6 +167,8 @@ class PageClient:
                 self.seat = body
             case Kind.REFEREE:
                 self.referee = body
+            case Kind.FILES:
+                self.files = body
             case Kind.REPLY:
                 self._replies[body["id"]] = body
 

@@ -6,14 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from lacoc_client.seat_files import SeatFiles
+from lacoc_client.own_files import OwnFiles
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
 
 Kind = Literal["venue", "player", "practice"]
-
-_NO_FILES = SeatFiles()
 
 VIEWERS_MOST = 400
 """More pages than this that only watch are sent away: 25 frames a second of 400 need 3 MB/s."""
@@ -33,7 +31,8 @@ class Prefill:
     seat: str = ""
     token: str = ""
     name: str = ""
-    files: SeatFiles = _NO_FILES
+    files: OwnFiles | None = None
+    """What lies on this machine; a page may bring others."""
 
 
 @dataclass(frozen=True)

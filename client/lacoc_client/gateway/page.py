@@ -139,6 +139,9 @@ class Page:
             viewer.send(self._welcome(None))  # it says which courts there are
             raise
         viewer.send(self._welcome(self._feed.court))
+        prefill = self._home.prefill
+        if viewer.can_act and prefill is not None and prefill.files is not None:
+            viewer.send(wire.files_message(prefill.files))
         self._feed.add(viewer)
         if viewer.can_act:
             viewer.send(self._referees.state(viewer))
@@ -153,7 +156,6 @@ class Page:
                 "seat": prefill.seat,
                 "name": prefill.name,
                 "has_token": bool(prefill.token),
-                "files": [file.name for file in prefill.files if file is not None],
             }
         body = {
             "protocol": PROTOCOL,

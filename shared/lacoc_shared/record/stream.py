@@ -20,7 +20,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE
 from lacoc_shared.seat import BEATS_PER_S
 
-_DAMAGE = (
+DAMAGE = (
     McapError,
     codec.BadMessage,
     struct.error,
@@ -109,7 +109,7 @@ def walk(path: Path, take: Take) -> Stop | None:
                     "(one that was exported for Foxglove can't be read back)."
                 )
             whole = file.tell()
-    except _DAMAGE as error:
+    except DAMAGE as error:
         if not _is_cut(data, whole):
             text = (
                 f"is damaged at byte {whole} of {len(data)} ({error}); its last "

@@ -3,7 +3,7 @@
 import { batch, computed, effect, type ReadonlySignal, signal, untracked } from "@preact/signals";
 import { Refused } from "./connection";
 import type { Court } from "./court";
-import { chosenFiles, MOST_BYTES } from "./files";
+import { chosenFiles, chosenSequences, MOST_BYTES } from "./files";
 import { PosData } from "./posdata";
 import { tab } from "./storage";
 import { type Frame, Phase, SeatFlag, type SeatFrame, type SentFile, sameBytes } from "./wire";
@@ -279,7 +279,7 @@ export class Player {
       const { seat, token, name } = wish;
       const files = chosenFiles();
       checkSizes(Object.values(files));
-      const fields = { seat, token, name, ...files };
+      const fields = { seat, token, name, ...files, sequences: chosenSequences() };
       const joined = await this.court.ask<{ notes: string[]; index: number }>("join", fields);
       this.begin(wish, joined.index);
       for (const note of this.alone ? [] : joined.notes) this.say({ text: note, tone: "plain" });

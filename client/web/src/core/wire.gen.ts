@@ -222,6 +222,7 @@ export interface Header {
   first_beat: number;
   started: string;
   versions: Record<string, string>;
+  arithmetic: Record<string, string>;
   setup: Setup;
 }
 

@@ -1,6 +1,8 @@
 /** Says across the top what the page waits for; nothing while all is well. */
 
+import { useComputed } from "@preact/signals";
 import type { Court } from "../core/court";
+import { Phase } from "../core/wire";
 import { said, t } from "../i18n";
 
 /** What the page waits for, in words; "" while all is well. */
@@ -20,7 +22,14 @@ export function waitsFor(court: Court): string {
   return court.begun.value && !court.live.value ? t("link.stale") : "";
 }
 
+/** Whether the last thing that was shown is the end of a match: nothing is missing then. */
+export function isOver(court: Court): boolean {
+  const phase = court.frame.value?.phase;
+  return phase === Phase.OFFICIAL || phase === Phase.VOID;
+}
+
 export function LinkBanner({ court }: { court: Court }) {
+  const over = useComputed(() => isOver(court)).value;
   if (court.outdated.value) {
     return (
       <div class="banner" role="alert">
@@ -32,6 +41,13 @@ export function LinkBanner({ court }: { court: Court }) {
     );
   }
   const text = waitsFor(court);
+  if (text && over) {
+    return (
+      <div class="banner calm" role="status">
+        {t("link.over")}
+      </div>
+    );
+  }
   return text ? (
     <div class="banner" role="status">
       {text}

@@ -2,8 +2,8 @@
 
 import { computed } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
-import { said, t } from "../../i18n";
-import { logClock } from "../../i18n/words";
+import { t } from "../../i18n";
+import { eventClock, told } from "../../i18n/words";
 import type { Player } from "./player";
 
 export function ReplayLog({ player }: { player: Player }) {
@@ -29,8 +29,8 @@ export function ReplayLog({ player }: { player: Player }) {
           aria-current={index === happened - 1 ? "step" : undefined}
         >
           <button type="button" onClick={() => player.show(event)}>
-            <time>{logClock(event.clock_ticks)}</time>
-            <span>{said(event.text)}</span>
+            <time>{eventClock(event, recording.sheet.value)}</time>
+            <span>{told(event)}</span>
           </button>
         </li>
       ))}
