@@ -49,6 +49,7 @@ def practise_in(tmp_path: Path, built_pages: Path, sit: Sit) -> Iterator[Practis
             url, key = stack.enter_context(own_page(tmp_path, "practice"))
             page = sit(url, **options)
             page.open("/practice", key)
+            stack.callback(page.page.context.close)  # before its gateway ends
             return page
 
         yield begin

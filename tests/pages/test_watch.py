@@ -139,7 +139,7 @@ def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) ->
     venue.web()
     referee = playing(venue)
     show = Show(open_page(), venue.url, LOW)
-    decide(referee, "test", type="clock", seconds=3600)
+    decide(referee, "test", type="clock", gives_s=-3600)
     show.sees(".result h1", "A draw")
     number = decide(referee, "count again", type="adjust", seat="left", points=3)["event"]
     show.sees(".result h1", "Ants wins")

@@ -27,7 +27,7 @@ from lacoc_client.terminal.plain import event_dict, frame_dict
 from lacoc_client.waiting import Patience
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.log import log_clock
-from lacoc_shared.decisions import DECISIONS, Decision
+from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision
 from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
@@ -49,6 +49,7 @@ _QUIET_S = 0.3
 _FIELDS = {
     "seat": "The seat, such as 'left'.",
     "seconds": "How many seconds.",
+    "gives_s": "How many seconds to give; -10 takes ten away.",
     "points": "How many points; -2 takes two away.",
     "marker": "Name of the disc, corner or flag: c2r3, corner0, flag7.",
     "state": "What it becomes: neutral, left, right or down.",
@@ -106,13 +107,24 @@ _COMMON: dict[str, tuple[Any, Any]] = {
 
 def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
     """The function of a decision's subcommand; its parameters are the decision's fields."""
-    fields = {field.name: field for field in msgspec.structs.fields(kind)}
+    fields = {
+        field.name: field
+        for field in msgspec.structs.fields(kind)
+        if (kind, field.name) not in OLD_FIELDS
+    }
 
     def run(**given: Any) -> None:
         decision = kind(**{field: given[field] for field in fields})
         _decide(name, decision, **{option: given[option] for option in _COMMON})
 
-    parameters = [(field.name, _annotation(field), field.default) for field in fields.values()]
+    parameters = [
+        (
+            field.name,
+            _annotation(field),
+            msgspec.NODEFAULT if _is_argument(field) else field.default,
+        )
+        for field in fields.values()
+    ]
     parameters += [(option, *spec) for option, spec in _COMMON.items()]
     run.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [
@@ -132,11 +144,17 @@ def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
 def _annotation(field: FieldInfo) -> Any:
     """A required field is an argument, any other an option."""
     help = _FIELDS.get(field.name) or _TYPES.get(field.type, "A word.")
-    if field.required:
-        return Annotated[field.type, typer.Argument(help=help)]
+    if _is_argument(field):
+        name = field.encode_name.removesuffix("_s").upper()
+        return Annotated[field.type, typer.Argument(metavar=name, help=help)]
     return Annotated[
         field.type, typer.Option(f"--{field.encode_name.replace('_', '-')}", help=help)
     ]
+
+
+def _is_argument(field: FieldInfo) -> bool:
+    """Whether a field must be given; one that old records lack has a default all the same."""
+    return field.required or field.name == "gives_s"
 
 
 for _name, _kind in DECISIONS.items():

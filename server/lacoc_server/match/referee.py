@@ -181,9 +181,13 @@ def _set(match: MatchState, decision: d.Set) -> str:
 
 
 def _clock(match: MatchState, decision: d.Clock) -> str:
-    seconds = _number(decision.seconds, MAX_CLOCK_S, "s")
-    match.clock_offset += _ticks(seconds)
-    return f"the clock moves by {seconds:+g} s."
+    if decision.seconds:  # an old record's: it must give the same match and words again
+        taken = _number(decision.seconds, MAX_CLOCK_S, "s")
+        match.clock_offset += _ticks(taken)
+        return f"the clock moves by {taken:+g} s."
+    given = _number(decision.gives_s, MAX_CLOCK_S, "s")
+    match.clock_offset -= _ticks(given)
+    return f"{given:+g} s to play."
 
 
 def _abort(match: MatchState, decision: d.Abort) -> str:

@@ -29,6 +29,18 @@ export function corrections(events: readonly Event[]): Event[] {
   });
 }
 
+/** What halted the match: the decision or the fault before its newest halt; null: nothing says. */
+export function whyHalted(events: readonly Event[]): Event | null {
+  const index = events.findLastIndex(({ data }) => data.after === "HALTED");
+  const halt = events[index];
+  if (!halt) return null;
+  const causes = new Set(["decision", "fault"]);
+  return (
+    events.slice(0, index).findLast(({ beat, kind }) => beat === halt.beat && causes.has(kind)) ??
+    null
+  );
+}
+
 /** The decision of an event, with its arguments; null for any other event. */
 export function decisionOf({ data }: Event): Decision | null {
   if (typeof data.decision !== "string") return null;

@@ -199,6 +199,7 @@ const DECISIONS: readonly Pattern[] = [
   ["{#n} for {team}.", "{team} の得点に {#n} 点。"],
   ["{marker} is set to {State}.", "{marker} を「{State}」にしました。"],
   ["the clock moves by {#n} s.", "時計を {#n} 秒動かしました。"],
+  ["{#n} s to play.", "残り時間を {#n} 秒変更しました。"],
   ["the match is void.", "無効試合としました。"],
   ["the match is declared a draw.", "引き分けと宣言しました。"],
   ["{team} is declared the winner.", "{team} を勝者と宣言しました。"],
