@@ -13,6 +13,7 @@ from urllib.parse import urlsplit
 import msgpack
 from websockets.client import ClientProtocol
 from websockets.exceptions import ConnectionClosed
+from websockets.frames import Opcode
 from websockets.sync.client import ClientConnection, connect
 from websockets.uri import parse_uri
 
@@ -201,7 +202,8 @@ class SleepyPage:
             self._flush()  # answers pings
             for event in self._protocol.events_received():
                 data = bytes(getattr(event, "data", b""))
-                if data[:1] == bytes((Kind.FRAME,)):
+                is_message = getattr(event, "opcode", None) is Opcode.BINARY  # and no ping
+                if is_message and data[:1] == bytes((Kind.FRAME,)):
                     beats.append(decode(data[1:], Frame).beat)
         return beats
 

@@ -298,7 +298,7 @@ def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     expect(page.locator(".enter")).to_contain_text("#key=")
     expect(page.locator("input[name=token]")).to_have_count(0)
     expect(page.locator(".health .verdict")).to_be_visible()
-    log_has(page, "LOBBY.")
+    log_has(page, "Waiting for the teams to join.")
     expect(big(page)).to_have_attribute("aria-disabled", "true")
 
 

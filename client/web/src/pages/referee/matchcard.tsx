@@ -107,8 +107,7 @@ function ReplayAdvice({ desk }: { desk: Desk }) {
 
 /** Why the match is halted, large: a court that was started again, a fault, a referee's reason. */
 function WhyHalted({ desk }: { desk: Desk }) {
-  const cause =
-    desk.phase.value === Phase.HALTED ? whyHalted(desk.court.events.value) : null;
+  const cause = desk.phase.value === Phase.HALTED ? whyHalted(desk.court.events.value) : null;
   return cause ? <p class="why-halted">{told(cause)}</p> : null;
 }
 
