@@ -71,3 +71,14 @@ def test_what_went_wrong_is_said_once() -> None:
     ]
     assert {line["match_id"] for line in lines} == {"m-1"}
     assert {line["log_level"] for line in lines} == {"warning"}
+
+
+def test_slow_beats_are_told_now_and_then() -> None:
+    """A loaded machine has some every second: the first at once, the others together."""
+    with capture_logs() as lines:
+        log = CourtLog("main")
+        for second in range(100):
+            slow = msgspec.structs.replace(HEALTH, beat=50 * second, slow_beats=second + 1)
+            log.health("m-1", slow)
+    assert [line["count"] for line in lines] == [1, 30, 30, 30]
+    assert lines[1]["event"].startswith("Slow beats: 30, 31 in all")

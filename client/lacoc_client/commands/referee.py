@@ -65,11 +65,16 @@ _TokenUnused = Annotated[
 ]
 
 
+_NOBODY = frozenset({"root", "admin", "administrator", "user", "nobody"})
+"""Accounts that are nobody's name: it would stand in the record."""
+
+
 def _default_name() -> str:
     try:
-        return getpass.getuser()
+        name = getpass.getuser()
     except (KeyError, OSError, ImportError):  # an account without a name
         return "referee"
+    return "referee" if name in _NOBODY else name
 
 
 _COMMON: dict[str, tuple[Any, Any]] = {
@@ -336,11 +341,19 @@ def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
 
 
 def _show_reply(reply: DecisionReply) -> None:
-    number = "dry run" if reply.event is None else f"event {reply.event}"
-    screen.show(f"{reply.text[:1].upper()}{reply.text[1:]} ({number}, beat {reply.beat})")
+    score = " : ".join(map(str, reply.scores))
+    text = f"{reply.text[:1].upper()}{reply.text[1:]}"
+    if reply.event is None:
+        screen.show("Dry run: nothing is done. This is what would be done:")
+        screen.show(f"  {text}")
+        for change in reply.changes or ("No other event changes.",):
+            screen.show(f"  {change}")
+        screen.show(f"Score then: {score}")
+        return
+    screen.show(f"{text} (event {reply.event}, beat {reply.beat})")
     for change in reply.changes:
         screen.show(f"  {change}")
-    screen.show(f"Score: {' : '.join(map(str, reply.scores))}")
+    screen.show(f"Score: {score}")
 
 
 def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:

@@ -59,7 +59,7 @@ class Courts:
         """The matches that are over and still on at their courts; may be asked from any thread."""
         pictures = [feed.picture for feed in self.feeds]
         ended = (Phase.OFFICIAL, Phase.VOID)
-        return [picture.match_id for picture in pictures if picture.phase in ended]
+        return [picture.view.match_id for picture in pictures if picture.phase in ended]
 
     def why_full(self, viewer: Viewer) -> str:
         """Why there is no room for a page; "" if there is.

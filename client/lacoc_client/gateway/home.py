@@ -42,6 +42,8 @@ class Home:
     courts: dict[str, Access]
     """The way to each court by its name; the first is shown where a page names none."""
     kind: Kind = "venue"
+    contest: str = ""
+    """The contest's name; "" if nobody gave it one."""
     prefill: Prefill | None = None
     recordings: Path | None = None
     """Folder of the recordings that may be fetched."""
@@ -66,4 +68,4 @@ def lasting_key(contest: Contest) -> str:
 
 def player_home(access: Access, prefill: Prefill, kind: Kind, recordings: Path | None) -> Home:
     """The gateway of one person at one court."""
-    return Home({access.court: access.watching()}, kind, prefill, recordings)
+    return Home({access.court: access.watching()}, kind, "", prefill, recordings)

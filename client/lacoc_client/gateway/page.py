@@ -164,6 +164,7 @@ class Page:
             "court": court,
             "can_act": self._viewer.can_act,
             "home": home.kind,
+            "contest": home.contest,
             "prefill": filled,
         }
         return wire.map_message(Kind.WELCOME, body)

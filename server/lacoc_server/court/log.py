@@ -7,9 +7,12 @@ import msgspec
 
 from lacoc_shared.command import log
 from lacoc_shared.messages import Event, Health
+from lacoc_shared.seat import BEATS_PER_S
 
 _TROUBLE = frozenset({"advice", "fault", "silent"})
 """Kinds of events that an organiser looks up for."""
+_SLOW_BEATS = 30 * BEATS_PER_S
+"""The first slow beats are told at once, later ones together: a busy machine has some a second."""
 
 
 class CourtLog:
@@ -23,6 +26,8 @@ class CourtLog:
         self._log = log.get(court=court)
         self._refused: Counter[tuple[str, str]] = Counter()
         self._slow_beats = 0
+        self._slow_told = (0, 0)
+        """Match and beat in which slow beats were told last."""
         self._trouble = ""
 
     def event(self, match_id: str, event: Event) -> None:
@@ -41,12 +46,14 @@ class CourtLog:
                 f"{who}: {count} refused, {why}.", kind="refused", seat=seat, why=why, count=count
             )
         self._refused = refused
-        if slow := health.slow_beats - self._slow_beats:
+        slow = health.slow_beats - self._slow_beats
+        at = health.match, health.beat
+        if slow and not (self._slow_told[0] == at[0] and at[1] - self._slow_told[1] < _SLOW_BEATS):
             worst_ms = health.worst_late_ms
             in_all = f"{health.slow_beats} in all; the latest by {worst_ms:.0f} ms"
             text = f"Slow beats: {slow}, {in_all}."
             write(text, kind="slow", count=slow, worst_late_ms=worst_ms)
-        self._slow_beats = health.slow_beats
+            self._slow_beats, self._slow_told = health.slow_beats, at
         if health.record_trouble != self._trouble:
             self._trouble = health.record_trouble
             write(self._trouble or "The record is written again.", kind="record")

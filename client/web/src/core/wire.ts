@@ -24,6 +24,8 @@ export interface Welcome {
   court: string | null;
   can_act: boolean;
   home: "venue" | "player" | "practice";
+  /** The contest's name; "" if it has none. */
+  contest: string;
   prefill: Prefill | null;
 }
 

@@ -22,7 +22,7 @@ export const common = {
   "hint.notReady": ["{team} has not said ready yet", "{team} がまだ準備完了していません"],
   "hint.start": ["All ready: the referee starts the match", "準備完了：審判の開始を待っています"],
   "hint.countdown": ["Starts in {seconds}", "あと {seconds} 秒で開始"],
-  "hint.leads": ["{team} leads by {points}", "{team} が {points} 点リード"],
+  "hint.leads": ["{team}: ahead by {points}", "{team} が {points} 点リード"],
   "hint.level": ["Level", "同点"],
   "hint.halted": ["The referee resumes it", "審判が再開します"],
   "hint.finished": ["Over: the referee confirms the result", "終了：審判が結果を確認しています"],

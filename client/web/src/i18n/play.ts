@@ -303,6 +303,7 @@ export const play = {
   "keytest.digit": ["digit {digit}", "数字 {digit}"],
   "keytest.arrow": ["{digit} of level B", "レベル B の {digit}"],
   "keytest.restart": ["restart", "再スタート"],
+  "keytest.ready": ["ready", "準備完了"],
   "keytest.leave": ["leave", "退出"],
   "keytest.level": ["level", "レベル切替"],
   "keytest.view": ["view", "視点切替"],

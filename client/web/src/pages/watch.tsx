@@ -129,7 +129,7 @@ function Brand() {
   return (
     <div class="corner left">
       <a class="brand" href="/">
-        <b>LACOC</b>
+        <b>{court.welcome.value?.contest || "LACOC"}</b>
         <small>
           {sheet && `${sheet.title} · `}
           {sheet && <span>{t("watch.match", { number: sheet.match })}</span>}

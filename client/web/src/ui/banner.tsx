@@ -28,11 +28,21 @@ export function isOver(court: Court): boolean {
   return phase === Phase.OFFICIAL || phase === Phase.VOID;
 }
 
+/** Let the page know how high the banner is: on a phone its text takes several lines. */
+function makeRoom(banner: HTMLElement | null): void {
+  if (!banner) return;
+  new ResizeObserver(([seen], observer) => {
+    if (!banner.isConnected) observer.disconnect();
+    const height = seen?.borderBoxSize[0]?.blockSize ?? banner.offsetHeight;
+    document.documentElement.style.setProperty("--banner", `${Math.ceil(height)}px`);
+  }).observe(banner);
+}
+
 export function LinkBanner({ court }: { court: Court }) {
   const over = useComputed(() => isOver(court)).value;
   if (court.outdated.value) {
     return (
-      <div class="banner" role="alert">
+      <div class="banner" role="alert" ref={makeRoom}>
         {t("link.outdated")}
         <button class="button" type="button" onClick={() => location.reload()}>
           {t("link.reload")}
@@ -43,13 +53,13 @@ export function LinkBanner({ court }: { court: Court }) {
   const text = waitsFor(court);
   if (text && over) {
     return (
-      <div class="banner calm" role="status">
+      <div class="banner calm" role="status" ref={makeRoom}>
         {t("link.over")}
       </div>
     );
   }
   return text ? (
-    <div class="banner" role="status">
+    <div class="banner" role="status" ref={makeRoom}>
       {text}
     </div>
   ) : null;

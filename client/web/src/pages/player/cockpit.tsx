@@ -9,7 +9,7 @@ import { type Pressed, RESTART_KEY } from "../../core/keys";
 import { phaseOf } from "../../core/match";
 import { Player, type Word } from "../../core/player";
 import { PosData } from "../../core/posdata";
-import { Level, Phase, readFrame, type Sheet } from "../../core/wire";
+import { Level, Phase, readFrame, SeatFlag, type Sheet } from "../../core/wire";
 import { type MessageName, said, t } from "../../i18n";
 import { clockTicks, logClock } from "../../i18n/words";
 import { LinkBanner } from "../../ui/banner";
@@ -59,6 +59,12 @@ export function Cockpit({ alone }: { alone: boolean }) {
       }),
     [player],
   );
+  const sayReady = () => {
+    const frame = court.frame.peek();
+    const isEarly = frame && (frame.phase === Phase.LOBBY || frame.phase === Phase.READY);
+    const isReady = (player.seatNow()?.flags ?? 0) & SeatFlag.READY;
+    if (isEarly && !alone && !isReady) void player.ready(true);
+  };
   const nextView = () => {
     view.value = VIEWS[(VIEWS.indexOf(view.peek()) + 1) % VIEWS.length]!;
   };
@@ -85,6 +91,8 @@ export function Cockpit({ alone }: { alone: boolean }) {
         return changeLevel();
       case "view":
         return nextView();
+      case "ready":
+        return sayReady();
       default:
         if (isMatchOn()) leaving.hold();
         else open.value = "leave";

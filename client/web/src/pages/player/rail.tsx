@@ -68,7 +68,7 @@ function Ready({ court, player }: Props) {
         disabled={!canSteer}
         onClick={() => void player.ready(true)}
       >
-        {t("ready.say")}
+        {t("ready.say")} <kbd>r</kbd>
       </button>
     );
   }
