@@ -159,9 +159,11 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
         page.find(f"[aria-label='Postures of key {key}']").fill(postures)
         page.press("Tab")
     page.page.click("text=Use these files")
-    page.stands("seated")
+    page.press("Tab")
+    page.sees(".key[data-key='1'] small", "2 postures")
+    page.sees(".stands", "No key yet")  # of the match that begins now
     page.phase(Phase.PLAYING)
-    page.press("Tab", "1")
+    page.press("1")
     page.key_stands(1)
     page.sees(".stands", "B 1: posture")
 
