@@ -28,7 +28,7 @@ def test_an_event_is_a_line_with_all_it_has() -> None:
     with capture_logs() as lines:
         log = CourtLog("main")
         log.event("m-1", flip)
-        log.event("m-1", msgspec.structs.replace(flip, kind="silent"))
+        log.event("m-1", msgspec.structs.replace(flip, kind="silent"), 9000)
     assert lines[0] == {
         "event": "A flip.",
         "log_level": "info",
@@ -37,6 +37,7 @@ def test_an_event_is_a_line_with_all_it_has() -> None:
         **{name: getattr(flip, name) for name in flip.__struct_fields__ if name != "text"},
     }
     assert lines[1]["log_level"] == "warning"
+    assert lines[1]["left_ticks"] == 8988
 
 
 def test_what_went_wrong_is_said_once() -> None:

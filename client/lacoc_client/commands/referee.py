@@ -26,7 +26,7 @@ from lacoc_client.terminal.line_view import event_columns
 from lacoc_client.terminal.plain import event_dict, frame_dict
 from lacoc_client.waiting import Patience
 from lacoc_shared.command import options, screen
-from lacoc_shared.command.log import log_clock
+from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision
 from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision
 from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
 from lacoc_shared.mistakes import UserError
@@ -212,7 +212,7 @@ def log(
                 screen.print_json(event_dict(event, view.sheet))
         elif follow:
             for event in events:
-                screen.show(_log_line(event))
+                screen.show(_log_line(event, view.sheet))
         else:
             screen.show(_log_table(events, view.sheet))
         with stop_signals() as stopping:
@@ -222,7 +222,7 @@ def log(
                     if json:
                         screen.print_json(event_dict(event, view.sheet))
                     else:
-                        screen.show(_log_line(event))
+                        screen.show(_log_line(event, view.sheet))
 
 
 def _decide(
@@ -322,8 +322,8 @@ def _history(view: Spectator) -> tuple[Event, ...]:
     return view.events
 
 
-def _log_line(event: Event) -> Text:
-    return Text.assemble((f"{event.number:>4} ", "bold"), *event_columns(event))
+def _log_line(event: Event, sheet: Sheet) -> Text:
+    return Text.assemble((f"{event.number:>4} ", "bold"), *event_columns(event, sheet))
 
 
 def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
@@ -332,7 +332,7 @@ def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
         plain = event_dict(event, sheet)
         table.add_row(
             str(event.number),
-            log_clock(event.clock_ticks),
+            words.event_clock(event, sheet),
             event.kind,
             Text(plain["seat"] or ""),
             Text(event.text),

@@ -157,7 +157,7 @@ def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bo
         if event["kind"] == "result":
             result = event["text"]
         if not quiet:
-            screen.show(f"{log_clock(event['clock_ticks'])}  {event['text']}")
+            screen.show(f"{log_clock(event['left_ticks'])}  {event['text']}")
         if event["kind"] == "phase" and event["data"]["after"] in ("OFFICIAL", "VOID"):
             return result
 

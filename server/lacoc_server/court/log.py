@@ -30,10 +30,12 @@ class CourtLog:
         """Match and beat in which slow beats were told last."""
         self._trouble = ""
 
-    def event(self, match_id: str, event: Event) -> None:
-        """Log an event of the match."""
+    def event(self, match_id: str, event: Event, duration_ticks: int = 0) -> None:
+        """Log an event of a match that lasts so long; 0: without end."""
         write = self._log.warning if event.kind in _TROUBLE else self._log.info
         fields = msgspec.structs.asdict(event)
+        if duration_ticks:
+            fields["left_ticks"] = duration_ticks - event.clock_ticks
         write(fields.pop("text"), match_id=match_id, **fields)
 
     def health(self, match_id: str, health: Health) -> None:
