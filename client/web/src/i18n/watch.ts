@@ -51,6 +51,10 @@ export const watch = {
     "Decided by the referee, not by the score",
     "得点ではなく審判の判定による結果です",
   ],
+  "result.ruling": [
+    "Decided by the referee, not by the score.",
+    "得点ではなく審判の判定による結果です",
+  ],
   "result.because": [" Reason: {reason}", "（理由：{reason}）"],
   "result.corrected": ["Corrected by the referee:", "審判による修正："],
   "result.adjusted": ["{points} for {team}.", "{team} に {points} 点。"],

@@ -101,6 +101,7 @@ function Hud() {
           <ResultCard
             match={court}
             withReplay
+            isLast={!court.live.value}
             onClose={() => {
               putAway.value = match;
             }}

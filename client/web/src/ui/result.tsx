@@ -19,10 +19,12 @@ interface Props {
   onClose?: () => void;
   /** There is a way to the recording, once there is one. */
   withReplay?: boolean;
+  /** No other match follows: the court has closed. */
+  isLast?: boolean;
 }
 
 /** Nothing until the match is over. */
-export function ResultCard({ match, onClose, withReplay }: Props) {
+export function ResultCard({ match, onClose, withReplay, isLast }: Props) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
   const scores = useMemo(
     () => computed(() => match.frame.value?.seats.map((seat) => seat.score).join(" ") ?? ""),
@@ -55,7 +57,9 @@ export function ResultCard({ match, onClose, withReplay }: Props) {
         </div>
       )}
       <Explained match={match} />
-      <p class="next">{t(phase === Phase.FINISHED ? "hint.finished" : "result.next")}</p>
+      {!isLast && (
+        <p class="next">{t(phase === Phase.FINISHED ? "hint.finished" : "result.next")}</p>
+      )}
       <p class="row">
         {withReplay && <ReplayLink match={match} />}
         {onClose && (
@@ -107,7 +111,7 @@ export function Explained({ match }: { match: Match }) {
       {phase === Phase.VOID && abort && <p class="why ruling">{reasonOf(abort)}</p>}
       {phase !== Phase.VOID && ruling && isDeclared(match) && (
         <p class="why ruling">
-          {t("result.declared")}
+          {t("result.ruling")}
           {reasonOf(ruling)}
         </p>
       )}
