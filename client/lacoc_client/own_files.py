@@ -37,7 +37,7 @@ class OwnFiles:
         self.version = 1
         """Grows whenever the files have changed."""
         self.changed: tuple[str, ...] = ()
-        """The names of the files that the newest version changed."""
+        """The names of the files that the newest version changed, brought or took away."""
         self.refused: FileRefused | UserError | None = None
         """Why the newest version can't be used; `files` are those before it then."""
 
@@ -50,7 +50,7 @@ class OwnFiles:
         if now == self._read_as or now != self._seen:
             self._seen = now
             return False
-        before = {path: rest for path, *rest in self._read_as}
+        changed = {path.name for path, *_ in {*now} ^ {*self._read_as}}
         self._read_as = now
         try:
             files = self._read()
@@ -60,7 +60,7 @@ class OwnFiles:
             if files == self.files and self.refused is None:
                 return False
             self.files, self.refused = files, None
-        self.changed = tuple(path.name for path, *rest in now if before.get(path) != rest)
+        self.changed = tuple(sorted(changed))
         self.version += 1
         return True
 

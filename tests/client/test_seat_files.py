@@ -215,3 +215,4 @@ def test_files_that_are_saved_again_are_read_again(tmp_path: Path) -> None:
     (tmp_path / "Loco-data.txt").unlink()
     assert [own.look(), own.look()] == [False, True]
     assert own.files.postures is None
+    assert own.changed == ("Loco-data.txt",)

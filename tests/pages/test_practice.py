@@ -191,7 +191,7 @@ def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_pat
     (tmp_path / "LocoTra-data.txt").write_bytes(
         write_gait(to_locomotion(table, ((0,), (1, 2), (3, 4), (5,), (6, 7))), leg_labels(6))
     )
-    page.sees(".changed", "LocoTra-data.txt was saved again.")
+    page.sees(".changed", "LocoTra-data.txt has changed.")
     page.press("Tab", "3")  # nothing is taken away from who is walking
     page.key_stands(3)
     page.page.click("text=Use it now")
@@ -202,8 +202,8 @@ def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_pat
     page.key_stands(4)
 
     (tmp_path / "LocoTra-data.txt").write_text("2\n1\n45\n")
-    page.sees(".changed.wrong", "LocoTra-data.txt was saved again and can't be used:")
-    page.sees(".changed .mistakes tbody tr", "LocoTra-data.txt")
+    page.sees(".changed.wrong", "LocoTra-data.txt has changed, and can't be used.")
+    page.sees(".changed li", "LocoTra-data.txt, row 2, column 1")
 
 
 def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:

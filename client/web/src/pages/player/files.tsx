@@ -18,7 +18,6 @@ import {
 import type { Player } from "../../core/player";
 import { Level, Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
-import { Mistakes } from "../../ui/mistakes";
 import { toast } from "../../ui/toasts";
 import { ARROW_OF } from "./pad";
 
@@ -197,14 +196,26 @@ export function FilesChanged({ court, player, alone }: ChangedProps) {
   const chosen = chosenNames.value;
   const isNew = own && own.version > (own.used ?? own.version);
   if (!isNew || !isOpen || chosen.postures || chosen.locomotion) return null;
-  const names = own.changed.join(", ") || t("files.some");
+  const names = own.changed.join(", ");
   if (own.error) {
     return (
       <section class="changed wrong" role="alert">
         <p>
           {t("files.changedWrong", { names })} {said(own.error)}
         </p>
-        {own.mistakes.length > 0 && <Mistakes mistakes={own.mistakes} />}
+        <ul>
+          {own.mistakes.map((one, index) => (
+            <li key={index}>
+              {t("files.mistake", {
+                file: one.file,
+                row: one.row ?? one.field ?? "–",
+                column: one.column ?? "–",
+                found: typeof one.found === "string" ? one.found : said(one.found),
+                expected: said(one.expected),
+              })}
+            </li>
+          ))}
+        </ul>
       </section>
     );
   }
