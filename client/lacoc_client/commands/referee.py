@@ -27,7 +27,6 @@ from lacoc_client.terminal.plain import event_dict, frame_dict
 from lacoc_client.waiting import Patience
 from lacoc_shared.command import options, screen
 from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision
-from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision
 from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
