@@ -4,13 +4,13 @@ import os
 import pty
 import re
 import signal
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from chromium import OpenPage
-from court_process import LACOC, environment
+from court_process import environment
+from lacoc_process import Lacoc
 from show import Show
 
 pytestmark = pytest.mark.slow
@@ -23,12 +23,11 @@ def demo(tmp_path: Path, built_pages: Path) -> Iterator[str]:
     browser.write_text("#!/bin/sh\n")
     browser.chmod(0o755)
     screen, terminal = pty.openpty()
-    process = subprocess.Popen(
-        [*LACOC, "demo", "--seconds", "2"],
+    process = Lacoc(
+        *("demo", "--seconds", "2"),
         stdout=terminal,
         cwd=tmp_path,
         env={**environment(), "BROWSER": f"{browser} %s"},
-        start_new_session=True,
     )
     os.close(terminal)
     said = ""

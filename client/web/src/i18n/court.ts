@@ -401,6 +401,18 @@ const COUNTED: readonly Pattern[] = [
 
 /** Mistakes in gait files: what was expected, what was found (shared/gait_*.py, entry.py). */
 const GAITS: readonly Pattern[] = [
+  [
+    "Key {#n} of level B uses posture {#m}, but {file} has only {list}. Say which postures to join.",
+    "レベル B のキー {#n} は姿勢 {#m} を使いますが、{file} にあるのは {list} だけです。",
+  ],
+  [
+    "Key {#n} of level B has no posture: give it one, such as 0.",
+    "レベル B のキー {#n} に姿勢がありません。0 などを入れてください。",
+  ],
+  [
+    "{#n} keys, the longest of {#m} postures, do not fit in a file: it has 1 to {#keys} keys of at most {#most} postures.",
+    "キー {#n} 個（最長 {#m} 姿勢）はファイルに入りません（キー 1～{#keys} 個、各 {#most} 姿勢まで）。",
+  ],
   ["a table of angles", "角度の表"],
   [
     '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)',
