@@ -1,6 +1,7 @@
 """Pictures a second of the pages' scene drawn in software, and what a player loads.
 
 `python -m benchmarks.pages`; needs what the tests of the pages need (tests/pages/chromium.py).
+`python -m benchmarks.pages CHECKOUT` compares the drawing with that of another checkout, in turns.
 """
 
 import contextlib
@@ -12,13 +13,14 @@ import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from playwright.sync_api import Browser, Response, sync_playwright
 
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "pages"))
 
-from chromium import FLAGS, build_pages, build_stand, find_chromium
+from chromium import FLAGS, WEB, build_pages, build_stand, find_chromium
 from match_file import match_file
 from stand import Stand, served
 
@@ -53,6 +55,51 @@ def pages() -> dict[str, Any]:
                 found[arena] = _drawing(browser, address, arena)
         found |= _loading(browser)
     return found
+
+
+def compare(other: Path, rounds: int = 5) -> dict[str, Any]:
+    """Measure the drawing of this checkout and of another one in turns.
+
+    Args:
+        other: root of the other checkout; both draw the same matches.
+        rounds: how often each is measured.
+
+    Returns:
+        For each arena and checkout the medians of what `pages` measures; `ratio`, this checkout
+        to the other, of `fps` and of `cpu_ms`; `load`, the machine's when it ended.
+    """
+    found: dict[str, Any] = {}
+    with (
+        tempfile.TemporaryDirectory() as name,
+        sync_playwright() as playwright,
+        contextlib.closing(
+            playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
+        ) as browser,
+        contextlib.ExitStack() as stack,
+    ):
+        addresses = {}
+        for side, web in (("this", WEB), ("other", other / "client" / "web")):
+            folder = Path(name) / side
+            build_stand(folder, web)
+            addresses[side] = stack.enter_context(served(folder))
+        for arena in ("othello", "flag-strike"):
+            match = match_file(arena, 20.0)
+            for side in addresses:
+                (Path(name) / side / f"{arena}.bin").write_bytes(match)
+            drawn = [
+                {side: _drawing(browser, address, arena) for side, address in addresses.items()}
+                for _ in range(rounds)
+            ]
+            medians = {
+                side: {what: median(one[side][what] for one in drawn) for what in drawn[0][side]}
+                for side in addresses
+            }
+            ratio = {
+                what: median(one["this"][what] / one["other"][what] for one in drawn)
+                for what in ("fps", "cpu_ms")
+            }
+            found[arena] = medians | {"ratio": ratio}
+    return found | {"cores": os.cpu_count(), "load": round(os.getloadavg()[0], 2)}
 
 
 def rows(figures: dict[str, Any]) -> list[tuple[str, str, str, str, str]]:
@@ -143,5 +190,6 @@ def _children_s(parent: int) -> Iterator[float]:
 
 
 if __name__ == "__main__":
-    json.dump(pages(), sys.stdout, indent=2)
+    figures = compare(Path(sys.argv[1])) if sys.argv[1:] else pages()
+    json.dump(figures, sys.stdout, indent=2)
     print()

@@ -148,7 +148,7 @@ class _Service:
             raise
 
     def ended(self) -> str | None:
-        """What a process said that ended by itself; None while it runs."""
+        """Return what a process said that ended by itself; None while it runs."""
         if (code := self._process.poll()) is None:
             return None
         said = self._log.read_bytes()[-_SAID_BYTES:].decode(errors="replace")

@@ -8,13 +8,16 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_robots.library import find_robot, installed_robots
+from lacoc_robots.library import find_robot, installed_robots, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
+from lacoc_robots.trying import tried
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import file as contests
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
+from lacoc_shared.gait.text import read_gait
 from lacoc_shared.mistakes import FileRefused
 
 app = typer.Typer(
@@ -34,17 +37,21 @@ _Robot = Annotated[
 def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json = False) -> None:
     """Weigh a robot in: name every mistake in its file, or say what it is.
 
-    With --contest the contest's limits count, else those of the rules. With --json the mistakes
-    are a list, empty for a robot that is right.
+    It is tried in physics whether it stays where it is when it is told to stand: with the gait
+    files beside it, or in its start posture. With --contest the contest's limits count, else
+    those of the rules. With --json the mistakes are a list, empty for a robot that is right.
     """
+    notes: list[str] = []
     try:
-        spec = _read(robot, contest)
+        spec = _stands(robot, contest, notes)
     except FileRefused as refused:
         if not json:
             raise
-        screen.print_json({"mistakes": refused.mistakes})
+        screen.print_json({"mistakes": [one.in_words() for one in refused.mistakes]})
         raise typer.Exit(2) from None
     facts = _facts(spec)
+    for note in notes:
+        screen.warn(note)
     if json:
         screen.print_json({**facts, "mistakes": []})
         return
@@ -96,10 +103,44 @@ def list_robots(json: options.Json = False) -> None:
     screen.show(table)
 
 
-def _read(robot: str, contest: Path | None) -> RobotSpec:
+def _stands(robot: str, contest: Path | None, notes: list[str]) -> RobotSpec:
+    """Read a robot that can stand.
+
+    Raises:
+        FileRefused: with every mistake of its file, or with what it did that was to stand.
+    """
     name, data = find_robot(robot)
+    spec = _spec(name, data, contest)
+    if mistakes := tried(spec, _gait_beside(robot, spec, notes), tuple(Level), name, notes):
+        raise FileRefused(mistakes)
+    return spec
+
+
+def _read(robot: str, contest: Path | None) -> RobotSpec:
+    return _spec(*find_robot(robot), contest)
+
+
+def _spec(name: str, data: bytes, contest: Path | None) -> RobotSpec:
     limits = Limits.of(contests.load(contest).limits) if contest else Limits()
     return read_robot(data, name, limits)
+
+
+def _gait_beside(robot: str, spec: RobotSpec, notes: list[str]) -> Gait:
+    """Read the gait files beside a robot's file; one with mistakes is noted and left out."""
+    tables: list[PostureTable | LocomotionTable] = []
+    for file in sample_gait_files(robot):
+        if file is None:
+            continue
+        try:
+            table = read_gait(file.data, file.name, legs=spec.labels, range_deg=spec.ranges_deg)
+        except FileRefused:
+            notes.append(f"{file.name} beside it has mistakes: see 'lacoc gait check'.")
+        else:
+            tables.append(table)
+    return Gait(
+        next((table for table in tables if isinstance(table, PostureTable)), None),
+        next((table for table in tables if isinstance(table, LocomotionTable)), None),
+    )
 
 
 def _facts(spec: RobotSpec) -> dict[str, Any]:

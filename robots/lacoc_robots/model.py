@@ -21,6 +21,10 @@ FLOOR_CONAFFINITY = 0xFFFE
 MOST_SEATS = 15
 """As many robots as there are collision bits left."""
 
+# What goes wrong is in `MjData.warning`; without this MuJoCo writes MUJOCO_LOG.TXT into the current
+# folder.
+mj.set_mju_user_warning(lambda text: None)
+
 _SOLREF = (0.01, 1.0)  # contact time constant [s] and damping ratio
 _SHORTEST_CAPSULE_M = 1e-6  # a shorter one is a sphere
 _TORSION_AND_ROLL = (0.005, 0.0001)  # MuJoCo's defaults; unused with condim 3
@@ -108,7 +112,9 @@ def add_robot(
             "limited": True,
             "range": [unit(angle) for angle in leg.range_rad],
             "armature": robot.armature,
-            "damping": robot.damping,
+            # Back-EMF works also where the servo pushes as hard as it can, so it is no part of the
+            # servo, whose torque is cut off at `torque_n_m`.
+            "damping": robot.damping + robot.back_emf,
         }
         colour = accent_colour(rgba) if leg.accent else list(rgba)
         names = [
@@ -126,14 +132,11 @@ def add_robot(
             forcelimited=True,
             forcerange=[-robot.torque_n_m, robot.torque_n_m],
         )
-        servo.set_to_position(kp=robot.kp, kv=robot.kv)
+        servo.set_to_position(kp=robot.kp, kv=max(0.0, robot.kv - robot.back_emf))
 
 
-def export_mjcf(robot: RobotSpec) -> str:
-    """Write a robot as plain MJCF, on a floor under a light, with the keyframe "stand".
-
-    The keyframe is the start posture at the start height, held by the servos.
-    """
+def on_floor(robot: RobotSpec) -> mj.MjSpec:
+    """Put a robot on a floor under a light, with nothing else there; names have no prefix."""
     world = mj.MjSpec()
     world.modelname = robot.name
     set_options(world)
@@ -149,6 +152,15 @@ def export_mjcf(robot: RobotSpec) -> str:
         conaffinity=FLOOR_CONAFFINITY,
     )
     add_robot(world, robot, "", 0, 1, (0.2, 0.4, 0.9, 1.0))
+    return world
+
+
+def export_mjcf(robot: RobotSpec) -> str:
+    """Write a robot as plain MJCF, on a floor under a light, with the keyframe "stand".
+
+    The keyframe is the start posture at the start height, held by the servos.
+    """
+    world = on_floor(robot)
     model = world.compile()
     qpos = model.qpos0.copy()
     for joint, angle in enumerate(robot.start_posture):

@@ -8,6 +8,10 @@ import msgspec
 from lacoc_robots.leg import Capsule, LegSpec, Point
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, Posture
 
+NO_LOAD_SPEED = 3.0
+"""Highest speed of a motor, in AngMins: the workshop's robot then has a usual hobby servo's 60
+degrees in 0.17 s."""
+
 
 class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
     """A robot: a box with legs, its servos, and how it starts."""
@@ -31,9 +35,9 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
     kp: float
     """Servo stiffness [N m/rad]."""
     kv: float
-    """Servo damping [N m s/rad]."""
+    """Servo damping [N m s/rad]; it is never less than the motor's own, `back_emf`."""
     torque_n_m: float
-    """Strongest torque of a servo, either way."""
+    """Strongest torque of a servo at rest, either way."""
     damping: float
     """Joint damping [N m s/rad]."""
     armature: float
@@ -65,6 +69,16 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
     def mass_kg(self) -> float:
         """Mass of the whole robot."""
         return self.body_mass_kg + sum(mass for leg in self.legs for mass in leg.masses_kg)
+
+    @property
+    def no_load_rad_s(self) -> float:
+        """Highest speed of a motor: its torque falls in a line from rest to nothing here."""
+        return NO_LOAD_SPEED * self.ang_min_rad_s
+
+    @property
+    def back_emf(self) -> float:
+        """Torque that a motor loses as it turns, for its speed [N m s/rad]."""
+        return self.torque_n_m / self.no_load_rad_s
 
     @property
     def start_z_m(self) -> float:

@@ -53,12 +53,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: state().duration_by_test.get(item.nodeid, 0.0))
 
 
-def pytest_collection_finish() -> None:
-    """Weigh the same files in once: nearly all that is left."""
-    if contestant := sys.modules.get("lacoc_server.match.contestant"):
-        contestant.weigh_in = functools.cache(contestant.weigh_in)
-
-
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Count it for each of the module's tests."""
     for collector in item.listchain()[:-1]:

@@ -41,13 +41,26 @@ TOKENS = {"left": "token of left", "right": "token of right"}
 HASHES = {seat: tokens.hash_token(token) for seat, token in TOKENS.items()}
 WHISTLE = "the referee's whistle"
 WRONG = SentFile("mine.txt", b"wrong")
+SLOW = SentFile("slow.txt", b"20 20")
+"""Is weighed in for twenty beats."""
 
 
-def check_files(join: Join) -> Join:
-    if join.postures == WRONG:
-        found = [Mistake(file="mine.txt", found=f, expected="20", row=3) for f in ("a", "b")]
-        raise FileRefused(found)
-    return msgspec.structs.replace(join, robot=join.robot or SentFile("r.toml", b""))
+class Scales:
+    """Weighs in files without reading them."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+        """For the answer to a slow join."""
+
+    def __call__(self, join: Join) -> Join | None:
+        if join.postures == WRONG:
+            found = [Mistake(file="mine.txt", found=f, expected="20", row=3) for f in ("a", "b")]
+            raise FileRefused(found)
+        if join.postures == SLOW:
+            self.asked += 1
+            if self.asked < 20:
+                return None
+        return msgspec.structs.replace(join, robot=join.robot or SentFile("r.toml", b""))
 
 
 def make_scene(name: str) -> Scene:
@@ -81,7 +94,8 @@ class CourtStub:
         **restored: Any,
     ) -> None:
         token_hashes = restored.pop("token_hashes", HASHES)
-        inbox = Inbox(KEYS, SEATS, token_hashes, check_files, secrets.token_bytes, **restored)
+        self.scales = Scales()
+        inbox = Inbox(KEYS, SEATS, token_hashes, self.scales, secrets.token_bytes, **restored)
         desk = DecisionDesk([tokens.hash_token(WHISTLE)])
         self.network = CourtNetwork(KEYS, [listen], inbox, desk, protection)
         self.trouble = ""

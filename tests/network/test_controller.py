@@ -1,11 +1,12 @@
 """A controller at a real court over a real network."""
 
+import threading
 import time
 from typing import Any
 
 import msgspec
 import pytest
-from court_stub import KEYS, TOKENS, WRONG, CourtStub, until
+from court_stub import KEYS, SLOW, TOKENS, WRONG, CourtStub, until
 from slow_link import SlowLink
 
 from lacoc_client.asking import NotNow
@@ -41,6 +42,21 @@ def test_a_join_travels_with_its_files(court: CourtStub, session: Session) -> No
     join = court.inputs[0]
     assert isinstance(join, JoinSeat)
     assert (join.seat, join.team, join.postures) == (0, "Blue", file)
+
+
+def test_a_join_that_takes_long_to_weigh_in_holds_nobody_up(
+    court: CourtStub, session: Session, other_session: Session
+) -> None:
+    """Its answer comes when its files are weighed in; beats and the other seat go on meanwhile."""
+    one = controller(session, postures=SLOW)
+    waiting = threading.Thread(target=one.join)
+    waiting.start()
+    until(lambda: court.scales.asked > 0)
+    held(other_session, "right")
+    waiting.join()
+    assert one.hold is Hold.HELD
+    assert court.scales.asked == 20
+    assert [item.seat for item in court.inputs if isinstance(item, JoinSeat)] == [1, 0]
 
 
 def test_a_join_may_be_large_but_not_too_large(court: CourtStub, session: Session) -> None:

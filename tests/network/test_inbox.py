@@ -119,6 +119,42 @@ def test_a_join_gives_a_session_only_when_the_match_has_taken_it_in() -> None:
     assert inbox.health(0.0)[RIGHT].session == 0
 
 
+def test_a_join_waits_while_its_files_are_weighed_in() -> None:
+    """Who is asked again gives the answer; the join itself is not judged, or counted, again."""
+    answers: list[Join | None] = [
+        None,
+        None,
+        Join(protocol=PROTOCOL, token="", name="Blue", robot=CONTEST_ROBOT),
+    ]
+    inbox = Inbox(KEYS, SEATS, HASHES, lambda join: answers.pop(0), secrets.token_bytes)
+    later = inbox.join(LEFT, join_bytes())
+    assert callable(later)
+    assert later() is None
+    taken = later()
+    assert taken == JoinSeat(LEFT, "Blue", CONTEST_ROBOT, None, None, HASHES["left"])
+    assert refusals(inbox) == {}
+
+
+def test_a_mistake_that_takes_long_to_find_is_told() -> None:
+    """A robot that does not stand is refused when that is known."""
+    known = False
+
+    def weigh(join: Join) -> Join | None:
+        if known:
+            raise FileRefused([Mistake(file="robot.toml", found="a leap", expected="rest")])
+        return None
+
+    inbox = Inbox(KEYS, SEATS, HASHES, weigh, secrets.token_bytes)
+    later = inbox.join(LEFT, join_bytes())
+    assert callable(later)
+    assert later() is None
+    known = True
+    refused = later()
+    assert isinstance(refused, Refusal)
+    assert [mistake.found for mistake in refused.mistakes] == ["a leap"]
+    assert refusals(inbox) == {"bad files": 1}
+
+
 @pytest.mark.parametrize(
     ("payload", "words", "why"),
     [

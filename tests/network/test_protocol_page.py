@@ -21,7 +21,7 @@ JOIN = Keys("main").request("left", "join")
 
 
 def of_page(court: str, user: str = "", password: str = "", ca: str = "") -> zenoh.Config:
-    """The configuration on the page, for this court; without a user the part with keys is out."""
+    """Read the page's configuration, for this court; without a user the part with keys is out."""
     (text,) = re.findall(r"```json5\n(.*?)```", PAGE, re.DOTALL)
     for there, here in (
         ("tls/court.example.org:7447", court),
@@ -49,7 +49,7 @@ def stranger(court: Session) -> Iterator[zenoh.Session]:
 
 
 def ask(stranger: zenoh.Session, payload: bytes, timeout_s: float = 10.0) -> list[bytes | None]:
-    """The error replies to a join; None for a reply that is none."""
+    """Ask to join; return the error replies, None for a reply that is none."""
     replies = stranger.get(JOIN, payload=payload, timeout=timeout_s)
     return [reply.err and reply.err.payload.to_bytes() for reply in replies]
 

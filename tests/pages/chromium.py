@@ -75,16 +75,17 @@ def build_pages() -> Path:
     return PAGES
 
 
-def build_stand(folder: Path) -> None:
+def build_stand(folder: Path, web: Path = WEB) -> None:
     """Build the scene's stand (client/web/src/scene/stand) into a folder.
 
     Raises:
         RuntimeError: if it can't be built.
     """
-    npm("exec", "--", "vite", "build", "src/scene/stand", "--outDir", str(folder), "--emptyOutDir")
+    out = ("--outDir", str(folder), "--emptyOutDir")
+    npm("exec", "--", "vite", "build", "src/scene/stand", *out, web=web)
 
 
-def npm(*words: str) -> None:
+def npm(*words: str, web: Path = WEB) -> None:
     """Run npm in the pages' source, with its packages installed; Node's may come from PyPI.
 
     Raises:
@@ -94,9 +95,9 @@ def npm(*words: str) -> None:
     command = [found] if found else [sys.executable, "-c", _NPM]
     with locked("npm"):
         # npm writes this file last: without it the packages are not whole.
-        if not (WEB / "node_modules" / ".package-lock.json").exists():
-            _run([*command, "ci", "--no-audit", "--no-fund"])
-    _run([*command, *words])
+        if not (web / "node_modules" / ".package-lock.json").exists():
+            _run([*command, "ci", "--no-audit", "--no-fund"], web)
+    _run([*command, *words], web)
 
 
 @contextlib.contextmanager
@@ -139,7 +140,7 @@ def _newest() -> float:
     return max(file.stat().st_mtime for file in files if file.is_file())
 
 
-def _run(command: Sequence[str]) -> None:
-    done = subprocess.run(command, cwd=WEB, capture_output=True, text=True, check=False)
+def _run(command: Sequence[str], web: Path) -> None:
+    done = subprocess.run(command, cwd=web, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise RuntimeError(f"{' '.join(command)} failed in {WEB}:\n{done.stdout}{done.stderr}")
+        raise RuntimeError(f"{' '.join(command)} failed in {web}:\n{done.stdout}{done.stderr}")

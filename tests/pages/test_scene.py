@@ -25,7 +25,6 @@ from lacoc_shared.messages import Frame, SentFile, Sheet
 pytestmark = pytest.mark.slow
 
 BLUE, ORANGE = "#0072b2", "#e69f00"
-TIMELINE = Path(__file__).with_name("timeline.js").read_text()
 
 
 @pytest.fixture(scope="session")
@@ -124,33 +123,6 @@ def test_the_picture_shows_the_frame(stand: Stand, site: Path) -> None:
         for name, at in starts.items():
             a, b = (np.frombuffer(frame.poses, "<f4")[at : at + 3] for frame in (one, other))
             assert np.allclose(stand.view(f"bodyPos('{name}')"), a + part * (b - a), atol=1e-6)
-
-
-@pytest.mark.parametrize(
-    "case",
-    [
-        "even",
-        "jitter",
-        "bursts",
-        "gaps",
-        "speed4",
-        "halfSpeed",
-        "hidden",
-        "frozen",
-        "stopped",
-        "newMatch",
-        "beatGoesBack",
-        "spectator",
-        "empty",
-    ],
-)
-def test_timeline(stand: Stand, case: str) -> None:
-    """Frames arrive as badly as they may: what is shown moves evenly, and is never long ago."""
-    stand.open("", frames=0)
-    trouble = stand.page.evaluate(
-        f"() => {{ {TIMELINE} return timelineCases.{case}(stand.Timeline); }}"
-    )
-    assert trouble == []
 
 
 def test_a_robot_that_was_put_elsewhere_does_not_fly_there(stand: Stand) -> None:

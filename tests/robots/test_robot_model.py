@@ -61,10 +61,11 @@ def test_joints_and_servos(hexapod: RobotSpec, compile_world: Compile, degree: b
         assert servo.trnid[0] == hinge.id
         assert hinge.range == pytest.approx([-math.radians(150), math.radians(150)])
         assert servo.ctrlrange == pytest.approx(hinge.range)
-        assert (servo.gainprm[0], -servo.biasprm[1], -servo.biasprm[2]) == (20.0, 20.0, 0.5)
+        assert (servo.gainprm[0], -servo.biasprm[1]) == (20.0, 20.0)
         assert list(servo.forcerange) == [-2.0, 2.0]
         dof = hinge.dofadr[0]
-        assert (model.dof_damping[dof], model.dof_armature[dof]) == (0.02, 0.002)
+        assert model.dof_damping[dof] - servo.biasprm[2] == pytest.approx(0.5 + 0.02)
+        assert model.dof_armature[dof] == 0.002
         assert list(hinge.pos) == [0, 0, 0]  # a hinge goes through its body's origin
 
 
@@ -177,12 +178,14 @@ def test_export_opens_and_stands(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kv", ["0.0", "5.0"])
 @pytest.mark.parametrize("kp", ["1.0", "200.0"])
+@pytest.mark.parametrize("ang_min_deg_s", ["1", "240"])
 def test_no_warnings_at_the_limits(
-    kp: str, kv: str, hexapod_text: str, compile_world: Compile
+    ang_min_deg_s: str, kp: str, kv: str, hexapod_text: str, compile_world: Compile
 ) -> None:
     """The lightest robot with undamped joints stays finite under wild commands at any servo."""
     text = hexapod_text.replace("kp = 20.0", f"kp = {kp}").replace("kv = 0.5", f"kv = {kv}")
     text = text.replace("damping = 0.02", "damping = 0.0").replace("= 0.125", "= 0.210")
+    text = text.replace("ang_min_deg_s = 120", f"ang_min_deg_s = {ang_min_deg_s}")
     text = text.replace("[0.055, 0.055, 0.055]", "[0.005, 0.005, 0.005]")
     robot = read_robot(text, "robot.toml")
     assert robot.mass_kg == pytest.approx(0.3)
@@ -194,6 +197,44 @@ def test_no_warnings_at_the_limits(
         mj.mj_step(model, data, nstep=50)
     assert not data.warning.number.any()
     assert data.time == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize("kv", [0.0, 0.1, 0.5])
+def test_a_motor_has_a_highest_speed(kv: float, hexapod_text: str, compile_world: Compile) -> None:
+    """However stiff its servo and light its leg, a motor turns no faster than three AngMins."""
+    text = hexapod_text.replace("kp = 20.0", "kp = 200.0").replace("kv = 0.5", f"kv = {kv}")
+    text = text.replace("damping = 0.02", "damping = 0.0").replace("= 0.125", "= 0.9")
+    text = text.replace("[0.055, 0.055, 0.055]", "[0.005, 0.005, 0.005]")
+    robot = read_robot(text, "robot.toml")
+    model = compile_world(robot)
+    model.opt.gravity[:] = 0
+    data = pose(model, robot, (0.0,) * 18)
+    data.qpos[2] = 1.0
+    data.ctrl[12] = math.radians(150)  # as no drive commands it: at once
+    fastest_rad_s = 0.0
+    for _ in range(400):
+        mj.mj_step(model, data)
+        fastest_rad_s = max(fastest_rad_s, abs(data.joint("r0_j12").qvel[0]))
+    assert robot.no_load_rad_s == pytest.approx(3 * math.radians(120))
+    assert 0.9 * robot.no_load_rad_s < fastest_rad_s < 1.01 * robot.no_load_rad_s
+    assert data.joint("r0_j12").qpos[0] == pytest.approx(math.radians(150), abs=0.1)
+
+
+def test_a_servo_is_the_files_within_its_torque(hexapod: RobotSpec, compile_world: Compile) -> None:
+    """Below its strongest torque a servo pushes as kp, kv and damping say; above, along a line."""
+    model = compile_world(hexapod)
+    data = pose(model, hexapod, (0.0,) * 18)
+    dof = model.joint("r0_j12").dofadr[0]
+    for error_rad, speed_rad_s, expected_n_m in (
+        (0.05, 1.0, 20 * 0.05 - (0.5 + 0.02) * 1.0),
+        (0.05, -1.0, 20 * 0.05 + (0.5 + 0.02) * 1.0),
+        (2.0, 0.0, 2.0),
+        (2.0, math.radians(180), 2.0 * (1 - 180 / 360) - 0.02 * math.radians(180)),
+    ):
+        data.ctrl[12], data.qvel[dof] = error_rad, speed_rad_s
+        mj.mj_forward(model, data)
+        torque_n_m = data.qfrc_actuator[dof] + data.qfrc_passive[dof]
+        assert torque_n_m == pytest.approx(expected_n_m)
 
 
 def test_every_installed_robot_is_tested() -> None:

@@ -64,6 +64,7 @@ COMMANDS = {
                 ])
             if how == "stop":
                 raise KeyboardInterrupt
+            how.encode()  # as a message or a file takes it
             raise ZeroDivisionError(how)
     """,
     "many": """
@@ -183,6 +184,14 @@ def test_a_user_error_is_one_line_and_code_2(lacoc: Lacoc) -> None:
         "",
         "Error: No [court] here: start one with 'lacoc serve'.\n",
     )
+
+
+def test_a_word_that_is_no_text_is_one_line_and_code_2(lacoc: Lacoc) -> None:
+    """A team's name typed in another encoding: it can't be sent, and that is said."""
+    code, out, err = lacoc("fails", os.fsdecode(b"Ants\x98"))
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert r"Ants\x98" in err
+    assert "holds bytes that are not text in UTF-8" in err
 
 
 def test_a_refused_file_is_a_table_and_code_2(lacoc: Lacoc) -> None:

@@ -13,6 +13,7 @@ from lacoc_arenas.arena import Arena
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_server.court.court import Court, CourtSettings
+from lacoc_server.court.weighing import Weighing
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
 from lacoc_server.doors.network import CourtNetwork
@@ -107,22 +108,23 @@ def serve_command(
         Limits.of(plan.limits),
         levels,
     )
-    inbox = Inbox(
-        keys,
-        [seat.id for seat in loaded.seats],
-        {seat: hash_token(holder.token) for seat, holder in entry.seat.items()},
-        admission,
-        secrets.token_bytes,
-        last_seqs=left.last_seqs if left else None,
-        joined=left.token_hashes if left else (),
-        # A contest file's word is the last: who lost a token gets another one there.
-        former=left.token_hashes if left and made_here else None,
-        most_delay_ms=entry.most_delay_ms,
-    )
     desk = DecisionDesk([hash_token(entry.referee.token)])
     addresses = (endpoint(listen, plan.protocol),) if listen else entry.listen
     guard = protection(plan, name)
     with ExitStack() as opened:
+        weighing = opened.enter_context(Weighing(admission))
+        inbox = Inbox(
+            keys,
+            [seat.id for seat in loaded.seats],
+            {seat: hash_token(holder.token) for seat, holder in entry.seat.items()},
+            weighing,
+            secrets.token_bytes,
+            last_seqs=left.last_seqs if left else None,
+            joined=left.token_hashes if left else (),
+            # A contest file's word is the last: who lost a token gets another one there.
+            former=left.token_hashes if left and made_here else None,
+            most_delay_ms=entry.most_delay_ms,
+        )
         exporter = opened.enter_context(Exporter(metrics)) if metrics else None
         network = opened.enter_context(CourtNetwork(keys, addresses, inbox, desk, guard))
         settings = CourtSettings(name, loaded, plan.limits, folder, speed=speed, health=plan.health)

@@ -13,6 +13,7 @@ import typer
 from rich.table import Table
 
 from lacoc_arenas import arena as arenas
+from lacoc_robots.trial import try_standing
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate import player, simulate
 from lacoc_shared.command import options, screen
@@ -118,11 +119,13 @@ def _weigh_in(arena: arenas.Arena, players: Sequence[str], robot: str) -> None:
         UserError: if somebody is not there.
         FileRefused: with every mistake of everybody's files.
     """
+    levels = arena.match.open_levels
     mistakes: list[Mistake] = []
     for name in dict.fromkeys(players):
         join = player(arena, 0, name, robot).join
         try:
-            weigh_in(join.robot, join.postures, join.locomotion, levels=arena.match.open_levels)
+            entry = weigh_in(join.robot, join.postures, join.locomotion, levels=levels)
+            mistakes += try_standing(entry.robot, entry.gait, levels, join.robot.name)
         except FileRefused as refused:
             mistakes += refused.mistakes
     if mistakes:

@@ -7,6 +7,7 @@ that arrives ever raises or costs more than a fixed amount of a beat.
 
 from collections import Counter, deque
 from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import msgspec
@@ -61,6 +62,10 @@ _SESSION_SENTENCES = {
 }
 
 
+Later = Callable[[], JoinSeat | Refusal | None]
+"""A request that takes longer than a beat: to be asked in each beat until it has an answer."""
+
+
 class Door(NamedTuple):
     """What was counted for a seat since the court was started."""
 
@@ -106,7 +111,7 @@ class Inbox:
         token_hashes: hash of the token that opens a seat, by the seat's name; a seat without one
             can't be joined.
         check_files: weighs a join's files in; returns the join with the robot file filled in, or
-            raises `FileRefused`.
+            None while that takes longer, or raises `FileRefused`.
         random_bytes: makes that many random bytes, for the sessions' numbers and secrets.
         last_seqs: for a restarted court, the newest sequence numbers of its record, by seat.
         joined: for a restarted court, the seats that are held.
@@ -120,7 +125,7 @@ class Inbox:
         keys: Keys,
         seats: Sequence[str],
         token_hashes: Mapping[str, str],
-        check_files: Callable[[Join], Join],
+        check_files: Callable[[Join], Join | None],
         random_bytes: Callable[[int], bytes],
         *,
         last_seqs: Mapping[str, int] | None = None,
@@ -169,7 +174,7 @@ class Inbox:
             inputs += [newest[restart] for restart in (True, False) if restart in newest]
         return inputs
 
-    def join(self, index: int, payload: bytes) -> JoinSeat | Refusal:
+    def join(self, index: int, payload: bytes) -> JoinSeat | Refusal | Later:
         """Judge a join; it takes effect with `seated`, once the match has taken it in."""
         seat = self._seats[index]
         try:
@@ -206,6 +211,13 @@ class Inbox:
                 Why.BAD_NAME,
                 f"A file's name has 1-{FILE_NAME_MAX} printable characters: rename it.",
             )
+        join = msgspec.structs.replace(join, name=name)
+        return self._weighed(seat, join, token_hash) or partial(
+            self._weighed, seat, join, token_hash
+        )
+
+    def _weighed(self, seat: _Seat, join: Join, token_hash: str) -> JoinSeat | Refusal | None:
+        """Judge a join by its files; None while they are still weighed in."""
         try:
             checked = self._check_files(join)
         except FileRefused as refused:
@@ -216,10 +228,12 @@ class Inbox:
                 f"Your files have {len(mistakes)} mistakes{first}.",
                 tuple(mistakes[:_MISTAKES_TOLD]),
             )
+        if checked is None:
+            return None
         assert checked.robot is not None, "check_files fills the robot file in"
         return JoinSeat(
-            seat=index,
-            team=name,
+            seat=seat.index,
+            team=join.name,
             robot=checked.robot,
             postures=checked.postures,
             locomotion=checked.locomotion,

@@ -11,7 +11,7 @@ from functools import partial
 from typing import NamedTuple, Self
 
 from lacoc_server.doors.decision_desk import DecisionDesk
-from lacoc_server.doors.inbox import LOOKED_AT_PER_BEAT, Door, Inbox
+from lacoc_server.doors.inbox import LOOKED_AT_PER_BEAT, Door, Inbox, Later
 from lacoc_server.doors.outbox import Outbox
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
@@ -40,7 +40,7 @@ _REQUESTS_PER_BEAT = 4  # that are refused; of one desk at most one enters a bea
 _FETCHES_PER_BEAT = 8
 
 
-_Judge = Callable[[Request], Input | Done | Refusal]
+_Judge = Callable[[Request], Input | Done | Refusal | Later]
 
 
 class Arrival(NamedTuple):
@@ -92,6 +92,8 @@ class CourtNetwork:
             for index, seat in enumerate(inbox.seats)
         ]
         self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
+        self._waiting: dict[Desk, tuple[Request, Later]] = {}
+        """Of each desk a request that has no answer yet; those behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
         self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
         self._log_desk = session.desk(keys.event, _FETCH_DESK)
@@ -213,10 +215,16 @@ class CourtNetwork:
 
     def _let_in(self, desk: Desk, judge: _Judge) -> Iterator[Arrival]:
         for _ in range(_REQUESTS_PER_BEAT):
-            request = desk.take()
-            if request is None:
+            if desk in self._waiting:
+                request, later = self._waiting.pop(desk)
+                judged: Input | Done | Refusal | Later = later() or later
+            elif (taken := desk.take()) is not None:
+                request, judged = taken, judge(taken)
+            else:
                 return
-            judged = judge(request)
+            if callable(judged):
+                self._waiting[desk] = request, judged
+                return
             if isinstance(judged, Refusal):
                 request.refuse(encode(judged))
             elif isinstance(judged, Done):  # nothing that concerns the match
@@ -244,7 +252,7 @@ class CourtNetwork:
         return self._decision_desk.decision(name, request.payload)
 
 
-def _seat_judge(judge: Callable[[int, bytes], Input | Refusal], seat: int) -> _Judge:
+def _seat_judge(judge: Callable[[int, bytes], Input | Refusal | Later], seat: int) -> _Judge:
     return lambda request: judge(seat, request.payload)
 
 

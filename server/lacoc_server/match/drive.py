@@ -9,11 +9,9 @@ from typing import Literal
 
 import msgspec
 
+from lacoc_shared.gait.motion import toward
 from lacoc_shared.gait.tables import Gait, Level, Posture
 from lacoc_shared.seat import BEAT_US
-
-_ROUNDING = 1 + 1e-9
-"""24 degrees at 2.4 degrees a tick are 10 ticks, though their sum in binary may miss by a bit."""
 
 
 class DriveState(msgspec.Struct, frozen=True):
@@ -99,7 +97,7 @@ class Drive:
             following = self._index(posture + 1, len(sequence))
             if following != posture:
                 posture, ticks = following, 0
-        angles = _toward(state.angles, sequence[posture], self._step_rad)
+        angles = toward(state.angles, sequence[posture], self._step_rad)
         if self._by_time:
             ticks += 1
         elif angles is sequence[posture]:
@@ -108,19 +106,3 @@ class Drive:
 
     def _index(self, count: int, length: int) -> int:
         return count % length if self._repeat else min(count, length - 1)
-
-
-def _toward(angles: Posture, target: Posture, step_rad: float) -> Posture:
-    """Move every angle by at most a step; the target itself when all have arrived."""
-    if angles == target:
-        return target
-    reach = step_rad * _ROUNDING
-    moved = tuple(
-        [
-            goal
-            if -reach <= goal - angle <= reach
-            else angle + (step_rad if goal > angle else -step_rad)
-            for angle, goal in zip(angles, target, strict=True)
-        ]
-    )
-    return target if moved == target else moved

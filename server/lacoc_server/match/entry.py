@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from functools import lru_cache
 
 import msgspec
 
@@ -42,6 +43,9 @@ def weigh_in(
 ) -> Entry:
     """Read and check what a contestant brings.
 
+    The same files are read once: a court asks at its door and again as the match takes a join in,
+    which a record has as files.
+
     Args:
         robot: the robot file.
         postures: a Loco-data file, or None.
@@ -52,6 +56,17 @@ def weigh_in(
     Raises:
         FileRefused: with every mistake of every file.
     """
+    return _weigh_in(robot, postures, locomotion, limits, frozenset(levels))
+
+
+@lru_cache(maxsize=16)
+def _weigh_in(
+    robot: SentFile,
+    postures: SentFile | None,
+    locomotion: SentFile | None,
+    limits: Limits,
+    levels: frozenset[Level],
+) -> Entry:
     mistakes: list[Mistake] = []
     spec = None
     try:

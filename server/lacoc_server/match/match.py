@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from lacoc_robots.standing import FARTHEST_M
 from lacoc_server.match import contestant, referee
 from lacoc_server.match.physics import Fault, MakePhysics
 from lacoc_server.match.state import MatchState
@@ -33,6 +34,9 @@ from lacoc_shared.record.schema import Result, Setup, Touch
 from lacoc_shared.seat import RESTART_KEY, Phase
 
 PHYSICS_RUNS = frozenset({Phase.READY, Phase.PLAYING})
+
+MOST_STRAYS = 3
+"""A robot that leaves its start place so often before play does not stand: it is not ready."""
 
 Outcome = Done | DecisionReply | Refusal
 """What became of an input."""
@@ -151,7 +155,23 @@ class Match(MatchState):
         self.staging.look()
         if self.phase is Phase.PLAYING:
             self._judge()
+        else:
+            self._hold_places()
         return True
+
+    def _hold_places(self) -> None:
+        """Send back who left its start place before play; not ready is who does so for ever."""
+        for seat in self.seats:
+            gone_m = self.staging.from_start_m(seat.index)
+            if gone_m <= FARTHEST_M:
+                continue
+            seat.strays += 1
+            text = f"{seat.team} left its start place by {gone_m:.2f} m: it is put back."
+            if seat.strays == MOST_STRAYS:
+                text = f"{seat.team} left its start place {MOST_STRAYS} times: it is not ready."
+                seat.ready = False
+            self.tell("strayed", text, seat=seat.index, distance_m=gone_m, times=seat.strays)
+            seat.restart()
 
     def _judge(self) -> None:
         self.ticks += 1

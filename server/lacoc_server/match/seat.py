@@ -44,6 +44,8 @@ class Seat:
     """Newest refused command: sequence number, reason."""
     restarting: bool = False
     """It goes back to its start place in this beat."""
+    strays: int = 0
+    """How often it left its start place in this READY."""
 
     @property
     def team(self) -> str:
@@ -54,6 +56,7 @@ class Seat:
         """Stand in the start posture, with the drive that robot and files make."""
         if self.entry is None:
             return
+        self.strays = 0
         robot = self.entry.robot
         self.drive = Drive(
             self.entry.gait,

@@ -38,6 +38,7 @@ class Staging:
         self._offsets: tuple[int, ...] = ()
         self._radii_m: tuple[float, ...] = ()
         self._placed: list[Place | None] = []
+        self._starts: list[Place] = []
 
     def build(self, seats: Sequence[Seat]) -> None:
         """Compile the model: once, before the match (design.md, "Robot and world")."""
@@ -47,6 +48,7 @@ class Staging:
         self._offsets = tuple(sum(sizes[:seat]) for seat in range(len(sizes)))
         self._radii_m = tuple(entry.robot.radius_m for entry in entries)
         self._placed = [None] * len(entries)
+        self._starts = [self._arena.game.starts[seat][0] for seat in range(len(entries))]
         self.look()
 
     def look(self) -> None:
@@ -55,6 +57,10 @@ class Staging:
         self._views = tuple(
             RobotView(*_BODY.unpack_from(self.poses, offset)) for offset in self._offsets
         )
+
+    def from_start_m(self, seat: int) -> float:
+        """Measure how far a robot's centre is from where it was put, seen from above."""
+        return math.dist(self._starts[seat][:2], self._views[seat][:2])
 
     def observe(self) -> tuple[Observation, Touch | None]:
         """What the rules see of a tick.
@@ -83,7 +89,7 @@ class Staging:
         for seat in going:
             place = self._free_place(seat, staying)
             self.physics.place(seat.index, place)
-            self._placed[seat.index] = place
+            self._placed[seat.index] = self._starts[seat.index] = place
             seat.restarting = False
         self.look()
 

@@ -221,6 +221,7 @@ class MatchState:
         self.staging.clear()
         for seat in self.seats:
             seat.drive = seat.state = None
+            seat.restarting = False
         self.sheet_changed()
         self.enter(Phase.LOBBY)
 

@@ -42,9 +42,6 @@ _WARNINGS = {
     mujoco.mjtWarning.mjWARN_INERTIA: "the inertia matrix is singular",
 }
 
-# What goes wrong is a `Fault`; without this MuJoCo writes MUJOCO_LOG.TXT into the current folder.
-mujoco.set_mju_user_warning(lambda text: None)
-
 
 @dataclass(frozen=True)
 class _Robot:

@@ -212,7 +212,7 @@ def main(args: Sequence[str] | None = None) -> int:
 def _no_text(error: UnicodeEncodeError) -> str:
     """Say which name or word of the system can't be sent or stored, because it is no text."""
     return (
-        f"{printable(text_of(error.object))!r} holds bytes that are not text in UTF-8. "
+        f"'{printable(text_of(error.object))}' holds bytes that are not text in UTF-8. "
         "Rename the file or folder, or write the word again."
     )
 

@@ -1,6 +1,7 @@
 /** A contestant's files: told apart by what is in them, and kept for this tab. */
 
 import { computed } from "@preact/signals";
+import { Refused } from "./connection";
 import { remembered } from "./settings";
 import { tab } from "./storage";
 import type { SentFile } from "./wire";
@@ -60,6 +61,17 @@ export function chosenFiles(): Record<Slot, SentFile | null> {
     return file ? { name: file.name, data: fromBase64(file.base64) } : null;
   };
   return { robot: sent("robot"), postures: sent("postures"), locomotion: sent("locomotion") };
+}
+
+/** Refuse files that are too large together: so long a message would only cost the connection. */
+export function checkSizes(files: readonly (SentFile | null)[]): void {
+  const bytes = files.reduce((sum, file) => sum + (file?.data.length ?? 0), 0);
+  if (bytes <= MOST_BYTES) return;
+  const [size, most] = [bytes, MOST_BYTES].map((count) => Math.ceil(count / 1024));
+  throw new Refused(
+    `Your files are too large together: ${size} KiB, at most ${most} KiB travel. ` +
+      "Shorten the gait files.",
+  );
 }
 
 /** Keep a file in the slot that its content asks for; returns the slot. */

@@ -6,7 +6,7 @@
  */
 
 import { floats } from "./poses";
-import { type Frame, Phase } from "./wire";
+import { type Frame, Phase, type Sheet, sameBytes } from "./wire";
 
 const ROOT_FLOATS = 7;
 const FLOAT_BYTES = 4;
@@ -127,6 +127,29 @@ export class PosData {
     const start = sizes.slice(0, this.seat).reduce((sum, size) => sum + size, 0);
     if (frame.poses.length !== sizes.reduce((sum, size) => sum + size, 0)) return null;
     return floats(frame.poses.subarray(start, start + sizes[this.seat]!));
+  }
+}
+
+/** Collects the rows of the seat that is held; each match, seat and robot begins anew. */
+export class PosDataLog {
+  /** null before the first frame with robots. */
+  current: PosData | null = null;
+  private match = 0;
+
+  /** Add a frame of the seat with this index; without its sheet it is left out. */
+  add(frame: Frame, seat: number, sheet: Sheet | null): void {
+    if (!sheet || !frame.poses.length || !sameBytes(frame.scene, sheet.scene)) return;
+    const joints = sheet.seats.map(({ legs }) => 3 * legs.length);
+    const { current } = this;
+    const isSame =
+      current?.seat === seat &&
+      this.match === frame.match &&
+      current.joints.every((count, index) => count === joints[index]);
+    if (!isSame) {
+      this.current = new PosData(seat, joints);
+      this.match = frame.match;
+    }
+    this.current?.add(frame);
   }
 }
 

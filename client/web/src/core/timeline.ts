@@ -190,8 +190,12 @@ export class Timeline {
 
 /** The frames of a recording: any moment of them can be shown. */
 export class Track {
+  readonly frames: readonly Frame[];
+
   /** @param frames In the order of their beats. */
-  constructor(readonly frames: readonly Frame[]) {}
+  constructor(frames: readonly Frame[]) {
+    this.frames = frames;
+  }
 
   get firstBeat(): number {
     return this.frames[0]?.beat ?? 0;

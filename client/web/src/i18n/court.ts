@@ -154,6 +154,14 @@ const EVENTS: readonly Pattern[] = [
   ],
   ["{team} is heard again.", "{team} の通信が回復しました。"],
   ["{team} goes back to the start.", "{team} がスタート位置に戻ります。"],
+  [
+    "{team} left its start place by {#n} m: it is put back.",
+    "{team} がスタート位置から {#n} m 動いたため、元の位置に戻されます。",
+  ],
+  [
+    "{team} left its start place {#n} times: it is not ready.",
+    "{team} がスタート位置から {#n} 回動いたため、準備完了が取り消されました。",
+  ],
   ["{team} flips {disc} and with it {discs}.", "{team} が {disc} を反転、続いて {discs} も反転。"],
   ["{team} flips {disc}.", "{team} が {disc} を反転。"],
   ["{team} takes {corner} for {#n} point.", "{team} が {corner} を獲得（{#n} 点）。"],

@@ -8,7 +8,7 @@ import {
   type WebGLProgramParametersWithUniforms,
 } from "three";
 
-/** Of each instance: kind of pattern (palette.ts), and its period [m]. */
+/** Of each instance or corner: kind of pattern (palette.ts), and its period [m]. */
 const VERTEX_HEAD = `
 attribute vec2 pattern;
 attribute vec3 patternColour;
@@ -19,9 +19,21 @@ varying vec3 vPatternColour;
 `;
 
 // In metres of the shape itself, so that the pattern rides on it.
-const VERTEX_BODY = `
+const INSTANCED_BODY = `
 vScale = vec3(length(instanceMatrix[0].xyz), length(instanceMatrix[1].xyz), length(instanceMatrix[2].xyz));
 vAt = position * vScale;
+vPattern = pattern;
+vPatternColour = patternColour;
+`;
+
+const BAKED_HEAD = `
+attribute vec3 at;
+attribute vec3 half_m;
+`;
+
+const BAKED_BODY = `
+vScale = half_m;
+vAt = at;
 vPattern = pattern;
 vPatternColour = patternColour;
 `;
@@ -56,17 +68,6 @@ if (vPattern.x > 0.5) {
 }
 `;
 
-/**
- * Light for machines without a graphics card, worked out at the corners of shapes, not in each
- * pixel: bright from above, a little from the side.
- */
-const COARSE = `
-vec3 columns = vec3(dot(instanceMatrix[0], instanceMatrix[0]), dot(instanceMatrix[1], instanceMatrix[1]), dot(instanceMatrix[2], instanceMatrix[2]));
-vec3 outward = normalize(mat3(instanceMatrix) * (normal / max(columns, vec3(1e-9))));
-float light = 0.52 + 0.26 * outward.z + 0.26 * max(0.0, dot(outward, vec3(-0.4, -0.32, 0.86)));
-vColor.rgb *= light;
-`;
-
 /** How a kind of thing shines. */
 export interface Finish {
   roughness: number;
@@ -79,25 +80,33 @@ export interface Pair {
   patterned: Material;
 }
 
-/** Materials for instances. */
-export function pairOf(fine: boolean, finish: Finish): Pair {
-  const make = () => (fine ? new MeshStandardMaterial(finish) : new MeshBasicMaterial());
-  const light = fine ? "" : COARSE;
-  const coarse = fine ? "" : "#define COARSE\n";
-  const plain = make();
-  if (light) patch(plain, "", light, "", "", "coarse");
-  const partners = fine ? "" : "vPatternColour *= light;";
+/** Materials for instances on a graphics card. */
+export function instanced(finish: Finish): Pair {
   return {
-    plain,
+    plain: new MeshStandardMaterial(finish),
     patterned: patch(
-      make(),
+      new MeshStandardMaterial(finish),
       VERTEX_HEAD,
-      `${VERTEX_BODY}${light}${partners}`,
-      `${coarse}${FRAGMENT_HEAD}`,
+      INSTANCED_BODY,
+      FRAGMENT_HEAD,
       FRAGMENT_BODY,
-      `pattern ${fine}`,
+      "instanced pattern",
     ),
   };
+}
+
+/** A material for corners that have their light already. */
+export function baked(isPatterned: boolean): Material {
+  const material = new MeshBasicMaterial({ vertexColors: true });
+  if (!isPatterned) return material;
+  return patch(
+    material,
+    `${VERTEX_HEAD}${BAKED_HEAD}`,
+    BAKED_BODY,
+    `#define COARSE\n${FRAGMENT_HEAD}`,
+    FRAGMENT_BODY,
+    "baked pattern",
+  );
 }
 
 /** The floor: lines each 0.1 m, stronger each 0.5 m. */

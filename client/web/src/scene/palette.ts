@@ -11,6 +11,7 @@ const SILENT: Rgb = [0.42, 0.43, 0.45];
 const FROZEN: Rgb = [0.62, 0.86, 1];
 const NEUTRAL: Rgb = [0.42, 0.46, 0.53];
 const FALLEN: Rgb = [0.3, 0.33, 0.38];
+const EDGE: Rgb = [0.93, 0.94, 0.96];
 
 /** "#rrggbb" in numbers. */
 export function rgb(colour: string): Rgb {
@@ -36,6 +37,12 @@ export function luma([red, green, blue]: Rgb): number {
 /** A colour's partner in a pattern: lighter, or darker where it is light already. */
 export function partner(colour: Rgb): Rgb {
   return luma(colour) > 0.55 ? mix(colour, [0.16, 0.09, 0], 0.62) : mix(colour, [1, 1, 1], 0.62);
+}
+
+/** The second colour of a pattern; the colour itself where there is no pattern. */
+export function partnerIn(colour: Rgb, pattern: number): Rgb {
+  if (pattern === PATTERNS.plain) return colour;
+  return pattern === PATTERNS.edge ? EDGE : partner(colour);
 }
 
 /** Number of a pattern, by the name that the sheet has. */

@@ -24,15 +24,17 @@ import {
   Scene as World,
 } from "three";
 import type { SceneGeom } from "../core/wire";
+import { BakedLayer } from "./baked";
 import { FOV_RAD, type ViewAxes } from "./cameras";
+import { InstancedLayer } from "./instanced";
+import { type Layer, reserveAll } from "./layer";
 import { MarkerMotion } from "./markers";
-import { floor, pairOf } from "./materials";
+import { type Finish, floor } from "./materials";
 import type { Model } from "./model";
 import { afflicted, evening, type Rgb, rgb } from "./palette";
 import { EYE, type Piece, piecesOf } from "./pieces";
 import { Pulses } from "./pulses";
 import type { Fineness } from "./quality";
-import { batchKey, Layer } from "./shapes";
 
 /** What is pointed at: a ring is drawn round it. */
 export interface Ring {
@@ -156,27 +158,30 @@ export class Stage {
     this.model = model;
     const { scene, sheet } = model;
     this.motion = new MarkerMotion(scene, sheet.markers);
-    const { fine } = this;
-    const field = pairOf(fine, { roughness: 0.75, metalness: 0.05 });
-    const markers = pairOf(fine, { roughness: 0.42, metalness: 0.08 });
-    const robots = pairOf(fine, { roughness: 0.36, metalness: 0.18 });
+    // What lies on top is drawn first: what it covers is not drawn at all.
     this.layers = {
-      still: new Layer(this.world, field, fine, 2),
-      markers: new Layer(this.world, markers, fine, 1),
-      robots: new Layer(this.world, robots, fine, 0),
+      still: this.layer({ roughness: 0.75, metalness: 0.05 }, 2),
+      markers: this.layer({ roughness: 0.42, metalness: 0.08 }, 1),
+      robots: this.layer({ roughness: 0.36, metalness: 0.18 }, 0),
     };
     for (const geom of scene.geoms) if (geom.type === "plane") this.plane(geom);
     const { still, markers: markerPieces, robots: robotPieces } = piecesOf(model, this.motion);
     this.markerPieces = markerPieces;
     this.robotPieces = robotPieces;
-    reserve(this.layers.still, still);
-    reserve(this.layers.markers, markerPieces);
-    reserve(this.layers.robots, robotPieces);
+    reserveAll(this.layers.still, still);
+    reserveAll(this.layers.markers, markerPieces);
+    reserveAll(this.layers.robots, robotPieces);
     for (const piece of still) this.put(this.layers.still, piece, this.poseOf(piece.body));
     this.layers.still.done();
     for (const seat of sheet.seats.keys()) this.blob(seat);
     this.aimSun(model);
     this.markersDrawn = false;
+  }
+
+  private layer(finish: Finish, order: number): Layer {
+    return this.fine
+      ? new InstancedLayer(this.world, finish, order)
+      : new BakedLayer(this.world, order);
   }
 
   private plane(geom: SceneGeom): void {
@@ -197,7 +202,7 @@ export class Stage {
   /** Where there are no real shadows: a soft dark spot, or robots would float. */
   private blob(seat: number): void {
     if (this.fine) return;
-    const geometry = new RingGeometry(0.001, 1, 24, 3);
+    const geometry = new RingGeometry(0.001, 1, 16, 2);
     const at = geometry.getAttribute("position");
     const colours: number[] = [];
     for (let vertex = 0; vertex < at.count; vertex++) {
@@ -309,7 +314,7 @@ export class Stage {
 
   private put(layer: Layer, piece: Piece, pose: Matrix4, colour = piece.colour): void {
     this.matrix.multiplyMatrices(pose, piece.local);
-    layer.of(piece.shape, piece.pattern).add(this.matrix, colour, piece.pattern, piece.period_m);
+    layer.add(piece.shape, this.matrix, colour === piece.colour ? piece : { ...piece, colour });
   }
 
   private poseOf(body: number): Matrix4 {
@@ -353,14 +358,3 @@ const turn = new Quaternion();
 const axisX = new Vector3();
 const axisY = new Vector3();
 const axisZ = new Vector3();
-
-function reserve(layer: Layer, pieces: readonly Piece[]): void {
-  const counts = new Map<string, { piece: Piece; most: number }>();
-  for (const piece of pieces) {
-    const key = batchKey(piece.shape, piece.pattern);
-    const known = counts.get(key);
-    if (known) known.most++;
-    else counts.set(key, { piece, most: 1 });
-  }
-  for (const { piece, most } of counts.values()) layer.reserve(piece.shape, piece.pattern, most);
-}

@@ -1,8 +1,9 @@
 /** The card before a seat is held: who, where, with what. */
 
 import { useComputed, useSignal } from "@preact/signals";
+import { isAboutToken } from "../../core/claim";
 import type { Court } from "../../core/court";
-import { isAboutToken, type Player } from "../../core/player";
+import type { Player } from "../../core/player";
 import { remembered } from "../../core/settings";
 import { SeatFlag, type Sheet } from "../../core/wire";
 import { said, t } from "../../i18n";
@@ -51,12 +52,12 @@ function WatchOnly({ alone }: { alone: boolean }) {
 
 /** The seat was lost or given up: one button brings it back. */
 function Gone({ player, alone, isLost }: Props & { isLost?: boolean }) {
-  const wish = player.lastWish;
+  const { lastWish: wish, why } = player.claim.value;
   const text = alone ? t("left.practice") : t("left.text");
   return (
     <section class="card entrance" aria-labelledby="entrance-title">
       <h1 id="entrance-title">{t(isLost ? "lost.title" : "left.title")}</h1>
-      <p role={isLost ? "alert" : undefined}>{isLost ? sentence(player.lostWhy.value) : text}</p>
+      <p role={isLost ? "alert" : undefined}>{isLost ? sentence(why) : text}</p>
       <div class="row">
         {wish && (
           <button class="button strong large" type="button" onClick={() => player.join(wish)}>
@@ -76,10 +77,11 @@ function Gone({ player, alone, isLost }: Props & { isLost?: boolean }) {
 function JoinCard({ court, player, alone }: Props) {
   const welcome = court.welcome.value!;
   const { prefill, courts } = welcome;
+  const { lastWish, refusal, request } = player.claim.value;
   const sheet = court.sheet.value;
   const seats = sheet?.seats.map((seat) => seat.id) ?? [];
-  const name = useSignal(prefill?.name || player.lastWish?.name || nameKept.peek());
-  const token = useSignal(player.lastWish?.token ?? "");
+  const name = useSignal(prefill?.name || lastWish?.name || nameKept.peek());
+  const token = useSignal(lastWish?.token ?? "");
   const isShown = useSignal(false);
   const complaint = useSignal<"" | "name" | "token">("");
   const chosen = useSignal(prefill?.seat ?? "");
@@ -90,9 +92,8 @@ function JoinCard({ court, player, alone }: Props) {
   const offered = isOwn || free.includes(kept) ? seats[kept] : seats[free[0] ?? 0];
   const seat = seats.includes(chosen.value) ? chosen.value : (offered ?? "");
   const hasToken = Boolean(prefill?.has_token);
-  const refusal = player.refusal.value;
   const aboutToken = refusal !== null && isAboutToken(refusal);
-  const isBusy = player.asking.value || player.isWaiting.value;
+  const isBusy = request !== "none" || player.isWaiting.value;
 
   const submit = (event: Event) => {
     event.preventDefault();

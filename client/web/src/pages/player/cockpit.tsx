@@ -277,10 +277,10 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
   const phase = court.frame.peek()?.phase ?? Phase.LOBBY;
   const hasData = Boolean(player.data?.length);
   const inMatch = phase > Phase.READY && phase < Phase.OFFICIAL;
-  const leave = async () => {
+  const leave = () => {
     saveData(player);
     onClose();
-    await player.leave();
+    player.leave();
   };
   return (
     <Dialog title={t("leave.title")} onClose={onClose}>
@@ -302,7 +302,7 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
             {t("leave.save")}
           </button>
         )}
-        <button class="button strong" type="button" autofocus onClick={() => void leave()}>
+        <button class="button strong" type="button" autofocus onClick={leave}>
           {t(hasData ? "leave.go" : "leave.goNoData")}
         </button>
       </div>
@@ -337,7 +337,7 @@ function Files({ court, player, alone, onClose }: DialogProps) {
             type="button"
             onClick={() => {
               onClose();
-              void player.rejoin();
+              player.rejoin();
             }}
           >
             {t("files.use")}

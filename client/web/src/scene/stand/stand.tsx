@@ -100,8 +100,6 @@ const stand = {
   picked,
   sheet,
   scene,
-  Timeline,
-  Track,
   ForwardKinematics,
   PoseMixer,
   jointsPerSeat,

@@ -5,13 +5,17 @@ import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import msgspec
 import typer
 from rich.table import Table
 from rich.text import Text
 
+from lacoc_robots.library import find_robot
+from lacoc_robots.robot import RobotSpec
+from lacoc_robots.robot_file import read_robot
+from lacoc_robots.trying import tried
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.gait.cells import leg_labels
@@ -19,6 +23,8 @@ from lacoc_shared.gait.joining import join_postures
 from lacoc_shared.gait.tables import (
     JOINTS_PER_LEG,
     SAMPLE_KEYS,
+    Gait,
+    Level,
     LocomotionTable,
     Posture,
     PostureTable,
@@ -64,19 +70,38 @@ def check(
             help="The robot's number of legs; left out, a gait for 4, 6 or 8 legs is fine.",
         ),
     ] = None,
+    robot: Annotated[
+        str | None,
+        typer.Option(
+            "--robot",
+            metavar="ROBOT",
+            help="The robot that the gait is for: a robot file (.toml), a robot's folder, or an "
+            "installed name. Its legs and ranges count, and it is tried whether it stands.",
+        ),
+    ] = None,
     json: options.Json = False,
 ) -> None:
     """Say what the keys of a gait do, or list every mistake in the file."""
+    if robot is not None and legs is not None:
+        raise UserError("--robot says how many legs there are: leave out --legs.")
+    fits: dict[str, Any] = {"legs": legs}
+    spec, robot_file = None, ""
+    if robot is not None:
+        robot_file, data = find_robot(robot)
+        spec = read_robot(data, robot_file)
+        fits = {"legs": spec.labels, "range_deg": spec.ranges_deg}
     tables: list[tuple[Path, PostureTable | LocomotionTable]] = []
     mistakes: list[Mistake] = []
     notes: list[str] = []
     for file in files:
         try:
-            tables.append((file, read_gait_file(file, legs=legs, notes=notes)))
+            tables.append((file, read_gait_file(file, **fits, notes=notes)))
         except FileRefused as error:
             mistakes += error.mistakes
         except UserError as error:  # one file that can't be opened hides none of the others
             mistakes.append(Mistake(file=str(file), found=str(error), expected=_NAME_OF_A_FILE))
+    if spec is not None:
+        mistakes += _tried(spec, robot_file, [table for _, table in tables], notes)
     if json:
         checked = [_checked(file, table) for file, table in tables]
         in_words = [mistake.in_words() for mistake in mistakes]
@@ -167,6 +192,23 @@ def _joined(table: PostureTable, source: Path, keys: str) -> LocomotionTable:
     return join_postures(
         table, source.name, [[*map(int, part.split(","))] for part in compact.split(";")]
     )
+
+
+def _tried(
+    robot: RobotSpec,
+    file: str,
+    tables: Sequence[PostureTable | LocomotionTable],
+    notes: list[str],
+) -> list[Mistake]:
+    """Try whether a robot stands with the key 0 of each table."""
+    book: list[Mistake] = []
+    for table in tables:
+        if isinstance(table, PostureTable):
+            gait, level = Gait(postures=table), Level.POSTURE
+        else:
+            gait, level = Gait(locomotion=table), Level.LOCOMOTION
+        book += tried(robot, gait, (level,), file, notes)
+    return list(dict.fromkeys(book))
 
 
 def _checked(file: Path, table: PostureTable | LocomotionTable) -> CheckedFile:

@@ -1,0 +1,293 @@
+"""Look for robots that are let in and then leave their start place while they stand.
+
+    python -m benchmarks.leaps
+
+First robots at random, anywhere within the contest's limits; then those that went farthest, changed
+step by step, and kept when they go farther. Each is weighed in as at a court's door. One that is
+let in stands on both start places of a match, longer than it was tried.
+"""
+
+import argparse
+import math
+import random
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import NamedTuple
+
+import msgspec
+from rich.console import Console
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.limits import Limits
+from lacoc_robots.robot import RobotSpec
+from lacoc_robots.robot_file import read_robot
+from lacoc_robots.standing import FARTHEST_M, mistakes_of
+from lacoc_robots.trial import stand
+from lacoc_server.match.drive import Drive
+from lacoc_server.match.entry import Entry
+from lacoc_server.world.world import World
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
+from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.seat import BEATS_PER_S
+
+STAND_TICKS = 4 * BEATS_PER_S
+LINES = 20
+"""As many robots are improved."""
+
+_BOUNDS: dict[str, tuple[float, float]] = {
+    "width_m": (0.04, 0.2),
+    "length_m": (0.04, 0.25),
+    "thickness_m": (0.02, 0.08),
+    "body_kg": (0.05, 1.0),
+    "root_m": (0.005, 0.05),
+    "first_m": (0.02, 0.12),
+    "second_m": (0.02, 0.12),
+    "radius_m": (0.005, 0.03),
+    "root_kg": (0.005, 0.1),
+    "first_kg": (0.005, 0.1),
+    "second_kg": (0.005, 0.1),
+    "ang_min_deg_s": (1.0, 240.0),
+    "kp": (1.0, 200.0),
+    "kv": (0.0, 5.0),
+    "torque_n_m": (0.1, 2.0),
+    "damping": (0.0, 1.0),
+    "armature": (0.002, 0.02),
+    "friction": (0.0, 1.5),
+    "drop_m": (0.0, 0.05),
+}
+_ANY_HEIGHT = Limits(drop_m=1.0)
+_MOSTLY = {"ang_min_deg_s": 240.0, "torque_n_m": 2.0, "kv": 0.0, "damping": 0.0, "armature": 0.002}
+"""Leaps are likelier there: half of all robots have these numbers."""
+
+
+class Candidate(NamedTuple):
+    """A robot that is not read yet."""
+
+    legs: int
+    numbers: dict[str, float]
+    start_deg: tuple[float, ...]
+    stand_deg: tuple[float, ...]
+    """First posture of key 0."""
+
+
+class Found(NamedTuple):
+    """What became of a candidate."""
+
+    candidate: Candidate
+    is_robot: bool
+    """Its file is right."""
+    tried_m: float
+    """How far it went in its trial; 0.0 if its file is wrong."""
+    leap_m: float | None
+    """How far it went in a match; None: it was not let in."""
+
+
+def at_random(seed: int) -> Candidate:
+    """Make up a robot."""
+    dice = random.Random(seed)
+    legs = dice.choice((4, 6, 8))
+    numbers = {}
+    for name, (low, high) in _BOUNDS.items():
+        if name in _MOSTLY and dice.random() < 0.5:
+            numbers[name] = _MOSTLY[name]
+        elif low > 0 and high / low > 9:  # as many light robots as heavy ones
+            numbers[name] = math.exp(dice.uniform(math.log(low), math.log(high)))
+        else:
+            numbers[name] = dice.uniform(low, high)
+    start = _posture(dice, legs, dice.choice((15.0, 45.0, 90.0, 150.0)))
+    if dice.random() < 0.5:
+        near = dice.choice((2.0, 10.0, 30.0))
+        stands = tuple(_within(angle + dice.uniform(-near, near)) for angle in start)
+    else:
+        stands = _posture(dice, legs, dice.choice((15.0, 45.0, 90.0)))
+    return Candidate(legs, numbers, start, stands)
+
+
+def changed(candidate: Candidate, seed: int) -> Candidate:
+    """Change a robot a little: one to three of its numbers, or some of its angles."""
+    dice = random.Random(seed)
+    numbers = dict(candidate.numbers)
+    for name in dice.sample(sorted(_BOUNDS), dice.randint(0, 3)):
+        low, high = _BOUNDS[name]
+        numbers[name] = min(high, max(low, numbers[name] + dice.gauss(0, 0.1) * (high - low)))
+    wide, part = dice.choice((1.0, 5.0, 20.0)), dice.random()
+
+    def shaken(angles: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(
+            _within(a + dice.gauss(0, wide)) if dice.random() < part else a for a in angles
+        )
+
+    return candidate._replace(
+        numbers=numbers,
+        start_deg=shaken(candidate.start_deg),
+        stand_deg=shaken(candidate.stand_deg),
+    )
+
+
+def judge(candidate: Candidate) -> Found:
+    """Weigh a robot in, and let it stand in a match if it is let in."""
+    robot = _robot(candidate)
+    if robot is None:
+        return Found(candidate, False, 0.0, None)
+    posture = tuple(math.radians(angle) for angle in candidate.stand_deg)
+    gait = Gait(locomotion=LocomotionTable(((posture,),)))
+    stood = stand(robot, posture)
+    if mistakes_of(stood, "robot.toml", (Level.LOCOMOTION,)):
+        return Found(candidate, True, stood.moved_m, None)
+    return Found(candidate, True, stood.moved_m, leap_m(Entry(robot, gait)))
+
+
+def leap_m(entry: Entry) -> float:
+    """Let a robot stand on both start places of Flag-Strike, and say how far it goes."""
+    arena = arenas.load("flag-strike")
+    world = World(arena, (entry, entry))
+    robot = entry.robot
+    drive = Drive(
+        entry.gait,
+        robot.start_posture,
+        robot.ang_min_rad_s,
+        robot.advance,
+        robot.hold_us,
+        repeat=True,
+    )
+    state = drive.begin(Level.LOCOMOTION)
+    starts = [places[0] for places in arena.game.starts]
+    numbers = 7 + robot.joints
+    farthest_m = 0.0
+    for _ in range(STAND_TICKS):
+        state = drive.tick(state)
+        if world.step([state.angles, state.angles]) is not None:
+            return math.inf
+        poses = memoryview(world.poses()).cast("f")
+        for seat, start in enumerate(starts):
+            at = poses[seat * numbers : seat * numbers + 2].tolist()
+            farthest_m = max(farthest_m, math.dist(start[:2], at))
+    return farthest_m
+
+
+def search(robots: int, steps: int, jobs: int, seed: int = 0) -> Iterator[Found]:
+    """Judge robots at random, then improve those that went farthest.
+
+    Args:
+        robots: that many at random.
+        steps: that many changes in all.
+        jobs: processes.
+        seed: of the first robot.
+    """
+    with ProcessPoolExecutor(jobs, get_context("forkserver")) as pool:
+        found: list[Found] = []
+        at = seed
+        while len(found) < robots:
+            some = range(at, at + 2 * (robots - len(found)) + 8)
+            at = some.stop
+            right = (one for one in pool.map(_random, some, chunksize=8) if one.is_robot)
+            for one, _ in zip(right, range(robots - len(found)), strict=False):
+                found.append(one)
+                yield one
+        best = sorted((one for one in found if one.leap_m is not None), key=_gone_m)[-LINES:]
+        for step in range(0, steps, max(1, len(best))):
+            tries = [(one.candidate, at + step + line) for line, one in enumerate(best)]
+            for line, one in enumerate(pool.map(_changed, tries[: steps - step])):
+                yield one
+                if _gone_m(one) > _gone_m(best[line]):
+                    best[line] = one
+
+
+def main() -> None:
+    """Search, and say what was found; ends with 1 if there was a leap."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.leaps", description=__doc__)
+    parser.add_argument("--robots", type=int, default=2000, help="robots at random")
+    parser.add_argument("--steps", type=int, default=2000, help="changes of the best")
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    parser.add_argument("--seed", type=int, default=0, help="of the first robot")
+    options = parser.parse_args()
+    began_s = time.monotonic()
+    found = list(search(options.robots, options.steps, options.jobs, options.seed))
+    let_in = [one for one in found if one.leap_m is not None]
+    farthest = max(let_in, key=_gone_m)
+    console = Console()
+    console.print(
+        f"{len(found)} robots in {time.monotonic() - began_s:.0f} s, {len(let_in)} let in. "
+        f"Farthest while it stood: {_gone_m(farthest):.4f} m in a match, "
+        f"{farthest.tried_m:.4f} m in its trial; of those not let in "
+        f"{max(one.tried_m for one in found):.3f} m."
+    )
+    if _gone_m(farthest) > FARTHEST_M:
+        console.print(msgspec.json.encode(farthest).decode(), soft_wrap=True)
+        raise SystemExit(1)
+
+
+def _random(seed: int) -> Found:
+    return judge(at_random(seed))
+
+
+def _changed(what: tuple[Candidate, int]) -> Found:
+    return judge(changed(*what))
+
+
+def _gone_m(found: Found) -> float:
+    return -1.0 if found.leap_m is None else found.leap_m
+
+
+def _robot(candidate: Candidate) -> RobotSpec | None:
+    """Read a candidate's file, with its feet on the floor; None if it is not within the limits."""
+    try:
+        robot = read_robot(_file(candidate, 0.5), "robot.toml", _ANY_HEIGHT)
+        lowest_m = robot.bounds(robot.start_posture)[0].z + robot.size_m[2] / 2
+        return read_robot(_file(candidate, candidate.numbers["drop_m"] - lowest_m), "robot.toml")
+    except FileRefused:
+        return None
+
+
+def _file(candidate: Candidate, height_m: float) -> str:
+    legs, n = candidate.legs, candidate.numbers
+    lines = [
+        'name = "Leaper"',
+        "[body]",
+        f"size_m = [{n['width_m']}, {n['length_m']}, {n['thickness_m']}]",
+        f"mass_kg = {n['body_kg']}",
+        "[start]",
+        f"height_m = {height_m}",
+        f"posture_deg = {list(candidate.start_deg)}",
+        "[drive]",
+        f"ang_min_deg_s = {n['ang_min_deg_s']}",
+        "[servo]",
+        *(f"{name} = {n[name]}" for name in ("kp", "kv", "torque_n_m", "damping", "armature")),
+        "[surface]",
+        f"friction = {n['friction']}",
+        "[link]",
+        f"lengths_m = [{n['root_m']}, {n['first_m']}, {n['second_m']}]",
+        f"radius_m = {n['radius_m']}",
+        f"masses_kg = [{n['root_kg']}, {n['first_kg']}, {n['second_kg']}]",
+        "range_deg = [-150, 150]",
+    ]
+    half = legs // 2
+    for leg in range(legs):
+        side = 1 if leg < half else -1
+        row = leg if leg < half else legs - 1 - leg
+        y_m = n["length_m"] * (0.45 - 0.9 * row / (half - 1))
+        lines += [
+            "[[leg]]",
+            f'label = "{leg}"',
+            f"position_m = [{side * n['width_m'] / 2}, {y_m}, {-n['thickness_m'] / 4}]",
+            f"outward_deg = {0 if side > 0 else 180}",
+        ]
+    return "\n".join(lines)
+
+
+def _posture(dice: random.Random, legs: int, wide_deg: float) -> Posture:
+    """Angles of all legs, each leg's own or the same for all."""
+    if dice.random() < 0.5:
+        three = [dice.uniform(-wide_deg, wide_deg) for _ in range(3)]
+        return tuple(three[joint // legs] for joint in range(3 * legs))
+    return tuple(dice.uniform(-wide_deg, wide_deg) for _ in range(3 * legs))
+
+
+def _within(angle_deg: float) -> float:
+    return min(150.0, max(-150.0, angle_deg))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,106 @@
+"""To stand means to stay: what a robot is told to do before play, and what it must not do then.
+
+Pure: a trial in physics (`trial`) or a match says where the robot went.
+"""
+
+import math
+from collections.abc import Collection, Sequence
+
+import msgspec
+
+from lacoc_shared.gait.tables import Gait, Level, Posture
+from lacoc_shared.mistakes import Mistake
+from lacoc_shared.words import Phrase, say
+
+TRIAL_S = 2.0
+"""A robot is tried for so long."""
+FARTHEST_M = 0.05
+"""Where a robot's centre may be while it stands, seen from its start."""
+MOST_TILT_RAD = math.radians(30.0)
+"""A robot that leans more is not upright."""
+REST_RAD_S = math.radians(3.0)
+"""At rest no joint turns faster."""
+REST_M_S = 0.002
+"""At rest the centre moves no faster."""
+
+
+class Stood(msgspec.Struct, frozen=True):
+    """What a robot did in the time of a trial."""
+
+    moved_m: float
+    """Largest distance of the body's centre from its start, seen from above."""
+    tilt_rad: float
+    """Largest angle between the body's up and the world's."""
+    joint_rad_s: float
+    """Speed of the fastest joint at the end."""
+    centre_m_s: float
+    """Speed of the body's centre at the end."""
+    fault: bool = False
+    """Physics stopped."""
+
+
+def standing_posture(gait: Gait, level: Level, start: Posture) -> Posture:
+    """The posture of a robot that is told to stand at a level (decision 15).
+
+    Args:
+        gait: its files.
+        level: of the command.
+        start: its start posture, where it stays if the gait has no key 0 at this level.
+    """
+    return (gait.sequence(level, 0) or (start,))[0]
+
+
+def standing_postures(
+    gait: Gait, levels: Collection[Level], start: Posture
+) -> dict[Posture, list[Level]]:
+    """The different postures in which a robot may be told to stand, with their levels."""
+    postures: dict[Posture, list[Level]] = {}
+    for level in sorted(levels):
+        postures.setdefault(standing_posture(gait, level, start), []).append(level)
+    return postures
+
+
+def mistakes_of(stood: Stood, file: str, levels: Sequence[Level]) -> list[Mistake]:
+    """Say what kept a robot from standing.
+
+    Args:
+        stood: what happened.
+        file: name of the robot file.
+        levels: at whose key 0 it stood.
+
+    Returns:
+        One mistake for each thing that was wrong; none for a robot that stays where it is.
+    """
+    book = []
+
+    def note(found: Phrase, expected: Phrase) -> None:
+        where = say("robot.stands", levels=["AB"[level] for level in levels], found=found)
+        book.append(Mistake(file=file, field="start.posture_deg", found=where, expected=expected))
+
+    if stood.fault:
+        note(say("robot.unstable"), say("robot.stable"))
+    if stood.moved_m > FARTHEST_M:
+        note(
+            say("robot.strays", moved_m=stood.moved_m, within_s=TRIAL_S),
+            say("robot.stays", farthest_m=FARTHEST_M),
+        )
+    if stood.tilt_rad > MOST_TILT_RAD:
+        note(
+            say("robot.leans", tilt_deg=math.degrees(stood.tilt_rad)),
+            say("robot.upright", most_deg=round(math.degrees(MOST_TILT_RAD), 6)),
+        )
+    if stood.joint_rad_s > REST_RAD_S or stood.centre_m_s > REST_M_S:
+        note(
+            say(
+                "robot.moves",
+                after_s=TRIAL_S,
+                joint_deg_s=math.degrees(stood.joint_rad_s),
+                centre_mm_s=1000 * stood.centre_m_s,
+            ),
+            say(
+                "robot.rests",
+                joint_deg_s=round(math.degrees(REST_RAD_S), 6),
+                centre_mm_s=1000 * REST_M_S,
+            ),
+        )
+    return book

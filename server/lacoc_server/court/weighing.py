@@ -1,0 +1,70 @@
+"""Weighing in at a court's door: files are read, and robots tried in physics beside its loop."""
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Self
+
+from lacoc_robots.standing import standing_postures
+from lacoc_robots.trial import try_standing
+from lacoc_server.match.entry import Admission, weigh_in
+from lacoc_shared.messages import Join
+from lacoc_shared.mistakes import FileRefused, Mistake
+
+_REMEMBERED = 32
+"""Trials of other robots than the last ones are forgotten."""
+
+
+class Weighing:
+    """Weighs in what comes with joins; used as a context manager.
+
+    A trial takes some tens of milliseconds, longer than a beat has. It runs in a thread of its
+    own, one at a time, and what was tried once is known. Whoever joins again with the same robot
+    does not wait.
+
+    Args:
+        admission: reads the files.
+    """
+
+    def __init__(self, admission: Admission) -> None:
+        self._admission = admission
+        self._worker = ThreadPoolExecutor(1, "weighing")
+        self._trials: dict[object, Future[list[Mistake]]] = {}
+        """By all that a trial depends on; the newest last."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._worker.shutdown(cancel_futures=True)
+
+    def __call__(self, join: Join) -> Join | None:
+        """Complete a join.
+
+        Returns:
+            The join with its robot, or None while the robot is tried: ask again in the next beat.
+
+        Raises:
+            FileRefused: with every mistake of every file, or with what the robot did that was to
+                stand.
+        """
+        admission = self._admission
+        whole = admission(join)
+        file = whole.robot
+        assert file is not None, "an admission fills the robot file in"
+        levels = admission.levels
+        entry = weigh_in(file, whole.postures, whole.locomotion, admission.limits, levels)
+        robot, gait = entry.robot, entry.gait
+        postures = tuple(standing_postures(gait, levels, robot.start_posture))
+        mistakes = self._tried(
+            (robot, postures, file.name), lambda: try_standing(robot, gait, levels, file.name)
+        )
+        if mistakes:
+            raise FileRefused(mistakes)
+        return None if mistakes is None else whole
+
+    def _tried(self, key: object, trial: Callable[[], list[Mistake]]) -> list[Mistake] | None:
+        future = self._trials.pop(key, None) or self._worker.submit(trial)
+        self._trials[key] = future
+        if len(self._trials) > _REMEMBERED:
+            del self._trials[next(iter(self._trials))]
+        return future.result() if future.done() else None

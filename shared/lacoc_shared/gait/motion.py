@@ -1,0 +1,28 @@
+"""How commanded angles move from one posture to another (docs/rules.md 2)."""
+
+from lacoc_shared.gait.tables import Posture
+
+_ROUNDING = 1 + 1e-9
+"""24 degrees at 2.4 degrees a tick are 10 ticks, though their sum in binary may miss by a bit."""
+
+
+def toward(angles: Posture, target: Posture, step_rad: float) -> Posture:
+    """Move every angle by at most a step; the target itself when all have arrived.
+
+    Args:
+        angles: (joints,) commanded angles [rad].
+        target: (joints,) where they go [rad].
+        step_rad: how far an angle goes in one tick.
+    """
+    if angles == target:
+        return target
+    reach = step_rad * _ROUNDING
+    moved = tuple(
+        [
+            goal
+            if -reach <= goal - angle <= reach
+            else angle + (step_rad if goal > angle else -step_rad)
+            for angle, goal in zip(angles, target, strict=True)
+        ]
+    )
+    return target if moved == target else moved

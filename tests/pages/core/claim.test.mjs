@@ -1,0 +1,214 @@
+// A page's claim to a seat (client/web/src/core/claim.ts), event by event.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import {
+  claimOf,
+  isFinal,
+  keptWish,
+  step,
+  TRANSITIONS,
+} from "../../../client/web/src/core/claim.ts";
+
+const wish = { court: "main", seat: "left", token: "abc", name: "Ants" };
+const other = { ...wish, seat: "right" };
+const busy = { message: "the match runs", mistakes: [], again: true };
+const no = { message: "the court does not answer", mistakes: [], again: false };
+const wrongToken = { message: "this is not the seat's token", mistakes: [], again: false };
+const badFile = { message: "robot.toml has mistakes", mistakes: [{}], again: false };
+
+const join = { is: "join", wish };
+const change = { is: "change", renews: false };
+const renew = { is: "change", renews: true };
+const leave = { is: "leave" };
+const forget = { is: "forget" };
+const open = { is: "open" };
+const granted = { is: "granted", wish, index: 0 };
+const broke = { is: "failed", refusal: no, broke: true };
+const failed = (refusal) => ({ is: "failed", refusal, broke: false });
+const rested = { is: "rested" };
+const taken = { is: "taken", why: "another page has it" };
+const released = { is: "released" };
+const kept = { is: "kept" };
+
+const EVENTS = [join, change, renew, leave, forget, open, granted, broke, rested, taken, released]
+  .concat([kept, ...[busy, no, wrongToken, badFile].map(failed)])
+  .concat({ is: "join", wish: other });
+
+/** The claim after events, and the effects of the last one. */
+function after(claim, ...events) {
+  let effects = [];
+  for (const event of events) [claim, effects] = step(claim, event);
+  return { ...claim, effects };
+}
+
+const fresh = claimOf(null);
+const reloaded = claimOf(wish);
+const seated = after(fresh, join, open, granted);
+
+/** All claims that events can lead to, each with the event and the effects that led to it. */
+function reachable() {
+  const found = new Map();
+  const steps = [];
+  const waiting = [fresh, reloaded];
+  while (waiting.length) {
+    const claim = waiting.pop();
+    const key = JSON.stringify(claim);
+    // Tries grow for ever: beyond the bound nothing is new.
+    if (found.has(key) || claim.tries > 9) continue;
+    found.set(key, claim);
+    for (const event of EVENTS) {
+      const [next, effects] = step(claim, event);
+      steps.push({ claim, event, next, effects });
+      waiting.push(next);
+    }
+  }
+  return steps;
+}
+
+test("whatever happens, the claim makes sense", () => {
+  const steps = reachable();
+  const states = new Set(steps.map(({ next }) => next.state));
+  assert.deepEqual(states, new Set(Object.keys(TRANSITIONS)));
+  for (const one of steps) {
+    try {
+      checkStep(one);
+    } catch (error) {
+      error.message += `\nin ${JSON.stringify(one)}`;
+      throw error;
+    }
+  }
+});
+
+function checkStep({ claim, event, next, effects }) {
+  const wants = ["joining", "holding", "changing", "leaving"].includes(next.state);
+  assert.equal(next.wish !== null, wants);
+  assert.equal(next.why !== "", next.state === "lost");
+  if (keptWish(next)) assert.ok(["holding", "changing"].includes(next.state));
+  if (effects.includes("ask")) {
+    assert.equal(claim.request, "none"); // never two joins at once
+    assert.equal(next.request, "sent");
+    assert.ok(["joining", "holding", "changing"].includes(next.state));
+  }
+  if (event.is === "failed" || event.is === "granted") assert.notEqual(next.request, "sent");
+  if (event.is === "rested") assert.equal(next.request, "none");
+  // A person who asks is heard in every state.
+  if (event.is === "join") assert.deepEqual([next.state, next.wish], ["joining", event.wish]);
+}
+
+test("a first join is asked for once there is a court, and granted", () => {
+  assert.deepEqual(after(fresh, join).effects, []);
+  const asked = after(fresh, join, open);
+  assert.deepEqual([asked.state, asked.request, asked.effects], ["joining", "sent", ["ask"]]);
+  assert.equal(keptWish(asked), null);
+  assert.deepEqual([seated.state, seated.request, seated.effects], ["holding", "none", ["begin"]]);
+  assert.equal(keptWish(seated), wish);
+});
+
+for (const refusal of [busy, no, wrongToken, badFile]) {
+  test(`a first join that is refused is shown at once: ${refusal.message}`, () => {
+    const refused = after(fresh, join, open, failed(refusal));
+    assert.deepEqual([refused.state, refused.effects], ["none", ["drop"]]);
+    assert.deepEqual([refused.refusal, refused.lastWish], [refusal, wish]);
+    assert.equal(after(refused, join).refusal, null);
+  });
+}
+
+test("a first join that the connection lost is asked again after a pause", () => {
+  const resting = after(fresh, join, open, broke);
+  assert.deepEqual(
+    [resting.state, resting.request, resting.effects],
+    ["joining", "resting", ["rest"]],
+  );
+  assert.deepEqual(after(resting, open).effects, []);
+  assert.deepEqual(after(resting, rested, open).effects, ["ask"]);
+});
+
+test("a seat that was held is asked for again after a break or a reload, in silence", () => {
+  for (const claim of [seated, reloaded]) {
+    assert.deepEqual(after(claim, open).effects, ["ask"]);
+    let mended = claim;
+    for (let time = 0; time < 50; time++) mended = after(mended, open, failed(busy), rested);
+    assert.deepEqual([mended.state, mended.refusal], ["holding", null]);
+    for (let time = 0; time < 50; time++) mended = after(mended, open, broke, rested);
+    assert.equal(mended.state, "holding");
+  }
+});
+
+test("a court that says neither yes nor when is asked eight times", () => {
+  let claim = reloaded;
+  for (let time = 0; time < 7; time++) {
+    claim = after(claim, open, failed(no));
+    assert.deepEqual([claim.state, claim.effects], ["holding", ["rest"]]);
+    claim = after(claim, rested);
+  }
+  // A grant in between begins the count anew.
+  assert.equal(after(claim, open, granted, open, failed(no)).state, "holding");
+  const refused = after(claim, open, failed(no));
+  assert.deepEqual([refused.state, refused.refusal, refused.effects], ["none", no, ["drop"]]);
+});
+
+for (const refusal of [wrongToken, badFile]) {
+  test(`a held seat that is refused for good is shown: ${refusal.message}`, () => {
+    const refused = after(reloaded, open, failed(refusal));
+    assert.deepEqual([refused.state, refused.refusal], ["none", refusal]);
+    assert.equal(keptWish(refused), null);
+  });
+}
+
+test("new files are sent at once, and any refusal of them is shown", () => {
+  assert.deepEqual(after(seated, change).effects, ["ask"]);
+  assert.equal(after(seated, change, granted).state, "holding");
+  for (const refusal of [busy, no, badFile]) {
+    const refused = after(seated, change, failed(refusal));
+    assert.deepEqual(
+      [refused.state, refused.refusal, refused.effects],
+      ["none", refusal, ["drop"]],
+    );
+  }
+  // The tab keeps the seat while the court thinks.
+  assert.equal(keptWish(after(seated, change)), wish);
+  // While a join is under way there is no second one.
+  assert.deepEqual(after(seated, open, change).effects, []);
+  for (const event of [change, renew]) assert.equal(after(fresh, event).state, "none");
+});
+
+test("practice gives the seat up for new files, and asks for it again", () => {
+  const renewing = after(seated, renew);
+  assert.deepEqual([renewing.effects, renewing.request], [["renew"], "none"]);
+  assert.deepEqual(after(renewing, open).effects, ["ask"]);
+  assert.equal(after(renewing, open, failed(badFile)).refusal, badFile);
+});
+
+test("a seat that is given up is not asked for again", () => {
+  const leaving = after(seated, leave);
+  assert.deepEqual(leaving.effects, ["release"]);
+  assert.equal(keptWish(leaving), null);
+  assert.deepEqual(after(leaving, open).effects, []);
+  const left = after(leaving, released);
+  assert.deepEqual([left.state, left.lastWish, left.effects], ["left", wish, ["clear"]]);
+  assert.equal(after(left, forget).state, "none");
+  assert.equal(after(left, forget).lastWish, wish);
+  // The court did not take it: all is as before.
+  assert.deepEqual([after(leaving, kept).state, keptWish(after(leaving, kept))], ["holding", wish]);
+  // A grant that was under way comes late: the seat is given up all the same.
+  assert.deepEqual(after(seated, open, leave, granted).effects, []);
+  assert.equal(after(seated, open, leave, granted, released).state, "left");
+});
+
+test("a lost seat is told, and nothing fights for it", () => {
+  const lost = after(seated, taken);
+  assert.deepEqual([lost.state, lost.why, lost.lastWish], ["lost", taken.why, wish]);
+  assert.deepEqual(after(lost, open).effects, []);
+  // Told twice, as with a newer round trip.
+  assert.equal(after(lost, taken).lastWish, wish);
+  assert.deepEqual([after(lost, forget).state, after(lost, forget).why], ["none", ""]);
+  assert.deepEqual(after(lost, join, open).effects, ["ask"]);
+  assert.equal(after(seated, leave, taken, released).state, "lost");
+});
+
+test("which refusals are final", () => {
+  assert.deepEqual([busy, no, wrongToken, badFile].map(isFinal), [false, false, true, true]);
+  const message = "Your files are too large together: 70 KiB, at most 62 KiB travel.";
+  assert.ok(isFinal({ message, mistakes: [] }));
+});

@@ -1,0 +1,39 @@
+"""The pages' source without a browser: its pure parts in Node, and its layers."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from chromium import WEB, npm
+
+pytestmark = pytest.mark.slow
+
+
+def test_the_pure_parts_of_the_pages() -> None:
+    """Each case is in tests/pages/core; the output names those that fail."""
+    npm("test")
+
+
+def test_a_broken_layer_and_a_circle_are_found(tmp_path: Path) -> None:
+    """The linter refuses imports from a higher layer, and circles, of types too."""
+    shutil.copytree(WEB / "src", tmp_path / "src")
+    shutil.copy(WEB / "biome.json", tmp_path)
+    wrong = {
+        "core/keys.ts": 'export type { SeatMark } from "../ui/score";',
+        "core/walk.ts": 'export const words = () => import("../i18n/words");',
+        "i18n/play.ts": 'export type { CameraName } from "../scene/View";',
+        "scene/tags.ts": 'export { t } from "../i18n";',
+        "ui/drop.ts": 'export { View } from "../scene/View";',
+        "core/colours.ts": 'export type { Court } from "./court";',
+    }
+    for name, line in wrong.items():
+        with (tmp_path / "src" / name).open("a") as file:
+            file.write(f"{line}\n")
+    lint = ["exec", "--", "biome", "lint", "--max-diagnostics=none", "--reporter=github"]
+    with pytest.raises(RuntimeError) as refused:
+        npm(*lint, f"--config-path={tmp_path}", str(tmp_path / "src"))
+    found = str(refused.value)
+    for name, line in wrong.items():
+        rule = "noImportCycles" if name == "core/colours.ts" else "noRestrictedImports"
+        assert re.search(rf"{rule},file=[^,]*src/{name},", found), (name, line, found)

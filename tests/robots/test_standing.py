@@ -1,0 +1,164 @@
+"""To stand means to stay: the trial at the weigh-in (docs/rules.md 1)."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from lacoc_robots.commands import app as robot_app
+from lacoc_robots.gait_commands import app as gait_app
+from lacoc_robots.library import find_robot, installed_robots, robot_folder, sample_gait_files
+from lacoc_robots.robot import RobotSpec
+from lacoc_robots.robot_file import read_robot
+from lacoc_robots.standing import Stood, mistakes_of, standing_postures
+from lacoc_robots.trial import stand, try_standing
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture, PostureTable
+from lacoc_shared.gait.text import read_gait
+from lacoc_shared.words import faults, render
+
+A, B = Level.POSTURE, Level.LOCOMOTION
+STILL = Stood(moved_m=0.01, tilt_rad=0.1, joint_rad_s=0.001, centre_m_s=0.0001)
+
+
+def sample_gait(name: str) -> Gait:
+    tables = [read_gait(file.data, file.name) for file in sample_gait_files(name) if file]
+    return Gait(
+        next(table for table in tables if isinstance(table, PostureTable)),
+        next(table for table in tables if isinstance(table, LocomotionTable)),
+    )
+
+
+@pytest.mark.parametrize("name", installed_robots())
+def test_every_sample_stands(name: str) -> None:
+    """With key 0 of both levels, and to a tenth of a millimetre where it was put."""
+    robot = read_robot(find_robot(name)[1], name)
+    gait = sample_gait(name)
+    assert try_standing(robot, gait, (A, B), name) == []
+    (posture,) = standing_postures(gait, (A, B), robot.start_posture)
+    assert stand(robot, posture).moved_m < 1e-4
+
+
+def swept(robot: RobotSpec) -> Posture:
+    """A standing posture with all legs swung back by 90 degrees: on the way the robot rows."""
+    legs = len(robot.legs)
+    return tuple(
+        angle - math.radians(90) * (joint < legs) for joint, angle in enumerate(robot.start_posture)
+    )
+
+
+def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> None:
+    """The sentence has the level, the distance and what is allowed."""
+    gait = Gait(PostureTable({0: hexapod.start_posture}), LocomotionTable(((swept(hexapod),),)))
+    assert try_standing(hexapod, gait, (A,), "robot.toml") == []
+    mistakes = try_standing(hexapod, gait, (A, B), "robot.toml")
+    assert mistakes == try_standing(hexapod, gait, (B,), "robot.toml")
+    (mistake,) = mistakes
+    moved_m = stand(hexapod, swept(hexapod)).moved_m
+    assert moved_m > 0.05
+    assert mistake.field == "start.posture_deg"
+    assert render(mistake.found) == (
+        "standing with key 0 of level B, "
+        f"a robot that goes {moved_m:.3f} m from its start within 2 s"
+    )
+    assert render(mistake.expected).startswith("at most 0.05 m")
+
+
+def test_a_robot_that_stands_on_one_side_leans(hexapod: RobotSpec) -> None:
+    """Legs of the right pushed down, those of the left lifted."""
+    first = dict.fromkeys((6, 7, 8), math.radians(-50)) | dict.fromkeys((9, 10, 11), 1.4)
+    posture = tuple(first.get(joint, angle) for joint, angle in enumerate(hexapod.start_posture))
+    stood = stand(hexapod, posture)
+    found = [render(mistake.found) for mistake in mistakes_of(stood, "robot.toml", (B,))]
+    assert stood.tilt_rad > math.radians(30)
+    assert any("leans" in one for one in found)
+
+
+def test_a_robot_that_is_still_on_its_way_is_not_at_rest(hexapod_text: str) -> None:
+    """Far from key 0 and slow: after two seconds it still moves."""
+    robot = read_robot(
+        hexapod_text.replace("ang_min_deg_s = 120", "ang_min_deg_s = 10"), "robot.toml"
+    )
+    higher = tuple(angle - math.radians(25) * (6 <= joint < 12)
+                   for joint, angle in enumerate(robot.start_posture))  # fmt: skip
+    stood = stand(robot, higher)
+    assert stood.joint_rad_s == pytest.approx(math.radians(10), rel=0.2)
+    (mistake,) = mistakes_of(stood, "robot.toml", (B,))
+    words = "a robot that still moves after 2 s: a joint at 10 degrees/s"
+    assert words in render(mistake.found)
+
+
+@pytest.mark.parametrize(
+    ("stood", "words"),
+    [
+        (STILL, []),
+        (Stood(0.05, math.radians(30), math.radians(3), 0.002), []),
+        (Stood(0.0501, 0.0, 0.0, 0.0), ["goes 0.050 m"]),
+        (Stood(0.0, math.radians(31), 0.0, 0.0), ["leans 31 degrees"]),
+        (Stood(0.0, 0.0, math.radians(4), 0.0), ["a joint at 4 degrees/s"]),
+        (Stood(0.0, 0.0, 0.0, 0.003), ["its middle at 3 mm/s"]),
+        (Stood(0.0, 0.0, 0.0, 0.0, fault=True), ["physics can't follow"]),
+        (Stood(0.3, 1.0, 9.0, 1.0), ["goes 0.300 m", "leans 57", "a joint at 516"]),
+    ],
+)
+def test_what_is_told(stood: Stood, words: list[str]) -> None:
+    """Each thing that is wrong, and the bounds themselves are allowed."""
+    mistakes = mistakes_of(stood, "robot.toml", (A, B))
+    assert len(mistakes) == len(words)
+    for mistake, word in zip(mistakes, words, strict=True):
+        assert word in render(mistake.found)
+        assert "key 0 of level A and B" in render(mistake.found)
+        assert faults(mistake.phrase) == []
+
+
+def test_the_posture_of_key_0() -> None:
+    """The first of its sequence; the start posture where a file has none; each posture once."""
+    first, other, start = (0.1,) * 12, (0.2,) * 12, (0.3,) * 12
+    gait = Gait(PostureTable({0: first, 1: other}), LocomotionTable(((first, other), (other,))))
+    assert standing_postures(gait, (B, A), start) == {first: [A, B]}
+    without = Gait(PostureTable({1: other}), LocomotionTable(((other,),)))
+    assert standing_postures(without, (A, B), start) == {start: [A], other: [B]}
+
+
+@pytest.fixture
+def leaper(tmp_path: Path, hexapod_text: str) -> Path:
+    """The sample robot, whose legs start in front of where its gait has them."""
+    text = hexapod_text.replace(
+        "45,  0, -45, -45,  0, 45,  # root", "100, 100, 100, 100, 100, 100,  # root"
+    )
+    assert text != hexapod_text
+    (tmp_path / "robot.toml").write_text(text)
+    for name in ("Loco-data.txt", "LocoTra-data.txt"):
+        (tmp_path / name).write_bytes((robot_folder("hexapod") / name).read_bytes())
+    return tmp_path
+
+
+def test_commands_say_the_same(leaper: Path) -> None:
+    """`robot check` with the gait beside it, and `gait check --robot`, name the same mistake."""
+    run = CliRunner().invoke
+    robot_file, gait_file = leaper / "robot.toml", leaper / "LocoTra-data.txt"
+    robot = read_robot(robot_file.read_bytes(), "robot.toml")
+    (expected,) = try_standing(robot, sample_gait("hexapod"), (B,), "robot.toml")
+
+    checked = run(gait_app, ["check", str(gait_file), "--robot", str(robot_file), "--json"])
+    assert checked.exit_code == 2
+    (mistake,) = json.loads(checked.stdout)["mistakes"]
+    assert mistake["found"] == render(expected.found)
+
+    refused = run(robot_app, ["check", str(robot_file)])
+    assert refused.exit_code != 0
+    (mistake_of_both,) = refused.exception.mistakes  # type: ignore[union-attr]
+    both = render(expected.found).replace("level B", "level A and B")
+    assert render(mistake_of_both.found) == both
+
+
+def test_a_gait_is_checked_for_a_robot(leaper: Path) -> None:
+    """Its legs count, and --legs beside it is one too many."""
+    gait_file = str(leaper / "Loco-data.txt")
+    run = CliRunner().invoke
+    assert run(gait_app, ["check", gait_file, "--robot", "hexapod"]).exit_code == 0
+    other = run(gait_app, ["check", gait_file, "--robot", "octopod", "--json"])
+    assert "this robot has 8 legs" in other.stdout
+    both = run(gait_app, ["check", gait_file, "--robot", "hexapod", "--legs", "6"])
+    assert "leave out --legs" in str(both.exception)

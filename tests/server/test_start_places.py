@@ -1,0 +1,100 @@
+"""Before play a robot stays at its start place, or is put back there (docs/rules.md 4)."""
+
+import math
+
+from stage import LEFT, QUICK, RIGHT, Script, Stage, decide, join
+
+from lacoc_server.match.match import MOST_STRAYS
+from lacoc_shared import decisions as d
+from lacoc_shared.inputs import LeaveSeat, ReadySeat
+from lacoc_shared.messages import Event
+from lacoc_shared.seat import Phase
+
+
+def straying(*ticks: int, by_m: float = 0.06, seat: int = LEFT) -> Stage:
+    """A match whose robot leaves its start by so much in some ticks after the robots are built."""
+    x_m, y_m = start(Stage("flag-strike"), seat)
+    poses = {tick: {seat: (x_m, y_m + by_m)} for tick in ticks}
+    return Stage("flag-strike", QUICK, script=Script(poses=poses))
+
+
+def start(stage: Stage, seat: int = LEFT) -> tuple[float, float]:
+    return stage.match.game.starts[seat][0][:2]
+
+
+def from_start_m(stage: Stage, seat: int = LEFT) -> float:
+    return stage.match.staging.from_start_m(seat)
+
+
+def strayed(stage: Stage) -> list[Event]:
+    return [event for event in stage.events if event.kind == "strayed"]
+
+
+def test_who_leaves_its_start_place_before_play_is_put_back() -> None:
+    """Everybody is told in the beat in which it is seen; the next beat finds it at its start."""
+    stage = straying(3).to_ready()
+    stage.run(2)
+    assert from_start_m(stage) > 0.05
+    (event,) = strayed(stage)
+    assert (event.seat, event.beat) == (LEFT, stage.frame.beat)
+    assert event.text == "Ants left its start place by 0.06 m: it is put back."
+    assert math.isclose(event.data["distance_m"], 0.06, abs_tol=1e-6)
+    stage.beat()
+    assert from_start_m(stage) < 1e-6
+    stage.run(10)
+    assert len(strayed(stage)) == 1
+    assert stage.phase is Phase.READY
+    assert stage.match.legality()["start"] == ""
+
+
+def test_a_step_within_the_place_is_none() -> None:
+    """Settling is allowed: 0.05 m."""
+    stage = straying(3, by_m=0.049, seat=RIGHT).to_ready()
+    stage.run(10)
+    assert strayed(stage) == []
+    assert 0.048 < from_start_m(stage, RIGHT) < 0.05
+
+
+def test_who_leaves_again_and_again_is_not_ready() -> None:
+    """The third time takes its ready back; who says ready again begins anew."""
+    assert MOST_STRAYS == 3
+    stage = straying(3, 6, 9).to_ready()
+    stage.run(9)
+    assert [event.data["times"] for event in strayed(stage)] == [1, 2, 3]
+    assert strayed(stage)[-1].text == "Ants left its start place 3 times: it is not ready."
+    stage.beat()
+    assert stage.phase is Phase.LOBBY
+    assert stage.match.missing() == ["left (Ants) has not said ready"]
+    stage.beat(ReadySeat(LEFT, True))
+    stage.run(4)
+    assert stage.phase is Phase.READY
+    assert [event.data["times"] for event in strayed(stage)] == [1, 2, 3, 1]
+
+
+def test_a_start_in_that_beat_finds_it_at_its_place() -> None:
+    """Whoever is on the way back when the referee starts is there when play begins."""
+    stage = straying(3).to_ready()
+    stage.run(2)
+    assert len(strayed(stage)) == 1
+    stage.beat(decide(d.Start()))
+    stage.until(Phase.PLAYING)
+    assert from_start_m(stage) < 1e-6
+
+
+def test_one_who_leaves_or_comes_anew_on_the_way_back_disturbs_nothing() -> None:
+    """The field is empty then."""
+    for item in (LeaveSeat(LEFT), join(LEFT, robot="octopod")):
+        stage = straying(3).to_ready()
+        stage.run(2)
+        assert len(strayed(stage)) == 1
+        stage.beat(item)
+        assert stage.phase is Phase.LOBBY
+        assert stage.frame.poses == b""
+
+
+def test_play_puts_nobody_back() -> None:
+    """A robot may go where it likes, and be pushed, also while it stands."""
+    stage = straying(3).to_playing()
+    stage.run(10)
+    assert from_start_m(stage) > 0.05
+    assert strayed(stage) == []
