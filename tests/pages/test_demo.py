@@ -4,13 +4,14 @@ import os
 import pty
 import re
 import signal
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from chromium import OpenPage
 from court_process import environment
-from lacoc_process import Lacoc
+from lacoc_process import COMMAND
 from show import Show
 
 pytestmark = pytest.mark.slow
@@ -23,8 +24,8 @@ def demo(tmp_path: Path, built_pages: Path) -> Iterator[str]:
     browser.write_text("#!/bin/sh\n")
     browser.chmod(0o755)
     screen, terminal = pty.openpty()
-    process = Lacoc(
-        *("demo", "--seconds", "2"),
+    process = subprocess.Popen(  # a forked process has no terminal of its own
+        [*COMMAND, "demo", "--seconds", "2"],
         stdout=terminal,
         cwd=tmp_path,
         env={**environment(), "BROWSER": f"{browser} %s"},

@@ -55,7 +55,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
     () =>
       new Leaving(() => {
         saveData(player);
-        void player.leave();
+        player.leave();
       }),
     [player],
   );
