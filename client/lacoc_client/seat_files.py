@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.gait.joining import join_postures, sample_sequences
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, LocomotionTable, PostureTable
-from lacoc_shared.gait.text import write_gait
+from lacoc_shared.gait.text import read_gait, write_gait
 from lacoc_shared.gait.workbook import read_gait_file, read_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError, text_of
@@ -69,6 +70,35 @@ def as_text(files: SeatFiles, notes: list[str] | None = None) -> SeatFiles:
     if mistakes:
         raise FileRefused(mistakes)
     return SeatFiles(files.robot, *texts)
+
+
+def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = None) -> SeatFiles:
+    """Make level B of the postures where no locomotion file comes with them.
+
+    Args:
+        files: as text; a posture file with mistakes is left to the court, which knows the robot.
+        sequences: for each digit key from 0 on, the postures it runs through, by their digits;
+            None: as the sample's keys, if the postures have all of theirs.
+
+    Raises:
+        UserError: if a sequence is empty, or uses a posture that there is not.
+    """
+    postures = files.postures
+    if postures is None or files.locomotion is not None:
+        return files
+    try:
+        table = read_gait(postures.data, postures.name)
+    except FileRefused:
+        return files
+    if not isinstance(table, PostureTable):
+        return files
+    if sequences is None:
+        joined = sample_sequences(table)
+    else:
+        joined = join_postures(table, postures.name, sequences)
+    if joined is None:
+        return files
+    return files._replace(locomotion=_text(f"level B of {postures.name}", joined))
 
 
 def gaits_in(folder: Path) -> list[Path]:

@@ -18,7 +18,8 @@ from lacoc_robots.robot_file import read_robot
 from lacoc_robots.trying import tried
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
-from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY, leg_labels
+from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.gait.joining import join_postures
 from lacoc_shared.gait.tables import (
     JOINTS_PER_LEG,
     SAMPLE_KEYS,
@@ -27,7 +28,6 @@ from lacoc_shared.gait.tables import (
     LocomotionTable,
     Posture,
     PostureTable,
-    to_locomotion,
     to_postures,
 )
 from lacoc_shared.gait.text import write_gait
@@ -189,20 +189,9 @@ def _joined(table: PostureTable, source: Path, keys: str) -> LocomotionTable:
             f"--keys {keys!r} is no list of postures. Write the digits of each key's postures "
             f"with commas, and semicolons between the keys: '{_SAMPLE_KEYS_TEXT}'."
         )
-    sequences = tuple(tuple(map(int, part.split(","))) for part in compact.split(";"))
-    if len(sequences) > MAX_KEYS or max(map(len, sequences)) > MAX_POSTURES_PER_KEY:
-        raise UserError(
-            f"--keys has {len(sequences)} keys, the longest of {max(map(len, sequences))} "
-            f"postures; at most {MAX_KEYS} keys of {MAX_POSTURES_PER_KEY} postures fit in a file."
-        )
-    try:
-        return to_locomotion(table, sequences)
-    except KeyError as error:
-        there = ", ".join(map(str, sorted(table.postures)))
-        raise UserError(
-            f"The keys '{keys}' use posture {error}, but {source.name} has only {there}. "
-            "Say with --keys which postures to join."
-        ) from error
+    return join_postures(
+        table, source.name, [[*map(int, part.split(","))] for part in compact.split(";")]
+    )
 
 
 def _tried(

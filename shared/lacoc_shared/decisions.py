@@ -74,10 +74,13 @@ class TakeBack(_Decision, frozen=True, tag="take-back"):
     """Only say what would change."""
 
 
-class Clock(_Decision, frozen=True, tag="clock"):
-    """Move the clock: a positive number leaves less time to play."""
+class Clock(_Decision, frozen=True, tag="clock", omit_defaults=True):
+    """Give time to play, or take it with a minus."""
 
-    seconds: float
+    gives_s: float = 0.0
+    """Seconds by which the time left grows."""
+    seconds: float = 0.0
+    """Seconds taken: how records say it that are older than `gives_s`."""
 
 
 class Abort(_Decision, frozen=True, tag="abort"):
@@ -117,6 +120,9 @@ Decision = (
     | Next
 )
 """Any decision; on the wire a map whose entry "type" is the decision's name."""
+
+OLD_FIELDS = frozenset({(Clock, "seconds")})
+"""What is only read in old records: no program offers it."""
 
 DECISIONS: dict[str, type[Decision]] = {
     str(kind.__struct_config__.tag): kind for kind in get_args(Decision)

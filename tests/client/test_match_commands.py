@@ -77,7 +77,7 @@ def test_the_referee_has_every_decision(
     tried = referee.decide("take-back", str(taken["event"]), "--dry-run")
     assert (tried["event"], tried["scores"]) == (None, [17, 18])
     assert referee.decide("take-back", str(taken["event"]))["scores"] == [17, 18]
-    referee.decide("clock", "-0.5")
+    assert referee.decide("clock", "0.5")["text"] == "+0.5 s to play."
     referee.decide("resume")
     referee.decide("halt")
     assert "Go" not in referee.refused("official")

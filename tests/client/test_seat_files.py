@@ -5,11 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_client.seat_files import SeatFiles, as_text, gaits_in, gather, remarks
+from lacoc_client.own_files import OwnFiles
+from lacoc_client.seat_files import SeatFiles, as_text, gaits_in, gather, remarks, with_level_b
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.tables import PostureTable
-from lacoc_shared.gait.text import read_gait
+from lacoc_shared.gait.text import read_gait, write_gait
 from lacoc_shared.gait.workbook import write_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
@@ -153,3 +154,65 @@ def test_a_workbook_travels_as_text() -> None:
     with pytest.raises(FileRefused) as caught:
         as_text(SeatFiles(postures=SentFile("broken.xlsx", b"PK\x03\x04")))
     assert [one.file for one in caught.value.mistakes] == ["broken.xlsx"]
+
+
+def test_level_b_is_made_of_postures_that_come_alone() -> None:
+    """Workshop 4-2, Fig. 4-2: a page needs no terminal to make sequences of a workbook."""
+    book = as_text(SeatFiles(postures=SentFile("Loco-data.xlsx", workbook())))
+    made = with_level_b(book).locomotion
+    assert made is not None
+    assert read_gait(made.data, made.name) == read_gait(LOCOMOTION, "LocoTra-data.txt")
+    own = with_level_b(book, [[0], [1, 2]]).locomotion
+    assert own is not None
+    table = read_gait(own.data, own.name)
+    assert [len(sequence) for sequence in table.sequences] == [1, 2]  # type: ignore[union-attr]
+
+
+def test_level_b_is_never_made_against_what_there_is() -> None:
+    """A locomotion file, too few postures for the sample's keys, and mistakes stay as they are."""
+    both = SeatFiles(postures=SAMPLE.postures, locomotion=SAMPLE.locomotion)
+    few = PostureTable({0: (0.0,) * 18, 1: (0.1,) * 18})
+    short = SeatFiles(postures=SentFile("few.txt", write_gait(few, leg_labels(6))))
+    wrong = SeatFiles(postures=SentFile("wrong.txt", b"x"))
+    for files in (SeatFiles(), both, short, wrong):
+        assert with_level_b(files) == files
+    for keys, expected in (
+        ([[0], [2]], "Key 1 of level B uses posture 2, but few.txt has only 0, 1."),
+        ([[0], []], "Key 1 of level B has no posture"),
+        ([], "0 keys, the longest of 0 postures, do not fit"),
+    ):
+        with pytest.raises(UserError, match=expected):
+            with_level_b(short, keys)
+
+
+def test_files_that_are_saved_again_are_read_again(tmp_path: Path) -> None:
+    """A student who edits a gait beside practice sees it there; a wrong one costs nothing."""
+    write(tmp_path / "LocoTra-data.txt", LOCOMOTION)
+    own = OwnFiles(folder=tmp_path)
+    assert not own.look()
+    assert own.files.postures is None
+
+    write(tmp_path / "Loco-data.txt", POSTURES, 2000)
+    assert not own.look()  # it may still be being written
+    assert own.look()
+    assert own.changed == ("Loco-data.txt",)
+    assert own.version == 2
+    assert own.files.postures == SAMPLE.postures
+    assert not own.look()
+
+    write(tmp_path / "Loco-data.txt", b"Num of Posture\tmany", 3000)
+    assert [own.look(), own.look()] == [False, True]
+    assert isinstance(own.refused, FileRefused)
+    assert own.files.postures == SAMPLE.postures
+
+    write(tmp_path / "Loco-data.txt", POSTURES, 4000)
+    assert [own.look(), own.look()] == [False, True]
+    assert own.refused is None
+    write(tmp_path / "Loco-data.txt", POSTURES, 5000)  # saved again as it was
+    assert [own.look(), own.look()] == [False, False]
+    assert own.version == 4
+
+    (tmp_path / "Loco-data.txt").unlink()
+    assert [own.look(), own.look()] == [False, True]
+    assert own.files.postures is None
+    assert own.changed == ("Loco-data.txt",)

@@ -13,6 +13,7 @@ from urllib.parse import urlsplit
 import msgpack
 from websockets.client import ClientProtocol
 from websockets.exceptions import ConnectionClosed
+from websockets.frames import Opcode
 from websockets.sync.client import ClientConnection, connect
 from websockets.uri import parse_uri
 
@@ -53,6 +54,7 @@ class PageClient:
         self.links: list[dict[str, Any]] = []
         self.seat: dict[str, Any] = {}
         self.referee: dict[str, Any] = {}
+        self.files: dict[str, Any] = {}
         self.sheet: Sheet | None = None
         self.scene: tuple[bytes, Scene] | None = None
         self.frame: Frame | None = None
@@ -166,6 +168,8 @@ class PageClient:
                 self.seat = body
             case Kind.REFEREE:
                 self.referee = body
+            case Kind.FILES:
+                self.files = body
             case Kind.REPLY:
                 self._replies[body["id"]] = body
 
@@ -198,7 +202,8 @@ class SleepyPage:
             self._flush()  # answers pings
             for event in self._protocol.events_received():
                 data = bytes(getattr(event, "data", b""))
-                if data[:1] == bytes((Kind.FRAME,)):
+                is_message = getattr(event, "opcode", None) is Opcode.BINARY  # and no ping
+                if is_message and data[:1] == bytes((Kind.FRAME,)):
                     beats.append(decode(data[1:], Frame).beat)
         return beats
 

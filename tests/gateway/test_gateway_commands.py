@@ -77,8 +77,9 @@ def test_play_fills_its_page_in(tmp_path: Path, stack: ExitStack) -> None:
             "seat": "left",
             "name": "Ants",
             "has_token": True,
-            "files": ["LocoTra-data.txt"],
         }
+        assert page.files["locomotion"] == "LocoTra-data.txt"
+        assert page.files["postures"] == page.files["robot"] == ""
         page.ask("join", seat="left", token=None, name="Ants")
         page.wait(lambda: page.sheet is not None and page.sheet.seats[0].team == "Ants")
         assert page.sheet is not None
@@ -152,7 +153,7 @@ def test_play_needs_no_seat_to_open(tmp_path: Path, stack: ExitStack) -> None:
     """What is not said is asked for by the page, also where no court runs yet."""
     play = Command(tmp_path, "play", "--connect", "tcp/127.0.0.1:1")
     with PageClient(play.url, play.key) as page:
-        expected = {"seat": "", "name": "", "has_token": False, "files": []}
+        expected = {"seat": "", "name": "", "has_token": False}
         assert page.welcome["prefill"] == expected
         page.wait(lambda: "Nobody listens" in page.link["text"])
     assert play.ended() == 0

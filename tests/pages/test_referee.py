@@ -208,11 +208,11 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     expect(page.locator(".fate")).to_have_text("taken back")
     group(page, "+10 s").click()
     confirm(page, "network")
-    log_has(page, "Referee Kim: the clock moves by -10 s. Reason: network")
+    log_has(page, "Referee Kim: +10 s to play. Reason: network")
     group(page, "Other …").click()
     page.locator("input[name=amount]").fill("-600")
     confirm(page, "rule")
-    log_has(page, "the clock moves by +600 s.")
+    log_has(page, "-600 s to play.")
     step(page)
     log_has(page, "Referee Kim: play goes on in 3 s.")
     phase(page, 6)
@@ -302,7 +302,7 @@ def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     expect(page.locator(".enter")).to_contain_text("#key=")
     expect(page.locator("input[name=token]")).to_have_count(0)
     expect(page.locator(".health .verdict")).to_be_visible()
-    log_has(page, "LOBBY.")
+    log_has(page, "Waiting for the teams to join.")
     expect(big(page)).to_have_attribute("aria-disabled", "true")
 
 
@@ -394,7 +394,7 @@ def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> Non
     field.press("Control+a")
     page.keyboard.type("-10.50")
     confirm(page, "rule")
-    log_has(page, "the clock moves by +10.5 s.")
+    log_has(page, "-10.5 s to play.")
 
 
 @pytest.mark.long

@@ -275,8 +275,9 @@ def test_the_servers_list_and_the_address(
     """A recording is a link; a moment of it can be given to others; the way back is Back."""
     console.expect("404")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
-    expect(show.find(".recordings b")).to_have_text(["a-discs", "b-flags"], timeout=WAIT_MS)
-    show.find(".recordings a", has_text="a-discs").click()
+    expect(show.find(".recordings b")).to_have_count(2, timeout=WAIT_MS)
+    show.sees(".recordings li:first-child", "planner")
+    show.find(".recordings a", has_text="Othello").click()
     show.sees(".score-bug .team", "planner")
     assert "file=a-discs.mcap" in show.page.url
     show.opened("a-discs")

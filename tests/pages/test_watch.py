@@ -82,6 +82,7 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     show.sees(".result .kicker", "By the rules")
     show.sees(".result h1", "A draw")
     show.sees(".result", "time is up · 0:02 played")
+    show.sees(".panel .log li[data-kind=phase]", "Play is over: time is up.")
     show.sees(".result .next", "the referee confirms")
     decide(referee, "the better walk", type="declare", winner="right")
     decide(referee, type="official")
@@ -141,7 +142,7 @@ def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) ->
     venue.web()
     referee = playing(venue)
     show = Show(open_page(), venue.url, LOW)
-    decide(referee, "test", type="clock", seconds=3600)
+    decide(referee, "test", type="clock", gives_s=-3600)
     show.sees(".result h1", "A draw")
     number = decide(referee, "count again", type="adjust", seat="left", points=3)["event"]
     show.sees(".result h1", "Ants wins")

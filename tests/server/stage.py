@@ -250,7 +250,7 @@ class Stage:
                 self.beat(decide(d.Halt()))
             case Phase.FINISHED:
                 self.to(Phase.PLAYING)
-                self.beat(decide(d.Clock(3600.0)))
+                self.beat(decide(d.Clock(-3600.0)))
             case Phase.OFFICIAL:
                 self.to(Phase.FINISHED)
                 self.beat(decide(d.Official()))

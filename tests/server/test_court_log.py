@@ -28,7 +28,7 @@ def test_an_event_is_a_line_with_all_it_has() -> None:
     with capture_logs() as lines:
         log = CourtLog("main")
         log.event("m-1", flip)
-        log.event("m-1", msgspec.structs.replace(flip, kind="silent"))
+        log.event("m-1", msgspec.structs.replace(flip, kind="silent"), 9000)
     assert lines[0] == {
         "event": "A flip.",
         "log_level": "info",
@@ -37,6 +37,7 @@ def test_an_event_is_a_line_with_all_it_has() -> None:
         **{name: getattr(flip, name) for name in flip.__struct_fields__ if name != "text"},
     }
     assert lines[1]["log_level"] == "warning"
+    assert lines[1]["left_ticks"] == 8988
 
 
 def test_what_went_wrong_is_said_once() -> None:
@@ -71,3 +72,15 @@ def test_what_went_wrong_is_said_once() -> None:
     ]
     assert {line["match_id"] for line in lines} == {"m-1"}
     assert {line["log_level"] for line in lines} == {"warning"}
+
+
+def test_slow_beats_are_told_now_and_then() -> None:
+    """A loaded machine has some every second: the first at once, the others together."""
+    with capture_logs() as lines:
+        log = CourtLog("main")
+        for second in range(100):
+            slow = msgspec.structs.replace(HEALTH, beat=50 * second, slow_beats=second + 1)
+            log.health("m-1", slow)
+    told = [line for line in lines if line["kind"] == "slow"]
+    assert [line["count"] for line in told] == [1, 30, 30, 30]
+    assert told[1]["event"].startswith("Slow beats: 30, 31 in all")

@@ -131,7 +131,7 @@ STORY: tuple[tuple[tuple[Input, ...], list[Said]], ...] = (
     ),
     (
         (decide(d.Clock(-1.5), "a pause"),),
-        [word("clock", "the clock moves by -1.5 s.", "a pause", seconds=-1.5)],
+        [word("clock", "-1.5 s to play.", "a pause", gives_s=-1.5)],
     ),
     ((decide(d.Halt(), ""),), [word("halt", "halted."), phase("PLAYING", "HALTED")]),
     (
@@ -331,7 +331,7 @@ def test_a_result_says_all() -> None:
     """Rules 4: what is computed, with scores, clock, reason and what proves it."""
     stage = Stage(overrides=QUICK, script=Script(poses=dict(FLIP))).to(P.PLAYING)
     assert stage.match.result().computed == ""
-    stage.decide(d.Clock(3600.0))
+    stage.decide(d.Clock(-3600.0))
     expected = Result(
         match_id="m",
         court="main",

@@ -22,7 +22,7 @@ from stage import (
 )
 
 from lacoc_shared import decisions as d
-from lacoc_shared.codec import encode
+from lacoc_shared.codec import decode, encode
 from lacoc_shared.inputs import ReadySeat
 from lacoc_shared.messages import DecisionReply, Done, Refusal
 from lacoc_shared.seat import Phase, SeatFlag
@@ -346,27 +346,38 @@ def test_clock_moves_the_end() -> None:
     """Rules 4, `clock` ±s: an offset to the ticks played; the end comes so much sooner or later."""
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
-    done(stage, d.Clock(-10.0))
+    done(stage, d.Clock(10.0))
     assert stage.frame.clock_ticks == was + 1 - 500
-    done(stage, d.Clock(100.0))
+    done(stage, d.Clock(-100.0))
     assert stage.frame.clock_ticks == was + 2 - 500 + 5000
     stage.until(P.FINISHED)
     assert stage.match.ticks == 9000 + 500 - 5000
     assert stage.frame.clock_ticks == 9000
 
 
+def test_clock_in_old_records() -> None:
+    """A record that says `seconds` took that time: it gives the same match and words again."""
+    old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
+    stage = stage_in(P.PLAYING)
+    was = stage.frame.clock_ticks
+    assert done(stage, old).text == "the clock moves by +10 s."
+    assert stage.frame.clock_ticks == was + 1 + 500
+    (event,) = (event for event in stage.events if event.data.get("decision") == "clock")
+    assert event.data["arguments"] == {"type": "clock", "seconds": 10.0}
+
+
 def test_clock_past_the_end() -> None:
     """Rules 4, tick 9000 is the last: none is played after it, and a slip can be put right."""
     stage = stage_in(P.HALTED)
     ticks = stage.match.ticks
-    done(stage, d.Clock(3600.0))
+    done(stage, d.Clock(-3600.0))
     assert stage.phase is P.HALTED
     done(stage, d.Resume())
     stage.until(P.FINISHED, at_most=5)
     assert (stage.match.ticks, stage.match.ended) == (ticks, "time is up")
     stage = stage_in(P.PLAYING)
     ticks = stage.match.ticks
-    done(stage, d.Clock(3600.0))
+    done(stage, d.Clock(-3600.0))
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, ticks)
 
 

@@ -305,7 +305,7 @@ def test_paths_restarts_clock_and_other_decisions_stay() -> None:
     stage.script.poses.update({10: {LEFT: cell("c2r2")}, 20: {LEFT: cell("c3r2")}})
     stage.run(30)
     stage.beat(key(LEFT, X))
-    stage.decide(d.Clock(3.0))
+    stage.decide(d.Clock(-3.0))
     stage.decide(d.Adjust("right", 1))
     stage.decide(d.Set("c5r5", "neutral"))
     play(stage, 50)

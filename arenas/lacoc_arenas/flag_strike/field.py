@@ -29,8 +29,11 @@ def build(spec: mujoco.MjSpec, game: FlagStrike) -> None:
     for number, (left, right) in enumerate(zip(*game.starts, strict=True)):
         for seat, place in (("left", left), ("right", right)):
             name = f"pad:{seat}{number}"
-            pad_m = 0.5 * settings.corner_radius_m
-            field.disc(spec, name, (place.x_m, place.y_m), pad_m, _PAD_TOP_M, field.PANEL)
+            # Square, as what is round here is worth points.
+            half_m = 0.5 * settings.corner_radius_m
+            size = [half_m, half_m, _PAD_TOP_M / 2]
+            pos = [place.x_m, place.y_m, _PAD_TOP_M / 2]
+            field.shape(spec, name, field.BOX, size, pos, field.PANEL)
     for corner in game.markers[: len(settings.corners)]:
         at_m = (corner.x_m, corner.y_m)
         field.disc(spec, f"rim:{corner.name}", at_m, corner.radius_m, _RIM_TOP_M, field.RIM)

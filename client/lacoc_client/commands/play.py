@@ -11,7 +11,8 @@ from rich.text import Text
 from lacoc_client.commands import entrance, pages
 from lacoc_client.controller import Controller
 from lacoc_client.gateway.home import Prefill, player_home
-from lacoc_client.seat_files import SeatFiles, gaits_in, gather, remarks
+from lacoc_client.own_files import OwnFiles
+from lacoc_client.seat_files import SeatFiles, gaits_in, remarks
 from lacoc_client.stopping import stop_signals
 from lacoc_client.terminal.keys import open_keys
 from lacoc_client.terminal.play import TerminalPlay, keys_table
@@ -79,17 +80,17 @@ def play_command(
     """
     if terminal:
         access = entrance.seat(invitation, contest, court, connect, seat, token)
-        files = choose_files(robot, gait or [])
+        files = own_files(robot, gait or []).files
         play(access, name or f"Team {access.seat}", files, ready=ready)
         return
     access = entrance.perhaps_seat(invitation, contest, court, connect, seat, token)
-    prefill = Prefill(access.seat, access.token, name, choose_files(robot, gait or []))
+    prefill = Prefill(access.seat, access.token, name, own_files(robot, gait or []))
     home = player_home(access, prefill, "player", None)
     pages.show_page(home, f"/play#key={home.key}", browser)
 
 
-def choose_files(robot: str | None, gaits: list[Path]) -> SeatFiles:
-    """The files that were named, or the gait files of the current folder, and say so (rules 2).
+def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:
+    """Read the files that were named, or the gait files of the current folder, and say so.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -100,9 +101,8 @@ def choose_files(robot: str | None, gaits: list[Path]) -> SeatFiles:
         screen.note(f"Taken from this folder: {', '.join(path.name for path in found)}.")
     for remark in [] if gaits else remarks(Path(), found):
         screen.warn(remark)
-    notes: list[str] = []
-    files = gather(robot, gaits or found, notes)
-    for note in notes:
+    files = OwnFiles(robot, gaits)
+    for note in files.notes:
         screen.warn(note)
     return files
 

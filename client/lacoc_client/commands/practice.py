@@ -15,7 +15,7 @@ import typer
 from rich.text import Text
 
 from lacoc_client.commands import pages
-from lacoc_client.commands.play import Gaits, Robot, TeamName, choose_files, play
+from lacoc_client.commands.play import Gaits, Robot, TeamName, own_files, play
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.command import screen
@@ -52,14 +52,15 @@ def practice_command(
     With --terminal q leaves, and keys can come from a pipe as in 'lacoc play'; after the last one
     practice ends.
     """
-    files = choose_files(robot, gait or [])
+    files = own_files(robot, gait or [])
     if not terminal:
         pages.check_pages()
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="lacoc-practice-")))
         access = stack.enter_context(_court(folder, recordings or folder / "recordings"))
         if terminal:
-            play(access, name or "Practice", files, ready=True, greeting=_greeting(files))
+            greeting = _greeting(files.files)
+            play(access, name or "Practice", files.files, ready=True, greeting=greeting)
             return
         prefill = Prefill(access.seat, access.token, name or "Practice", files)
         home = player_home(access, prefill, "practice", recordings)

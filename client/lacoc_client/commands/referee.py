@@ -25,8 +25,7 @@ from lacoc_client.terminal import words
 from lacoc_client.terminal.line_view import event_columns
 from lacoc_client.terminal.plain import event_dict, frame_dict, reply_dict
 from lacoc_shared.command import options, screen
-from lacoc_shared.command.log import log_clock
-from lacoc_shared.decisions import DECISIONS, Decision
+from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision
 from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
@@ -49,6 +48,7 @@ _QUIET_S = 0.3
 _FIELDS = {
     "seat": "The seat, such as 'left'.",
     "seconds": "How many seconds.",
+    "gives_s": "How many seconds to give; -10 takes ten away.",
     "points": "How many points; -2 takes two away.",
     "marker": "Name of the disc, corner or flag: c2r3, corner0, flag7.",
     "state": "What it becomes: neutral, left, right or down.",
@@ -64,11 +64,16 @@ _TokenUnused = Annotated[
 ]
 
 
+_NOBODY = frozenset({"root", "admin", "administrator", "user", "nobody"})
+"""Accounts that are nobody's name: it would stand in the record."""
+
+
 def _default_name() -> str:
     try:
-        return getpass.getuser()
+        name = getpass.getuser()
     except (KeyError, OSError, ImportError):  # an account without a name
         return "referee"
+    return "referee" if name in _NOBODY else name
 
 
 _COMMON: dict[str, tuple[Any, Any]] = {
@@ -106,13 +111,24 @@ _COMMON: dict[str, tuple[Any, Any]] = {
 
 def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
     """The function of a decision's subcommand; its parameters are the decision's fields."""
-    fields = {field.name: field for field in msgspec.structs.fields(kind)}
+    fields = {
+        field.name: field
+        for field in msgspec.structs.fields(kind)
+        if (kind, field.name) not in OLD_FIELDS
+    }
 
     def run(**given: Any) -> None:
         decision = kind(**{field: given[field] for field in fields})
         _decide(name, decision, **{option: given[option] for option in _COMMON})
 
-    parameters = [(field.name, _annotation(field), field.default) for field in fields.values()]
+    parameters = [
+        (
+            field.name,
+            _annotation(field),
+            msgspec.NODEFAULT if _is_argument(field) else field.default,
+        )
+        for field in fields.values()
+    ]
     parameters += [(option, *spec) for option, spec in _COMMON.items()]
     run.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [
@@ -132,11 +148,17 @@ def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
 def _annotation(field: FieldInfo) -> Any:
     """A required field is an argument, any other an option."""
     help = _FIELDS.get(field.name) or _TYPES.get(field.type, "A word.")
-    if field.required:
-        return Annotated[field.type, typer.Argument(help=help)]
+    if _is_argument(field):
+        name = field.encode_name.removesuffix("_s").upper()
+        return Annotated[field.type, typer.Argument(metavar=name, help=help)]
     return Annotated[
         field.type, typer.Option(f"--{field.encode_name.replace('_', '-')}", help=help)
     ]
+
+
+def _is_argument(field: FieldInfo) -> bool:
+    """Whether a field must be given; one that old records lack has a default all the same."""
+    return field.required or field.name == "gives_s"
 
 
 for _name, _kind in DECISIONS.items():
@@ -189,7 +211,7 @@ def log(
                 screen.print_json(event_dict(event, view.sheet))
         elif follow:
             for event in events:
-                screen.show(_log_line(event))
+                screen.show(_log_line(event, view.sheet))
         else:
             screen.show(_log_table(events, view.sheet))
         with stop_signals() as stopping:
@@ -199,7 +221,7 @@ def log(
                     if json:
                         screen.print_json(event_dict(event, view.sheet))
                     else:
-                        screen.show(_log_line(event))
+                        screen.show(_log_line(event, view.sheet))
 
 
 def _decide(
@@ -301,8 +323,8 @@ def _history(view: Spectator) -> tuple[Event, ...]:
     return view.events
 
 
-def _log_line(event: Event) -> Text:
-    return Text.assemble((f"{event.number:>4} ", "bold"), *event_columns(event))
+def _log_line(event: Event, sheet: Sheet) -> Text:
+    return Text.assemble((f"{event.number:>4} ", "bold"), *event_columns(event, sheet))
 
 
 def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
@@ -311,7 +333,7 @@ def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
         plain = event_dict(event, sheet)
         table.add_row(
             str(event.number),
-            log_clock(event.clock_ticks),
+            words.event_clock(event, sheet),
             event.kind,
             Text(plain["seat"] or ""),
             Text(render(event.said)),
@@ -320,12 +342,22 @@ def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
 
 
 def _show_reply(reply: DecisionReply) -> None:
-    number = "dry run" if reply.event is None else f"event {reply.event}"
-    text = render(reply.said)
-    screen.show(f"{text[:1].upper()}{text[1:]} ({number}, beat {reply.beat})")
+    score = " : ".join(map(str, reply.scores))
+    said = render(reply.said)
+    text = f"{said[:1].upper()}{said[1:]}"
+    if reply.event is None:
+        screen.show("Dry run: nothing is done. This is what would be done:")
+        screen.show(f"  {text}")
+        for change in reply.changes:
+            screen.show(f"  {render(change)}")
+        if not reply.changes:
+            screen.show("  No other event changes.")
+        screen.show(f"Score then: {score}")
+        return
+    screen.show(f"{text} (event {reply.event}, beat {reply.beat})")
     for change in reply.changes:
         screen.show(f"  {render(change)}")
-    screen.show(f"Score: {' : '.join(map(str, reply.scores))}")
+    screen.show(f"Score: {score}")
 
 
 def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:

@@ -130,7 +130,7 @@ def _draw(view: Spectator, terminal: LineView | BoardView, end: _End) -> None:
             new = view.take_events()
             if terminal.events_above or not in_place:
                 for event in new:
-                    console.print(Text.assemble(*event_columns(event)))
+                    console.print(Text.assemble(*event_columns(event, view.sheet)))
             events += new
             ended = end()
             now_s = time.monotonic()

@@ -82,6 +82,7 @@ def web_command(
     exporter = Exporter(metrics) if metrics else None
     home = Home(
         courts=_courts(invitation, plan, court, connect),
+        contest=plan.given_name if plan else "",
         recordings=recordings or (plan.recordings if plan else Path("recordings")),
         names=frozenset(host or ()),
         viewers_most=viewers,

@@ -40,6 +40,12 @@ class Audience:
             for framed in messages:
                 viewer.send(framed)
 
+    def send_acting(self, framed: bytes) -> None:
+        """Send to the pages that may act what must arrive."""
+        for viewer in self._viewers:
+            if viewer.can_act:
+                viewer.send(framed)
+
     def send_if_fast(self, framed: bytes) -> None:
         """Send what another message will soon replace."""
         for viewer in self._viewers:

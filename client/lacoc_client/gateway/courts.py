@@ -2,15 +2,18 @@
 
 import asyncio
 
+from lacoc_client.gateway import wire
 from lacoc_client.gateway.feed import CourtFeed
 from lacoc_client.gateway.home import ACTING_MOST, Home
 from lacoc_client.gateway.referees import Referees
 from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
 
 _THREADS = 16
+_FILES_S = 0.5
 _STRANGERS = 4
 """A wrong token holds one for 2 s at a court with keys; no decision and no fetch waits for it."""
 
@@ -53,6 +56,12 @@ class Courts:
         """The feeds of all courts that were asked for; may be asked from any thread."""
         return [feed for feed, _ in list(self._feeds.values())]
 
+    def over(self) -> list[str]:
+        """The matches that are over and still on at their courts; may be asked from any thread."""
+        pictures = [feed.picture for feed in self.feeds]
+        ended = (Phase.OFFICIAL, Phase.VOID)
+        return [picture.view.match_id for picture in pictures if picture.phase in ended]
+
     def why_full(self, viewer: Viewer) -> Phrase | None:
         """Say why there is no room for a page; None if there is.
 
@@ -66,6 +75,15 @@ class Courts:
         if acts:
             return say("gateway.full-with-key", most=most)
         return say("gateway.full", most=most)
+
+    async def watch_files(self) -> None:
+        """Tell the pages that may act when the files on this machine were saved again."""
+        own = self.home.prefill.files if self.home.prefill is not None else None
+        while own is not None:
+            await asyncio.sleep(_FILES_S)
+            if await asyncio.to_thread(own.look):
+                for feed in self.feeds:
+                    feed.audience.send_acting(wire.files_message(own))
 
     async def close(self) -> None:
         """Close all connections."""

@@ -1,10 +1,9 @@
-"""The files a gateway gives away: the built pages, and recordings."""
+"""The built pages, as a gateway gives them away."""
 
 import gzip
 import mimetypes
-from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 PAGES = Path(__file__).parents[1] / "pages"
 NOT_BUILT = (
@@ -12,8 +11,6 @@ NOT_BUILT = (
     "or install lacoc from its wheel."
 )
 
-_RECORDING = ".mcap"
-_SEGMENT = ".live.mcap"  # of a match that is still being recorded
 _PACKED_FROM_BYTES = 1024
 _PACKED = ("text/", "application/json", "image/svg+xml")
 _TYPES = {".js": "text/javascript", ".svg": "image/svg+xml", ".wasm": "application/wasm"}
@@ -63,28 +60,3 @@ def _read(path: Path) -> PageFile:
     if len(data) >= _PACKED_FROM_BYTES and kind.startswith(_PACKED):
         packed = gzip.compress(data, 9, mtime=0)
     return PageFile(data, packed, kind)
-
-
-def recordings_in(folder: Path | None) -> list[dict[str, Any]]:
-    """The finished recordings of a folder, the newest first."""
-    found = []
-    for path in folder.glob(f"*{_RECORDING}") if folder is not None else ():
-        if path.name.endswith(_SEGMENT) or not path.is_file():
-            continue
-        stat = path.stat()
-        found.append((stat.st_mtime, path.name, stat.st_size))
-    return [
-        {
-            "name": name,
-            "bytes": size,
-            "modified": datetime.fromtimestamp(at_s, UTC).isoformat(timespec="seconds"),
-        }
-        for at_s, name, size in sorted(found, reverse=True)
-    ]
-
-
-def recording(folder: Path | None, name: str) -> Path | None:
-    """A finished recording by its name; None: there is none in the folder."""
-    if name not in {entry["name"] for entry in recordings_in(folder)} or folder is None:
-        return None
-    return folder / name

@@ -6,14 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from lacoc_client.seat_files import SeatFiles
+from lacoc_client.own_files import OwnFiles
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
 
 Kind = Literal["venue", "player", "practice"]
-
-_NO_FILES = SeatFiles()
 
 VIEWERS_MOST = 400
 """More pages than this that only watch are sent away: 25 frames a second of 400 need 3 MB/s."""
@@ -33,7 +31,8 @@ class Prefill:
     seat: str = ""
     token: str = ""
     name: str = ""
-    files: SeatFiles = _NO_FILES
+    files: OwnFiles | None = None
+    """What lies on this machine; a page may bring others."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +42,8 @@ class Home:
     courts: dict[str, Access]
     """The way to each court by its name; the first is shown where a page names none."""
     kind: Kind = "venue"
+    contest: str = ""
+    """The contest's name; "" if nobody gave it one."""
     prefill: Prefill | None = None
     recordings: Path | None = None
     """Folder of the recordings that may be fetched."""
@@ -67,4 +68,4 @@ def lasting_key(contest: Contest) -> str:
 
 def player_home(access: Access, prefill: Prefill, kind: Kind, recordings: Path | None) -> Home:
     """The gateway of one person at one court."""
-    return Home({access.court: access.watching()}, kind, prefill, recordings)
+    return Home({access.court: access.watching()}, kind, "", prefill, recordings)

@@ -140,6 +140,9 @@ class Page:
             viewer.send(self._welcome(None))  # it says which courts there are
             raise
         viewer.send(self._welcome(self._feed.court))
+        prefill = self._home.prefill
+        if viewer.can_act and prefill is not None and prefill.files is not None:
+            viewer.send(wire.files_message(prefill.files))
         self._feed.add(viewer)
         if viewer.can_act:
             viewer.send(self._referees.state(viewer))
@@ -154,7 +157,6 @@ class Page:
                 "seat": prefill.seat,
                 "name": prefill.name,
                 "has_token": bool(prefill.token),
-                "files": [file.name for file in prefill.files if file is not None],
             }
         body = {
             "protocol": PROTOCOL,
@@ -163,6 +165,7 @@ class Page:
             "court": court,
             "can_act": self._viewer.can_act,
             "home": home.kind,
+            "contest": home.contest,
             "prefill": filled,
         }
         return wire.map_message(Kind.WELCOME, body)

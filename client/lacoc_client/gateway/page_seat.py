@@ -10,7 +10,7 @@ from lacoc_client.gateway.home import Prefill
 from lacoc_client.gateway.seat_thread import SeatThread
 from lacoc_client.gateway.viewer import MOST_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
-from lacoc_client.seat_files import SeatFiles
+from lacoc_client.seat_files import SeatFiles, as_text, with_level_b
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import render, say
@@ -53,6 +53,7 @@ class PageSeat:
             UserError: if there is no token.
         """
         access, name, files = self._entry(asked, watching)
+        own = self._prefill.files if self._prefill is not None else None
         self._end()
         loop, viewer, joins = asyncio.get_running_loop(), self._viewer, self._joins
         viewer.watch_closely()
@@ -61,8 +62,15 @@ class PageSeat:
         def tell(seat: dict[str, Any]) -> None:
             in_loop(loop, lambda: self._tell(seat, joins))
 
+        if own is not None:
+            viewer.send(wire.files_message(own, used=own.version))
         self._thread = SeatThread(
-            access, name, files, viewer.unheard_s, tell, self._answers.from_thread(asked.id)
+            access,
+            name,
+            lambda notes: with_level_b(as_text(files, notes), asked.sequences),
+            viewer.unheard_s,
+            tell,
+            self._answers.from_thread(asked.id),
         )
 
     def steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk) -> None:
@@ -101,7 +109,7 @@ class PageSeat:
         files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
         prefill = self._prefill
         if prefill is not None and (not token or not prefill.token):
-            own, theirs = files, prefill.files
+            own, theirs = files, prefill.files.files if prefill.files else SeatFiles()
             if own.postures is None and own.locomotion is None:
                 files = SeatFiles(own.robot or theirs.robot, theirs.postures, theirs.locomotion)
             token, name = token or prefill.token, name or prefill.name

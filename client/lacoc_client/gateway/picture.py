@@ -33,6 +33,8 @@ class CourtPicture:
     def __init__(self) -> None:
         self.view: CourtView[bytes] = CourtView(lambda _, data: wire.message(Kind.EVENT, data))
         """What the court has said, and what of it is missing."""
+        self.phase = 0
+        """Of the newest frame."""
         self.frame: bytes | None = None
         """The newest."""
         self._health: bytes | None = None
@@ -52,7 +54,9 @@ class CourtPicture:
 
     def take_frame(self, payload: bytes) -> bytes:
         """Take a frame in."""
-        self.view.see_frame(decode(payload, _Frame, MAX_BYTES).scene)
+        frame = decode(payload, _Frame, MAX_BYTES)
+        self.view.see_frame(frame.scene)
+        self.phase = frame.phase
         self.frame = framed = wire.message(Kind.FRAME, payload)
         return framed
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from lacoc_client.controller import REPEAT_S, Controller, Hold
 from lacoc_client.gateway.wire import FAULT
-from lacoc_client.seat_files import SeatFiles, as_text
+from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.session import open_client
@@ -38,7 +38,8 @@ class SeatThread:
     Args:
         access: the way to the seat.
         team: the team's name.
-        files: what it brings.
+        files: makes what it brings, as text, and adds what is to be said of it; called on the
+            thread, as a workbook takes a while.
         unheard_s: says how long the page was not heard.
         tell: told how the seat is (see docs/gateway.md, "seat"); on the thread.
         joined: told what came of the join; on the thread.
@@ -48,7 +49,7 @@ class SeatThread:
         self,
         access: Access,
         team: str,
-        files: SeatFiles,
+        files: Callable[[list[str]], SeatFiles],
         unheard_s: Callable[[], float],
         tell: Callable[[dict[str, Any]], None],
         joined: Answer,
@@ -86,7 +87,7 @@ class SeatThread:
         access = self._access
         try:
             noted: list[str] = []
-            files = as_text(self._files, noted)
+            files = self._files(noted)
             with open_client([access.connect], credentials=access.credentials) as session:
                 controller = Controller(
                     session,

@@ -4,19 +4,21 @@ import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
+import msgspec
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from lacoc_client.gateway.courts import Courts
-from lacoc_client.gateway.files import NOT_BUILT, PageFile, PageFiles, recording, recordings_in
+from lacoc_client.gateway.files import NOT_BUILT, PageFile, PageFiles
 from lacoc_client.gateway.guard import Guard
 from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.metrics import GatewayMetrics
 from lacoc_client.gateway.page import Page
+from lacoc_client.gateway.recordings import Recordings
 
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay")
 """Each is the same file, which looks at its own path."""
@@ -33,14 +35,18 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         files: the built pages.
     """
     courts = Courts(home)
+    shelf = Recordings(home.recordings, courts.over)
     if home.exporter is not None:
         home.exporter.registry.register(GatewayMetrics(courts))
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
         courts.find(None)
+        watching = asyncio.get_running_loop().create_task(courts.watch_files())
         yield
+        watching.cancel()
         await courts.close()
+        await asyncio.to_thread(shelf.close)
 
     async def index(request: Request) -> Response:
         file = await asyncio.to_thread(files.find, "index.html")
@@ -59,11 +65,12 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         return _not_found() if file is None else _response(request, file, "max-age=3600")
 
     async def recordings(_: Request) -> Response:
-        return JSONResponse(await asyncio.to_thread(recordings_in, home.recordings))
+        found = await asyncio.to_thread(shelf.listed)
+        return Response(msgspec.json.encode(found), media_type="application/json")
 
     async def one_recording(request: Request) -> Response:
         name = request.path_params["name"]
-        path = await asyncio.to_thread(recording, home.recordings, name)
+        path = await asyncio.to_thread(shelf.find, name)
         return _not_found() if path is None else FileResponse(path, media_type=_MCAP)
 
     async def page(websocket: WebSocket) -> None:

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import msgspec
 
 from lacoc_client.asking import NoAnswer, NotNow
+from lacoc_client.own_files import OwnFiles
 from lacoc_shared.codec import BadMessage, encode
 from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
@@ -43,10 +44,12 @@ class Kind(IntEnum):
     SEAT = 8
     REPLY = 9
     REFEREE = 10
+    FILES = 11
 
 
 _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
 _Short = Annotated[str, msgspec.Meta(max_length=200)]
+_Digit = Annotated[int, msgspec.Meta(ge=0, le=9)]
 _Token = Annotated[str, msgspec.Meta(max_length=200)]
 
 
@@ -83,6 +86,8 @@ class JoinAsk(_Ask, frozen=True, kw_only=True, tag="join"):
     robot: SentFile | None = None
     postures: SentFile | None = None
     locomotion: SentFile | None = None
+    sequences: tuple[tuple[_Digit, ...], ...] | None = None
+    """Level B of the postures, where there is no locomotion file; None: as the sample's keys."""
 
 
 class ReadyAsk(_Ask, frozen=True, kw_only=True, tag="ready"):
@@ -178,6 +183,26 @@ def map_message(kind: Kind, value: dict[str, Any]) -> bytes:
     return message(kind, encode(value))
 
 
+def files_message(own: OwnFiles, used: int | None = None) -> bytes:
+    """Tell a page which files lie on this machine.
+
+    Args:
+        own: the files.
+        used: their version with which the page's seat was joined just now.
+    """
+    names = {name: file.name if file else "" for name, file in own.files._asdict().items()}
+    refused = own.refused
+    body = {
+        **names,
+        "version": own.version,
+        "used": used,
+        "changed": own.changed,
+        "error": None if refused is None else _said(refused),
+        "mistakes": refused.mistakes if isinstance(refused, FileRefused) else [],
+    }
+    return map_message(Kind.FILES, body)
+
+
 def reply(to: int, value: Any) -> bytes:
     """The answer to what was asked."""
     return map_message(Kind.REPLY, {"id": to, "ok": True, "value": value})
@@ -185,18 +210,20 @@ def reply(to: int, value: Any) -> bytes:
 
 def refusal(to: int, error: UserError | FileRefused) -> bytes:
     """The answer to what was not done."""
-    if isinstance(error, FileRefused):
-        mistakes = error.mistakes
-        said = say("refused.mistakes", count=len(mistakes), first=None)
-    else:
-        mistakes, said = [], error.phrase
+    mistakes = error.mistakes if isinstance(error, FileRefused) else []
     body = {
         "id": to,
         "ok": False,
-        "error": said,
+        "error": _said(error),
         "mistakes": mistakes,
         "token_refused": isinstance(error, TokenRefused),
         "again": isinstance(error, NotNow),
         "unanswered": isinstance(error, NoAnswer),
     }
     return map_message(Kind.REPLY, body)
+
+
+def _said(error: UserError | FileRefused) -> Phrase:
+    if isinstance(error, FileRefused):
+        return say("refused.mistakes", count=len(error.mistakes), first=None)
+    return error.phrase

@@ -52,7 +52,7 @@ class BoardView:
         both.add_column(ratio=1)
         side = _side(view.frame, view.sheet, words.link(silent_s))
         width = max(1, screen.stdout.width - grid.width - 4)
-        side += _latest(self._events, rows - len(side), width)
+        side += _latest(self._events, view.sheet, rows - len(side), width)
         both.add_row(BoardPicture(grid, view.frame, view.sheet), Group(*side))
         return both
 
@@ -106,11 +106,11 @@ def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
     return [*lines, Text()]
 
 
-def _latest(events: Sequence[Event], rows: int, width: int) -> list[Text]:
+def _latest(events: Sequence[Event], sheet: Sheet, rows: int, width: int) -> list[Text]:
     """The latest events that fit, whole, the newest last."""
     shown: list[Text] = []
     for event in reversed(events):
-        clock, text = event_columns(event)
+        clock, text = event_columns(event, sheet)
         wrapped = text.wrap(screen.stdout, max(1, width - len(clock)))
         indent = Text(" " * len(clock))
         lines = [Text.assemble(indent if n else clock, line) for n, line in enumerate(wrapped)]

@@ -7,7 +7,6 @@ from rich.text import Text
 
 from lacoc_client.spectator import Spectator
 from lacoc_client.terminal import words
-from lacoc_shared.command.log import log_clock
 from lacoc_shared.messages import Event, Frame, Sheet
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import render
@@ -74,6 +73,6 @@ def status_line(frame: Frame, sheet: Sheet) -> Text:
     return line
 
 
-def event_columns(event: Event) -> tuple[Text, Text]:
+def event_columns(event: Event, sheet: Sheet) -> tuple[Text, Text]:
     """When something happened, and what, as the log has it."""
-    return Text(f"{log_clock(event.clock_ticks):>7}  ", "dim"), Text(render(event.said))
+    return Text(f"{words.event_clock(event, sheet):>7}  ", "dim"), Text(render(event.said))

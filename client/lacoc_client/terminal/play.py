@@ -98,7 +98,10 @@ class TerminalPlay:
             self._say(f"[{key}] refused: {render(refused.why)}.")
         for text in self._keys.take_said():
             self._say(text)
-        lines = [Text.assemble(*event_columns(event)) for event in self._view.take_events()]
+        lines = [
+            Text.assemble(*event_columns(event, self._view.sheet))
+            for event in self._view.take_events()
+        ]
         while self._said:
             self._message, self._said_s = self._said.popleft(), time.monotonic()
             if not screen.stdout.is_terminal:

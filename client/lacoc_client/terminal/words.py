@@ -1,8 +1,9 @@
 """Clocks, scores, keys and links in words, the same on every screen of the terminal."""
 
 from lacoc_client.terminal.plain import poses
+from lacoc_shared.command.log import log_clock
 from lacoc_shared.gait.tables import Level
-from lacoc_shared.messages import Frame, SeatFrame, Sheet
+from lacoc_shared.messages import Event, Frame, SeatFrame, Sheet
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, SILENT_AFTER_S, Phase, SeatFlag
 
 _PHASES = {
@@ -25,9 +26,18 @@ def clock(ticks: int) -> str:
 
 def match_clock(frame: Frame, sheet: Sheet) -> str:
     """The time that is left, or the time played where a match has no end."""
-    if not sheet.duration_s:
-        return clock(frame.clock_ticks)
-    return clock(round(sheet.duration_s * BEATS_PER_S) - frame.clock_ticks)
+    return clock(_shown_ticks(frame.clock_ticks, sheet))
+
+
+def event_clock(event: Event, sheet: Sheet) -> str:
+    """Say when something happened, with tenths: the time that the clock showed."""
+    return log_clock(_shown_ticks(event.clock_ticks, sheet))
+
+
+def _shown_ticks(clock_ticks: int, sheet: Sheet) -> int:
+    """Ticks that are left, or were played where a match has no end."""
+    lasts = round(sheet.duration_s * BEATS_PER_S)
+    return lasts - clock_ticks if lasts else clock_ticks
 
 
 def phase_hint(frame: Frame, sheet: Sheet) -> str:

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from queue import Empty, Queue
 from typing import IO, Annotated, Any
@@ -54,30 +54,36 @@ def demo_command(
 
     Every part is a process of its own, as in a contest. The match is shown at a page in your
     browser; where there is none, in the terminal. At the end the record is simulated again
-    and must give the same match, bit for bit.
+    and must give the same match, bit for bit. The page stays, with the replay, until Ctrl-C.
     """
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that all that was started ends
-    with ExitStack() as processes:
-        court = processes.enter_context(_court(arena, seconds, speed, recordings))
-        where = ("--court", court.name, "--connect", court.address)
-        in_browser = not headless and _open_page(processes, where, recordings)
-        show_live = not headless and not in_browser and sys.stdout.isatty()
-        needed = []
-        for seat, bot in (("left", left), ("right", right)):
-            join = ("--arena", arena, "--seat", seat, *where)
-            bot_process = _process("bot", bot, *join, token=court.tokens[seat])
-            needed.append(processes.enter_context(bot_process))
-        for decision, wait_s in (("start", _READY_S), ("official", _DAY_S)):
-            words = ("referee", decision, "--by", "demo", "--wait", str(wait_s), *where)
-            needed.append(processes.enter_context(_process(*words, token=court.referee)))
-        if show_live:
-            processes.enter_context(_process("watch", "--terminal", "--board", *where, output=None))
-        result = _follow(court, needed, quiet=show_live)
-    screen.show(f"\n{result}")
-    record = court.record(recordings)
-    screen.show(f"Record: {record}")
-    if _lacoc("replay", "verify", str(record)).wait() != 0:
-        raise UserError("The record does not give the same match again: please report this.")
+    with ExitStack() as page:
+        with ExitStack() as processes:
+            court = processes.enter_context(_court(arena, seconds, speed, recordings))
+            where = ("--court", court.name, "--connect", court.address)
+            in_browser = not headless and _open_page(page, where, recordings)
+            show_live = not headless and not in_browser and sys.stdout.isatty()
+            needed = []
+            for seat, bot in (("left", left), ("right", right)):
+                join = ("--arena", arena, "--seat", seat, *where)
+                bot_process = _process("bot", bot, *join, token=court.tokens[seat])
+                needed.append(processes.enter_context(bot_process))
+            for decision, wait_s in (("start", _READY_S), ("official", _DAY_S)):
+                words = ("referee", decision, "--by", "demo", "--wait", str(wait_s), *where)
+                needed.append(processes.enter_context(_process(*words, token=court.referee)))
+            if show_live:
+                watch = _process("watch", "--terminal", "--board", *where, output=None)
+                processes.enter_context(watch)
+            result = _follow(court, needed, quiet=show_live)
+        screen.show(f"\n{result}")
+        record = court.record(recordings)
+        screen.show(f"Record: {record}")
+        if _lacoc("replay", "verify", str(record)).wait() != 0:
+            raise UserError("The record does not give the same match again: please report this.")
+        if in_browser and sys.stdout.isatty():
+            screen.note("The page shows the result and the way to its replay; Ctrl-C ends it.")
+            with suppress(KeyboardInterrupt):
+                threading.Event().wait()
 
 
 def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> bool:
@@ -151,7 +157,7 @@ def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bo
         if event["kind"] == "result":
             result = event["text"]
         if not quiet:
-            screen.show(f"{log_clock(event['clock_ticks'])}  {event['text']}")
+            screen.show(f"{log_clock(event['left_ticks'])}  {event['text']}")
         if event["kind"] == "phase" and event["data"]["after"] in ("OFFICIAL", "VOID"):
             return result
 

@@ -85,7 +85,7 @@ def serve_command(
     resumes by itself when a contestant is back. Without a contest file the new tokens open its
     seats, and those with which they were taken do still.
     """
-    plan, made_here = _contest(contest, arena, listen)
+    plan, made_here = _contest(contest, arena, listen, court)
     name, entry = plan.court(court)
     loaded = arenas.load(entry.arena, _overrides(entry.settings, seconds), entry.looks)
     _check_seats(name, entry, loaded)
@@ -145,7 +145,9 @@ def serve_command(
         running.run(lambda: bool(stop))
 
 
-def _contest(path: Path | None, arena: str | None, listen: str | None) -> tuple[Contest, bool]:
+def _contest(
+    path: Path | None, arena: str | None, listen: str | None, court: str | None
+) -> tuple[Contest, bool]:
     """The contest, and whether it was made here."""
     if path is not None:
         if arena is not None:
@@ -153,7 +155,8 @@ def _contest(path: Path | None, arena: str | None, listen: str | None) -> tuple[
         return contests.load(path), False
     name = arena or "othello"
     seats = [seat.id for seat in arenas.load(name).seats]
-    return contests.throwaway(name, seats, (listen or contests.LOOPBACK,)), True
+    listen_at = (listen or contests.LOOPBACK,)
+    return contests.throwaway(name, seats, listen_at, court or contests.MAIN), True
 
 
 def _overrides(settings: dict[str, Any], seconds: float | None) -> dict[str, Any]:

@@ -180,7 +180,7 @@ class Court:
         network.publish_frame(made.frame, time.monotonic())
         for event in beat.events:
             network.publish_event(event)
-            self._log.event(self.match_id, event)
+            self._log.event(self.match_id, event, match.duration_ticks)
         if match.physics.scene_hash != self._scene:
             self._scene = match.physics.scene_hash
             network.publish_scene(match.physics.scene)

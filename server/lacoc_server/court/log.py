@@ -7,10 +7,13 @@ import msgspec
 
 from lacoc_shared.command import log
 from lacoc_shared.messages import Event, Health
+from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase, render, say
 
 _TROUBLE = frozenset({"advice", "fault", "silent"})
 """Kinds of events that an organiser looks up for."""
+_SLOW_BEATS = 30 * BEATS_PER_S
+"""The first slow beats are told at once, later ones together: a busy machine has some a second."""
 
 
 class CourtLog:
@@ -24,12 +27,16 @@ class CourtLog:
         self._log = log.get(court=court)
         self._refused: Counter[tuple[str, str]] = Counter()
         self._slow_beats = 0
+        self._slow_told = (0, 0)
+        """Match and beat in which slow beats were told last."""
         self._trouble: Phrase | None = None
 
-    def event(self, match_id: str, event: Event) -> None:
-        """Log an event of the match."""
+    def event(self, match_id: str, event: Event, duration_ticks: int = 0) -> None:
+        """Log an event of a match that lasts so long; 0: without end."""
         write = self._log.warning if event.kind in _TROUBLE else self._log.info
         fields = msgspec.structs.asdict(event)
+        if duration_ticks:
+            fields["left_ticks"] = duration_ticks - event.clock_ticks
         _write(write, fields.pop("said"), match_id=match_id, **fields)
 
     def health(self, match_id: str, health: Health) -> None:
@@ -42,11 +49,13 @@ class CourtLog:
                 said = say("log.refused-at-desk", why=why, count=count)
             _write(write, said, kind="refused", seat=seat, why=why, count=count)
         self._refused = refused
-        if slow := health.slow_beats - self._slow_beats:
+        slow = health.slow_beats - self._slow_beats
+        at = health.match, health.beat
+        if slow and not (self._slow_told[0] == at[0] and at[1] - self._slow_told[1] < _SLOW_BEATS):
             worst_ms = health.worst_late_ms
             said = say("log.slow-beats", count=slow, all=health.slow_beats, worst_ms=worst_ms)
             _write(write, said, kind="slow", count=slow, worst_late_ms=worst_ms)
-        self._slow_beats = health.slow_beats
+            self._slow_beats, self._slow_told = health.slow_beats, at
         if health.record_trouble != self._trouble:
             self._trouble = health.record_trouble
             _write(write, self._trouble or say("log.record-again"), kind="record")

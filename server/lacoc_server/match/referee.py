@@ -197,13 +197,14 @@ def _set(match: MatchState, decision: d.Set) -> Phrase:
 
 
 def _clock(match: MatchState, decision: d.Clock) -> Phrase:
-    seconds = decision.seconds
-    if not _is_within(seconds, MAX_CLOCK_S):
-        raise Illegal(say("why.bad-clock", seconds=seconds, most=MAX_CLOCK_S))
-    match.clock_offset += _ticks(seconds)
-    if seconds > 0:
-        return say("decision.clock-less", seconds=seconds)
-    return say("decision.clock-more", seconds=-seconds)
+    # Records of protocol 1 have `seconds`, which took time; `gives_s` gives it.
+    given_s = -decision.seconds if decision.seconds else decision.gives_s
+    if not _is_within(given_s, MAX_CLOCK_S):
+        raise Illegal(say("why.bad-clock", seconds=given_s, most=MAX_CLOCK_S))
+    match.clock_offset -= _ticks(given_s)
+    if given_s < 0:
+        return say("decision.clock-less", seconds=-given_s)
+    return say("decision.clock-more", seconds=given_s)
 
 
 def _abort(match: MatchState, decision: d.Abort) -> Phrase:

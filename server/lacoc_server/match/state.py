@@ -81,7 +81,7 @@ class MatchState:
         self.silent_beats = 0
         """Beats since any seat was last heard."""
         self.clock_offset = 0
-        """Ticks that a referee added to the clock."""
+        """Ticks that a referee took from the time to play; below 0: gave."""
         self.seats = [
             Seat(index, seat.id, seat.colour, seat.pattern)
             for index, seat in enumerate(self.arena.seats)

@@ -103,7 +103,7 @@ def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
     """Wall time, match, match clock and what happened; particulars are for programs."""
     at = datetime.fromisoformat(line["timestamp"]).astimezone().strftime(_CLOCK)
     head = " ".join(filter(None, (at, line.get("match_id") or line.get("court"))))
-    ticks = line.get("clock_ticks")
+    ticks = line.get("left_ticks", line.get("clock_ticks"))
     clock = "" if ticks is None else f" {log_clock(ticks)}"
     if not screen.stdout.is_terminal or screen.stdout.no_color:
         return f"{head}{clock}  {line['text']}"
@@ -112,7 +112,7 @@ def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
 
 
 def log_clock(ticks: int) -> str:
-    """Ticks of a match's clock, as the time that was played: "2:04.6"."""
+    """Write ticks of a match's clock with their tenths of a second: "2:04.6"."""
     tenths = max(0, ticks) * 10 // BEATS_PER_S
     return f"{tenths // 600}:{tenths % 600 / 10:04.1f}"
 

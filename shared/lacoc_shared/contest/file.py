@@ -32,6 +32,7 @@ from lacoc_shared.seat import Colour, Pattern
 
 T = TypeVar("T")
 
+_NO_NAME = "Contest"
 MAIN = "main"
 """Name of the court where nobody names one."""
 LOOPBACK = "127.0.0.1:7447"
@@ -114,7 +115,7 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """A contest file, checked."""
 
-    name: str = "Contest"
+    name: str = _NO_NAME
     recordings: Path = Path("recordings")
     """Folder of the records."""
     robot: str = "hexapod"
@@ -131,6 +132,11 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     def protocol(self) -> str:
         """Of an address that names none."""
         return "tls" if self.keys else "tcp"
+
+    @property
+    def given_name(self) -> str:
+        """The name that its organiser gave it; "" if there is none."""
+        return "" if self.name == _NO_NAME else self.name
 
     def court(self, name: str | None = None) -> tuple[str, Court]:
         """Find a court with its name; without a name the only one.
@@ -181,7 +187,10 @@ def loads(data: bytes, path: Path) -> Contest:
 
 
 def throwaway(
-    arena: str, seats: Iterable[str] = ("left", "right"), listen: tuple[str, ...] = (LOOPBACK,)
+    arena: str,
+    seats: Iterable[str] = ("left", "right"),
+    listen: tuple[str, ...] = (LOOPBACK,),
+    name: str = MAIN,
 ) -> Contest:
     """Make a contest of one court with fresh tokens, for a court started without a file."""
     court = Court(
@@ -190,7 +199,7 @@ def throwaway(
         seat={seat: SeatHolder(token=new_token()) for seat in seats},
         referee=Holder(token=new_token()),
     )
-    return Contest(name="throw-away", courts={MAIN: court})
+    return Contest(name="throw-away", courts={name: court})
 
 
 def _cannot_read(path: Path, reason: object) -> UserError:
@@ -207,7 +216,7 @@ _PathText = Annotated[str, msgspec.Meta(pattern="^[^\\x00]*$")]
 
 
 class _General(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    name: str = "Contest"
+    name: str = _NO_NAME
     recordings: _PathText = "recordings"
     robot: str = "hexapod"
     keys: _PathText | None = None

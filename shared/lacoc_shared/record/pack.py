@@ -93,6 +93,19 @@ def _whole_match(segments: Sequence[Path], out: Path) -> list[_Message]:
     return messages
 
 
+def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[bytes]:
+    """Pack a copy of what there is of a match, in a process of its own; the segments stay.
+
+    Raises:
+        OSError: if the system has no room for another process.
+    """
+    return subprocess.Popen(
+        [sys.executable, "-m", __name__, "--copy", str(out), *map(str, segments)],
+        stdin=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+
+
 def _compare(wanted: Sequence[_Message], wrong: Stop | None, packed: Path) -> None:
     """See that nothing is lost with the segments.
 
@@ -145,6 +158,8 @@ def main(folder: str, *match_ids: str) -> int:
     """Pack matches of a folder; the exit code says whether it worked."""
     if hasattr(os, "nice"):
         os.nice(10)  # the next match is running
+    if folder == "--copy":
+        return _copy(*map(Path, match_ids))
     code = 0
     for match_id in match_ids:
         segments = files.segment_paths(Path(folder), match_id)
@@ -156,6 +171,17 @@ def main(folder: str, *match_ids: str) -> int:
             print(error, file=sys.stderr)
             code = 2
     return code
+
+
+def _copy(out: Path, *segments: Path) -> int:
+    unfinished = out.with_name(f"{out.name}.part")
+    try:
+        _write(_messages(segments)[0], unfinished)
+        unfinished.rename(out)
+    except (UserError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from lacoc_shared.record.protocol_1 import read_event
 from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE
 from lacoc_shared.seat import BEATS_PER_S
 
-_DAMAGE = (
+DAMAGE = (
     McapError,
     codec.BadMessage,
     struct.error,
@@ -122,7 +122,7 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
                     "(one that was exported for Foxglove can't be read back)."
                 )
             whole = file.tell()
-    except _DAMAGE as error:
+    except DAMAGE as error:
         if not _is_cut(data, whole):
             text = (
                 f"is damaged at byte {whole} of {len(data)} ({error}); its last "

@@ -13,6 +13,7 @@ import {
   type HeldSeat,
   type Link,
   type Message,
+  type OwnFiles,
   PROTOCOL,
   type RefereeState,
   type Request,
@@ -40,6 +41,8 @@ export class Court implements Match {
   readonly link = signal<Link | null>(null);
   readonly seat = signal<HeldSeat | null>(null);
   readonly referee = signal<RefereeState | null>(null);
+  /** The files on this machine; null until the gateway has told of any. */
+  readonly ownFiles = signal<OwnFiles | null>(null);
   /** Frames that came in the last second. */
   readonly framesHz = signal(0);
   /** Whether there ever was a frame: does not change with each. */
@@ -148,6 +151,12 @@ export class Court implements Match {
       case "referee":
         this.referee.value = message.body;
         break;
+      case "files": {
+        const { used, version } = message.body;
+        const before = this.ownFiles.peek()?.used ?? version;
+        this.ownFiles.value = { ...message.body, used: used ?? before };
+        break;
+      }
     }
   }
 

@@ -13,6 +13,9 @@ export type Slot = (typeof SLOTS)[number];
 /** Of all files together: a join is one message, and those are at most 64 KiB long. */
 export const MOST_BYTES = 62 * 1024;
 
+/** A key of level B has no more postures (docs/rules.md 2). */
+const MOST_POSTURES = 100;
+
 interface Kept {
   name: string;
   base64: string;
@@ -24,6 +27,25 @@ interface Kept {
  * computer next has files of their own.
  */
 const kept = remembered<Partial<Record<Slot, Kept>>>("files", {}, tab);
+
+/** The sample's keys (Fig. 4-2): stand, turn left, forward, turn right. */
+export const SAMPLE_SEQUENCES: readonly string[] = ["0", "8765", "1234", "5678"];
+export const MOST_KEYS = 10;
+
+/** Level B of postures that come alone: for each key from 0 on the digits of its postures. */
+export const sequences = remembered<readonly string[]>("sequences", SAMPLE_SEQUENCES, tab);
+
+/** The sequences as a join sends them; null: the sample's. */
+export function chosenSequences(): number[][] | null {
+  const keys = sequences.peek();
+  const isSample = keys.join() === SAMPLE_SEQUENCES.join();
+  return isSample ? null : keys.map((digits) => [...digits].map(Number));
+}
+
+/** The digits of what was typed, in whatever way they are parted and written. */
+export function digitsOf(typed: string): string {
+  return typed.normalize("NFKC").replace(/\D/g, "").slice(0, MOST_POSTURES);
+}
 
 /** The names of the chosen files. */
 export const chosenNames = computed<Record<Slot, string>>(() => ({

@@ -11,6 +11,7 @@ export type Pressed =
   | { does: "arrow"; digit: number }
   | { does: "restart" }
   | { does: "leave" }
+  | { does: "ready" }
   | { does: "level" }
   | { does: "view" };
 
@@ -25,6 +26,7 @@ export const ARROWS: Record<string, number> = {
 const OTHERS: Record<string, Pressed> = {
   KeyX: { does: "restart" },
   KeyZ: { does: "leave" },
+  KeyR: { does: "ready" },
   Tab: { does: "level" },
   Space: { does: "view" },
 };

@@ -13,7 +13,7 @@ import {
 } from "./claim";
 import type { Refused } from "./connection";
 import type { Court } from "./court";
-import { checkSizes, chosenFiles } from "./files";
+import { checkSizes, chosenFiles, chosenSequences } from "./files";
 import type { Phrase } from "./phrase";
 import { type PosData, PosDataLog } from "./posdata";
 import { type RefusedKey, SentKeys } from "./sent_keys";
@@ -274,7 +274,7 @@ export class Player {
       const { seat, token, name } = wish;
       const files = chosenFiles();
       checkSizes(Object.values(files));
-      const fields = { seat, token, name, ...files };
+      const fields = { seat, token, name, ...files, sequences: chosenSequences() };
       const joined = await this.court.ask<{ notes: Phrase[]; index: number }>("join", fields);
       this.tell({ is: "granted", wish, index: joined.index });
       for (const note of this.alone ? [] : joined.notes) this.say({ text: note, tone: "plain" });

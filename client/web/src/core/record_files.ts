@@ -9,6 +9,23 @@ export interface Listed {
   bytes: number;
   /** ISO 8601, UTC. */
   modified: string;
+  /** What was played; null: the file does not say. */
+  match: Summary | null;
+}
+
+/** A match in the list. */
+export interface Summary {
+  title: string;
+  court: string;
+  number: number;
+  /** ISO 8601, UTC. */
+  started: string;
+  teams: string[];
+  /** Empty while there is no result. */
+  scores: number[];
+  /** Seat id, "draw", "void", or "" while there is none. */
+  winner: string;
+  seats: string[];
 }
 
 /** It could not be had: the name of a message `replay.bad.…`, and what belongs into its holes. */

@@ -5,7 +5,7 @@ import { BEATS_PER_S, type Event, type Frame, type Sheet } from "./wire";
 
 /** A robot's walk since it was put on the floor. */
 export interface Walk {
-  /** 0 along the field's x, 90 along its y; 0 to 359. */
+  /** As the yaw in Pos-data.txt: 0 where it looks along the field's y, + to the left; -179 to 180. */
   headingDegrees: number;
   /** Length of its way [m]. */
   walkedM: number;
@@ -58,7 +58,7 @@ export class Walker {
     const first = this.spots[0]!;
     const beats = spot.beat - first.beat;
     return {
-      headingDegrees: (Math.round((place.headingRad * 180) / Math.PI) + 360) % 360,
+      headingDegrees: yawDegrees(place.headingRad),
       walkedM: this.walkedM,
       speedMps: beats ? (apart(first, spot) * BEATS_PER_S) / beats : 0,
     };
@@ -76,6 +76,11 @@ export class Walker {
     this.walkedM = 0;
     this.spots = [];
   }
+}
+
+function yawDegrees(headingRad: number): number {
+  const turned = (Math.round((headingRad * 180) / Math.PI) + 270) % 360;
+  return turned > 180 ? turned - 360 : turned;
 }
 
 function apart(one: Spot, other: Spot): number {

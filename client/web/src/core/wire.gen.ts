@@ -303,7 +303,7 @@ export type Decision =
   | { type: "adjust"; seat: string; points: number }
   | { type: "set"; marker: string; state: string }
   | { type: "take-back"; event: number; dry_run?: boolean }
-  | { type: "clock"; seconds: number }
+  | { type: "clock"; gives_s?: number; seconds?: number }
   | { type: "abort" }
   | { type: "declare"; winner: string }
   | { type: "official" }

@@ -25,6 +25,8 @@ export interface Welcome {
   court: string | null;
   can_act: boolean;
   home: "venue" | "player" | "practice";
+  /** The contest's name; "" if it has none. */
+  contest: string;
   prefill: Prefill | null;
 }
 
@@ -33,7 +35,23 @@ export interface Prefill {
   seat: string;
   name: string;
   has_token: boolean;
-  files: string[];
+}
+
+/** The files on the machine of the gateway, which a join brings unless it has others. */
+export interface OwnFiles {
+  /** Names; "" where there is none. */
+  robot: string;
+  postures: string;
+  locomotion: string;
+  /** Grows whenever they are saved again. */
+  version: number;
+  /** The version with which this page's seat was joined; null where this is not told now. */
+  used: number | null;
+  /** The files that the newest version changed. */
+  changed: string[];
+  /** Why the newest version can't be used; "" if it can. */
+  error: string;
+  mistakes: Mistake[];
 }
 
 /** The gateway's own link to the court. */
@@ -93,7 +111,8 @@ export type Message =
   | { kind: "link"; body: Link }
   | { kind: "seat"; body: HeldSeat }
   | { kind: "reply"; body: GoodReply | BadReply }
-  | { kind: "referee"; body: RefereeState };
+  | { kind: "referee"; body: RefereeState }
+  | { kind: "files"; body: OwnFiles };
 
 /** The kinds by their byte; 0 is none. */
 const KINDS = [
@@ -108,6 +127,7 @@ const KINDS = [
   "seat",
   "reply",
   "referee",
+  "files",
 ] as const;
 
 const SCENE_HASH_BYTES = 8;

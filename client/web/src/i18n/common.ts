@@ -14,7 +14,7 @@ export const common = {
   "hint.notReady": ["{team} has not said ready yet", "{team} がまだ準備完了していません"],
   "hint.start": ["All ready: the referee starts the match", "準備完了：審判の開始を待っています"],
   "hint.countdown": ["Starts in {seconds}", "あと {seconds} 秒で開始"],
-  "hint.leads": ["{team} leads by {points}", "{team} が {points} 点リード"],
+  "hint.leads": ["{team}: ahead by {points}", "{team} が {points} 点リード"],
   "hint.level": ["Level", "同点"],
   "hint.halted": ["The referee resumes it", "審判が再開します"],
   "hint.finished": ["Over: the referee confirms the result", "終了：審判が結果を確認しています"],
@@ -38,6 +38,10 @@ export const common = {
     "コート {court} を待っています（{seconds} 秒間応答なし）…",
   ],
   "link.noCourt": ["Waiting for court {court} …", "コート {court} を待っています…"],
+  "link.over": [
+    "The match is over, and its court has closed.",
+    "試合は終了し、コートは閉じました。",
+  ],
   "link.stale": ["The picture stands still: no news", "映像は停止しています（更新なし）"],
   "link.outdated": [
     "This page is older than its server. Load it again.",

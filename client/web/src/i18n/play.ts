@@ -69,7 +69,26 @@ export const play = {
   "files.contests": ["the contest's", "大会標準"],
   "files.sample": ["the sample", "サンプル"],
   "files.none": ["none", "なし"],
-  "files.given": ["from the command line: {names}", "起動時に指定：{names}"],
+  "files.given": ["(from this computer's folder)", "（このパソコンのフォルダーから）"],
+  "files.made": ["made from {name}", "{name} から作成"],
+  "files.sequences": ["Keys of level B", "レベル B のキー"],
+  "files.sequencesHint": [
+    "The postures that each key runs through, one after another. Key 1 is also ←, 2 ↑, 3 →.",
+    "各キーで順に取る姿勢の番号です。1 は ←、2 は ↑、3 は → でも操作できます。",
+  ],
+  "files.sequence": ["Postures of key {digit}", "キー {digit} の姿勢"],
+  "files.newKey": ["another key", "キーを追加"],
+  "files.sampleSequences": ["As in the sample again", "サンプルに戻す"],
+  "files.changed": ["On your disk: {names} has changed.", "{names} が変更されました。"],
+  "files.changedWrong": [
+    "On your disk: {names} has changed, and can't be used.",
+    "{names} が変更されましたが、このままでは使えません。",
+  ],
+  "files.mistake": [
+    "{file}, row {row}, column {column}: {found}; expected: {expected}",
+    "{file}・{row} 行 {column} 列：{found}（正しい値：{expected}）",
+  ],
+  "files.useNew": ["Use it now", "今すぐ使う"],
   "files.remove": ["Take {name} away", "{name} を外す"],
   "files.tooLarge": ["{name} is too large for a gait or a robot.", "{name} は大きすぎます。"],
   "files.unreadable": [
@@ -172,11 +191,14 @@ export const play = {
   "views.chase": ["behind the robot", "ロボットの後ろ"],
   "views.label": ["The field in 3D", "フィールドの 3D 表示"],
   "field.label": [
-    "Field. Digits steer, Tab changes the level, Space the view, x restarts, z leaves. Escape goes on to the buttons.",
-    "フィールド。数字で操作、Tab でレベル、スペースで視点、x で再スタート、z で退出。Esc でボタンへ移動。",
+    "Field. Digits steer, Tab changes the level, Space the view, x restarts, z leaves (in a match: hold it). Escape goes on to the buttons.",
+    "フィールド。数字で操作、Tab でレベル、スペースで視点、x で再スタート、z で退出（試合中は長押し）。Esc でボタンへ移動。",
   ],
 
   // Leave
+  "leaving.hold": ["Hold z to leave the match", "退出するには z を長押し"],
+  "leaving.go": ["Leave now", "今すぐ退出"],
+  "leaving.stay": ["Stay", "続ける"],
   "leave.title": ["Leave?", "退出しますか"],
   "leave.match": [
     "Your robot will stand. The seat stays yours, and you can come back.",
@@ -185,15 +207,19 @@ export const play = {
   "leave.lobby": ["Your seat becomes free.", "席が空きます。"],
   "leave.practice": ["Your practice ends.", "練習を終了します。"],
   "leave.data": [
-    "Pos-data.txt, the way of your robot, is saved.",
+    "Pos-data.txt, the path of your robot, is saved.",
     "ロボットの軌跡 Pos-data.txt を保存します。",
   ],
   "leave.dataSince": [
-    "Pos-data.txt, the way of your robot, is saved from {time} on, when this page was loaded. The record of the match has all of it.",
-    "Pos-data.txt には、このページを読み込んだ {time} 以降の軌跡を保存します。試合の記録には最初からすべて残っています。",
+    "Pos-data.txt, the path of your robot, is saved from {time} on, when this page was loaded.",
+    "Pos-data.txt には、このページを読み込んだ {time} 以降の軌跡を保存します。",
+  ],
+  "leave.dataRecord": [
+    "The record of the match has all of it.",
+    "試合の記録には最初からすべて残っています。",
   ],
   "leave.dataNewest": [
-    "Pos-data.txt, the way of your robot, is saved from {time} on: this page keeps the newest hour.",
+    "Pos-data.txt, the path of your robot, is saved from {time} on: this page keeps the newest hour.",
     "Pos-data.txt には {time} 以降の軌跡を保存します（このページに残るのは最新の 1 時間です）。",
   ],
   "leave.noData": [
@@ -204,7 +230,7 @@ export const play = {
   "leave.goNoData": ["Leave", "退出"],
   "leave.save": ["Only save", "保存のみ"],
   "leave.saved": [
-    "Pos-data.txt saved: the way of your robot",
+    "Pos-data.txt saved: the path of your robot",
     "Pos-data.txt を保存しました（ロボットの軌跡）",
   ],
 
@@ -280,6 +306,7 @@ export const play = {
   "keytest.digit": ["digit {digit}", "数字 {digit}"],
   "keytest.arrow": ["{digit} of level B", "レベル B の {digit}"],
   "keytest.restart": ["restart", "再スタート"],
+  "keytest.ready": ["ready", "準備完了"],
   "keytest.leave": ["leave", "退出"],
   "keytest.level": ["level", "レベル切替"],
   "keytest.view": ["view", "視点切替"],

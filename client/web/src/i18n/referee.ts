@@ -44,6 +44,7 @@ export const referee = {
   "referee.next": ["Next", "次の操作"],
   "referee.match": ["Match {match}", "第 {match} 試合"],
   "referee.lastAnswer": ["Last answer of the court", "コートの直近の応答"],
+  "referee.ago": ["{seconds} s ago", "{seconds} 秒前"],
   "referee.done": ["Done", "完了"],
   "referee.no": ["No", "不可"],
   "referee.noAnswer": ["No answer", "応答なし"],

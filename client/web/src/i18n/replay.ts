@@ -8,7 +8,11 @@ export const replay = {
   ],
   "replay.drop": ["Drop to play", "ドロップして再生"],
   "replay.onServer": ["Recordings of the server", "サーバーの記録"],
-  "replay.noneYet": ["No match was recorded here yet", "記録された試合はまだありません"],
+  "replay.noneYet": [
+    "No match was recorded here yet. A match appears here once its result is official.",
+    "記録された試合はまだありません。結果が確定した試合がここに表示されます。",
+  ],
+  "replay.where": ["court {court}, match {number}", "コート {court}・第 {number} 試合"],
   "replay.noList": [
     "The server's list can't be had; files of this machine can be opened all the same.",
     "サーバーの一覧を取得できません。この端末のファイルは開けます。",

@@ -51,6 +51,18 @@ export const watch = {
     "Decided by the referee, not by the score",
     "得点ではなく審判の判定による結果です",
   ],
+  "result.ruling": [
+    "Decided by the referee, not by the score.",
+    "得点ではなく審判の判定による結果です",
+  ],
+  "result.because": [" Reason: {reason}", "（理由：{reason}）"],
+  "result.corrected": ["Corrected by the referee:", "審判による修正："],
+  "result.adjusted": ["{points} for {team}.", "{team} に {points} 点。"],
+  "result.set": ["{marker} is set to {state}.", "{marker}を「{state}」に。"],
+  "result.state.neutral": ["neutral", "無所属"],
+  "result.state.down": ["down", "倒れた状態"],
+  "result.struck": ["Taken back: {what}", "取り消し：{what}"],
+  "result.replay": ["Watch the replay", "リプレイを見る"],
   "result.next": ["Next: the referee opens the next match", "次の試合は審判が始めます"],
   "result.close": ["Look at the field", "フィールドを見る"],
 } as const satisfies Record<string, readonly [string, string]>;

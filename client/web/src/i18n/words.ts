@@ -20,17 +20,22 @@ export function clock(ticks: number): string {
   return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
 }
 
-/** The time played, as logs have it: "2:04.6". */
+/** A time with its tenths, as logs have it: "2:04.6". */
 export function logClock(ticks: number): string {
   const tenths = Math.floor((Math.max(0, ticks) * 10) / BEATS_PER_S);
   const seconds = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");
   return `${Math.floor(tenths / 600)}:${seconds}`;
 }
 
-/** Ticks that are left, or were played where a match has no end. */
-export function clockTicks(frame: Frame, sheet: Sheet): number {
+/** Ticks that are left at a frame or an event, or were played where a match has no end. */
+export function clockTicks({ clock_ticks }: { clock_ticks: number }, sheet: Sheet): number {
   const lasts = Math.round(sheet.duration_s * BEATS_PER_S);
-  return lasts ? lasts - frame.clock_ticks : frame.clock_ticks;
+  return lasts ? lasts - clock_ticks : clock_ticks;
+}
+
+/** When an event was: the time that the clock showed. */
+export function eventClock(event: Event, sheet: Sheet | null): string {
+  return sheet ? logClock(clockTicks(event, sheet)) : "";
 }
 
 /** A team's name; its seat's where nobody has joined. */

@@ -1,6 +1,6 @@
 /** The broadcast's page: a browser source of OBS. It takes no input and heals by itself. */
 
-import { computed, effect, signal } from "@preact/signals";
+import { computed, effect, signal, useComputed } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { amount, flag } from "../core/address";
 import { followColours } from "../core/colours";
@@ -9,7 +9,7 @@ import { reloadWhenServed } from "../core/reload";
 import { t } from "../i18n";
 import { team } from "../i18n/words";
 import { View } from "../scene/View";
-import { waitsFor } from "../ui/banner";
+import { isOver, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
 import { ResultCard } from "../ui/result";
@@ -47,7 +47,8 @@ function scaleOfWindow(): number {
 
 export default function Overlay() {
   const seats = useMemo(() => computed(() => court.sheet.value?.seats.length ?? 0), []).value;
-  const stale = court.begun.value && !court.live.value;
+  const over = useComputed(() => isOver(court)).value;
+  const stale = court.begun.value && !court.live.value && !over;
   useEffect(() => {
     document.title = "LACOC";
   }, []);
@@ -128,7 +129,8 @@ function Hud() {
 
 /** In a corner: viewers of a stream need no alarm, its operator needs to see it. */
 function Waiting() {
-  const shown = court.begun.value && court.live.value;
+  const over = useComputed(() => isOver(court)).value;
+  const shown = court.begun.value && (court.live.value || over);
   const text = shown ? "" : waitsFor(court) || t("link.connecting");
   return text ? (
     <p class="waits" role="status">

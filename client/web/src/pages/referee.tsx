@@ -99,6 +99,7 @@ function TopBar({ onHelp, onSettings }: { onHelp: () => void; onSettings: () => 
       <h1>
         {t("referee.title")}
         <span class="muted">
+          {court.welcome.value?.contest && `${court.welcome.value.contest} · `}
           {sheet && `${t("referee.court", { court: sheet.court })} · `}
           {match > 0 && t("referee.match", { match })}
           {sheet && ` · ${sheet.title}`}

@@ -9,7 +9,7 @@ import { quality, remembered } from "../core/settings";
 import { t } from "../i18n";
 import { team } from "../i18n/words";
 import { View } from "../scene/View";
-import { LinkBanner, waitsFor } from "../ui/banner";
+import { isOver, LinkBanner, waitsFor } from "../ui/banner";
 import { Board } from "../ui/board";
 import { EventLog } from "../ui/log";
 import { Countdown, OpeningCard, useOpening } from "../ui/opening";
@@ -33,6 +33,8 @@ const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
 const number = part(court, (frame) => frame.match, null as number | null);
 /** The match whose result was put away. */
 const putAway = signal<number | null>(null);
+/** After the end of a match its last picture is no old news. */
+const isStale = computed(() => court.begun.value && !court.live.value && !isOver(court));
 const title = computed(() => {
   const sheet = court.sheet.value;
   const scores = court.frame.value?.seats.map((seat) => seat.score).join(" : ");
@@ -61,7 +63,7 @@ export default function Watch() {
       : { top: opening ? 78 : 108, bottom: opening ? 272 : 66, right: beside ? 314 : 0 };
   return (
     <main class="show watch">
-      <div class={`scene${court.begun.value && !court.live.value ? " stale" : ""}`}>
+      <div class={`scene${isStale.value ? " stale" : ""}`}>
         <View
           source={court}
           camera={camera.value}
@@ -98,6 +100,8 @@ function Hud() {
         {putAway.value !== match && (
           <ResultCard
             match={court}
+            withReplay
+            isLast={!court.live.value}
             onClose={() => {
               putAway.value = match;
             }}
@@ -126,7 +130,7 @@ function Brand() {
   return (
     <div class="corner left">
       <a class="brand" href="/">
-        <b>LACOC</b>
+        <b>{court.welcome.value?.contest || "LACOC"}</b>
         <small>
           {sheet && `${sheet.title} · `}
           {sheet && <span>{t("watch.match", { number: sheet.match })}</span>}

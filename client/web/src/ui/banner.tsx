@@ -1,6 +1,8 @@
 /** Says across the top what the page waits for; nothing while all is well. */
 
+import { useComputed } from "@preact/signals";
 import type { Court } from "../core/court";
+import { Phase } from "../core/wire";
 import { said, t } from "../i18n";
 
 /** What the page waits for, in words; "" while all is well. */
@@ -20,10 +22,27 @@ export function waitsFor(court: Court): string {
   return court.begun.value && !court.live.value ? t("link.stale") : "";
 }
 
+/** Whether the last thing that was shown is the end of a match: nothing is missing then. */
+export function isOver(court: Court): boolean {
+  const phase = court.frame.value?.phase;
+  return phase === Phase.OFFICIAL || phase === Phase.VOID;
+}
+
+/** Let the page know how high the banner is: on a phone its text takes several lines. */
+function makeRoom(banner: HTMLElement | null): void {
+  if (!banner) return;
+  new ResizeObserver(([seen], observer) => {
+    if (!banner.isConnected) observer.disconnect();
+    const height = seen?.borderBoxSize[0]?.blockSize ?? banner.offsetHeight;
+    document.documentElement.style.setProperty("--banner", `${Math.ceil(height)}px`);
+  }).observe(banner);
+}
+
 export function LinkBanner({ court }: { court: Court }) {
+  const over = useComputed(() => isOver(court)).value;
   if (court.outdated.value) {
     return (
-      <div class="banner" role="alert">
+      <div class="banner" role="alert" ref={makeRoom}>
         {t("link.outdated")}
         <button class="button" type="button" onClick={() => location.reload()}>
           {t("link.reload")}
@@ -32,8 +51,15 @@ export function LinkBanner({ court }: { court: Court }) {
     );
   }
   const text = waitsFor(court);
+  if (text && over) {
+    return (
+      <div class="banner calm" role="status" ref={makeRoom}>
+        {t("link.over")}
+      </div>
+    );
+  }
   return text ? (
-    <div class="banner" role="status">
+    <div class="banner" role="status" ref={makeRoom}>
       {text}
     </div>
   ) : null;

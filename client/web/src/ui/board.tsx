@@ -4,7 +4,7 @@ import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { type Match, markerStates } from "../core/match";
 import { floorOf, type Place, places } from "../core/poses";
-import { MARKER_STATES, type MarkerInfo, type Sheet } from "../core/wire";
+import { MARKER_STATES, type MarkerInfo, type Scene, type Sheet } from "../core/wire";
 import { said, t } from "../i18n";
 import { seatName, team } from "../i18n/words";
 
@@ -81,6 +81,7 @@ export function Board({ match, onPick, picked }: Props) {
               marker={marker}
               state={states[index] ?? 0}
               sheet={sheet}
+              cloth={clothOf(match.scene.value, index)}
               picked={picked?.marker === index}
             />
           </g>
@@ -144,24 +145,48 @@ function lookOf(seat: number): string {
   return `seat-look-${seat}`;
 }
 
+/** A flag's own colour says what it is worth; null for what is no flag. */
+function clothOf(scene: Scene | null, marker: number): string | null {
+  const cloth = scene?.geoms.find(
+    (geom) => geom.marker === marker && geom.state === 0 && geom.type === "box",
+  );
+  if (!cloth) return null;
+  const [red, green, blue] = cloth.rgba.map((part) => Math.round(255 * part));
+  return `rgb(${red} ${green} ${blue})`;
+}
+
+/** Whether dark letters are read better on a colour "rgb(r g b)". */
+function isLight(colour: string): boolean {
+  const [red = 0, green = 0, blue = 0] = colour.match(/\d+/g)?.map(Number) ?? [];
+  return 0.299 * red + 0.587 * green + 0.114 * blue > 140;
+}
+
 interface MarkerProps {
+  /** The colour of a standing flag. */
+  cloth: string | null;
   marker: MarkerInfo;
   state: number;
   sheet: Sheet;
   picked: boolean;
 }
 
-function Marker({ marker, state, sheet, picked }: MarkerProps) {
+function Marker({ marker, state, sheet, cloth, picked }: MarkerProps) {
   const radius = Math.max(LEAST_MARKER_M, marker.radius_m);
   const seat = state > 0 && state <= sheet.seats.length ? state - 1 : null;
   const fill =
-    seat === null ? (MARKER_STATES[state] === "down" ? DOWN : NEUTRAL) : `url(#${lookOf(seat)})`;
+    seat === null
+      ? MARKER_STATES[state] === "down"
+        ? DOWN
+        : (cloth ?? NEUTRAL)
+      : `url(#${lookOf(seat)})`;
+  const ink =
+    seat === 1 ? "var(--ink-1)" : seat === null && cloth && isLight(cloth) ? "#10141b" : "#fff";
   const text =
     seat !== null
       ? sheet.seats[seat]!.id.slice(0, 1).toUpperCase()
       : MARKER_STATES[state] === "down"
         ? "×"
-        : marker.points > 1
+        : marker.points > 1 || cloth
           ? String(marker.points)
           : "";
   return (
@@ -173,13 +198,7 @@ function Marker({ marker, state, sheet, picked }: MarkerProps) {
         stroke={picked ? "#fff" : "rgb(255 255 255 / 25%)"}
         stroke-width={picked ? 0.025 : 0.008}
       />
-      <text
-        y={radius * 0.36}
-        text-anchor="middle"
-        font-size={radius}
-        font-weight="700"
-        fill={seat === 1 ? "var(--ink-1)" : "#fff"}
-      >
+      <text y={radius * 0.36} text-anchor="middle" font-size={radius} font-weight="700" fill={ink}>
         {text}
       </text>
     </>

@@ -4,7 +4,7 @@ import type { ComponentChildren } from "preact";
 import type { Match } from "../core/match";
 import type { Event } from "../core/wire";
 import { said, t } from "../i18n";
-import { logClock } from "../i18n/words";
+import { eventClock } from "../i18n/words";
 
 interface Props {
   match: Match;
@@ -25,7 +25,7 @@ export function EventLog({ match, most = 200, only, extra, toldElsewhere }: Prop
     <ol class="log" aria-live={toldElsewhere ? "off" : "polite"}>
       {events.toReversed().map((event) => (
         <li key={event.number} data-kind={event.kind}>
-          <time>{logClock(event.clock_ticks)}</time>
+          <time>{eventClock(event, match.sheet.value)}</time>
           <span>
             {said(event.said)}
             {extra?.(event)}

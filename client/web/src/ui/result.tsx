@@ -4,9 +4,11 @@ import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/match";
 import type { Phrase } from "../core/phrase";
+import { corrections, decisionOf, declaration, playedBeats } from "../core/rulings";
 import { type Event, Phase, type Sheet } from "../core/wire";
-import { said, t } from "../i18n";
-import { byRules, clock, team, winnerOf } from "../i18n/words";
+import { type MessageName, said, t } from "../i18n";
+import { byRules, clock, markerName, team, winnerOf } from "../i18n/words";
+import { ReplayLink } from "./replay_link";
 import { SeatMark } from "./score";
 import "./result.css";
 
@@ -16,10 +18,14 @@ interface Props {
   match: Match;
   /** There is a way to put the card away. */
   onClose?: () => void;
+  /** There is a way to the recording, once there is one. */
+  withReplay?: boolean;
+  /** No other match follows: the court has closed. */
+  isLast?: boolean;
 }
 
 /** Nothing until the match is over. */
-export function ResultCard({ match, onClose }: Props) {
+export function ResultCard({ match, onClose, withReplay, isLast }: Props) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
   const scores = useMemo(
     () => computed(() => match.frame.value?.seats.map((seat) => seat.score).join(" ") ?? ""),
@@ -30,19 +36,9 @@ export function ResultCard({ match, onClose }: Props) {
   const winner = winnerOf(match);
   const isVoid = phase === Phase.VOID;
   if (!SHOWN.has(phase) || !sheet || !frame || (!isVoid && winner === null)) return null;
-  const events = match.events.value;
-  const official = phase === Phase.OFFICIAL;
-  const declared = !isVoid && byRules(events) !== winner;
-  const kicker = isVoid
-    ? "result.void"
-    : official
-      ? "result.official"
-      : declared
-        ? "result.declared"
-        : "result.byRules";
   return (
     <section class="result" data-phase={phase} aria-label={t("result.title")} aria-live="polite">
-      <p class="kicker">{t(kicker)}</p>
+      <Kicker match={match} />
       <h1>{isVoid ? t("hint.void") : title(sheet, winner)}</h1>
       {sheet.seats.length > 1 && (
         <div class="final">
@@ -61,14 +57,18 @@ export function ResultCard({ match, onClose }: Props) {
           ))}
         </div>
       )}
-      <p class="why">{why(events, clock(frame.clock_ticks))}</p>
-      {official && declared && <p class="why">{t("result.declared")}</p>}
-      <p class="next">{t(phase === Phase.FINISHED ? "hint.finished" : "result.next")}</p>
-      {onClose && (
-        <button class="button quiet" type="button" onClick={onClose}>
-          {t("result.close")}
-        </button>
+      <Explained match={match} />
+      {!isLast && (
+        <p class="next">{t(phase === Phase.FINISHED ? "hint.finished" : "result.next")}</p>
       )}
+      <p class="row">
+        {withReplay && <ReplayLink match={match} />}
+        {onClose && (
+          <button class="button quiet" type="button" onClick={onClose}>
+            {t("result.close")}
+          </button>
+        )}
+      </p>
     </section>
   );
 }
@@ -79,9 +79,94 @@ function title(sheet: Sheet, winner: string | null): string {
   return t("hint.wins", { team: team(sheet, index) });
 }
 
-/** Why play ended, and after how long. */
-function why(events: readonly Event[], time: string): string {
+/** Whose word the result is: the rules', the referee's, and whether it is final. */
+export function Kicker({ match }: { match: Match }) {
+  const phase = useMemo(() => phaseOf(match), [match]).value;
+  const kicker =
+    phase === Phase.VOID
+      ? "result.void"
+      : phase === Phase.OFFICIAL
+        ? "result.official"
+        : isDeclared(match)
+          ? "result.declared"
+          : "result.byRules";
+  return <p class="kicker">{t(kicker)}</p>;
+}
+
+/** Why play ended, why this team has won, and what the referee corrected. */
+export function Explained({ match }: { match: Match }) {
+  const sheet = match.sheet.value;
+  const events = match.events.value;
+  const phase = useMemo(() => phaseOf(match), [match]).value;
+  const time = clock(playedBeats(events));
   const end = events.findLast(({ data }) => data.after === "FINISHED" || data.after === "VOID");
   const reason = end?.said.values?.why as Phrase | undefined;
-  return reason ? t("result.ended", { reason: said(reason), time }) : t("result.time", { time });
+  const abort = events.findLast(({ data }) => data.decision === "abort");
+  const corrected = sheet ? corrections(events) : [];
+  const ruling = declaration(events);
+  return (
+    <>
+      <p class="why">
+        {reason ? t("result.ended", { reason: said(reason), time }) : t("result.time", { time })}
+      </p>
+      {phase === Phase.VOID && abort && <p class="why ruling">{reasonOf(abort)}</p>}
+      {phase !== Phase.VOID && ruling && isDeclared(match) && (
+        <p class="why ruling">
+          {t("result.ruling")}
+          {reasonOf(ruling)}
+        </p>
+      )}
+      {corrected.length > 0 && (
+        <div class="why corrected">
+          {t("result.corrected")}
+          <ul>
+            {corrected.map((event) => (
+              <li key={event.number}>
+                {correction(event, sheet!, events)}
+                {reasonOf(event)}
+              </li>
+            ))}
+          </ul>
+        </div>
+      )}
+    </>
+  );
+}
+
+/** Whether the winner is another than by the rules. */
+function isDeclared(match: Match): boolean {
+  return byRules(match.events.value) !== winnerOf(match);
+}
+
+/** The reason of a decision, to stand behind it; "" if it has none. */
+function reasonOf({ data }: Event): string {
+  const reason = String(data.reason ?? "").trim();
+  return reason && t("result.because", { reason: said(reason) });
+}
+
+/** A correction of the score in a few words. */
+function correction(event: Event, sheet: Sheet, events: readonly Event[]): string {
+  const decision = decisionOf(event);
+  const teamOf = (seat: string) =>
+    team(
+      sheet,
+      sheet.seats.findIndex(({ id }) => id === seat),
+    );
+  switch (decision?.type) {
+    case "adjust":
+      return t("result.adjusted", {
+        points: `${decision.points > 0 ? "+" : "−"}${Math.abs(decision.points)}`,
+        team: teamOf(decision.seat),
+      });
+    case "set": {
+      const state = teamOf(decision.state) || t(`result.state.${decision.state}` as MessageName);
+      return t("result.set", { marker: markerName(decision.marker), state });
+    }
+    case "take-back": {
+      const struck = events.find(({ number }) => number === decision.event);
+      return t("result.struck", { what: struck ? said(struck.said) : `${decision.event}` });
+    }
+    default:
+      return said(event.said);
+  }
 }

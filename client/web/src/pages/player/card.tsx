@@ -85,8 +85,13 @@ function JoinCard({ court, player, alone }: Props) {
   const token = useSignal(lastWish?.token ?? "");
   const isShown = useSignal(false);
   const complaint = useSignal<"" | "name" | "token">("");
-  const chosen = useSignal(prefill?.seat || seatKept.peek());
-  const seat = seats.includes(chosen.value) ? chosen.value : (seats[0] ?? "");
+  const chosen = useSignal(prefill?.seat ?? "");
+  const free = useFreeSeats(court);
+  // Who was in a seat before comes back to it; anybody else is offered one that is free.
+  const kept = seats.indexOf(seatKept.peek());
+  const isOwn = kept >= 0 && sheet?.seats[kept]?.team === nameKept.peek();
+  const offered = isOwn || free.includes(kept) ? seats[kept] : seats[free[0] ?? 0];
+  const seat = seats.includes(chosen.value) ? chosen.value : (offered ?? "");
   const hasToken = Boolean(prefill?.has_token);
   const aboutToken = refusal !== null && isAboutToken(refusal);
   const isBusy = request !== "none" || player.isWaiting.value;
@@ -114,6 +119,7 @@ function JoinCard({ court, player, alone }: Props) {
   return (
     <form class="card entrance join" aria-labelledby="entrance-title" onSubmit={submit}>
       <h1 id="entrance-title">{t(alone ? "join.practice" : "join.title")}</h1>
+      {welcome.contest && <p class="muted">{welcome.contest}</p>}
       {courts.length > 1 && (
         <label class="field">
           <span>{t("join.court")}</span>
@@ -217,6 +223,14 @@ function JoinCard({ court, player, alone }: Props) {
       {welcome.home === "venue" && <p class="muted safety">{t("join.safety")}</p>}
     </form>
   );
+}
+
+/** Indices of the seats that nobody holds. */
+function useFreeSeats(court: Court): number[] {
+  const flags = useComputed(
+    () => court.frame.value?.seats.map((seat) => seat.flags & SeatFlag.JOINED).join() ?? "",
+  ).value;
+  return flags.split(",").flatMap((joined, index) => (Number(joined) ? [] : [index]));
 }
 
 function SeatTaken({ court, sheet, index }: { court: Court; sheet: Sheet; index: number }) {

@@ -37,6 +37,11 @@ export interface Progress {
   next: number | null;
 }
 
+function hasOwnFiles(court: Court): boolean {
+  const own = court.ownFiles.value;
+  return Boolean(own?.robot || own?.postures || own?.locomotion);
+}
+
 /** Follows the keys through the lessons. */
 export function useLessons(court: Court, player: Player): Progress {
   const isSample = useComputed(
@@ -44,7 +49,7 @@ export function useLessons(court: Court, player: Player): Progress {
       !chosenNames.value.postures &&
       !chosenNames.value.locomotion &&
       !chosenNames.value.robot &&
-      !court.welcome.value?.prefill?.files.length,
+      !hasOwnFiles(court),
   ).value;
   const done = useSignal(0);
   const seen = useSignal(0);
@@ -93,7 +98,7 @@ export function Coach({ court, player, progress }: Props) {
   const hasOwn =
     Boolean(
       chosenNames.value.postures || chosenNames.value.locomotion || chosenNames.value.robot,
-    ) || Boolean(court.welcome.value?.prefill?.files.length);
+    ) || hasOwnFiles(court);
   const text: MessageName = lesson ? lesson.text : hasOwn ? "coach.own" : "coach.free";
   const pressed = player.pressed.value.slice(-SHOWN_KEYS);
   return (

@@ -6,11 +6,12 @@ import { followColours } from "../../core/colours";
 import { Court } from "../../core/court";
 import { download } from "../../core/files";
 import type { Pressed } from "../../core/keys";
+import { phaseOf } from "../../core/match";
 import { Player, type Word } from "../../core/player";
 import { PosData } from "../../core/posdata";
-import { Level, Phase, RESTART_KEY, readFrame } from "../../core/wire";
+import { Level, Phase, RESTART_KEY, readFrame, SeatFlag, type Sheet } from "../../core/wire";
 import { type MessageName, said, t } from "../../i18n";
-import { logClock } from "../../i18n/words";
+import { clockTicks, logClock } from "../../i18n/words";
 import { LinkBanner } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
 import { useDrop } from "../../ui/drop";
@@ -22,6 +23,7 @@ import { canChange, dragging, FilePicker, take } from "./files";
 import { Footer } from "./footer";
 import { useKeyboard, useWindowFocus } from "./keyboard";
 import { KeyTest } from "./keytest";
+import { Leaving, LeavingBar } from "./leaving";
 import { LEVEL_LETTERS } from "./pad";
 import { Rail } from "./rail";
 import "./player.css";
@@ -43,6 +45,25 @@ export function Cockpit({ alone }: { alone: boolean }) {
     open.value = "";
     // Once the dialog is gone: nothing beneath it takes the focus before.
     requestAnimationFrame(() => field.current?.focus({ preventScroll: true }));
+  };
+  /** A match is on: nothing may take the keyboard from who plays it. */
+  const isMatchOn = () => {
+    const phase = court.frame.peek()?.phase ?? Phase.CREATED;
+    return !alone && phase >= Phase.COUNTDOWN && phase <= Phase.HALTED;
+  };
+  const leaving = useMemo(
+    () =>
+      new Leaving(() => {
+        saveData(player);
+        player.leave();
+      }),
+    [player],
+  );
+  const sayReady = () => {
+    const frame = court.frame.peek();
+    const isEarly = frame && (frame.phase === Phase.LOBBY || frame.phase === Phase.READY);
+    const isReady = (player.seatNow()?.flags ?? 0) & SeatFlag.READY;
+    if (isEarly && !alone && !isReady) void player.ready(true);
   };
   const nextView = () => {
     view.value = VIEWS[(VIEWS.indexOf(view.peek()) + 1) % VIEWS.length]!;
@@ -70,8 +91,11 @@ export function Cockpit({ alone }: { alone: boolean }) {
         return changeLevel();
       case "view":
         return nextView();
+      case "ready":
+        return sayReady();
       default:
-        open.value = "leave";
+        if (isMatchOn()) leaving.hold();
+        else open.value = "leave";
     }
   };
   useWindowFocus(hasFocus);
@@ -80,6 +104,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
     {
       isOn: () => player.standing.peek() === "seated",
       act,
+      leaveReleased: () => leaving.release(),
       leaveField: () =>
         document.querySelector<HTMLElement>(".rail button:not(:disabled), .foot button")?.focus(),
     },
@@ -97,6 +122,12 @@ export function Cockpit({ alone }: { alone: boolean }) {
   });
   useAutoJoin(court, player, alone);
   useFieldFocus(court, player, field);
+  const phase = useMemo(() => phaseOf(court), [court]);
+  useSignalEffect(() => {
+    const isBegun = phase.value === Phase.COUNTDOWN && !alone;
+    if (isBegun && (open.peek() === "leave" || open.peek() === "files")) close();
+    if (phase.value < Phase.COUNTDOWN || phase.value > Phase.HALTED) leaving.end();
+  });
 
   const standing = player.standing.value;
   const isIn = standing === "seated" || standing === "joining";
@@ -105,7 +136,8 @@ export function Cockpit({ alone }: { alone: boolean }) {
     onLevel: (level: number) => level !== player.level.peek() && changeLevel(level),
     onView: nextView,
     onLeave: () => {
-      open.value = "leave";
+      if (isMatchOn()) leaving.show();
+      else open.value = "leave";
     },
   };
   return (
@@ -116,6 +148,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
         onView={nextView}
         onSave={() => saveData(player)}
       />
+      <LeavingBar leaving={leaving} />
       {isIn ? (
         <>
           <Rail {...{ court, player, alone }} {...controls} />
@@ -168,7 +201,7 @@ function begin(alone: boolean): { court: Court; player: Player } {
 function posData(seat: number, joints: number[], frames: Uint8Array[], most: number) {
   const data = new PosData(seat, joints, most);
   for (const frame of frames) data.add(readFrame(frame));
-  return { text: data.parts().join(""), says: aboutData(data) };
+  return { text: data.parts().join(""), says: aboutData(data, false, null) };
 }
 
 function speak(word: Word): void {
@@ -252,7 +285,7 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
   return (
     <Dialog title={t("leave.title")} onClose={onClose}>
       <p>{t(alone ? "leave.practice" : inMatch ? "leave.match" : "leave.lobby")}</p>
-      <p class="muted">{aboutData(player.data)}</p>
+      <p class="muted">{aboutData(player.data, alone, court.sheet.value)}</p>
       <div class="row end">
         <button class="button" type="button" onClick={onClose}>
           {t("common.cancel")}
@@ -278,11 +311,15 @@ function Leave({ court, player, alone, onClose }: DialogProps) {
 }
 
 /** What Pos-data.txt has: all, or from when on and why. */
-function aboutData(data: PosData | null): string {
+function aboutData(data: PosData | null, alone: boolean, sheet: Sheet | null): string {
   if (!data?.length) return t("leave.noData");
-  const time = logClock(data.sinceTicks);
+  const since = { clock_ticks: data.sinceTicks };
+  const time = logClock(sheet ? clockTicks(since, sheet) : data.sinceTicks);
   if (data.isCut) return t("leave.dataNewest", { time });
-  return data.sinceTicks ? t("leave.dataSince", { time }) : t("leave.data");
+  if (!data.sinceTicks) return t("leave.data");
+  const text = t("leave.dataSince", { time });
+  // Practice keeps a record only where that was asked for.
+  return alone ? text : `${text} ${t("leave.dataRecord")}`;
 }
 
 function Files({ court, player, alone, onClose }: DialogProps) {

@@ -11,6 +11,8 @@ import { Phase } from "../../core/wire";
 import { t } from "../../i18n";
 import { BEATS_PER_S, team, winnerOf } from "../../i18n/words";
 import { View } from "../../scene/View";
+import { ReplayLink } from "../../ui/replay_link";
+import { Explained, Kicker } from "../../ui/result";
 import { ScoreBug } from "../../ui/score";
 import { Thirds } from "../../ui/thirds";
 import { nextStep } from "./steps";
@@ -170,6 +172,7 @@ function ResultCard({ court, player, onSave }: Props) {
       data-seat={phase === Phase.VOID ? -1 : winnerIndex}
       aria-live="polite"
     >
+      <Kicker match={court} />
       <h1>{title}</h1>
       {decided && <p class="by">{t("end.by", { points })}</p>}
       <p class="final">
@@ -177,7 +180,9 @@ function ResultCard({ court, player, onSave }: Props) {
         <b>{scores.join(" : ")}</b>
         <span data-seat="1">{team(sheet, 1)}</span>
       </p>
+      <Explained match={court} />
       <p class="muted">{t(phase === Phase.FINISHED ? "next.finished" : "next.official")}</p>
+      <ReplayLink match={court} />
       {player.data && player.data.length > 0 && (
         <button class="button" type="button" onClick={onSave}>
           {t("end.save")}

@@ -1,12 +1,25 @@
 /** The robot and gait files: dropped or picked, sorted by what is in them. */
 
-import { signal } from "@preact/signals";
+import { signal, useComputed } from "@preact/signals";
 import { useId } from "preact/hooks";
 import type { Court } from "../../core/court";
-import { choose, chosenNames, forget, MOST_BYTES, SLOTS, type Slot } from "../../core/files";
-import { Phase } from "../../core/wire";
-import { t } from "../../i18n";
+import {
+  choose,
+  chosenNames,
+  digitsOf,
+  forget,
+  MOST_BYTES,
+  MOST_KEYS,
+  SAMPLE_SEQUENCES,
+  SLOTS,
+  type Slot,
+  sequences,
+} from "../../core/files";
+import type { Player } from "../../core/player";
+import { Level, Phase } from "../../core/wire";
+import { said, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
+import { ARROW_OF } from "./pad";
 
 /** Whether files are dragged over the page. */
 export const dragging = signal(false);
@@ -33,14 +46,13 @@ export async function take(files: Iterable<File>): Promise<void> {
 export function FilePicker({ court, alone }: { court: Court; alone: boolean }) {
   const input = useId();
   const levels = court.sheet.value?.levels ?? [0, 1];
-  const given = court.welcome.value?.prefill?.files ?? [];
-  const hasOwnGait = Boolean(chosenNames.value.postures || chosenNames.value.locomotion);
+  const files = filesNow(court);
   const slots = SLOTS.filter(
     (slot) =>
       alone ||
       slot === "robot" ||
-      chosenNames.value[slot] ||
-      levels.includes(slot === "postures" ? 0 : 1),
+      files[slot].name ||
+      levels.includes(slot === "postures" ? Level.POSTURE : Level.LOCOMOTION),
   );
   return (
     <div class={`files${dragging.value ? " over" : ""}`}>
@@ -65,29 +77,52 @@ export function FilePicker({ court, alone }: { court: Court; alone: boolean }) {
       </p>
       <ul>
         {slots.map((slot) => (
-          <SlotRow key={slot} slot={slot} otherwise={otherwise(slot, hasOwnGait)} />
+          <SlotRow key={slot} slot={slot} files={files} />
         ))}
       </ul>
-      {given.length > 0 && !hasOwnGait && (
-        <p class="muted">{t("files.given", { names: given.join(", ") })}</p>
-      )}
+      {isLevelBMade(files) && <Sequences />}
     </div>
   );
 }
 
-/** What is used where no file is chosen: without any gait file the robot's sample gait is. */
-function otherwise(slot: Slot, hasOwnGait: boolean): string {
-  if (slot === "robot") return t("files.contests");
-  return t(hasOwnGait ? "files.none" : "files.sample");
+type FilesNow = Record<Slot, { name: string; isGiven: boolean }>;
+
+/** What a join brings now: chosen here, else what lies on this machine. */
+function filesNow(court: Court): FilesNow {
+  const chosen = chosenNames.value;
+  const own = court.ownFiles.value;
+  const hasChosenGait = Boolean(chosen.postures || chosen.locomotion);
+  const now = (slot: Slot) => {
+    const isGiven = !chosen[slot] && (slot === "robot" || !hasChosenGait);
+    return { name: chosen[slot] || (isGiven ? (own?.[slot] ?? "") : ""), isGiven };
+  };
+  return { robot: now("robot"), postures: now("postures"), locomotion: now("locomotion") };
 }
 
-function SlotRow({ slot, otherwise }: { slot: Slot; otherwise: string }) {
-  const name = chosenNames.value[slot];
+/** Whether level B is made of the postures, as no file of its own comes with them. */
+function isLevelBMade(files: FilesNow): boolean {
+  return Boolean(files.postures.name) && !files.locomotion.name;
+}
+
+/** What is used where there is no file: without any gait file the robot's sample gait is. */
+function otherwise(slot: Slot, files: FilesNow): string {
+  if (slot === "robot") return t("files.contests");
+  if (slot === "locomotion" && isLevelBMade(files)) {
+    return t("files.made", { name: files.postures.name });
+  }
+  return t(files.postures.name || files.locomotion.name ? "files.none" : "files.sample");
+}
+
+function SlotRow({ slot, files }: { slot: Slot; files: FilesNow }) {
+  const { name, isGiven } = files[slot];
   return (
     <li>
       <span class="what">{t(`files.${slot}`)}</span>
-      <span class={name ? "name" : "name muted"}>{name || otherwise}</span>
-      {name && (
+      <span class={name ? "name" : "name muted"}>
+        {name || otherwise(slot, files)}
+        {name && isGiven && <small class="muted"> {t("files.given")}</small>}
+      </span>
+      {name && !isGiven && (
         <button
           class="button quiet small"
           type="button"
@@ -100,4 +135,102 @@ function SlotRow({ slot, otherwise }: { slot: Slot; otherwise: string }) {
       )}
     </li>
   );
+}
+
+/** The keys of a level B that is made here: which postures each runs through. */
+function Sequences() {
+  const keys = sequences.value;
+  const change = (digit: number, digits: string) => {
+    const changed = keys.map((old, index) => (index === digit ? digits : old));
+    while (changed.length > 1 && !changed.at(-1)) changed.pop();
+    sequences.value = changed;
+  };
+  // One more than there are, to add a key.
+  const shown = keys.length < MOST_KEYS ? [...keys, ""] : keys;
+  return (
+    <fieldset class="sequences">
+      <legend>{t("files.sequences")}</legend>
+      <p class="muted">{t("files.sequencesHint")}</p>
+      <div>
+        {shown.map((digits, digit) => (
+          <label key={digit}>
+            <span>
+              {digit} {ARROW_OF.get(digit) ?? ""}
+            </span>
+            <input
+              value={[...digits].join(" ")}
+              inputMode="numeric"
+              autocomplete="off"
+              aria-label={t("files.sequence", { digit })}
+              placeholder={digit === keys.length ? t("files.newKey") : ""}
+              onChange={(event) => {
+                const typed = digitsOf(event.currentTarget.value);
+                event.currentTarget.value = [...typed].join(" ");
+                if (digit === keys.length) {
+                  if (typed) sequences.value = [...keys, typed];
+                } else change(digit, typed);
+              }}
+            />
+          </label>
+        ))}
+      </div>
+      {keys.join() !== SAMPLE_SEQUENCES.join() && (
+        <button
+          class="button quiet small"
+          type="button"
+          onClick={() => {
+            sequences.value = SAMPLE_SEQUENCES;
+          }}
+        >
+          {t("files.sampleSequences")}
+        </button>
+      )}
+    </fieldset>
+  );
+}
+
+/** Files on this machine that were saved again while the seat is held: offered, with what is wrong. */
+export function FilesChanged({ court, player, alone }: ChangedProps) {
+  const own = court.ownFiles.value;
+  const isOpen = useComputed(() => alone || canChange(court)).value;
+  const chosen = chosenNames.value;
+  const isNew = own && own.version > (own.used ?? own.version);
+  if (!isNew || !isOpen || chosen.postures || chosen.locomotion) return null;
+  const names = own.changed.join(", ");
+  if (own.error) {
+    return (
+      <section class="changed wrong" role="alert">
+        <p>
+          {t("files.changedWrong", { names })} {said(own.error)}
+        </p>
+        <ul>
+          {own.mistakes.map((one, index) => (
+            <li key={index}>
+              {t("files.mistake", {
+                file: one.file,
+                row: one.row ?? one.field ?? "–",
+                column: one.column ?? "–",
+                found: typeof one.found === "string" ? one.found : said(one.found),
+                expected: said(one.expected),
+              })}
+            </li>
+          ))}
+        </ul>
+      </section>
+    );
+  }
+  return (
+    <section class="changed" role="status">
+      <p>{t("files.changed", { names })}</p>
+      <button class="button strong" type="button" onClick={() => void player.rejoin()}>
+        {t("files.useNew")}
+      </button>
+    </section>
+  );
+}
+
+interface ChangedProps {
+  court: Court;
+  player: Player;
+  alone: boolean;
 }

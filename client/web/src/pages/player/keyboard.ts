@@ -17,6 +17,8 @@ export interface Steering {
   /** Whether keys mean the game now. */
   isOn(): boolean;
   act(pressed: Pressed, atMs: number): void;
+  /** The key that leaves goes up, or this window loses the keyboard. */
+  leaveReleased(): void;
   /** Escape on the field. */
   leaveField(): void;
 }
@@ -50,9 +52,17 @@ export function useKeyboard(
       event.preventDefault();
       if (!event.repeat) steering.act(pressed, event.timeStamp);
     };
+    const release = (event: Event) => {
+      if (event instanceof KeyboardEvent && readKey(event)?.does !== "leave") return;
+      steering.leaveReleased();
+    };
     window.addEventListener("keydown", take);
+    window.addEventListener("keyup", release);
+    window.addEventListener("blur", release);
     return () => {
       window.removeEventListener("keydown", take);
+      window.removeEventListener("keyup", release);
+      window.removeEventListener("blur", release);
       clearTimeout(timer);
     };
   }, []);

@@ -18,7 +18,10 @@ const GLYPHS: Record<string, string> = {
   ArrowRight: "→",
   ArrowDown: "↓",
 };
-const ARROW_OF = new Map(Object.entries(ARROWS).map(([code, digit]) => [digit, GLYPHS[code]]));
+/** The arrow that stands for a digit of level B. */
+export const ARROW_OF = new Map(
+  Object.entries(ARROWS).map(([code, digit]) => [digit, GLYPHS[code]]),
+);
 
 interface Props {
   court: Court;
@@ -191,7 +194,7 @@ function Restart({ player, onKey }: Props) {
  * a key of the pad must not take the next keystroke. `click` without a pointer comes from the
  * keyboard or from a screen reader.
  */
-function pressing(act: (atMs: number) => void) {
+export function pressing(act: (atMs: number) => void) {
   return {
     onPointerDown: (event: PointerEvent) => {
       if (event.button !== 0) return;

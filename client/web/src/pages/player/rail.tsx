@@ -10,6 +10,7 @@ import { t } from "../../i18n";
 import { Board } from "../../ui/board";
 import { EventLog } from "../../ui/log";
 import { Coach, useLessons } from "./coach";
+import { FilesChanged } from "./files";
 import { Pad } from "./pad";
 
 interface Props {
@@ -31,6 +32,7 @@ export function Rail(props: Props) {
   return (
     <aside class="rail">
       {alone ? <Coach court={court} player={player} progress={progress} /> : <Ready {...props} />}
+      <FilesChanged court={court} player={player} alone={alone} />
       <NoKeys court={court} player={player} />
       <Pad {...props} hinted={alone ? progress.next : null} />
       <div class="map">
@@ -66,7 +68,7 @@ function Ready({ court, player }: Props) {
         disabled={!canSteer}
         onClick={() => void player.ready(true)}
       >
-        {t("ready.say")}
+        {t("ready.say")} <kbd>r</kbd>
       </button>
     );
   }

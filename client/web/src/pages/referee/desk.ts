@@ -25,7 +25,14 @@ const RETRY_MS = 1500;
 export interface Answer {
   tone: "yes" | "no" | "plain";
   text: string;
+  /** When it came, by `performance.now()`. */
+  atMs: number;
 }
+
+/** An older word is no news any more. */
+export const ANSWER_MS = 20_000;
+/** A phase that comes so soon after the word belongs to it; a later one leaves it behind. */
+const BELONGS_MS = 1500;
 
 /** A decision that begins, stops or goes on with play: taken without a question. */
 export type Step = "start" | "halt" | "resume";
@@ -63,6 +70,19 @@ export class Desk {
     effect(() => {
       this.phase.value; // counts from the frame that brings another phase
       this.since.value = [match.value, court.frame.peek()?.beat ?? 0];
+    });
+    effect(() => {
+      this.phase.value;
+      const answer = this.answer.peek();
+      if (answer && performance.now() - answer.atMs > BELONGS_MS) this.answer.value = null;
+    });
+    effect(() => {
+      const answer = this.answer.value;
+      if (!answer) return;
+      const timer = setTimeout(() => {
+        this.answer.value = null;
+      }, ANSWER_MS);
+      return () => clearTimeout(timer);
     });
     effect(() => {
       this.next.value; // counts from each change
@@ -208,7 +228,7 @@ export class Desk {
   private say(tone: Answer["tone"], text: string): void {
     // The court's words stand within sentences elsewhere; here they begin one.
     const sentence = text.charAt(0).toUpperCase() + text.slice(1);
-    this.answer.value = { tone, text: sentence };
+    this.answer.value = { tone, text: sentence, atMs: performance.now() };
     toast(sentence, tone);
   }
 }

@@ -170,8 +170,7 @@ export function moveClock(court: Court, given: number): Draft {
         return `${clock(left)} → ${clock(left + value * BEATS_PER_S)}`;
       },
     },
-    // The court counts the time that was used: what is given is taken from it.
-    build: (value) => ({ type: "clock", seconds: -value }),
+    build: (value) => ({ type: "clock", gives_s: value }),
   };
 }
 

@@ -1,9 +1,11 @@
 /** The state of the match, the next sensible step as one big button, and all other decisions. */
 
-import { useMemo } from "preact/hooks";
+import { useSignal } from "@preact/signals";
+import { useEffect, useMemo } from "preact/hooks";
 import { part } from "../../core/match";
+import { whyHalted } from "../../core/rulings";
 import { type DecisionName, Phase, SeatFlag } from "../../core/wire";
-import { type MessageName, t } from "../../i18n";
+import { type MessageName, said, t } from "../../i18n";
 import { seatName, team } from "../../i18n/words";
 import { Hint, PhaseWord, SeatMark } from "../../ui/score";
 import { Act } from "./act";
@@ -41,6 +43,7 @@ export function MatchCard({ desk }: { desk: Desk }) {
           <span class="hint">{t("referee.stale")}</span>
         )}
       </div>
+      <WhyHalted desk={desk} />
       <BigButton desk={desk} />
       <Missing desk={desk} />
       <ReplayAdvice desk={desk} />
@@ -102,6 +105,12 @@ function ReplayAdvice({ desk }: { desk: Desk }) {
   return over && advice ? <Advice advice={advice} /> : null;
 }
 
+/** Why the match is halted, large: a court that was started again, a fault, a referee's reason. */
+function WhyHalted({ desk }: { desk: Desk }) {
+  const cause = desk.phase.value === Phase.HALTED ? whyHalted(desk.court.events.value) : null;
+  return cause ? <p class="why-halted">{said(cause.said)}</p> : null;
+}
+
 /** What stands before the court's words. */
 const ANSWERED = {
   yes: ["✓", "referee.done"],
@@ -111,14 +120,22 @@ const ANSWERED = {
 
 function LastAnswer({ desk }: { desk: Desk }) {
   const answer = desk.answer.value;
+  const nowMs = useSignal(performance.now());
+  useEffect(() => {
+    const timer = setInterval(() => {
+      nowMs.value = performance.now();
+    }, 1000);
+    return () => clearInterval(timer);
+  }, [nowMs]);
   if (!answer) return null;
+  const seconds = Math.max(0, Math.round((nowMs.value - answer.atMs) / 1000));
   const [mark, word] = ANSWERED[answer.tone];
   return (
     <p class={`answer ${answer.tone}`} title={t("referee.lastAnswer")}>
       <strong>
         {mark} {t(word)}
       </strong>{" "}
-      {answer.text}
+      {answer.text} <small class="muted">{t("referee.ago", { seconds })}</small>
     </p>
   );
 }

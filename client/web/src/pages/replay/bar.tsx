@@ -5,7 +5,7 @@ import { useMemo } from "preact/hooks";
 import type { Recording } from "../../core/recording";
 import { type Event, Phase } from "../../core/wire";
 import { t } from "../../i18n";
-import { BEATS_PER_S, logClock } from "../../i18n/words";
+import { BEATS_PER_S, eventClock } from "../../i18n/words";
 import { sentence } from "../../ui/thirds";
 import type { Player } from "./player";
 
@@ -85,7 +85,7 @@ function Label({ recording, event }: { recording: Recording; event: Event }) {
   const side = place < 0.15 ? "start" : place > 0.85 ? "end" : "middle";
   return (
     <span class={`mark-label ${side}`} style={`left: ${100 * place}%`}>
-      <b>{logClock(event.clock_ticks)}</b> {sentence(recording, event)}
+      <b>{eventClock(event, recording.sheet.value)}</b> {sentence(recording, event)}
     </span>
   );
 }

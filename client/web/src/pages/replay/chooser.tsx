@@ -2,8 +2,9 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { type BadRecord, type Listed, listed } from "../../core/record_files";
+import { type BadRecord, type Listed, listed, type Summary } from "../../core/record_files";
 import { language, type MessageName, t } from "../../i18n";
+import { seatName } from "../../i18n/words";
 import { Icon } from "../../ui/icons";
 
 interface Props {
@@ -66,14 +67,21 @@ export function Chooser({ trouble, onServer, onFiles }: Props) {
                   onServer(file.name);
                 }}
               >
-                <b>{file.name.replace(/\.mcap$/, "")}</b>
+                {file.match ? (
+                  <MatchLine match={file.match} />
+                ) : (
+                  <b>{file.name.replace(/\.mcap$/, "")}</b>
+                )}
                 <span class="muted">
-                  {new Date(file.modified).toLocaleString(language.value, {
+                  {file.match && `${file.match.title} · `}
+                  {new Date(file.match?.started ?? file.modified).toLocaleString(language.value, {
                     dateStyle: "medium",
                     timeStyle: "short",
                   })}
                   {" · "}
-                  {size(file.bytes)}
+                  {file.match
+                    ? t("replay.where", { court: file.match.court, number: file.match.number })
+                    : size(file.bytes)}
                 </span>
               </a>
             </li>
@@ -81,6 +89,23 @@ export function Chooser({ trouble, onServer, onFiles }: Props) {
         </ul>
       </section>
     </div>
+  );
+}
+
+/** Who played, and how it ended. */
+function MatchLine({ match }: { match: Summary }) {
+  const { teams, seats, scores, winner } = match;
+  const team = (index: number) => (
+    <span class={seats[index] === winner ? "won" : ""}>
+      {teams[index] || seatName(seats[index] ?? "")}
+    </span>
+  );
+  if (teams.length !== 2) return <b>{teams.map((_, index) => team(index))}</b>;
+  return (
+    <b>
+      {team(0)} <span class="points">{scores.length ? scores.join(" : ") : "–"}</span> {team(1)}
+      {winner === "void" && <small> {t("phase.8")}</small>}
+    </b>
   );
 }
 

@@ -3,7 +3,7 @@
 import { computed } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { said, t } from "../../i18n";
-import { logClock } from "../../i18n/words";
+import { eventClock } from "../../i18n/words";
 import type { Player } from "./player";
 
 export function ReplayLog({ player }: { player: Player }) {
@@ -29,7 +29,7 @@ export function ReplayLog({ player }: { player: Player }) {
           aria-current={index === happened - 1 ? "step" : undefined}
         >
           <button type="button" onClick={() => player.show(event)}>
-            <time>{logClock(event.clock_ticks)}</time>
+            <time>{eventClock(event, recording.sheet.value)}</time>
             <span>{said(event.said)}</span>
           </button>
         </li>

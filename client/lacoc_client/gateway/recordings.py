@@ -1,0 +1,112 @@
+"""The recordings that a gateway gives away: finished ones, and of a match that is over a copy.
+
+A court packs the record of a match when the next one opens. Until then the match that
+everybody has just seen would be missing, so the gateway copies what there is of it.
+"""
+
+import contextlib
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterable
+from datetime import UTC, datetime
+from pathlib import Path
+from threading import Lock
+
+import msgspec
+
+from lacoc_shared.record import files
+from lacoc_shared.record.pack import copy_in_background
+from lacoc_shared.record.summary import Summary, summary
+
+_RECORDING = ".mcap"
+_SEGMENT = ".live.mcap"  # of a match that is still being recorded
+_KEPT = 2000
+
+
+class Listed(msgspec.Struct, frozen=True):
+    """A recording as it is listed."""
+
+    name: str
+    bytes: int
+    modified: str
+    """ISO 8601, UTC."""
+    match: Summary | None
+    """What was played; None: the file does not say."""
+
+
+class Recordings:
+    """The recordings of one folder; its methods may be called from any thread.
+
+    Args:
+        folder: where they lie; None: there are none.
+        over: gives the ids of the matches that are over at courts and not closed yet.
+    """
+
+    def __init__(self, folder: Path | None, over: Callable[[], Iterable[str]]) -> None:
+        self._folder = folder
+        self._over = over
+        self._copies = tempfile.TemporaryDirectory(prefix="lacoc-recordings-")
+        self._copying: dict[str, subprocess.Popen[bytes]] = {}
+        self._summaries: dict[tuple[Path, int, int], Summary | None] = {}
+        self._lock = Lock()
+
+    def listed(self) -> list[Listed]:
+        """All recordings, the newest first."""
+        with self._lock:
+            self._copy()
+            found = []
+            for path in self._paths().values():
+                with contextlib.suppress(FileNotFoundError):  # it was moved at this moment
+                    stat = path.stat()
+                    found.append((stat.st_mtime, path, stat))
+            return [
+                Listed(
+                    path.name,
+                    stat.st_size,
+                    datetime.fromtimestamp(at_s, UTC).isoformat(timespec="seconds"),
+                    self._summary(path, stat.st_mtime_ns, stat.st_size),
+                )
+                for at_s, path, stat in sorted(found, reverse=True)
+            ]
+
+    def find(self, name: str) -> Path | None:
+        """A recording by its name; None: there is none."""
+        return self._paths().get(name)
+
+    def close(self) -> None:
+        """Forget the copies."""
+        for copying in self._copying.values():
+            copying.terminate()
+            copying.wait()
+        self._copies.cleanup()
+
+    def _paths(self) -> dict[str, Path]:
+        if self._folder is None:
+            return {}
+        copies = Path(self._copies.name).glob(f"*{_RECORDING}")
+        packed = self._folder.glob(f"*{_RECORDING}")
+        return {
+            path.name: path
+            for path in (*copies, *packed)
+            if path.is_file() and not path.name.endswith(_SEGMENT)
+        }
+
+    def _copy(self) -> None:
+        """Begin to copy the matches that are over and not packed."""
+        folder = self._folder
+        for match_id in self._over() if folder is not None else ():
+            assert folder is not None
+            segments = files.segment_paths(folder, match_id)
+            if match_id in self._copying or not segments:
+                continue
+            out = files.packed_path(Path(self._copies.name), match_id)
+            with contextlib.suppress(OSError):  # no room for another process: it is packed later
+                self._copying[match_id] = copy_in_background(segments, out)
+
+    def _summary(self, path: Path, modified_ns: int, size: int) -> Summary | None:
+        key = (path, modified_ns, size)
+        if key not in self._summaries:
+            if len(self._summaries) >= _KEPT:
+                self._summaries.clear()
+            self._summaries[key] = summary(path)
+        return self._summaries[key]

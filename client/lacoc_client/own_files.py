@@ -1,0 +1,83 @@
+"""A contestant's files on this machine, read again when they are saved again."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from lacoc_client.seat_files import SeatFiles, gaits_in, gather
+from lacoc_robots.library import GAIT_NAMES
+from lacoc_shared.mistakes import FileRefused, UserError
+
+_Saved = tuple[tuple[Path, int, int], ...]
+"""Each file with its time [ns] and size [bytes]."""
+
+
+class OwnFiles:
+    """The robot and gait files that a page brings unless it has chosen others.
+
+    Args:
+        robot: an installed robot, a folder or a robot file; None: the contest's.
+        gaits: gait files; none: those of the folder, the one saved last of each kind.
+        folder: where gait files are looked for.
+
+    Raises:
+        FileRefused: with every mistake of every gait file.
+        UserError: if a file can't be read, or two are for the same level.
+    """
+
+    def __init__(
+        self, robot: str | None = None, gaits: Sequence[Path] = (), folder: Path = Path()
+    ) -> None:
+        self._robot = robot
+        self._gaits = tuple(gaits)
+        self._folder = folder
+        self._read_as = self._seen = self._saved()
+        self.notes: list[str] = []
+        """What is no mistake in them, but may not be meant."""
+        self.files = self._read()
+        self.version = 1
+        """Grows whenever the files have changed."""
+        self.changed: tuple[str, ...] = ()
+        """The names of the files that the newest version changed, brought or took away."""
+        self.refused: FileRefused | UserError | None = None
+        """Why the newest version can't be used; `files` are those before it then."""
+
+    def look(self) -> bool:
+        """Read the files again if they were saved again; True if there is a new version.
+
+        A file that is still being written is left alone until the next look.
+        """
+        now = self._saved()
+        if now == self._read_as or now != self._seen:
+            self._seen = now
+            return False
+        changed = {path.name for path, *_ in {*now} ^ {*self._read_as}}
+        self._read_as = now
+        try:
+            files = self._read()
+        except (FileRefused, UserError) as refused:
+            self.refused = refused
+        else:
+            if files == self.files and self.refused is None:
+                return False
+            self.files, self.refused = files, None
+        self.changed = tuple(sorted(changed))
+        self.version += 1
+        return True
+
+    def _read(self) -> SeatFiles:
+        self.notes = []
+        return gather(self._robot, self._gaits or gaits_in(self._folder), self.notes)
+
+    def _saved(self) -> _Saved:
+        paths = [*(self._gaits or gaits_in(self._folder))]
+        if self._robot is not None and self._robot.endswith(".toml"):
+            robot = Path(self._robot).expanduser()
+            paths += [robot, *(robot.parent / name for name in GAIT_NAMES if not paths)]
+        saved = []
+        for path in paths:
+            try:
+                stat = path.stat()
+            except OSError:  # it is not there, or not now: it is being replaced
+                continue
+            saved.append((path, stat.st_mtime_ns, stat.st_size))
+        return tuple(saved)

@@ -1,0 +1,65 @@
+/** What a referee did to the score and the winner, and how long was played: from the events alone. */
+
+import type { Decision, Event } from "./wire";
+
+/** The newest declaration of a winner. */
+export function declaration(events: readonly Event[]): Event | null {
+  return events.findLast(({ data }) => data.decision === "declare") ?? null;
+}
+
+/**
+ * The decisions that make the score another one than the robots' alone: those that stand.
+ * One that was taken back, and what took it back, are not among them.
+ */
+export function corrections(events: readonly Event[]): Event[] {
+  const takenBack = new Set(
+    events.flatMap((event) => {
+      const decision = decisionOf(event);
+      return decision?.type === "take-back" ? [decision.event] : [];
+    }),
+  );
+  const decisions = new Set(
+    events.filter(({ kind }) => kind === "decision").map(({ number }) => number),
+  );
+  return events.filter((event) => {
+    const decision = decisionOf(event);
+    if (decision?.type === "take-back") return !decisions.has(decision.event);
+    const corrects = decision?.type === "adjust" || decision?.type === "set";
+    return corrects && !takenBack.has(event.number);
+  });
+}
+
+/** What halted the match: the decision or the fault before its newest halt; null: nothing says. */
+export function whyHalted(events: readonly Event[]): Event | null {
+  const index = events.findLastIndex(({ data }) => data.after === "HALTED");
+  const halt = events[index];
+  if (!halt) return null;
+  const causes = new Set(["decision", "fault"]);
+  return (
+    events.slice(0, index).findLast(({ beat, kind }) => beat === halt.beat && causes.has(kind)) ??
+    null
+  );
+}
+
+/** The decision of an event, with its arguments; null for any other event. */
+export function decisionOf({ data }: Event): Decision | null {
+  if (typeof data.decision !== "string") return null;
+  return { ...(data.arguments as object), type: data.decision } as Decision;
+}
+
+/**
+ * Beats that were played up to an event: a referee may move the clock, and that plays nothing.
+ */
+export function playedBeats(events: readonly Event[]): number {
+  let played = 0;
+  let since: number | null = null;
+  for (const { kind, beat, data } of events) {
+    if (kind !== "phase") continue;
+    if (data.after === "PLAYING") since = beat;
+    else if (since !== null) {
+      played += beat - since;
+      since = null;
+    }
+  }
+  return played;
+}

@@ -1,0 +1,43 @@
+"""Makes level B of level A: the sequences of a locomotion table from the postures of another."""
+
+from collections.abc import Sequence
+
+from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
+from lacoc_shared.gait.tables import SAMPLE_KEYS, LocomotionTable, PostureTable, to_locomotion
+from lacoc_shared.mistakes import UserError
+
+
+def join_postures(table: PostureTable, name: str, keys: Sequence[Sequence[int]]) -> LocomotionTable:
+    """Join postures into sequences.
+
+    Args:
+        table: the postures.
+        name: of their file, for the messages.
+        keys: for each digit key from 0 on, the postures it runs through, by their digits.
+
+    Raises:
+        UserError: if there are too many, a key has no posture, or a posture is not in the file.
+    """
+    longest = max(map(len, keys), default=0)
+    if not 1 <= len(keys) <= MAX_KEYS or longest > MAX_POSTURES_PER_KEY:
+        raise UserError(
+            f"{len(keys)} keys, the longest of {longest} postures, do not fit in a file: it has "
+            f"1 to {MAX_KEYS} keys of at most {MAX_POSTURES_PER_KEY} postures."
+        )
+    for digit, sequence in enumerate(keys):
+        if not sequence:
+            raise UserError(f"Key {digit} of level B has no posture: give it one, such as 0.")
+        for posture in sequence:
+            if posture not in table.postures:
+                there = ", ".join(map(str, sorted(table.postures)))
+                raise UserError(
+                    f"Key {digit} of level B uses posture {posture}, but {name} has only {there}. "
+                    "Say which postures to join."
+                )
+    return to_locomotion(table, tuple(map(tuple, keys)))
+
+
+def sample_sequences(table: PostureTable) -> LocomotionTable | None:
+    """Join postures as the sample's keys do; None if one of their postures is not there."""
+    used = {posture for sequence in SAMPLE_KEYS for posture in sequence}
+    return to_locomotion(table, SAMPLE_KEYS) if used <= table.postures.keys() else None

@@ -1,0 +1,67 @@
+"""What a recording is of, without reading all of it."""
+
+from pathlib import Path
+
+import msgspec
+from mcap.reader import make_reader
+
+from lacoc_shared import codec
+from lacoc_shared.messages import Sheet
+from lacoc_shared.record.schema import Header, Result
+from lacoc_shared.record.stream import DAMAGE
+
+_TOPICS = ("/lacoc/header", "/lacoc/sheet", "/lacoc/result")
+_MAX_BYTES = 1 << 20
+
+
+class Summary(msgspec.Struct, frozen=True):
+    """A match in a list of matches."""
+
+    title: str
+    """Of the game."""
+    court: str
+    number: int
+    """Of the match at its court."""
+    started: str
+    """Wall time, ISO 8601, UTC."""
+    teams: tuple[str, ...]
+    scores: tuple[int, ...]
+    """Empty while there is no result."""
+    winner: str
+    """Seat id, "draw", "void", or "" while there is none."""
+    seats: tuple[str, ...]
+    """Their ids."""
+
+
+def summary(path: Path) -> Summary | None:
+    """Read what a packed record is of; None if it does not say, or is no record.
+
+    Only the parts of the file are read that hold its header, sheets and results.
+    """
+    header: Header | None = None
+    sheet: Sheet | None = None
+    result: Result | None = None
+    try:
+        with path.open("rb") as file:
+            for _, channel, message in make_reader(file).iter_messages(topics=_TOPICS):
+                match channel.topic:
+                    case "/lacoc/header":
+                        header = header or codec.decode(message.data, Header, _MAX_BYTES)
+                    case "/lacoc/sheet":
+                        sheet = codec.decode(message.data, Sheet, _MAX_BYTES)
+                    case _:
+                        result = codec.decode(message.data, Result, _MAX_BYTES)
+    except (OSError, AttributeError, *DAMAGE):  # the reader trusts a file that is no MCAP
+        return None
+    if header is None or sheet is None:
+        return None
+    return Summary(
+        title=sheet.title,
+        court=sheet.court,
+        number=sheet.match,
+        started=header.started,
+        teams=tuple(seat.team for seat in sheet.seats),
+        scores=() if result is None else result.scores,
+        winner="" if result is None else result.official or result.computed,
+        seats=tuple(seat.id for seat in sheet.seats),
+    )

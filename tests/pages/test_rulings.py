@@ -1,0 +1,70 @@
+"""core/rulings.ts: what pages say of the referee's corrections, on events of real matches."""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from stage import Stage
+
+from lacoc_shared import decisions as d
+from lacoc_shared.codec import encode
+from lacoc_shared.seat import Phase as P
+
+RULINGS = Path(__file__).parents[2] / "client" / "web" / "src" / "core" / "rulings.ts"
+SCRIPT = """
+import { readFileSync } from "node:fs";
+const rulings = await import("%s");
+const events = JSON.parse(readFileSync(0, "utf8"));
+console.log(JSON.stringify({
+  corrections: rulings.corrections(events).map(({ number }) => number),
+  declared: rulings.declaration(events)?.data.reason ?? null,
+  halted: rulings.whyHalted(events)?.text ?? null,
+  played: rulings.playedBeats(events),
+}));
+"""
+
+
+def shown(stage: Stage) -> dict[str, Any]:
+    """What the page makes of a match's events."""
+    node = shutil.which("node", path=str(Path(sys.executable).parent)) or shutil.which("node")
+    if node is None:
+        pytest.skip("no Node: pip install --group web")
+    import msgpack
+
+    events = [msgpack.unpackb(encode(event)) for event in stage.events]
+    done = subprocess.run(
+        [node, "--input-type=module", "-e", SCRIPT % RULINGS.as_uri()],
+        input=json.dumps(events),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def test_corrections_that_stand_and_how_long_was_played() -> None:
+    """Rules 4: a correction that was taken back is none, and moving the clock plays nothing."""
+    stage = Stage().to(P.PLAYING)
+    stage.run(100)
+    stage.decide(d.Clock(90.0), "a pause")
+    stage.decide(d.Adjust("left", 1), "a slip")
+    slip = stage.numbers("decision")[-1]
+    stage.decide(d.Halt(), "lights out")
+    assert shown(stage)["halted"] == "Referee Kubota: halted. Reason: lights out"
+    stage.run(50)
+    stage.decide(d.TakeBack(slip), "it was right")
+    stage.decide(d.Set("c0r0", "neutral"), "count again")
+    stands = stage.numbers("decision")[-1]
+    stage.decide(d.Declare("right"), "a foul")
+    assert stage.phase is P.FINISHED
+    assert shown(stage) == {
+        "corrections": [stands],
+        "declared": "a foul",
+        "halted": "Referee Kubota: halted. Reason: lights out",
+        "played": stage.match.ticks,
+    }
