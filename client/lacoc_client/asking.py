@@ -14,6 +14,7 @@ from lacoc_shared.keyspace import EVERY_COURT, Keys
 from lacoc_shared.messages import PROTOCOL, Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.session import NoReply, NotConnected, Refused, Session, TooLate
+from lacoc_shared.words import Phrase, say
 
 T = TypeVar("T")
 
@@ -129,7 +130,7 @@ def fetch(
             refusal = understand(refused.payload, Refusal)
             if refusal.mistakes:
                 raise FileRefused(list(refusal.mistakes)) from None
-            raise (NotNow if refusal.again else UserError)(refusal.reason) from None
+            raise (NotNow if refusal.again else UserError)(refusal.why) from None
 
 
 def understand(payload: bytes, kind: type[T]) -> T:
@@ -152,18 +153,16 @@ def understood() -> Iterator[None]:
     try:
         yield
     except codec.BadMessage as error:
-        raise UserError(
-            f"The court's answer is not understood ({error}). This program speaks version "
-            f"{PROTOCOL} of the protocol: install the version of lacoc that the organiser uses."
-        ) from None
+        said = say("court.bad-answer", error=str(error), version=PROTOCOL)
+        raise UserError(said) from None
 
 
-def no_answer(session: Session, court: str) -> str:
+def no_answer(session: Session, court: str) -> Phrase:
     """Say why a court does not answer, and which courts there are."""
     courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     address = ", ".join(session.endpoints)
     if court in courts:
-        return f"Court {court!r} at {address} does not answer. Is it overloaded or stopped?"
+        return say("court.no-answer", court=court, address=address)
     if courts:
-        return f"There is no court {court!r} at {address}; there is {', '.join(courts)}."
-    return f"No court answers at {address}. Is it running?"
+        return say("court.no-court", court=court, address=address, courts=courts)
+    return say("court.nobody", address=address)

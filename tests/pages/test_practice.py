@@ -49,7 +49,7 @@ def lessons(page: Contestant, *keys: int) -> None:
 
 
 def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> None:
-    """Issue 3: open, press 1-2-3-4, see it walk; both levels, x, z and Pos-data.txt."""
+    """Open, press 1-2-3-4, see it walk; both levels, x, z and Pos-data.txt."""
     page = practise()
     page.stands("seated")
     page.phase(Phase.PLAYING)  # nobody had to say ready
@@ -95,6 +95,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     page.phase(Phase.PLAYING)
 
 
+@pytest.mark.long
 def test_a_reload_goes_on(practise: Practise) -> None:
     """The tab keeps its seat and its level; the robot stands until the next key."""
     page = practise()
@@ -133,8 +134,9 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
     page.key_stands(4)
 
 
+@pytest.mark.long
 def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
-    """Issue 3: the pad is there without scrolling, in the browser's language."""
+    """The pad is there without scrolling, in the browser's language."""
     phone = {"width": 390, "height": 844}
     page = practise(viewport=phone, has_touch=True, is_mobile=True, locale="ja-JP")
     page.phase(Phase.PLAYING)
@@ -148,8 +150,9 @@ def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
         assert box["y"] + box["height"] <= phone["height"]
 
 
+@pytest.mark.long
 def test_accessible(practise: Practise) -> None:
-    """Done means 2: axe-core finds no serious violation."""
+    """Axe-core finds no serious violation."""
     pytest.importorskip("axe_core_python")
     page = practise()
     page.phase(Phase.PLAYING)

@@ -15,6 +15,7 @@ from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import Phrase, say
 
 JOIN_BYTES = JOIN_MAX_BYTES
 """A longer message of a page closes its connection."""
@@ -22,7 +23,7 @@ REQUEST_BYTES = 4096
 """A longer message that is no join is refused."""
 
 
-FAULT = "The gateway has a fault; its window says more. Try again, or tell the organiser."
+FAULT = say("gateway.fault")
 
 
 class TokenRefused(UserError):
@@ -116,7 +117,7 @@ class DecideAsk(_Ask, frozen=True, kw_only=True, tag="decide"):
     """Decide as a referee."""
 
     decision: Decision
-    reason: str = ""
+    reason: Phrase | str = ""
 
 
 Asked = (
@@ -182,17 +183,17 @@ def reply(to: int, value: Any) -> bytes:
     return map_message(Kind.REPLY, {"id": to, "ok": True, "value": value})
 
 
-def refusal(to: int, error: Exception | str) -> bytes:
+def refusal(to: int, error: UserError | FileRefused) -> bytes:
     """The answer to what was not done."""
-    mistakes = error.mistakes if isinstance(error, FileRefused) else []
-    text = str(error)
-    if mistakes:
-        text = "Your file has 1 mistake." if len(mistakes) == 1 else ""
-        text = text or f"Your files have {len(mistakes)} mistakes."
+    if isinstance(error, FileRefused):
+        mistakes = error.mistakes
+        said = say("refused.mistakes", count=len(mistakes), first=None)
+    else:
+        mistakes, said = [], error.phrase
     body = {
         "id": to,
         "ok": False,
-        "error": text,
+        "error": said,
         "mistakes": mistakes,
         "token_refused": isinstance(error, TokenRefused),
         "again": isinstance(error, NotNow),

@@ -10,6 +10,7 @@ from lacoc_client.terminal import words
 from lacoc_shared.command.log import log_clock
 from lacoc_shared.messages import Event, Frame, Sheet
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render
 
 PHASE_STYLES = {
     Phase.LOBBY: "black on white",
@@ -40,7 +41,7 @@ class LineView:
             silent_s: how long no frame has come.
         """
         if events:
-            self._last = events[-1].text
+            self._last = render(events[-1].said)
         banner = words.link(silent_s)
         if banner:
             return Text(banner, style="bold white on red", no_wrap=True)
@@ -75,4 +76,4 @@ def status_line(frame: Frame, sheet: Sheet) -> Text:
 
 def event_columns(event: Event) -> tuple[Text, Text]:
     """When something happened, and what, as the log has it."""
-    return Text(f"{log_clock(event.clock_ticks):>7}  ", "dim"), Text(event.text)
+    return Text(f"{log_clock(event.clock_ticks):>7}  ", "dim"), Text(render(event.said))

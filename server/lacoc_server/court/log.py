@@ -1,12 +1,13 @@
 """What a court says in its log: every event, and what goes wrong beside the match."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import msgspec
 
 from lacoc_shared.command import log
 from lacoc_shared.messages import Event, Health
+from lacoc_shared.words import Phrase, render, say
 
 _TROUBLE = frozenset({"advice", "fault", "silent"})
 """Kinds of events that an organiser looks up for."""
@@ -23,43 +24,47 @@ class CourtLog:
         self._log = log.get(court=court)
         self._refused: Counter[tuple[str, str]] = Counter()
         self._slow_beats = 0
-        self._trouble = ""
+        self._trouble: Phrase | None = None
 
     def event(self, match_id: str, event: Event) -> None:
         """Log an event of the match."""
         write = self._log.warning if event.kind in _TROUBLE else self._log.info
         fields = msgspec.structs.asdict(event)
-        write(fields.pop("text"), match_id=match_id, **fields)
+        _write(write, fields.pop("said"), match_id=match_id, **fields)
 
     def health(self, match_id: str, health: Health) -> None:
         """Log what went wrong since this was last called: refusals, slow beats, the disk."""
         write = self._log.bind(match_id=match_id, match=health.match, beat=health.beat).warning
         refused = Counter(dict(_refused(health)))
         for (seat, why), count in (refused - self._refused).items():
-            who = f"Seat {seat}" if seat else "Referee's desk"
-            write(
-                f"{who}: {count} refused, {why}.", kind="refused", seat=seat, why=why, count=count
-            )
+            said = say("log.refused", seat=seat, why=why, count=count)
+            if not seat:
+                said = say("log.refused-at-desk", why=why, count=count)
+            _write(write, said, kind="refused", seat=seat, why=why, count=count)
         self._refused = refused
         if slow := health.slow_beats - self._slow_beats:
             worst_ms = health.worst_late_ms
-            in_all = f"{health.slow_beats} in all; the latest by {worst_ms:.0f} ms"
-            text = f"Slow beats: {slow}, {in_all}."
-            write(text, kind="slow", count=slow, worst_late_ms=worst_ms)
+            said = say("log.slow-beats", count=slow, all=health.slow_beats, worst_ms=worst_ms)
+            _write(write, said, kind="slow", count=slow, worst_late_ms=worst_ms)
         self._slow_beats = health.slow_beats
         if health.record_trouble != self._trouble:
             self._trouble = health.record_trouble
-            write(self._trouble or "The record is written again.", kind="record")
+            _write(write, self._trouble or say("log.record-again"), kind="record")
 
-    def disk(self, match_id: str, trouble: str) -> None:
+    def disk(self, match_id: str, trouble: Phrase | None) -> None:
         """Log what the disk said of the record of a match that is over, if anything."""
         if trouble:
-            self._log.warning(trouble, match_id=match_id, kind="record")
+            _write(self._log.warning, trouble, match_id=match_id, kind="record")
 
     def not_packed(self, match_id: str, error: OSError) -> None:
         """Log that no record could be packed: nothing is lost by that."""
-        text = f"No record is packed now: {error}. The segments stay, and are packed later."
-        self._log.warning(text, match_id=match_id, kind="record")
+        said = say("log.not-packed", why=str(error))
+        _write(self._log.warning, said, match_id=match_id, kind="record")
+
+
+def _write(write: Callable[..., object], said: Phrase, **fields: object) -> None:
+    """Write a line: the words for a person, the code for a program."""
+    write(render(said), code=said.code, **fields)
 
 
 def _refused(health: Health) -> Iterator[tuple[tuple[str, str], int]]:

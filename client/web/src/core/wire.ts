@@ -1,6 +1,7 @@
 /** Messages between the gateway and a page: a kind byte, then msgpack (docs/gateway.md). */
 
 import { decode, encode } from "@msgpack/msgpack";
+import type { Phrase } from "./phrase";
 import {
   type DecisionName,
   type Event,
@@ -40,7 +41,8 @@ export interface Link {
   court: string;
   connected: boolean;
   silent_s: number;
-  text: string;
+  /** Why it is not connected. */
+  why: Phrase | null;
   /** Another number: the log of events begins anew, and all of it follows. */
   log: number;
 }
@@ -49,8 +51,9 @@ export interface Link {
 export interface HeldSeat {
   seat: string;
   index: number;
+  /** The name of `hold.*`. */
   hold: string;
-  reason: string;
+  reason: Phrase | null;
   round_trip_ms: number | null;
 }
 
@@ -69,7 +72,7 @@ interface GoodReply {
 export interface BadReply {
   id: number;
   ok: false;
-  error: string;
+  error: Phrase;
   mistakes: Mistake[];
   /** The court does not take this token: to show it again is of no use. */
   token_refused: boolean;

@@ -1,10 +1,18 @@
 /** Clocks, scores and states in words, the same on every page. */
 
 import type { Match } from "../core/match";
-import { type Event, type Frame, Phase, SeatFlag, type SeatFrame, type Sheet } from "../core/wire";
+import {
+  BEATS_PER_S,
+  type Event,
+  type Frame,
+  Phase,
+  SeatFlag,
+  type SeatFrame,
+  type Sheet,
+} from "../core/wire";
 import { type MessageName, t } from "./index";
 
-export const BEATS_PER_S = 50;
+export { BEATS_PER_S };
 
 /** A time of the clock, "2:05": the second that has begun counts. */
 export function clock(ticks: number): string {

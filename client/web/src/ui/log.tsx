@@ -27,7 +27,7 @@ export function EventLog({ match, most = 200, only, extra, toldElsewhere }: Prop
         <li key={event.number} data-kind={event.kind}>
           <time>{logClock(event.clock_ticks)}</time>
           <span>
-            {said(event.text)}
+            {said(event.said)}
             {extra?.(event)}
           </span>
         </li>

@@ -3,6 +3,7 @@
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/match";
+import type { Phrase } from "../core/phrase";
 import { type Event, Phase, type Sheet } from "../core/wire";
 import { said, t } from "../i18n";
 import { byRules, clock, team, winnerOf } from "../i18n/words";
@@ -81,6 +82,6 @@ function title(sheet: Sheet, winner: string | null): string {
 /** Why play ended, and after how long. */
 function why(events: readonly Event[], time: string): string {
   const end = events.findLast(({ data }) => data.after === "FINISHED" || data.after === "VOID");
-  const reason = /^FINISHED: (.*)\.$/s.exec(end?.text ?? "")?.[1];
+  const reason = end?.said.values?.why as Phrase | undefined;
   return reason ? t("result.ended", { reason: said(reason), time }) : t("result.time", { time });
 }

@@ -75,7 +75,7 @@ function Third({ match, event }: { match: Match; event: Event }) {
 export function sentence(match: Match, event: Event): string {
   const sheet = match.sheet.peek();
   const { marker, also } = event.data as { marker?: string; also?: string[] };
-  if (!sheet || !marker || event.seat < 0) return said(event.text);
+  if (!sheet || !marker || event.seat < 0) return said(event.said);
   const name = team(sheet, event.seat);
   switch (event.kind) {
     case "flip": {
@@ -87,7 +87,7 @@ export function sentence(match: Match, event: Event): string {
     case "strike":
       return t(`thirds.${event.kind}`, { team: name, marker: markerName(marker) });
     default:
-      return said(event.text);
+      return said(event.said);
   }
 }
 

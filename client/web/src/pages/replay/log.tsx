@@ -30,7 +30,7 @@ export function ReplayLog({ player }: { player: Player }) {
         >
           <button type="button" onClick={() => player.show(event)}>
             <time>{logClock(event.clock_ticks)}</time>
-            <span>{said(event.text)}</span>
+            <span>{said(event.said)}</span>
           </button>
         </li>
       ))}
