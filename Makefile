@@ -6,13 +6,14 @@ BIN := .venv/bin
 RUN := $(BIN)/python -m
 PIP := $(RUN) pip --disable-pip-version-check --quiet
 ARGS ?=
+WORKERS ?= --numprocesses 4 --dist worksteal
 
 PAGES := client/lacoc_client/pages/index.html
 PAGES_FROM := $(shell find client/web/src client/web/public -type f) \
 	$(addprefix client/web/,index.html package-lock.json vite.config.ts)
 NPM := PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix client/web --loglevel=error
 
-.PHONY: help demo test format lint type walls check build bench fuzz mutants soak wheel-smoke web clean
+.PHONY: help demo test test-all format lint type walls check build bench fuzz mutants soak wheel-smoke web clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list.
@@ -22,7 +23,10 @@ demo: .venv/.server $(PAGES) ## See a whole match: a court, two bots and a refer
 	$(BIN)/lacoc demo $(ARGS)
 
 test: .venv/.test .venv/.web $(PAGES) ## Run the tests.
-	$(RUN) pytest $(ARGS)
+	$(RUN) pytest $(WORKERS) $(ARGS)
+
+test-all: test ## Run the tests, then the long ones: soak, fuzzing, kills, forging, many examples.
+	$(RUN) pytest $(WORKERS) --long $(ARGS)
 
 web: .venv/.web ## Build the pages and build them again whenever they change.
 	$(NPM) run build -- --watch

@@ -15,6 +15,7 @@ import msgspec
 from lacoc_arenas.game import DOWN, AnyGame, Claim, GameEvent, Observation, Place
 from lacoc_shared.messages import MARKER_STATES, MarkerInfo
 from lacoc_shared.mistakes import UserError, printable
+from lacoc_shared.words import Phrase
 
 _DESCRIBED = "docs/write-an-arena.md says what a game has."
 _VALUES = ("state_type", "markers", "starts", "size_m")
@@ -156,11 +157,12 @@ class CheckedGame:
             raise self._wrong("score", found, expected)
         return tuple(found)
 
-    def over(self, state: Any) -> str:
+    def over(self, state: Any) -> Phrase | None:
         """See `Game.over`."""
         found = self._source.call("over", self._game.over, state)
-        if not isinstance(found, str):
-            raise self._wrong("over", found, 'a text: why the match is over, or "" while it is not')
+        if not (found is None or isinstance(found, Phrase)):
+            expected = "a Phrase: why the match is over, or None while it is not"
+            raise self._wrong("over", found, expected)
         return found
 
     def winner(self, state: Any, scores: tuple[int, ...]) -> int | None:
@@ -189,10 +191,8 @@ class CheckedGame:
         unknown = [name for name in (event.marker, *event.also) if name not in self._names]
         if unknown:
             raise self._wrong("step", event, f"markers of this board; {unknown[0]!r} is none")
-        try:
-            event.text.format(team="")
-        except (AttributeError, LookupError, ValueError):
-            raise self._wrong("step", event, "a text with {team} and no other braces") from None
+        if not isinstance(event.said, Phrase):
+            raise self._wrong("step", event, "an event whose said is a Phrase")
 
     def _wrong(self, rule: str, found: object, expected: str) -> UserError:
         shown = printable(repr(found), 120)

@@ -11,12 +11,28 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 import msgspec
 
 from lacoc_shared.messages import MarkerInfo
+from lacoc_shared.words import Phrase, render
 
 NEUTRAL, LEFT, RIGHT, DOWN = range(4)
 """States of a marker; a seat's own state is its index + 1. Same order as `MARKER_STATES`."""
 
 Claim = tuple[int, str]
 """(seat, marker): what a referee strikes out (rules 4, take-back)."""
+
+
+class NoSuchState(ValueError):
+    """A marker can't be set to a state.
+
+    Args:
+        why: which states it has (`why.*`).
+    """
+
+    def __init__(self, why: Phrase) -> None:
+        super().__init__(why)
+        self.why = why
+
+    def __str__(self) -> str:
+        return render(self.why)
 
 
 class Place(NamedTuple):
@@ -62,8 +78,9 @@ class GameEvent(msgspec.Struct, frozen=True, kw_only=True):
     """Markers that changed with it (the runs of rules 5)."""
     points: int = 0
     """What the seat gains by it."""
-    text: str
-    """A plain English sentence with {team} for the seat's team."""
+    said: Phrase
+    """What happened, as a whole sentence; its value `team` is "", and the match fills it in. A game
+    that is no part of LACOC says `event.other`."""
 
 
 S = TypeVar("S", bound=msgspec.Struct)
@@ -110,8 +127,8 @@ class Game(Protocol[S]):
     def score(self, state: S) -> tuple[int, ...]:
         """Points of each seat."""
 
-    def over(self, state: S) -> str:
-        """Why the match is over before its time is up; "" while it is not."""
+    def over(self, state: S) -> Phrase | None:
+        """Why the match is over before its time is up (`over.*`); None while it is not."""
 
     def winner(self, state: S, scores: tuple[int, ...]) -> int | None:
         """Who has won if the match ends now.
@@ -128,7 +145,7 @@ class Game(Protocol[S]):
         """Set a marker, as a referee decides.
 
         Raises:
-            ValueError: if a marker of this kind has no such state; the message says which it has.
+            NoSuchState: if a marker of this kind has no such state.
         """
 
 

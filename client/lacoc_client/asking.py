@@ -1,7 +1,7 @@
 """Requests to a court, and its refusals put into words."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
@@ -9,10 +9,12 @@ import msgspec
 
 from lacoc_client.court_view import MAX_BYTES
 from lacoc_shared import codec
+from lacoc_shared.command import screen
 from lacoc_shared.keyspace import EVERY_COURT, Keys
 from lacoc_shared.messages import PROTOCOL, Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
-from lacoc_shared.network.session import NoReply, Refused, Session, TooLate
+from lacoc_shared.network.session import NoReply, NotConnected, Refused, Session, TooLate
+from lacoc_shared.words import Phrase, say
 
 T = TypeVar("T")
 
@@ -21,6 +23,7 @@ ANSWER_S = 5.0
 
 _COMING_BACK_S = 0.5
 _AGAIN_S = 0.05
+_WAIT_AGAIN_S = 0.5
 
 
 class NoCourt(UserError):
@@ -33,6 +36,44 @@ class NoAnswer(NoCourt):
 
 class NotNow(UserError):
     """The court refuses for now: the same request may be taken later."""
+
+
+class Patience:
+    """How long a command waits for its court; the time begins anew when the court was there.
+
+    Args:
+        wait_s: how long; None: not at all, as is right for a person.
+        stopping: says whether somebody asked the command to end.
+    """
+
+    def __init__(self, wait_s: float | None, stopping: Callable[[], bool] = lambda: False) -> None:
+        self.wait_s = wait_s
+        self._stopping = stopping
+        self._told = ""
+
+    def until(self, do: Callable[[], T]) -> T:
+        """Do what needs a court, again and again while there is none, or it says "not now".
+
+        Raises:
+            UserError: as `do`, for good or when the time is over.
+            KeyboardInterrupt: if the command is asked to end.
+        """
+        end_s = time.monotonic() + (self.wait_s or 0.0)
+        while True:
+            try:
+                return do()
+            except (NotConnected, NoCourt, NotNow) as error:
+                if self.wait_s is None or time.monotonic() >= end_s:
+                    raise
+                self._tell(error)
+            if self._stopping():
+                raise KeyboardInterrupt
+            time.sleep(_WAIT_AGAIN_S)
+
+    def _tell(self, error: UserError) -> None:
+        if str(error) != self._told:
+            self._told = str(error)
+            screen.note(f"{error} This waits for it, up to {self.wait_s:g} s.")
 
 
 def ask(
@@ -89,7 +130,7 @@ def fetch(
             refusal = understand(refused.payload, Refusal)
             if refusal.mistakes:
                 raise FileRefused(list(refusal.mistakes)) from None
-            raise (NotNow if refusal.again else UserError)(refusal.reason) from None
+            raise (NotNow if refusal.again else UserError)(refusal.why) from None
 
 
 def understand(payload: bytes, kind: type[T]) -> T:
@@ -112,18 +153,16 @@ def understood() -> Iterator[None]:
     try:
         yield
     except codec.BadMessage as error:
-        raise UserError(
-            f"The court's answer is not understood ({error}). This program speaks version "
-            f"{PROTOCOL} of the protocol: install the version of lacoc that the organiser uses."
-        ) from None
+        said = say("court.bad-answer", error=str(error), version=PROTOCOL)
+        raise UserError(said) from None
 
 
-def no_answer(session: Session, court: str) -> str:
+def no_answer(session: Session, court: str) -> Phrase:
     """Say why a court does not answer, and which courts there are."""
     courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     address = ", ".join(session.endpoints)
     if court in courts:
-        return f"Court {court!r} at {address} does not answer. Is it overloaded or stopped?"
+        return say("court.no-answer", court=court, address=address)
     if courts:
-        return f"There is no court {court!r} at {address}; there is {', '.join(courts)}."
-    return f"No court answers at {address}. Is it running?"
+        return say("court.no-court", court=court, address=address, courts=courts)
+    return say("court.nobody", address=address)

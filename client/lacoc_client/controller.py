@@ -24,23 +24,22 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.session import Session
-from lacoc_shared.seat import NO_SENTENCES, REPEATS_HZ
+from lacoc_shared.seat import REPEATS_HZ, SILENT_AFTER_S, WHY_NO
+from lacoc_shared.words import Phrase, say
 
 REPEAT_S = 1 / REPEATS_HZ
-SILENT_AFTER_S = 0.5
-"""A court that sends no frame for so long is called silent."""
 
 _REJOIN_TIMEOUT_S = 1.0
 _REMEMBERED = 64
-_WHY = {int(no): sentence for no, sentence in NO_SENTENCES.items()}
+_WHY = {int(no): why for no, why in WHY_NO.items()}
 
 
 class Hold(Enum):
-    """What a controller knows of its seat."""
+    """What a controller knows of its seat: the names of `hold.*`."""
 
-    NOT_JOINED = "not joined"
+    NOT_JOINED = "not-joined"
     HELD = "held"
-    LOST = "the court does not answer"
+    LOST = "lost"
     """The court was restarted and has not answered yet, or can't take the controller back now:
     it is asked again."""
     REPLACED = "replaced"
@@ -49,13 +48,28 @@ class Hold(Enum):
     """The court was restarted and won't take the controller back."""
     LEFT = "left"
 
+    @property
+    def phrase(self) -> Phrase:
+        """What is said of it where there is no other reason."""
+        return _HOLDS[self]
+
+
+_HOLDS = {
+    Hold.NOT_JOINED: say("hold.not-joined"),
+    Hold.HELD: say("hold.held"),
+    Hold.LOST: say("hold.lost"),
+    Hold.REPLACED: say("hold.replaced"),
+    Hold.REFUSED: say("hold.refused"),
+    Hold.LEFT: say("hold.left"),
+}
+
 
 class RefusedKey(NamedTuple):
     """A command that the match refused."""
 
     level: int
     key: int
-    why: str
+    why: Phrase
 
 
 class _Press(NamedTuple):
@@ -130,7 +144,7 @@ class Controller:
         """Whether `poll` repeats the command, and takes the seat back from a court that was
         restarted; False where the one who steers has gone."""
         self.hold = Hold.NOT_JOINED
-        self.reason = ""
+        self.reason: Phrase | None = None
         """Why the seat is not held, where there is more to say."""
         self.round_trip_ms: float | None = None
         """From the newest key to the frame that shows it."""
@@ -145,11 +159,11 @@ class Controller:
         names = [seat.id for seat in self.view.sheet.seats]
         if self.seat not in names:
             raise UserError(
-                f"Court {self._keys.court!r} has no seat {self.seat!r}; it has {', '.join(names)}."
+                say("court.no-seat", court=self._keys.court, seat=self.seat, seats=names)
             )
         return names.index(self.seat)
 
-    def join(self, timeout_s: float = 5.0) -> tuple[str, ...]:
+    def join(self, timeout_s: float = 5.0) -> tuple[Phrase, ...]:
         """Take the seat, also from an older controller with the same token.
 
         Returns:
@@ -161,9 +175,9 @@ class Controller:
         """
         size = len(encode(self._join))
         if size > JOIN_MAX_BYTES - 1024:
+            most_kib = JOIN_MAX_BYTES // 1024 - 1
             raise UserError(
-                f"Your files are too large together: {size // 1024} KiB, at most "
-                f"{JOIN_MAX_BYTES // 1024 - 1} KiB travel. Shorten the gait files."
+                say("refused.files-too-large", size_kib=size // 1024, most_kib=most_kib)
             )
         key = self._keys.request(self.seat, "join")
         joined = ask(self._session, self._keys, key, self._join, Joined, timeout_s)
@@ -174,34 +188,34 @@ class Controller:
         self._requests = 0
         self._seq = max(self._seq, joined.last_seq)
         self._pressed.clear()
-        self.hold, self.reason = Hold.HELD, ""
+        self.hold, self.reason = Hold.HELD, None
         self._standing = (0, 0, 0)
         self._send()
         return joined.notes
 
-    def ready(self, ready: bool = True) -> str:
+    def ready(self, ready: bool = True) -> Phrase | None:
         """Say ready, or take it back.
 
         Returns:
-            What the court says to it.
+            What the court says to it, if anything.
 
         Raises:
             UserError: if the court refuses or does not answer.
         """
         return self._request("ready", ready)
 
-    def leave(self) -> str:
+    def leave(self) -> Phrase | None:
         """Give the seat up.
 
         Returns:
-            What the court says to it.
+            What the court says to it, if anything.
 
         Raises:
             UserError: if the court refuses or does not answer.
         """
-        text = self._request("leave", True)
+        said = self._request("leave", True)
         self.hold, self._joined = Hold.LEFT, None
-        return text
+        return said
 
     def press(self, level: int, key: int, upon: Frame | None = None) -> int:
         """Send a new command; it stands, and is repeated, until the next.
@@ -268,27 +282,30 @@ class Controller:
         refused, self._refused = self._refused, []
         return refused
 
-    def link(self, now_s: float) -> str:
-        """The state of the link in a few words; "" while all is well."""
+    @property
+    def why_not_held(self) -> Phrase:
+        """Why the seat is not held."""
+        return self.reason or self.hold.phrase
+
+    def link(self, now_s: float) -> Phrase | None:
+        """Say how the link is; None while all is well."""
         silent_s = self.view.silent_s(now_s)
-        if self.hold is Hold.HELD:
-            return "" if silent_s < SILENT_AFTER_S else f"court silent for {silent_s:.0f} s"
-        return self.reason or self.hold.value
+        if self.hold is not Hold.HELD:
+            return self.why_not_held
+        return None if silent_s < SILENT_AFTER_S else say("hold.silent", seconds=silent_s)
 
     def _session_held(self) -> Joined:
         if self.hold is not Hold.HELD or self._joined is None:
-            raise UserError(
-                f"Seat {self.seat} is not yours now ({self.reason or self.hold.value})."
-            )
+            raise UserError(say("refused.not-yours", seat=self.seat, why=self.why_not_held))
         return self._joined
 
-    def _request(self, what: str, ready: bool) -> str:
+    def _request(self, what: str, ready: bool) -> Phrase | None:
         joined = self._session_held()
         key = self._keys.request(self.seat, what)
         self._requests += 1
         mac = seal.request_mac(joined.secret, key, joined.session, self._requests, ready)
         request = SeatRequest(session=joined.session, seq=self._requests, ready=ready, mac=mac)
-        return ask(self._session, self._keys, key, request, Done).text
+        return ask(self._session, self._keys, key, request, Done).said
 
     def _send(self, upon: Frame | None = None) -> None:
         """Send the standing command, with the frame that it answers."""
@@ -308,7 +325,7 @@ class Controller:
             if seq in (seat.applied_seq, seat.refused_seq):
                 self.round_trip_ms = (self.view.frame_s - press.at_s) * 1000
             if seq == seat.refused_seq:
-                why = _WHY.get(seat.refused_why, "the court refused it")
+                why = _WHY.get(seat.refused_why, say("key.refused"))
                 self._refused.append(RefusedKey(press.level, press.key, why))
 
     def _check_hold(self) -> None:
@@ -327,10 +344,9 @@ class Controller:
         if self._joined is None or holder == 0:
             self._join_again()
         elif holder == self._joined.session:
-            self.hold, self.reason = Hold.HELD, ""
+            self.hold, self.reason = Hold.HELD, None
         elif believed:
-            self.hold = Hold.REPLACED
-            self.reason = f"seat {self.seat} was joined again from another window or machine"
+            self.hold, self.reason = Hold.REPLACED, None
         else:
             self._other_holder = True
 
@@ -338,10 +354,10 @@ class Controller:
         try:
             self.join(_REJOIN_TIMEOUT_S)
         except NoCourt:  # perhaps it has made a session all the same: the next health tries again
-            self.hold, self.reason, self._joined = Hold.LOST, "", None
+            self.hold, self.reason, self._joined = Hold.LOST, None, None
         except NotNow as error:  # it has made none: who holds the seat from now on is another
-            self.hold, self.reason = Hold.LOST, str(error)
+            self.hold, self.reason = Hold.LOST, error.phrase
         except FileRefused:
-            self.hold, self.reason = Hold.REFUSED, "the court does not accept the files any more"
+            self.hold, self.reason = Hold.REFUSED, say("hold.files-refused")
         except UserError as error:
-            self.hold, self.reason = Hold.REFUSED, str(error)
+            self.hold, self.reason = Hold.REFUSED, error.phrase

@@ -5,6 +5,7 @@ from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import DecisionReply, DecisionRequest, Done, Enter
 from lacoc_shared.network.session import Session
+from lacoc_shared.words import Phrase
 
 
 class RefereeClient:
@@ -29,12 +30,12 @@ class RefereeClient:
         """
         ask(self._session, self._keys, self._keys.enter, Enter(token=self._token), Done)
 
-    def decide(self, decision: Decision, reason: str, by: str) -> DecisionReply:
+    def decide(self, decision: Decision, reason: Phrase | str, by: str) -> DecisionReply:
         """Decide; the reply comes when the decision is on disk.
 
         Args:
             decision: what is decided.
-            reason: why, for the record.
+            reason: why, for the record: a text, or a phrase of `reason.*`.
             by: who decides, for the record.
 
         Raises:

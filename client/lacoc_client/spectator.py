@@ -11,6 +11,7 @@ from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL, Event, Frame, Health, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Mail, NoReply, Question, Refused, Session
+from lacoc_shared.words import say
 
 T = TypeVar("T")
 
@@ -168,8 +169,7 @@ class Spectator:
             view.take_sheet(payload)
         if view.other_version is not None:
             raise UserError(
-                f"The court speaks version {view.other_version} of the protocol, this program "
-                f"version {PROTOCOL}: install the version of lacoc that the organiser uses."
+                say("spectator.other-version", court=view.other_version, program=PROTOCOL)
             )
         self.sheet = understand(payload, Sheet)
 

@@ -19,7 +19,15 @@ import msgspec
 from lacoc_shared import decisions, messages, mistakes
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.record import schema
-from lacoc_shared.seat import No, Phase, SeatFlag
+from lacoc_shared.seat import (
+    BEATS_PER_S,
+    REPEATS_HZ,
+    RESTART_KEY,
+    SILENT_AFTER_S,
+    No,
+    Phase,
+    SeatFlag,
+)
 from lacoc_shared.words.phrase import Phrase
 from lacoc_shared.words.table import ON_PAGES, table
 
@@ -46,7 +54,15 @@ STRUCTS = (
     schema.Result,
 )
 ENUMS: tuple[type[IntEnum] | type[SeatFlag], ...] = (Phase, SeatFlag, No, Level)
-_IMPORTS = {Phrase: "../i18n/render"}
+CONSTANTS: dict[str, float] = {
+    "PROTOCOL": messages.PROTOCOL,
+    "BEATS_PER_S": BEATS_PER_S,
+    "REPEATS_HZ": REPEATS_HZ,
+    "SILENT_AFTER_S": SILENT_AFTER_S,
+    "RESTART_KEY": RESTART_KEY,
+    "ROOT_FLOATS": messages.ROOT_FLOATS,
+}
+_IMPORTS = {Phrase: "./phrase"}
 """Types that pages write themselves, with the module that has them."""
 _SIMPLE = {int: "number", float: "number", str: "string", bool: "boolean", bytes: "Uint8Array"}
 
@@ -55,13 +71,13 @@ def wire_types() -> str:
     """The whole file."""
     parts = ["// Made by client/web/make_wire.py from the Python structs; not edited by hand."]
     parts += [f'import type {{ {k.__name__} }} from "{m}";' for k, m in _IMPORTS.items()]
-    parts += [f"export const PROTOCOL = {messages.PROTOCOL};"]
+    parts += ["\n".join(f"export const {k} = {n:g};" for k, n in CONSTANTS.items())]
     parts += [_enum(kind) for kind in ENUMS]
     names = ", ".join(f'"{name}"' for name in messages.MARKER_STATES)
     parts += [f"export const MARKER_STATES = [{names}] as const;"]
     parts += [_interface(kind) for kind in STRUCTS]
     parts += [_field_names(kind) for kind in STRUCTS if kind.__struct_config__.array_like]
-    parts += [_decisions()]
+    parts += [_decisions(), _need_a_reason()]
     return "\n\n".join(parts) + "\n"
 
 
@@ -101,6 +117,16 @@ def _decisions() -> str:
         )
         kinds.append(f'\n  | {{ type: "{name}"{fields} }}')
     return f"export type DecisionName ={names};\n\nexport type Decision ={''.join(kinds)};"
+
+
+def _need_a_reason() -> str:
+    names = "".join(
+        f'  "{name}",\n' for name in decisions.DECISIONS if name in decisions.NEED_A_REASON
+    )
+    return (
+        "/** Decisions that a referee gives a reason for. */\n"
+        f"export const NEED_A_REASON: ReadonlySet<DecisionName> = new Set([\n{names}] as const);"
+    )
 
 
 def _type(hint: Any) -> str:

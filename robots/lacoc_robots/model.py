@@ -37,8 +37,8 @@ def set_options(parent: mj.MjSpec) -> None:
     parent.option.solver = mj.mjtSolver.mjSOL_NEWTON
     parent.option.cone = mj.mjtCone.mjCONE_ELLIPTIC  # pyramids favour some headings
     parent.option.impratio = 1.0
-    # "Auto" would become sparse, and another path, with a few more joints.
-    parent.option.jacobian = mj.mjtJacobian.mjJAC_DENSE
+    # Less work than dense. "Auto" would choose by the number of joints, and so change the path.
+    parent.option.jacobian = mj.mjtJacobian.mjJAC_SPARSE
 
 
 def collision_bits(seat: int, seats: int) -> tuple[int, int]:

@@ -18,9 +18,10 @@ FARTHEST_M = 0.05
 """Where a robot's centre may be while it stands, seen from its start."""
 MOST_TILT_RAD = math.radians(30.0)
 """A robot that leans more is not upright."""
-REST_RAD_S = math.radians(3.0)
-"""At rest no joint turns faster."""
-REST_M_S = 0.002
+REST_RAD_S = math.radians(0.2)
+"""At rest no joint turns faster. A robot whose servos just don't hold it moves as slowly as a few
+degrees a second before it falls."""
+REST_M_S = 0.0002
 """At rest the centre moves no faster."""
 
 
@@ -100,7 +101,7 @@ def mistakes_of(stood: Stood, file: str, levels: Sequence[Level]) -> list[Mistak
             say(
                 "robot.rests",
                 joint_deg_s=round(math.degrees(REST_RAD_S), 6),
-                centre_mm_s=1000 * REST_M_S,
+                centre_mm_s=round(1000 * REST_M_S, 6),
             ),
         )
     return book

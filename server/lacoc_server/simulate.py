@@ -26,6 +26,7 @@ from lacoc_shared.mistakes import FileRefused, UserError, text_of
 from lacoc_shared.record.pack import pack
 from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.words import say
 
 _BROUGHT = "@"
 """Between a bot and the folder of what it steers."""
@@ -91,7 +92,7 @@ def _of_folder(arena: arenas.Arena, folder: Path, robot: str) -> _Files:
     """What somebody handed in; each file is named with its folder, as mistakes list them all."""
     folder = folder.expanduser().resolve()
     if not folder.is_dir():
-        raise UserError(f"There is no folder {folder}: after the @ comes a folder with gait files.")
+        raise UserError(say("simulate.no-folder", folder=str(folder)))
     own = folder / "robot.toml"
     files = (SentFile(*find_robot(str(own) if own.exists() else robot)), *gait_files_in(folder))
     _require_gait(arena, files, folder)
@@ -112,11 +113,7 @@ def _require_gait(arena: arenas.Arena, files: _Files, folder: Path) -> None:
     levels = arena.match.open_levels
     if not any(files[1 + level] for level in levels):
         wanted = " or ".join(GAIT_NAMES[level] for level in levels)
-        raise UserError(
-            f"There is no {wanted} in {folder}, where the gait is looked for: beside the robot "
-            "file, or in the folder after the @. 'lacoc gait convert Loco-data.xlsx "
-            "LocoTra-data.txt' makes one of a workbook."
-        )
+        raise UserError(say("simulate.no-gait", wanted=wanted, folder=str(folder)))
 
 
 def simulate(
@@ -144,10 +141,10 @@ def simulate(
     """
     match = Match(setup, World, arena)
     if not match.duration_ticks:
-        raise UserError(f"A match of {setup.arena} has no end of its own: give --seconds.")
+        raise UserError(say("simulate.no-end", arena=setup.arena))
     packed = folder / f"{setup.match_id}.mcap" if folder else None
     if packed and packed.exists():
-        raise UserError(f"The record {packed} is there already, and a record is never overwritten.")
+        raise UserError(say("record.exists", file=str(packed)))
     journal = Journal(match, folder)
     try:
         for beat in _play(match, journal, players):
@@ -193,7 +190,7 @@ def _play(match: Match, journal: Journal, players: Sequence[Player]) -> Iterator
     if match.phase is Phase.FINISHED:
         yield _beat(journal, [Decide("simulate", "", Official())])
     else:
-        yield _beat(journal, [Decide("simulate", "physics stopped", Abort())])
+        yield _beat(journal, [Decide("simulate", say("reason.physics-stopped"), Abort())])
 
 
 def _beat(journal: Journal, inputs: Sequence[Input] = ()) -> Beat:

@@ -128,3 +128,8 @@ DECISIONS: dict[str, type[Decision]] = {
     str(kind.__struct_config__.tag): kind for kind in get_args(Decision)
 }
 """Every decision by its name, in the order of a match."""
+
+NEED_A_REASON = frozenset(
+    {"restart", "freeze", "adjust", "set", "take-back", "clock", "abort", "declare"}
+)
+"""Decisions that a referee gives a reason for; it is written into the record."""

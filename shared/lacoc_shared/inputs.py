@@ -10,6 +10,7 @@ import msgspec
 
 from lacoc_shared.decisions import Decision
 from lacoc_shared.messages import SentFile
+from lacoc_shared.words import Phrase
 
 
 class _Input(msgspec.Struct, frozen=True, array_like=True):
@@ -72,15 +73,17 @@ class Decide(_Input, frozen=True, tag="decide"):
     """A referee decided."""
 
     by: str
-    reason: str
+    reason: Phrase | str
+    """A text that the referee wrote, or a phrase of `reason.*`."""
     decision: Decision
 
 
 class Advice(_Input, frozen=True, tag="advice"):
     """The court measured that the match was held badly, or after all well enough."""
 
-    reasons: tuple[str, ...]
-    """Why a replay is advised; empty: it is not any more."""
+    reasons: tuple[Phrase | str, ...]
+    """Why a replay is advised (`health.*`; a text in a record of protocol 1); empty: it is not any
+    more."""
 
 
 Input = JoinSeat | ReadySeat | LeaveSeat | KeySeat | SilentSeat | HeardSeat | Decide | Advice

@@ -11,12 +11,16 @@ import msgspec
 
 from lacoc_shared.decisions import Decision
 from lacoc_shared.mistakes import Mistake
+from lacoc_shared.words import Phrase
 
-PROTOCOL = 1
+PROTOCOL = 2
 """Version of this contract; both ends must have the same."""
 
 MARKER_STATES = ("neutral", "left", "right", "down")
 """The states of a marker; a frame carries the index in two bits."""
+
+ROOT_FLOATS = 7
+"""Numbers of a robot's root in `Frame.poses`: x, y, z, then its quaternion w, x, y, z."""
 
 
 class SeatFrame(msgspec.Struct, frozen=True, array_like=True):
@@ -117,8 +121,8 @@ class Joined(msgspec.Struct, frozen=True, kw_only=True):
     """Key for the MACs of this session; 16 bytes."""
     last_seq: int
     """The seat's sequence numbers go on after this one."""
-    notes: tuple[str, ...] = ()
-    """What the contestant should know, such as "the match is on: the robot keeps its files"."""
+    notes: tuple[Phrase, ...] = ()
+    """What the contestant should know (`note.*`)."""
 
 
 class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -134,13 +138,15 @@ class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 class Done(msgspec.Struct, frozen=True):
     """It was done."""
 
-    text: str = ""
+    said: Phrase | None = None
+    """What the one who asked should know (`note.*`)."""
 
 
 class Refusal(msgspec.Struct, frozen=True):
     """It was not done; the reply's error."""
 
-    reason: str
+    why: Phrase
+    """A whole sentence; its code says which refusal it is."""
     mistakes: tuple[Mistake, ...] = ()
     again: bool = False
     """The same request may be taken later: nothing is wrong with it, the court can't now."""
@@ -158,7 +164,8 @@ class DecisionRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     token: str
     by: str
     """Who decides, for the record."""
-    reason: str = ""
+    reason: Phrase | str = ""
+    """A text that the referee wrote, or a phrase of `reason.*`."""
     decision: Decision
 
 
@@ -168,10 +175,15 @@ class DecisionReply(msgspec.Struct, frozen=True, kw_only=True):
     beat: int
     event: int | None = None
     """Number of its event; None for a dry run."""
-    text: str
+    said: Phrase
+    """What was done (`decision.*`)."""
     scores: tuple[int, ...]
-    changes: tuple[str, ...] = ()
-    """For take-back: the events that vanish or appear."""
+    changes: tuple[Phrase, ...] = ()
+    """For take-back: the events that vanish or appear (`change.*`)."""
+
+
+Outcome = Done | DecisionReply | Refusal
+"""What became of an input."""
 
 
 class Event(msgspec.Struct, frozen=True, kw_only=True):
@@ -185,12 +197,12 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     kind: str
     """phase, join, leave, ready, silent, heard, restart, decision, fault, result, advice, or a
     game's own: flip, capture, strike."""
-    text: str
-    """A plain English sentence."""
+    said: Phrase
+    """A whole sentence."""
     seat: int = -1
     """Index of the seat it is about; -1: none."""
     data: dict[str, Any] = {}
-    """Particulars by name, for programs and translations."""
+    """Particulars by name, for programs."""
 
 
 class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
@@ -304,7 +316,7 @@ class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
     """Since the last command; None: nobody."""
     commands_hz: float
     refused: dict[str, int]
-    """How often, by reason."""
+    """How often, by the name of `count.*`: "bad-seal"."""
     round_trip_p50_ms: float | None = None
     """From a frame to the beat that has the seat's answer to it, by the court's clock: the median
     of the last 10 s; None: not known."""
@@ -327,7 +339,8 @@ class LinkVerdict(msgspec.Struct, frozen=True, kw_only=True):
     arrived: int
     """How many of them came."""
     refused: dict[str, int]
-    """What was refused in this match, by reason: at the court's doors and by the rules."""
+    """What was refused in this match, by the name of `count.*`: at the court's doors and by the
+    rules."""
 
 
 class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
@@ -346,8 +359,9 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
     resumptions: int
     """How often the match went on after its court was killed."""
     seats: tuple[LinkVerdict, ...]
-    advice: tuple[str, ...]
-    """Why a replay is advised: what is beyond the contest's limits; empty: it is not advised."""
+    advice: tuple[Phrase | str, ...]
+    """Why a replay is advised: what is beyond the contest's limits (`health.*`; a text in a record
+    of protocol 1). Empty: it is not advised."""
 
 
 class Health(msgspec.Struct, frozen=True, kw_only=True):
@@ -362,14 +376,14 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     worst_late_ms: float
     seats: tuple[SeatHealth, ...]
     dropped: dict[str, int]
-    """Messages that belong to no seat, by reason."""
-    decisions: dict[str, str]
-    """Every decision: "" if it is legal now, else why not."""
+    """Messages that belong to no seat, by the name of `count.*`."""
+    decisions: dict[str, Phrase | None]
+    """Every decision: None if it is legal now, else why not (`why.*`)."""
     verdict: HealthVerdict | None = None
     """How well this match was held; None: that is not measured."""
-    record_trouble: str = ""
-    """What is wrong with the disk of the record, a sentence: why the match does not go on, or what
-    else that disk reports. "" while all is well."""
+    record_trouble: Phrase | None = None
+    """What is wrong with the disk of the record: why the match does not go on, or what else that
+    disk reports (`record.*`). None while all is well."""
     input_delay_ms: int = 0
     """From a frame to the effect of what was done upon it, the same for all seats; 0: the contest
     does not make links equal."""

@@ -97,6 +97,11 @@ class UserError(Exception):
         super().__init__(said)
         self.said = said
 
+    @property
+    def phrase(self) -> Phrase:
+        """What was said, as a phrase."""
+        return self.said if isinstance(self.said, Phrase) else say("plain.text", text=self.said)
+
     def __str__(self) -> str:
         return render(self.said)
 

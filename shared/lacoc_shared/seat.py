@@ -5,6 +5,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from lacoc_shared.words import Phrase, say
+
 Colour = Annotated[str, msgspec.Meta(pattern="^#[0-9a-fA-F]{6}$")]
 """Of a team, as in "#0072b2"."""
 Pattern = Literal["plain", "stripes", "dots"]
@@ -24,6 +26,11 @@ class Phase(IntEnum):
     OFFICIAL = 7
     VOID = 8
 
+    @property
+    def word(self) -> str:
+        """The name of it in the table, after `phase.`: "halted"."""
+        return self.name.lower()
+
 
 class SeatFlag(IntFlag):
     """What is true of a seat at a beat."""
@@ -37,7 +44,7 @@ class SeatFlag(IntFlag):
 
 
 class No(IntEnum):
-    """Why a seat's command was refused; the sentence is in `NO_SENTENCES`."""
+    """Why a seat's command was refused; `WHY_NO` says it."""
 
     NONE = 0
     NOT_PLAYING = 1
@@ -47,14 +54,14 @@ class No(IntEnum):
     FROZEN = 5
 
 
-NO_SENTENCES: dict[No, str] = {
-    No.NONE: "",
-    No.NOT_PLAYING: "keys work only while the match is being played",
-    No.LEVEL_CLOSED: "this arena does not open that level of control",
-    No.NO_SUCH_KEY: "your gait file has no such key",
-    No.RESTARTED: "your robot was restarted a moment ago: wait until the pause is over",
-    No.FROZEN: "the referee has frozen your robot",
+WHY_NO: dict[No, Phrase] = {
+    No.NOT_PLAYING: say("key.not-playing"),
+    No.LEVEL_CLOSED: say("key.level-closed"),
+    No.NO_SUCH_KEY: say("key.no-such-key"),
+    No.RESTARTED: say("key.restarted"),
+    No.FROZEN: say("key.frozen"),
 }
+"""What a contestant is told of it; `count.*` has the same names."""
 
 RESTART_KEY = 10
 """The key number of [x] in a command; digits are 0-9."""
@@ -68,3 +75,6 @@ BEAT_US = 20_000
 BEATS_PER_S = 50
 REPEATS_HZ = 10
 """A controller repeats its last command so often (rules 3)."""
+SILENT_AFTER_S = 1.0
+"""Whoever has sent nothing for longer than this is silent: a seat's controller to its court
+(rules 3), and a court to those who watch it."""

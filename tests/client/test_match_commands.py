@@ -146,6 +146,7 @@ def test_a_waiting_referee_gives_up_in_time(
     assert "official is not legal after 0.7 s: only in FINISHED; the match is LOBBY." in reason
 
 
+@pytest.mark.long
 def test_bots_play_match_after_match(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

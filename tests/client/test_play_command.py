@@ -260,7 +260,7 @@ def test_a_wrong_start_is_one_clear_message(
     changes: dict[str, str],
     expected: str,
 ) -> None:
-    """Issue 2, done means 6: what is wrong, exit code 2, nothing else."""
+    """What is wrong, exit code 2, nothing else."""
     code, said = piped(tmp_path, "", *command, *_where(quiet_court, changes))
 
     assert code == 2, said

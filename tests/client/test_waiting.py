@@ -7,8 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from lacoc_client.asking import NoCourt, NotNow
-from lacoc_client.waiting import Patience
+from lacoc_client.asking import NoCourt, NotNow, Patience
 from lacoc_shared.command import cli
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import NotConnected, Session, open_client, open_court

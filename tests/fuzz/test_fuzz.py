@@ -29,10 +29,12 @@ def hangs_are_seen() -> Iterator[None]:
     signal(SIGPROF, before)
 
 
+@pytest.mark.parametrize("times", [1, pytest.param(20, marks=pytest.mark.long)])
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
-def test_nothing_but_the_documented_refusals(target: Target) -> None:
+def test_nothing_but_the_documented_refusals(target: Target, times: int) -> None:
     """Good seeds, former findings and hostile bytes: no crash, no hang, no state changes."""
-    *_, figures = feed(target, len(target.seeds) + SLOW.get(target.name, INPUTS), seed=1)
+    inputs = times * SLOW.get(target.name, INPUTS)
+    *_, figures = feed(target, len(target.seeds) + inputs, seed=times)
     assert not figures.findings, "\n".join(figures.findings)
     assert figures.inputs == figures.accepted + figures.refused
 

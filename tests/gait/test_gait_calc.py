@@ -1,4 +1,4 @@
-"""Gait files and LibreOffice Calc: what it saves is read, what we write it shows (issue 2, done 3).
+"""Gait files and LibreOffice Calc: what it saves is read, what we write it shows.
 
 The files in `files/` were saved by Calc; `files/make_files.py` makes them.
 """
@@ -32,7 +32,7 @@ needs_calc = pytest.mark.skipif(
 
 @pytest.mark.parametrize("encoding", TEXTS)
 def test_text_saved_by_calc(encoding, workshop, legs):
-    """Issue 2, done 3: Calc's text in UTF-8, UTF-16 and Shift-JIS is the table of rules 2."""
+    """Calc's text in UTF-8, UTF-16 and Shift-JIS is the table of rules 2."""
     path = TEXTS[encoding]
     assert "関節番号" in path.read_bytes().decode(encoding)
     assert read_gait_file(path, legs=legs) == workshop
@@ -44,7 +44,7 @@ def test_the_texts_differ_as_bytes():
 
 
 def test_workbook_saved_by_calc(workshop, legs):
-    """Issue 2, done 3: Calc's .xlsx itself is the same gait."""
+    """Calc's .xlsx itself is the same gait."""
     path = FILES / "calc.xlsx"
     assert read_gait_file(path, legs=legs) == workshop
     assert openpyxl.load_workbook(path).sheetnames == ["EX (input)", "Loco-data"]

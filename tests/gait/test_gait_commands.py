@@ -1,4 +1,4 @@
-"""`lacoc gait check` and `lacoc gait convert` (issue 2, rules 2)."""
+"""`lacoc gait check` and `lacoc gait convert` (rules 2)."""
 
 import json
 from pathlib import Path
@@ -38,7 +38,7 @@ def folder(tmp_path, workshop, legs) -> Path:
 
 
 def test_check_says_what_each_key_does(lacoc, folder):
-    """Issue 2: a short summary of each file: keys, postures, and which feet are lifted."""
+    """A short summary of each file: keys, postures, and which feet are lifted."""
     code, out, err = lacoc("gait", "check", *sorted(folder.iterdir()))
     assert (code, err) == (0, "")
     assert "Loco-data.txt: right. Level A, postures, 6 legs." in out
@@ -54,7 +54,7 @@ def test_check_says_what_each_key_does(lacoc, folder):
 
 
 def test_check_lists_every_mistake_of_every_file(lacoc, folder):
-    """Issue 2: mistakes as a table of file, row, column, joint and leg, found, expected; code 2."""
+    """Mistakes as a table of file, row, column, joint and leg, found, expected; code 2."""
     for name in ("a.txt", "b.txt"):
         text = (folder / "Loco-data.txt").read_text().replace("-45\t-45", "-451\tx", 1)
         (folder / name).write_text(text)
@@ -111,7 +111,7 @@ def test_check_takes_a_robot_of_any_number_of_legs(lacoc, folder):
 
 
 def test_check_json(lacoc, folder):
-    """Issue 2: --json wherever a program may read: files without mistakes, and the mistakes."""
+    """--json says it to a program: files without mistakes, and the mistakes."""
     (folder / "bad.txt").write_text("Num of Posture\t1\n0 Key" + "\t0" * 17 + "\t200\n")
     code, out, err = lacoc(
         "gait", "check", "--json", folder / "LocoTra-data.txt", folder / "bad.txt"
@@ -160,7 +160,7 @@ KINDS = ("Loco-data.txt", "LocoTra-data.txt", "Loco-data.xlsx")
 @pytest.mark.parametrize("source", KINDS)
 @pytest.mark.parametrize("target", KINDS)
 def test_any_of_the_three_becomes_any_other(lacoc, folder, workshop, source, target):
-    """Issue 2: convert A B; the kind of B is told by its name; the sample's keys by default."""
+    """`convert A B`: the kind of B is told by its name; the sample's keys by default."""
     (folder / "out").mkdir()
     written = folder / "out" / target
     code, out, err = lacoc("gait", "convert", folder / source, written)
@@ -178,7 +178,7 @@ def test_any_of_the_three_becomes_any_other(lacoc, folder, workshop, source, tar
 
 
 def test_convert_with_keys(lacoc, folder, workshop):
-    """Issue 2: --keys says which postures each key takes."""
+    """--keys says which postures each key takes."""
     target = folder / "LocoTra-data-new.txt"
     code, *_ = lacoc(
         "gait", "convert", folder / "Loco-data.xlsx", target, "--keys", "0; 1,2,3,4 ;5"
@@ -218,7 +218,7 @@ def test_convert_never_overwrites(lacoc, folder, workshop):
     ],
 )
 def test_convert_says_what_is_wrong(lacoc, folder, source, target, keys, message):
-    """Issue 2, done 6: one clear message, code 2, nothing written or renamed."""
+    """One clear message, code 2, nothing written or renamed."""
     rows = "".join("\t".join([str(n)] * 18) + "\n" for n in range(11))
     (folder / "many.txt").write_text(f"1\n11\n{rows}")
     (folder / "bad.txt").write_text("no gait")

@@ -98,7 +98,7 @@ def test_a_written_text_reads_back(table, encoding, line_end, gap):
 
 
 @pytest.mark.slow
-@settings(patient, max_examples=25)
+@settings(patient)
 @given(posture_tables_of(degrees.map(lambda value: float(f"{value:.15g}"))))
 def test_a_written_workbook_reads_back(table):
     """Rules 2: any posture table of the 15 digits that spreadsheets keep, through a workbook."""
@@ -110,7 +110,7 @@ def test_a_written_workbook_reads_back(table):
 @patient
 @given(posture_tables)
 def test_postures_to_locomotion_and_back(table):
-    """Issue 2: the different postures of a locomotion are the postures it was joined from."""
+    """The different postures of a locomotion are the postures it was joined from."""
     keys = tuple((digit,) for digit in table.postures)
     back = to_postures(to_locomotion(table, keys))
     assert set(back.postures.values()) == set(table.postures.values())
@@ -147,7 +147,7 @@ def test_a_damaged_text_is_read_or_refused(table, encoding, edits):
     assert mistakes_of(read_gait, data) != []
 
 
-@settings(patient, max_examples=60)
+@settings(patient)
 @given(st.binary(max_size=200), st.sampled_from([b"", b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1"]))
 def test_any_bytes_are_no_workbook(data, start):
     """Rules 2: bytes that are no workbook raise FileRefused, and nothing else."""
@@ -159,7 +159,7 @@ SAMPLE = write_workbook(PostureTable({0: (0.5,) * 18, 1: (0.25,) * 18}), leg_lab
 PARTS = sorted(zipfile.ZipFile(io.BytesIO(SAMPLE)).namelist())
 
 
-@settings(patient, max_examples=60)
+@settings(patient)
 @given(st.integers(0, len(SAMPLE)), st.binary(min_size=1, max_size=4), st.booleans())
 def test_a_damaged_workbook_is_read_or_refused(place, new, cut):
     """Rules 2: damage to the zip is found, or was where nothing is read."""
@@ -168,7 +168,7 @@ def test_a_damaged_workbook_is_read_or_refused(place, new, cut):
 
 
 @pytest.mark.slow
-@settings(patient, max_examples=120)
+@settings(patient)
 @given(st.sampled_from(PARTS), st.data())
 def test_a_workbook_with_wrong_parts_is_read_or_refused(part, draw):
     """Rules 2: whole zips whose XML is wrong in any part."""

@@ -297,6 +297,6 @@ def test_a_file_is_told_by_its_content(tmp_path, sample, workshop, legs):
 
 
 def test_a_file_that_is_not_there(tmp_path):
-    """Issue 2, done 6: one sentence with the name and the reason."""
+    """One sentence with the name and the reason."""
     with pytest.raises(UserError, match=r"Cannot read .*none\.txt: No such file or directory\."):
         read_gait_file(tmp_path / "none.txt")

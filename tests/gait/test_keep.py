@@ -46,7 +46,7 @@ def test_a_link_is_moved_not_followed(tmp_path):
 
 
 def test_what_cannot_be_written_is_said(tmp_path):
-    """Issue 2, done 6: a folder of that name, or no folder to write in."""
+    """A folder of that name, or no folder to write in."""
     with pytest.raises(UserError, match="a folder has this name"):
         save(tmp_path, b"")
     with pytest.raises(UserError, match="No such file or directory"):

@@ -374,6 +374,7 @@ def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
         page.ask("watch")
 
 
+@pytest.mark.long
 def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
     """Keys of a contestant take effect in time, in beats, while others send all they can."""
     venue.court()

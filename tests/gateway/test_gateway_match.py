@@ -29,7 +29,7 @@ def started(venue: Venue) -> tuple[PageClient, PageClient, PageClient]:
 
 
 def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
-    """Issue 3: two seats and a referee by one gateway; a late comer has everything at once."""
+    """Two seats and a referee by one gateway; a late comer has everything at once."""
     venue.court("--seconds", "4")
     venue.web()
     left, right, referee = started(venue)
@@ -142,7 +142,7 @@ def test_a_newer_page_takes_the_seat(venue: Venue) -> None:
 
 
 def test_one_referee_acts_until_another_takes_over(venue: Venue) -> None:
-    """Issue 3: one acts, the others watch; who acts stands in the record."""
+    """One acts, the others watch; who acts stands in the record."""
     venue.court()
     venue.web()
     venue.contestant("left")

@@ -12,7 +12,7 @@ FAR = (0.1, 0.025)
 """Delay and jitter of the slow link, one way [s]: 200 ± 50 ms there and back."""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) -> None:
     """Whatever comes too late for that says by how much (benchmarks.fairness has the figures)."""
     played = play(tmp_path, "equal", *FAR, warm_s=6, seconds=10)

@@ -22,7 +22,7 @@ def seen(spectator: Spectator, numbers: list[int]) -> None:
 
 
 def test_a_late_comer_is_complete_at_once(court: CourtStub, session: Session) -> None:
-    """Issue 2: the sheet can be fetched at any time; all events of the match come too."""
+    """The sheet can be fetched at any time; all events of the match come too."""
     for number in range(1, 301):
         court.network.publish_event(make_event(number))
     spectator = Spectator(session, "main")

@@ -27,6 +27,12 @@ from contestant import Contestant, Sit
 from venue import Venue
 
 WAIT_MS = 45_000
+SLOW_SCREEN = """(() => {
+  const next = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (draw) => setTimeout(() => next(draw), 80);
+  window.cancelAnimationFrame = clearTimeout;
+})()"""
+"""A screen of about ten pictures a second, as the drawing of sixty is most of a test's work."""
 
 
 @pytest.fixture(scope="session")
@@ -85,7 +91,13 @@ def console() -> Iterator[Console]:
 
 
 @pytest.fixture
-def open_page(browser: Browser, console: Console) -> Iterator[OpenPage]:
+def slow_screen() -> bool:
+    """Whether pages draw seldom; a module whose subject is the drawing itself says no."""
+    return True
+
+
+@pytest.fixture
+def open_page(browser: Browser, console: Console, slow_screen: bool) -> Iterator[OpenPage]:
     """Opens pages, each in a fresh context, as if by different people."""
     contexts: list[BrowserContext] = []
 
@@ -94,6 +106,8 @@ def open_page(browser: Browser, console: Console) -> Iterator[OpenPage]:
         options.setdefault("locale", "en-GB")
         context = browser.new_context(**options)
         context.set_default_timeout(WAIT_MS)
+        if slow_screen:
+            context.add_init_script(SLOW_SCREEN)
         contexts.append(context)
         page = context.new_page()
         console.watch(page)

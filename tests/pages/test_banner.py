@@ -26,7 +26,18 @@ def opened(open_page: OpenPage, venue: Venue, path: str, **options: Any) -> Show
     return Show(open_page(**options), venue.url, path, drawn=False)
 
 
-@pytest.mark.parametrize("path", WAITS)
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/play",
+        "/overlay",
+        *(
+            pytest.param(path, marks=pytest.mark.long)
+            for path in ("/watch", "/practice", "/referee")
+        ),
+    ],
+)
 def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: str) -> None:
     """No such court, and a court that is not there: the gateway's sentence, in both languages."""
     venue.web()

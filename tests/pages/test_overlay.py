@@ -97,6 +97,7 @@ def test_the_workshops_two_windows(venue: Venue, open_page: OpenPage) -> None:
     show.moves()
 
 
+@pytest.mark.long
 def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
     """Score, events and picture come `delay` seconds later, and together."""
     venue.court()
@@ -131,6 +132,7 @@ def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
     assert 320 < behind < 700
 
 
+@pytest.mark.long
 def test_it_heals_for_ever(venue: Venue, open_page: OpenPage, console: Any) -> None:
     """No court, no gateway: it says so in a corner, never an error page, and comes back."""
     console.expect("WebSocket|ERR_CONNECTION")
@@ -180,8 +182,9 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
     expect(show.find(".opening .ready")).to_have_count(0, timeout=WAIT_MS)
 
 
+@pytest.mark.long
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:
-    """Done means 2: axe-core finds no serious violation, with one picture and with two."""
+    """Axe-core finds no serious violation, with one picture and with two."""
     pytest.importorskip("axe_core_python")
     venue.court()
     venue.web()

@@ -57,7 +57,7 @@ def playing(venue: Venue, page: Contestant) -> PageClient:
 
 
 def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """Issue 3: connect card, every mistake of a file, the token only for this tab."""
+    """The card shows every mistake of a file, the token only for this tab."""
     page = opened(venue, sit)
     page.sees(".safety", "'lacoc play' is safer")
     page.page.click("button[type=submit]")
@@ -122,7 +122,7 @@ def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: P
 
 
 def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
-    """Issue 3: what misses the frame of the files would make the browser leave the page."""
+    """What misses the frame of the files would make the browser leave the page."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     sample = sample_gait_files("hexapod")
@@ -159,6 +159,7 @@ def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path
     page.sees(".files li:has-text('Robot')", "mine.toml")
 
 
+@pytest.mark.long
 def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """It never makes the browser leave the match; before one it is offered, in one it is not."""
     page = seated(venue, sit, "--seconds", "120")
@@ -180,6 +181,7 @@ def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path)
     other.close()
 
 
+@pytest.mark.long
 def test_tabs_of_one_browser_have_their_own_files(
     venue: Venue, sit: Sit, tmp_path: Path, console: Any
 ) -> None:
@@ -212,6 +214,7 @@ def test_tabs_of_one_browser_have_their_own_files(
     left.misses(".files .name:not(.muted)")
 
 
+@pytest.mark.long
 def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
     """The tab's address may lead to another court later: there it sits down anew."""
     page = opened(venue, sit)
@@ -224,8 +227,9 @@ def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
     page.stands("seated")
 
 
+@pytest.mark.long
 def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """Issue 3, connect card: by the address, and from a list where there are several."""
+    """A court is chosen by the address, and from a list where there are several."""
     port = free_port()
     contest = venue.contest.read_text()
     side = contest.replace("court.main", "court.side").replace(str(venue.court_port), str(port))
@@ -269,8 +273,9 @@ def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
         yield address
 
 
+@pytest.mark.long
 def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
-    """Issue 4: the own link as the court measures it, and the delay that both have."""
+    """The own link as the court measures it, and the delay that both have."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     page = seated(venue, sit)
@@ -279,7 +284,7 @@ def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
 
 
 def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: Sit) -> None:
-    """Issue 3: `lacoc play` fills the card in, and the page never learns the token."""
+    """`lacoc play` fills the card in, and the page never learns the token."""
     url, key = own
     page = sit(url)
     page.open(key=key)
@@ -306,7 +311,7 @@ def test_a_link_without_the_key_only_watches(venue: Venue, sit: Sit) -> None:
 
 
 def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """Issue 3, workshop 5-4: from the lobby to Pos-data.txt, with every key."""
+    """Workshop 5-4: from the lobby to Pos-data.txt, with every key."""
     page = seated(venue, sit, "--seconds", "120")
     page.press("2")
     page.is_toasted("[2] Keys work only while the match is being played")
@@ -396,7 +401,7 @@ def moved_m(before: Frame, after: Frame | None, seat: int) -> float:
 
 
 def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
-    """Issue 3: three views, "click here to steer", keys by their place, a way out for Tab."""
+    """Three views, "click here to steer", keys by their place, a way out for Tab."""
     page = seated(venue, sit)
     page.sees(".badge", "View 1/3")
     for number, camera in ((2, "top"), (3, "chase"), (1, "arena")):
@@ -436,7 +441,7 @@ def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
 
 
 def test_the_key_test_and_the_language(venue: Venue, sit: Sit) -> None:
-    """Issue 3: settings; the language changes at once, and nothing stays in the other one."""
+    """Settings: the language changes at once, and nothing stays in the other one."""
     page = seated(venue, sit)
     page.page.click("text=Settings")
     page.page.click(".keytest")
@@ -451,8 +456,9 @@ def test_the_key_test_and_the_language(venue: Venue, sit: Sit) -> None:
     assert page.find("html").get_attribute("lang") == "ja"
 
 
+@pytest.mark.long
 def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None:
-    """Issue 3: the page follows the browser; what the court says is translated, too."""
+    """The page follows the browser; what the court says is translated, too."""
     page = opened(venue, sit, locale="ja-JP")
     page.sees(".entrance h1", "試合に参加")
     page.join("not-the-token")
@@ -468,7 +474,7 @@ def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None
 
 
 def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> None:
-    """Issue 3: the loss is a clear card, and nothing fights for the seat by itself."""
+    """The loss is a clear card, and nothing fights for the seat by itself."""
     page = seated(venue, sit)
     elsewhere = venue.contestant("left", "Ants")
     page.stands("lost")
@@ -479,8 +485,9 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
     elsewhere.wait(lambda: elsewhere.seat["hold"] == "replaced")
 
 
+@pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None:
-    """Issue 3: banner and grey keys while the link is lost; then all goes on by itself."""
+    """Banner and grey keys while the link is lost; then all goes on by itself."""
     court = venue.court("--seconds", "120")
     web = venue.web()
     page = sit(venue.url)
@@ -519,8 +526,9 @@ def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None
     assert sum("Ants takes the left seat" in one for one in said) == 1
 
 
+@pytest.mark.long
 def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
-    """Issue 3: never a stale picture as live."""
+    """Never a stale picture as live."""
     court = venue.court()
     venue.web()
     page = sit(venue.url)
@@ -535,7 +543,7 @@ def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
 
 
 def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: Sit) -> None:
-    """Issue 3: a stranger can tell who won, and what comes next; the seat stays."""
+    """A stranger can tell who won, and what comes next; the seat stays."""
     page = seated(venue, sit, "--seconds", "1")
     other = playing(venue, page)
     page.sees(".result h1", "A draw")
@@ -574,8 +582,9 @@ def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: S
     other.close()
 
 
+@pytest.mark.long
 def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
-    """Issue 3: touch steers, and all that is needed fits a phone."""
+    """Touch steers, and all that is needed fits a phone."""
     phone = {"width": 390, "height": 844}
     page = seated(venue, sit, viewport=phone, has_touch=True, is_mobile=True)
     page.find("button.ready").tap()
@@ -599,7 +608,7 @@ def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
 
 
 def test_accessible(venue: Venue, sit: Sit) -> None:
-    """Done means 2: axe-core finds no serious violation in the card, the cockpit, the dialogs."""
+    """Axe-core finds no serious violation in the card, the cockpit, the dialogs."""
     pytest.importorskip("axe_core_python")
     page = opened(venue, sit)
     page.sees(".entrance .seat")
@@ -623,6 +632,7 @@ def test_accessible(venue: Venue, sit: Sit) -> None:
     other.close()
 
 
+@pytest.mark.long
 def test_pos_data_is_of_the_seat_that_is_held(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """Who changes seats before a match does not take the other robot's way along."""
     page = seated(venue, sit)
@@ -670,6 +680,7 @@ def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
         assert "saved from 0:02.0 on, when this page was loaded" in shown["says"]
 
 
+@pytest.mark.long
 def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
     """Practice may run all day: the page keeps so many rows, and says where they begin."""
     frames = list(walk(random.Random(0), (12, 18)))

@@ -65,7 +65,7 @@ def lessons(page: Contestant, *keys: int) -> None:
 
 
 def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> None:
-    """Issue 3: open, press 1-2-3-4, see it walk; both levels, x, z and Pos-data.txt."""
+    """Open, press 1-2-3-4, see it walk; both levels, x, z and Pos-data.txt."""
     page = practise()
     page.stands("seated")
     page.phase(Phase.PLAYING)  # nobody had to say ready
@@ -115,6 +115,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     page.phase(Phase.PLAYING)
 
 
+@pytest.mark.long
 def test_a_reload_goes_on(practise: Practise) -> None:
     """The tab keeps its seat and its level; the robot stands until the next key."""
     page = practise()
@@ -206,8 +207,9 @@ def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_pat
     page.sees(".changed li", "LocoTra-data.txt, row 2, column 1")
 
 
+@pytest.mark.long
 def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
-    """Issue 3: the pad is there without scrolling, in the browser's language."""
+    """The pad is there without scrolling, in the browser's language."""
     phone = {"width": 390, "height": 844}
     page = practise(viewport=phone, has_touch=True, is_mobile=True, locale="ja-JP")
     page.phase(Phase.PLAYING)
@@ -221,8 +223,9 @@ def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
         assert box["y"] + box["height"] <= phone["height"]
 
 
+@pytest.mark.long
 def test_accessible(practise: Practise) -> None:
-    """Done means 2: axe-core finds no serious violation."""
+    """Axe-core finds no serious violation."""
     pytest.importorskip("axe_core_python")
     page = practise()
     page.phase(Phase.PLAYING)

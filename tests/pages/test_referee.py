@@ -133,6 +133,7 @@ def to_playing(page: Page, venue: Venue) -> None:
     phase(page, 4)
 
 
+@pytest.mark.long
 def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     """Beyond the contest's limits: the reasons beside the result, in the log, in both languages."""
     wanted = "[health]\nreal_time_factor = 2.0\n"  # no court can
@@ -239,6 +240,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     expect(page.locator(".top h1")).to_contain_text("Match 3")
 
 
+@pytest.mark.long
 def test_declaring_a_winner_ends_a_halted_match(court: Venue, referee: Referee) -> None:
     """Rules 4, `declare`: the referee's word stands beside what was computed."""
     page = at_the_desk(referee())
@@ -265,6 +267,7 @@ def test_a_wrong_token_is_said_beside_the_field(court: Venue, referee: Referee) 
     at_the_desk(page)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("keys", [False, True])
 def test_a_token_that_was_replaced_is_not_shown_for_ever(
     venue: Venue, referee: Referee, keys: bool
@@ -292,6 +295,7 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
     at_the_desk(page)
 
 
+@pytest.mark.long
 def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     """A link without its key shows everything and says how to get one that may act."""
     page = referee(key=False)
@@ -302,6 +306,7 @@ def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     expect(big(page)).to_have_attribute("aria-disabled", "true")
 
 
+@pytest.mark.long
 def test_the_file_that_a_browser_is_given_leads_to_the_page(
     court: Venue, open_page: OpenPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -363,6 +368,7 @@ def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
     phase(page, 1)
 
 
+@pytest.mark.long
 def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> None:
     """Key by key, also where what stands there so far is no number or ends with a zero."""
     page = at_the_desk(referee())
@@ -391,6 +397,7 @@ def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> Non
     log_has(page, "-10.5 s to play.")
 
 
+@pytest.mark.long
 def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> None:
     """Nobody knows whether it was done: that is no "no", and the dialog does not offer it again."""
     page = at_the_desk(referee())
@@ -487,6 +494,7 @@ def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
     expect(void).to_be_focused()
 
 
+@pytest.mark.long
 def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) -> None:
     """Score and winner, also where they change while the dialog is open."""
     venue.court("--seconds", "1")
@@ -505,6 +513,7 @@ def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) 
     expect(dialog).to_contain_text("21 : 18 · Bees wins")
 
 
+@pytest.mark.long
 def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
     """The name that the record has for it stands for itself in no language."""
     text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")
@@ -555,6 +564,7 @@ def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
     expect(first.locator(".acting.mine")).to_be_visible()
 
 
+@pytest.mark.long
 def test_a_reload_goes_on(court: Venue, referee: Referee) -> None:
     """The tab remembers the token, this browser the name; leaving forgets the token."""
     page = at_the_desk(referee())
@@ -565,6 +575,7 @@ def test_a_reload_goes_on(court: Venue, referee: Referee) -> None:
     expect(page.locator(".acting")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_a_court_that_was_killed(venue: Venue, referee: Referee, console: Any) -> None:
     """It is never shown as live, nothing can be decided; when it comes back, the desk goes on."""
     console.expect("WebSocket")  # the gateway is killed too
@@ -628,8 +639,9 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     log_has(page, "Ants goes back to the start. Reason: stuck")
 
 
+@pytest.mark.long
 def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: Referee) -> None:
-    """Issue 4: each seat's round trip as the court measures it, and the common delay."""
+    """Each seat's round trip as the court measures it, and the common delay."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     venue.court()
@@ -642,6 +654,7 @@ def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: R
     expect(right.locator("dd[data-trip]")).to_have_text("–")
 
 
+@pytest.mark.long
 def test_the_log_is_filtered(court: Venue, referee: Referee) -> None:
     """Decisions, the game, and links: each by itself."""
     page = at_the_desk(referee())
@@ -655,6 +668,7 @@ def test_the_log_is_filtered(court: Venue, referee: Referee) -> None:
     expect(card).to_contain_text("Nothing has happened yet")
 
 
+@pytest.mark.long
 def test_all_of_it_in_japanese(court: Venue, referee: Referee) -> None:
     """No English is left in the page, its reasons, its log and its dialogs."""
     page = at_the_desk(referee(query="?lang=ja"))
@@ -673,7 +687,15 @@ def test_all_of_it_in_japanese(court: Venue, referee: Referee) -> None:
     log_has(page, "審判 Kim：無効試合としました。理由：通信（LAN）")
 
 
-@pytest.mark.parametrize("size", [(1366, 768), (1920, 1080), (390, 844)], ids=str)
+@pytest.mark.parametrize(
+    "size",
+    [
+        (390, 844),
+        pytest.param((1366, 768), marks=pytest.mark.long),
+        pytest.param((1920, 1080), marks=pytest.mark.long),
+    ],
+    ids=str,
+)
 def test_nothing_runs_off_the_screen(court: Venue, referee: Referee, size: tuple[int, int]) -> None:
     """The next step is in sight at each size, and nothing is wider than the screen."""
     page = at_the_desk(referee(size=size))
@@ -686,6 +708,7 @@ def test_nothing_runs_off_the_screen(court: Venue, referee: Referee, size: tuple
     assert not wide
 
 
+@pytest.mark.long
 def test_no_serious_barriers(court: Venue, referee: Referee) -> None:
     """axe-core: names, roles and contrast, in the lobby, in a dialog and in a popover."""
     pytest.importorskip("axe_core_python")

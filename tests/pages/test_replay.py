@@ -229,6 +229,7 @@ def record_length(first: int, last: int) -> str:
     return f"{seconds // 60}:{seconds % 60:02}"
 
 
+@pytest.mark.long
 def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> None:
     """Each event of the game has a mark in its seat's colour, labelled; the log leads to it."""
     show = Player(open_page(viewport=LAPTOP), library, "?file=b-flags.mcap&t=0")
@@ -267,6 +268,7 @@ def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> N
     show.has_scores(*record.result.scores)
 
 
+@pytest.mark.long
 def test_the_servers_list_and_the_address(
     library: Venue, open_page: OpenPage, console: Any
 ) -> None:
@@ -380,6 +382,7 @@ def write_segments(record: Record, folder: Path) -> list[Path]:
     return [first.path, second.path]
 
 
+@pytest.mark.long
 def test_the_parts_of_a_crashed_match_are_joined(
     library: Venue, record: Record, open_page: OpenPage, tmp_path: Path
 ) -> None:
@@ -495,6 +498,7 @@ def test_without_the_servers_list(
     show.opened()
 
 
+@pytest.mark.long
 def test_a_phone(library: Venue, open_page: OpenPage) -> None:
     """Upright: nothing to the side, large enough to touch."""
     page = open_page(viewport=PHONE, has_touch=True, is_mobile=True)
@@ -513,8 +517,9 @@ def test_a_phone(library: Venue, open_page: OpenPage) -> None:
         assert 0 <= box["x"] <= PHONE["width"] - box["width"]
 
 
+@pytest.mark.long
 def test_accessible(library: Venue, open_page: OpenPage) -> None:
-    """Done means 2: axe-core finds no serious violation."""
+    """Axe-core finds no serious violation."""
     pytest.importorskip("axe_core_python")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     show.sees(".recordings li")
@@ -526,6 +531,7 @@ def test_accessible(library: Venue, open_page: OpenPage) -> None:
     assert violations(show.page) == []
 
 
+@pytest.mark.long
 def test_japanese(library: Venue, open_page: OpenPage) -> None:
     show = Player(open_page(viewport=LAPTOP, locale="ja-JP"), library, drawn=False)
     show.sees("h1", "リプレイ")

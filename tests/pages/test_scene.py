@@ -43,6 +43,12 @@ def address(site: Path) -> Iterator[str]:
 
 
 @pytest.fixture
+def slow_screen() -> bool:
+    """Draw as often as the browser can."""
+    return False
+
+
+@pytest.fixture
 def stand(page: Page, address: str) -> Stand:
     return Stand(page, address)
 
@@ -72,12 +78,12 @@ def entry(robot: str) -> Entry:
     return weigh_in(SentFile(*find_robot(robot)), *sample_gait_files(robot))
 
 
-@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("arena", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
 @pytest.mark.parametrize("robots", [("hexapod", "quadruped"), ("octopod", "long-legs")])
 def test_the_page_has_every_body_where_mujoco_has_it(
     stand: Stand, site: Path, arena: str, robots: tuple[str, str]
 ) -> None:
-    """Issue 3: forward kinematics in the browser agrees with MuJoCo to 1e-6 m."""
+    """Forward kinematics in the browser agrees with MuJoCo to 1e-6 m."""
     entries = [entry(robot) for robot in robots]
     world = World(arenas.load(arena), entries)
     seats = [
@@ -158,7 +164,7 @@ def test_quaternions_go_the_short_way(stand: Stand) -> None:
     assert 2 * math.atan2(mixed[6], mixed[3]) == pytest.approx(0.1, abs=1e-3)
 
 
-@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("arena", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
 def test_a_marker_that_changes_moves_and_ends_in_its_new_state(
     stand: Stand, site: Path, arena: str
 ) -> None:
@@ -186,6 +192,7 @@ def test_a_marker_that_changes_moves_and_ends_in_its_new_state(
         assert min(np.abs(pixel.astype(int) - wanted).max() for pixel in found) < 40
 
 
+@pytest.mark.long
 def test_after_a_leap_in_time_nothing_moves(stand: Stand, site: Path) -> None:
     """Seeking in a replay shows the board as it was then, at once."""
     recorded = Recorded(site, "othello")
@@ -227,7 +234,14 @@ def test_the_picture_is_there(stand: Stand, site: Path, arena: str) -> None:
     assert share_of(picture, ORANGE, 45) > least
 
 
-@pytest.mark.parametrize("size", [(1366, 768), (390, 844), (600, 200)])
+@pytest.mark.parametrize(
+    "size",
+    [
+        (390, 844),
+        pytest.param((1366, 768), marks=pytest.mark.long),
+        pytest.param((600, 200), marks=pytest.mark.long),
+    ],
+)
 @pytest.mark.parametrize("camera", ["arena", "top", "side", "map"])
 def test_the_whole_field_fits(
     open_page: OpenPage, address: str, size: tuple[int, int], camera: str
@@ -294,6 +308,7 @@ def test_dragging_turns_the_camera_and_is_no_click(stand: Stand) -> None:
     assert np.allclose(stand.view("eye"), eye, atol=1e-6)
 
 
+@pytest.mark.long
 def test_only_the_left_button_turns_the_camera(stand: Stand) -> None:
     """The right one opens the browser's menu, which keeps its release to itself."""
     stand.open("othello.bin", speed=0, q="low")
@@ -329,6 +344,7 @@ def test_a_lost_context_comes_back(stand: Stand) -> None:
     assert share_of(stand.pixels(), BLUE) > 0.03
 
 
+@pytest.mark.long
 def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
     """Design, "Failure policy": a lost controller's robot is grey on every screen."""
     frame = Recorded(site, "flag-strike").frames[0]
@@ -342,6 +358,7 @@ def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
     assert share_of(stand.pixels(), BLUE) < 0.5 * before
 
 
+@pytest.mark.long
 def test_in_software_it_begins_coarse(stand: Stand) -> None:
     """Interface 9.5: without a graphics card low quality is chosen by itself."""
     stand.open("othello.bin", speed=0, q="auto")

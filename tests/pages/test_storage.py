@@ -16,6 +16,7 @@ DENIED = """for (const name of ["sessionStorage", "localStorage"])
   });"""
 
 
+@pytest.mark.long
 def test_who_shows_needs_no_storage(venue: Venue, open_page: OpenPage) -> None:
     """As where cookies are blocked: reading the storage itself fails."""
     venue.court()
@@ -33,6 +34,7 @@ def test_who_shows_needs_no_storage(venue: Venue, open_page: OpenPage) -> None:
         page.close()
 
 
+@pytest.mark.long
 def test_who_acts_needs_no_storage(venue: Venue, sit: Sit, console: Any) -> None:
     """Key and seat live as long as the page: also through a break of its connection."""
     venue.court()

@@ -60,7 +60,7 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
 
 
 def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -> None:
-    """In each phase the page says how it stands and what comes next (issue 3, done means 4)."""
+    """In each phase the page says how it stands and what comes next."""
     venue.court("--seconds", "2")
     venue.web()
     show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
@@ -117,6 +117,7 @@ def test_a_team_is_shown_in_its_own_look(venue: Venue, open_page: OpenPage) -> N
     expect(show.find(".board defs circle")).to_have_count(1)
 
 
+@pytest.mark.long
 def test_the_winner_is_whom_the_referee_says(venue: Venue, open_page: OpenPage) -> None:
     """Rules 4: who was declared in a halt has won, before and after it is official."""
     venue.court()
@@ -134,6 +135,7 @@ def test_the_winner_is_whom_the_referee_says(venue: Venue, open_page: OpenPage) 
     show.sees(".result .side.won", "Bees")
 
 
+@pytest.mark.long
 def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) -> None:
     """Rules 4, adjust and take-back after the end: the card follows."""
     venue.court()
@@ -166,6 +168,7 @@ def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
     assert show.find(".result .won").count() == 0
 
 
+@pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: Any) -> None:
     """What stands still is never shown as live; the page says what it waits for and recovers."""
     console.expect("WebSocket|ERR_CONNECTION")
@@ -245,6 +248,7 @@ def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
     assert {"1自動", "6平面図"} <= reached
 
 
+@pytest.mark.long
 def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
     """The page says so, and goes on saying it while it asks again and again."""
     venue.court()
@@ -266,7 +270,10 @@ def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
     assert not [text for text in said if "Connecting" in text or "nope" not in text]
 
 
-@pytest.mark.parametrize("width", [1000, 1280, 1366, 1440, 1920])
+@pytest.mark.parametrize(
+    "width",
+    [1000, *(pytest.param(width, marks=pytest.mark.long) for width in (1280, 1366, 1440, 1920))],
+)
 def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: int) -> None:
     """Brand, choice of court, score bug and buttons stand beside one another at any width."""
     text = venue.contest.read_text()
@@ -338,6 +345,7 @@ def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
     expect(name).to_have_css("text-overflow", "ellipsis")
 
 
+@pytest.mark.long
 def test_news_are_read_aloud_once(venue: Venue, open_page: OpenPage) -> None:
     """An event stands in the log too, but a screen reader is told of it in one place."""
     venue.court()
@@ -351,6 +359,7 @@ def test_news_are_read_aloud_once(venue: Venue, open_page: OpenPage) -> None:
     assert show.find("[aria-live]:not([aria-live=off])", has_text="+2 for Ants").count() == 1
 
 
+@pytest.mark.long
 def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
     """Upright: the picture, the cameras and the board below one another, nothing to the side."""
     venue.court()
@@ -390,8 +399,9 @@ def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
     show.moves()
 
 
+@pytest.mark.long
 def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> None:
-    """Issue 3, settings: at once in picture, score bug, board and card, and after a reload."""
+    """Colours change at once in picture, score bug, board and card, and after a reload."""
     venue.court("--seconds", "1")
     venue.web()
     referee = playing(venue)
@@ -437,6 +447,7 @@ def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> No
     assert show.find(".score-bug .seat-mark").nth(1).get_attribute("data-pattern") == "stripes"
 
 
+@pytest.mark.long
 def test_who_wants_less_motion_gets_it(venue: Venue, open_page: OpenPage) -> None:
     """The automatic camera stands still, and another one is there at once."""
     venue.court()
@@ -456,6 +467,7 @@ def test_who_wants_less_motion_gets_it(venue: Venue, open_page: OpenPage) -> Non
     assert np.abs(eyes["reduce"]).max() == 0
 
 
+@pytest.mark.long
 def test_who_wants_less_motion_sees_nothing_turn(venue: Venue, open_page: OpenPage) -> None:
     """Also what would turn for ever comes to rest."""
     venue.web()
@@ -467,8 +479,9 @@ def test_who_wants_less_motion_sees_nothing_turn(venue: Venue, open_page: OpenPa
     expect(page.locator(".spinner")).to_have_css("animation-iteration-count", "1")
 
 
+@pytest.mark.long
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:
-    """Done means 2: axe-core finds no serious violation."""
+    """Axe-core finds no serious violation."""
     pytest.importorskip("axe_core_python")
     venue.court("--seconds", "1")
     venue.web()
@@ -490,6 +503,7 @@ def test_accessible(venue: Venue, open_page: OpenPage) -> None:
     assert violations(home.page) == []
 
 
+@pytest.mark.long
 def test_japanese_throughout(venue: Venue, open_page: OpenPage) -> None:
     """A Japanese browser finds no English, but for names."""
     venue.court("--seconds", "1")

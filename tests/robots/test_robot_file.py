@@ -2,7 +2,7 @@ import math
 import re
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from lacoc_robots.library import find_robot
@@ -311,7 +311,6 @@ SCALARS = st.one_of(
 
 
 @given(st.data())
-@settings(max_examples=200)
 def test_any_entry_replaced(data: st.DataObject) -> None:
     """Whatever stands for a number in a robot file, only FileRefused is raised."""
     numbers = list(re.finditer(r"(?m)(?<=[=\[,] )\s*-?\d+(\.\d+)?", HEXAPOD))

@@ -39,14 +39,14 @@ def pose(model: mj.MjModel, robot: RobotSpec, posture: tuple[float, ...]) -> mj.
 
 
 def test_official_options(hexapod: RobotSpec, compile_world: Compile) -> None:
-    """Ten steps of 2 ms a tick; implicitfast, Newton, elliptic cone, dense, default iterations."""
+    """Ten steps of 2 ms a tick; implicitfast, Newton, elliptic cone, sparse, default iterations."""
     option = compile_world(hexapod).opt
     assert pytest.approx(BEAT_S) == TIMESTEP_S * STEPS_PER_TICK
     assert option.timestep == TIMESTEP_S
     assert option.integrator == mj.mjtIntegrator.mjINT_IMPLICITFAST
     assert option.solver == mj.mjtSolver.mjSOL_NEWTON
     assert option.cone == mj.mjtCone.mjCONE_ELLIPTIC
-    assert option.jacobian == mj.mjtJacobian.mjJAC_DENSE
+    assert option.jacobian == mj.mjtJacobian.mjJAC_SPARSE
     assert (option.impratio, option.iterations, option.ls_iterations) == (1.0, 100, 50)
 
 
@@ -160,7 +160,7 @@ def test_friction_is_the_robots(hexapod_text: str, compile_world: Compile) -> No
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_export_opens_and_stands(name: str) -> None:
-    """Issue 2: plain MJCF that any MuJoCo opens, standing on its feet in the keyframe "stand"."""
+    """Plain MJCF that any MuJoCo opens, standing on its feet in the keyframe "stand"."""
     robot = sample(name)
     model = mj.MjModel.from_xml_string(export_mjcf(robot))
     data = mj.MjData(model)

@@ -81,7 +81,7 @@ def heading_rad(data: mj.MjData) -> float:
 
 
 def test_the_samples_there_are() -> None:
-    """Issue 2: the workshop's, a long-legged one, a quadruped, an octopod."""
+    """The workshop's, a long-legged one, a quadruped, an octopod."""
     names = [folder.name for folder in FOLDERS]
     assert names == ["hexapod", "long_legs", "octopod", "quadruped"]
     assert [len(load(folder)[0].legs) for folder in FOLDERS] == [6, 6, 8, 4]
@@ -120,7 +120,7 @@ def test_workshop_tables() -> None:
 @pytest.mark.slow
 @samples
 def test_walks_forward(folder: Path, compile_world: Compile) -> None:
-    """Issue 2: a sample gait walks at least 20 mm/s for 20 s, upright."""
+    """A sample gait walks at least 20 mm/s for 20 s, upright."""
     robot, postures, locomotion = load(folder)
     gait = Gait(postures, locomotion)
     for data in walk(compile_world(robot), robot, gait, FORWARD, 20.0):
@@ -160,7 +160,7 @@ def test_stands(folder: Path, compile_world: Compile) -> None:
 
 @pytest.mark.slow
 def test_workshop_speed(compile_world: Compile) -> None:
-    """Issue 2: the workshop's gait at level B walks at about 57 mm/s where postures are reached."""
+    """The workshop's gait at level B walks at about 57 mm/s where postures are reached."""
     robot, postures, locomotion = load(FOLDERS[0])
     *_, data = walk(compile_world(robot), robot, Gait(postures, locomotion), FORWARD, 20.0)
     assert data.body("r0_body").xpos[1] / 20 == pytest.approx(0.057, abs=0.004)

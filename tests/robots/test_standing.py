@@ -85,21 +85,29 @@ def test_a_robot_that_is_still_on_its_way_is_not_at_rest(hexapod_text: str) -> N
     stood = stand(robot, higher)
     assert stood.joint_rad_s == pytest.approx(math.radians(10), rel=0.2)
     (mistake,) = mistakes_of(stood, "robot.toml", (B,))
-    words = "a robot that still moves after 2 s: a joint at 10 degrees/s"
+    speed_deg_s = math.degrees(stood.joint_rad_s)
+    words = f"a robot that still moves after 2 s: a joint at {speed_deg_s:.1f} degrees/s"
     assert words in render(mistake.found)
+
+
+def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
+    """Too weak for its posture: after two seconds it is as slow as 2 mm/s, and falls later."""
+    slow = Stood(moved_m=0.015, tilt_rad=0.18, joint_rad_s=0.0087, centre_m_s=0.0018)
+    (mistake,) = mistakes_of(slow, "robot.toml", (B,))
+    assert "a joint at 0.5 degrees/s, its middle at 1.8 mm/s" in render(mistake.found)
 
 
 @pytest.mark.parametrize(
     ("stood", "words"),
     [
         (STILL, []),
-        (Stood(0.05, math.radians(30), math.radians(3), 0.002), []),
+        (Stood(0.05, math.radians(30), math.radians(0.2), 0.0002), []),
         (Stood(0.0501, 0.0, 0.0, 0.0), ["goes 0.050 m"]),
         (Stood(0.0, math.radians(31), 0.0, 0.0), ["leans 31 degrees"]),
-        (Stood(0.0, 0.0, math.radians(4), 0.0), ["a joint at 4 degrees/s"]),
-        (Stood(0.0, 0.0, 0.0, 0.003), ["its middle at 3 mm/s"]),
+        (Stood(0.0, 0.0, math.radians(4), 0.0), ["a joint at 4.0 degrees/s"]),
+        (Stood(0.0, 0.0, 0.0, 0.0003), ["its middle at 0.3 mm/s"]),
         (Stood(0.0, 0.0, 0.0, 0.0, fault=True), ["physics can't follow"]),
-        (Stood(0.3, 1.0, 9.0, 1.0), ["goes 0.300 m", "leans 57", "a joint at 516"]),
+        (Stood(0.3, 1.0, 9.0, 1.0), ["goes 0.300 m", "leans 57", "a joint at 515.7"]),
     ],
 )
 def test_what_is_told(stood: Stood, words: list[str]) -> None:

@@ -23,7 +23,7 @@ HEALTH = Health(
 
 
 def test_an_event_is_a_line_with_all_it_has() -> None:
-    """Issue 4: one line an event, a match id everywhere; trouble stands out."""
+    """One line an event, a match id everywhere; trouble stands out."""
     flip = Event(number=7, match=1, beat=99, clock_ticks=12, kind="flip", text="A flip.", seat=0)
     with capture_logs() as lines:
         log = CourtLog("main")

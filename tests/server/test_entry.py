@@ -91,7 +91,7 @@ def test_a_range_is_met_exactly() -> None:
 
 
 def test_all_mistakes_of_all_files_at_once() -> None:
-    """Issue 2, "Network": the server checks the files and answers with all mistakes."""
+    """The server checks the files and answers with all mistakes."""
     robot = edited(HEXAPOD.robot, "mass_kg = 0.125", "mass_kg = 7")
     postures = edited(HEXAPOD.postures, "45", "abc")
     locomotion = edited(HEXAPOD.locomotion, "45", "def")

@@ -1,4 +1,4 @@
-"""How fast the workshop's gait walks and turns, in a whole match of practice (issue 2, Done 3)."""
+"""How fast the workshop's gait walks and turns, in a whole match of practice."""
 
 import math
 from functools import cache
@@ -117,14 +117,14 @@ def test_every_heading_is_as_fast() -> None:
 
 
 def test_reached() -> None:
-    """Rules 3, issue 2, Done 3: level B with "reached" walks at about 57 mm/s."""
+    """Rules 3: level B with "reached" walks at about 57 mm/s."""
     walk = by_sequence()
     assert walk.forward_mm_s == pytest.approx(57.0, abs=4.0)
     assert abs(walk.turn_deg_s) < 1.0
 
 
 def test_time() -> None:
-    """Rules 3, issue 2, Done 3: level B with "time", 0.20 s, walks at about 98 mm/s."""
+    """Rules 3: level B with "time", 0.20 s, walks at about 98 mm/s."""
     text = find_robot("hexapod")[1].decode()
     assert 'advance = "reached"' in text
     text = text.replace('advance = "reached"', 'advance = "time"').replace(

@@ -113,7 +113,7 @@ def test_only_the_time_that_is_played_counts() -> None:
 
 @pytest.mark.parametrize("speed", [1.0, 4.0])
 def test_slow_beats_and_the_real_time_factor(speed: float) -> None:
-    """Issue 4: a stall of 0.1 s in each second is 1/1.08 of real time, at any speed."""
+    """A stall of 0.1 s in each second is 1/1.08 of real time, at any speed."""
     held = Held(speed=speed)
     held.beat(took_s=0.02 / speed)
     for beat in range(250):
@@ -129,7 +129,7 @@ def test_slow_beats_and_the_real_time_factor(speed: float) -> None:
 
 
 def test_repeats_of_a_lossy_link() -> None:
-    """Issue 4, link loss: four of ten repeats are lost; more than ten a second replace none."""
+    """Link loss: four of ten repeats are lost; more than ten a second replace none."""
     held = Held()
     held.seconds(1)
     held.seconds(10, repeats=6)
@@ -173,7 +173,7 @@ def test_who_left_is_missed_by_nobody() -> None:
 
 
 def test_silences() -> None:
-    """Issue 4: how often and how long a seat was silent while the match was played."""
+    """How often and how long a seat was silent while the match was played."""
     held = Held()
     for _ in range(2):
         held.beat(SilentSeat(LEFT))
@@ -204,7 +204,7 @@ def test_faults_of_physics() -> None:
 
 
 def test_a_killed_court_goes_on_counting() -> None:
-    """Issue 4: what was measured before the kill counts too."""
+    """What was measured before the kill counts too."""
     first = Held()
     first.beat()
     first.beat(SilentSeat(LEFT))
@@ -245,7 +245,7 @@ LINK = GOOD.seats[0]
     ids=["factor", "slow", "worst", "faults", "resumptions", "silent", "repeats"],
 )
 def test_each_limit_has_its_words(held: dict[str, object], words: str) -> None:
-    """Issue 4: below a contest's limits the referee is told "replay advised", and why."""
+    """Below a contest's limits the referee is told "replay advised", and why."""
     verdict = msgspec.structs.replace(GOOD, **held)
     assert list(advice(GOOD, HealthLimits())) == []
     assert list(advice(verdict, HealthLimits())) == [words]

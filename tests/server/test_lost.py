@@ -161,6 +161,7 @@ def test_a_pulled_cable(hall: Hall) -> None:
         hall.walks()
 
 
+@pytest.mark.long
 def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
     """A bad link drives all the same: late, and never taken for lost."""
     with SlowLink(hall.court.address(), delay_s=0.05, jitter_s=0.04, loss=0.03) as link:
@@ -172,6 +173,7 @@ def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
         assert hall.silences() == []
 
 
+@pytest.mark.long
 def test_a_real_cable(tmp_path: Path) -> None:
     """The kernel's own link goes down, and comes up again.
 
@@ -190,6 +192,7 @@ def frames_of(hall: Hall) -> int:
     return frames
 
 
+@pytest.mark.long
 def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
     """A spectator, a gateway and a referee's program stop; the court and others go on as before."""
     hall.bot("left")

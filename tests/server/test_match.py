@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import msgspec
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from stage import (
     FORWARD,
@@ -346,7 +346,6 @@ def _beat_of_inputs() -> st.SearchStrategy[list[Input]]:
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
 @given(_beat_of_inputs(), st.randoms(use_true_random=False))
 def test_the_order_of_arrival_favours_no_seat(inputs: list[Input], mix: random.Random) -> None:
     """Rules 4: however a beat's inputs arrive, the frames are the same bytes."""
@@ -399,7 +398,7 @@ def test_a_key_takes_effect_in_its_tick() -> None:
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_a_frame_has_at_most_320_bytes(arena: str) -> None:
-    """Issue 2, "Network": at most 320 bytes for two hexapods in either game, in every phase."""
+    """At most 320 bytes for two hexapods in either game, in every phase."""
     sizes = {}
     for phase in list(P)[1:]:
         stage = Stage.real(arena, QUICK if phase is not P.COUNTDOWN else None)

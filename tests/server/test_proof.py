@@ -19,7 +19,7 @@ from lacoc_server.journal.replay import verify
 from lacoc_server.journal.section import Difference, Finding
 from lacoc_server.journal.verdict import Kind, Verdict, conclude, other_arithmetic
 from lacoc_server.world import arithmetic
-from lacoc_shared.codec import decode, encode
+from lacoc_shared.codec import decode, encode, message_hash
 from lacoc_shared.messages import Frame
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import FORMAT, Header, Setup
@@ -171,6 +171,46 @@ def test_a_pose_is_told_beyond_the_bound_only(
         found = prover.verdict(record)
         assert isinstance(found, Verdict)
         assert found.differs_at == (beat if told else None)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("nudge_m", "made_by", "kind"),
+    [
+        (1e-12, {**THERE, "model": "0" * 16}, Kind.OTHER_ARITHMETIC),
+        (1e-6, {**THERE, "model": "0" * 16}, Kind.DIFFERS),
+        (1e-12, THERE, Kind.DIFFERS),
+        (1e-12, {}, Kind.DIFFERS),
+    ],
+)
+def test_a_model_may_have_other_last_bits(
+    nudge_m: float, made_by: Mapping[str, str], kind: Kind, paths: Sequence[Path]
+) -> None:
+    """Where another arithmetic builds other ones; the drawn model is the same all the same."""
+    record = with_arithmetic(Record.read(paths[0]), made_by)
+    for at, (beat, scene) in enumerate(record.scenes):
+        old = message_hash(encode(scene))
+        bodies = [
+            structs.replace(body, pos=(body.pos[0] + nudge_m, *body.pos[1:]))
+            for body in scene.bodies
+        ]
+        scene = structs.replace(scene, bodies=tuple(bodies))
+        new = message_hash(encode(scene))
+        record.scenes[at] = beat, scene
+        record.frames = [(b, data.replace(old, new)) for b, data in record.frames]
+        record.sheets = [
+            (b, structs.replace(sheet, scene=new if sheet.scene == old else sheet.scene))
+            for b, sheet in record.sheets
+        ]
+    for at, event in enumerate(record.events):
+        if "model" in event.data:
+            data = {**event.data, "model": "f" * 16}
+            record.events[at] = structs.replace(event, data=data)
+    assert record.result is not None
+    record.result = structs.replace(record.result, model="f" * 16)
+    found = Prover().verdict(record)
+    assert isinstance(found, Verdict)
+    assert found.kind is kind, found.text
 
 
 # The command.

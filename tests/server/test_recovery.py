@@ -123,7 +123,7 @@ def test_settings_that_were_changed_count_from_the_next_match(contest: Path, fol
 
 
 def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> None:
-    """Issue 4: what was measured before the kill counts; the referee is told "replay advised"."""
+    """What was measured before the kill counts; the referee is told "replay advised"."""
     lasts(contest, 4)
     contest.write_text("health.resumptions = 0\n" + contest.read_text())
     with ExitStack() as stack:

@@ -81,7 +81,7 @@ def boundaries(data: bytes) -> list[int]:
 @pytest.mark.slow
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_a_simulated_match_verifies(arena: str, tmp_path: Path) -> None:
-    """Issue 2, Done 2: `replay verify` says same, for both games."""
+    """`replay verify` says same, for both games."""
     made = setup(arena, {"match": {"duration_s": 20.0}})
     ground = arenas.load(arena)
     bots = list(ground.bots)
@@ -167,7 +167,7 @@ def test_nothing_of_a_record_can_be_changed_unseen(
 
 @pytest.mark.slow
 def test_a_changed_result_is_named(tmp_path: Path) -> None:
-    """Issue 2: the recording replays to the same result."""
+    """The recording replays to the same result."""
     made = setup("othello", {"match": {"duration_s": 0.5}})
     ground = arenas.load("othello")
     simulate(made, [player(ground, seat, "straight") for seat in (0, 1)], tmp_path)
@@ -199,9 +199,12 @@ def go_on(match: Match, beats: list[Beat]) -> None:
         assert beat.touch == beats[number].touch
 
 
-@pytest.mark.parametrize("part", [0.12, 0.31, 0.5, 0.73, 0.9, 1.0])
+@pytest.mark.parametrize(
+    "part",
+    [0.12, 0.73, *(pytest.param(part, marks=pytest.mark.long) for part in (0.31, 0.5, 0.9, 1.0))],
+)
 def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
-    """Issue 2, Done 5: verified to its end, resumed with the same hash, and on from there."""
+    """Verified to its end, resumed with the same hash, and on from there."""
     path, beats = live
     data = path.read_bytes()
     copy = tmp_path / path.name
@@ -217,33 +220,38 @@ def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_p
 
 
 @pytest.mark.slow
-def test_a_beat_is_whole_or_not_at_all(live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "beat",
+    [309, *(pytest.param(beat, marks=pytest.mark.long) for beat in (259, 329, 339, 340, 349, 352))],
+)
+def test_a_beat_is_whole_or_not_at_all(
+    beat: int, live: tuple[Path, list[Beat]], tmp_path: Path
+) -> None:
     """Design, "Record": a court killed in the middle of a beat does that beat again.
 
-    Cut after every single message around beats with inputs, decisions and events.
+    Cut after every single message around a beat with inputs, decisions and events.
     """
     path, beats = live
     data = path.read_bytes()
     whole = Record.read(path)
     frames = dict(whole.frames)
-    for beat in (259, 309, 329, 339, 340, 349, 352):
-        start = data.index(frames[max(at for at in frames if at <= beat)])
-        for cut in [at for at in boundaries(data) if start < at][:9]:
-            copy = tmp_path / path.name
-            copy.write_bytes(data[:cut])
-            record = Record.read(copy)
-            match = resume(record).match
-            answered = max(at for at, _ in record.frames)
-            assert match.beats == max(answered, record.last_beat - 1)
-            again = match.beat(INPUTS.get(match.beats + 1, ()))
-            assert encode(again.frame) == encode(beats[match.beats].frame)
-            assert encode(again.events) == encode(beats[match.beats].events)
+    start = data.index(frames[max(at for at in frames if at <= beat)])
+    for cut in [at for at in boundaries(data) if start < at][:9]:
+        copy = tmp_path / path.name
+        copy.write_bytes(data[:cut])
+        record = Record.read(copy)
+        match = resume(record).match
+        answered = max(at for at, _ in record.frames)
+        assert match.beats == max(answered, record.last_beat - 1)
+        again = match.beat(INPUTS.get(match.beats + 1, ()))
+        assert encode(again.frame) == encode(beats[match.beats].frame)
+        assert encode(again.events) == encode(beats[match.beats].events)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("snapshot", [0, 1])
 def test_restored_from_any_snapshot(snapshot: int, live: tuple[Path, list[Beat]]) -> None:
-    """Issue 2, Done 5: restored from any snapshot: one state hash."""
+    """Restored from any snapshot: one state hash."""
     path, beats = live
     record = Record.read(path)
     assert len(record.snapshots) == 2

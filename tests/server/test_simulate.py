@@ -31,7 +31,7 @@ def play(
 
 
 def test_a_match_to_its_end(tmp_path: Path) -> None:
-    """Issue 2, `lacoc simulate`: result and record; robots settle, then the whole ceremony."""
+    """Result and record; robots settle, then the whole ceremony."""
     result = play(tmp_path)
     assert (result.reason, result.clock_s, sum(result.scores)) == ("time is up", 4.0, 36)
     assert result.official == result.computed != ""
@@ -90,7 +90,7 @@ def test_practice_with_an_end() -> None:
 
 
 def test_files_with_mistakes_are_refused() -> None:
-    """Issue 2, Done 6: a wrong file at start: every mistake."""
+    """A wrong file at start: every mistake."""
     good = player(OTHELLO, 0, "straight")
     bad = Player(join(1, robot_file=b"legs = 3"), good.bot)
     with pytest.raises(FileRefused) as refused:

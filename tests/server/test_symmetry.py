@@ -1,4 +1,4 @@
-"""Fairness: turned by 180 degrees with the seats swapped, everything is the same (Done 4)."""
+"""Fairness: turned by 180 degrees with the seats swapped, everything is the same."""
 
 from collections.abc import Sequence
 
@@ -76,20 +76,26 @@ from their turned twins by more than this; nobody can foresee such a path anyhow
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("arena", ["flag-strike", "othello"])
-def test_the_physics_gives_the_turned_path(arena: str) -> None:
-    """Rules 4, Done 4: within 1e-6 m over 180 s, contacts allowed; and so the turned events."""
+@pytest.mark.parametrize(
+    ("arena", "ticks", "least_contacts"),
+    [
+        ("flag-strike", 1800, 20),
+        pytest.param("flag-strike", 9000, 50, marks=pytest.mark.long),
+        pytest.param("othello", 9000, 50, marks=pytest.mark.long),
+    ],
+)
+def test_the_physics_gives_the_turned_path(arena: str, ticks: int, least_contacts: int) -> None:
+    """The turned match stays within 1e-6 m, contacts allowed, and has the turned events."""
     one, other = (Stage.real(arena, QUICK).to_playing() for _ in range(2))
     mirrored = swapped(COLLIDING)
     worst, contacts = 0.0, 0
-    while one.phase is not Phase.FINISHED:
+    while one.match.ticks < ticks:
         tick = one.match.ticks + 1
         one.beat(*inputs(COLLIDING, tick))
         other.beat(*inputs(mirrored, tick))
         worst = max(worst, distance(turned(robots(one)), robots(other)))
         contacts += tick % 10 == 0 and _touching(one)
-    assert one.match.ticks == 9000
-    assert contacts > 50
+    assert contacts > least_contacts
     assert worst < 1e-6
     assert claims(other) == [(1 - seat, *rest) for seat, *rest in _turned_claims(one)]
     assert other.scores == one.scores[::-1]
@@ -168,7 +174,7 @@ def turned_script(stage: Stage, script: Script) -> Script:
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 @pytest.mark.parametrize("seed", range(6))
 def test_the_rules_give_exactly_the_turned_match(arena: str, seed: int) -> None:
-    """Rules 4, Done 4: no rule depends on which seat is evaluated first."""
+    """Rules 4: no rule depends on which seat is evaluated first."""
     script = wander(arena, seed)
     half_minute = {"match": {"duration_s": 30.0, "countdown_s": 0.02}}
     one = Stage(arena, half_minute, script=script)

@@ -4,7 +4,7 @@ import tracemalloc
 from itertools import permutations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from stage import LEFT, QUICK, RIGHT, Script, Stage, X, key, seen
 
@@ -434,7 +434,6 @@ def test_a_tick_is_20_ms_in_play_and_in_a_fold() -> None:
     assert history.without(1).state == history.state
 
 
-@settings(max_examples=60, deadline=None)
 @pytest.mark.parametrize("arena", list(GAMES))
 @given(data=st.data())
 def test_folding_with_nothing_struck_is_the_match_asplay(arena: str, data: st.DataObject) -> None:
@@ -466,7 +465,6 @@ def test_folding_with_nothing_struck_is_the_match_asplay(arena: str, data: st.Da
     assert not history.knows(1)
 
 
-@settings(max_examples=40, deadline=None)
 @pytest.mark.parametrize("arena", list(GAMES))
 @given(data=st.data())
 def test_a_fold_leaves_the_history_alone_and_can_be_repeated(

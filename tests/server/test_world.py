@@ -59,7 +59,7 @@ def run(it: World, ticks: int) -> bytes:
 
 
 def test_the_same_bits_in_the_same_and_in_a_new_process() -> None:
-    """Issue 2, Done 5: the same angles give one state hash, also in a new process."""
+    """The same angles give one state hash, also in a new process."""
     digest = run(world(), 100)
     assert run(world(), 100) == digest
     code = "import sys; sys.path.append(sys.argv[1]); import test_world as t; "
@@ -112,7 +112,7 @@ def test_a_state_of_another_model_is_refused() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("arena", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
 def test_flags_and_discs_change_no_bit_of_a_path(arena: str) -> None:
     """Rules 6, strike: the paths with and without flags are the same bits, touched or not."""
     full = arenas.load(arena)
@@ -375,6 +375,49 @@ def _lower_than_a_pole(it: World) -> bool:
     heights = it.data.geom_xpos[geoms, 2]
     reach = it.model.geom_rbound[geoms]
     return bool((heights + reach).max() < REACH_M and (heights - reach).min() > -0.05)
+
+
+@pytest.mark.parametrize("robot", ["hexapod", "long-legs", "quadruped", "octopod"])
+def test_touch_is_what_mujoco_says_of_each_pair(robot: str) -> None:
+    """Rules 6, strike: the quick look from above passes over nothing that touches.
+
+    In any pose, also over the top of a pole and on its back: the same as when MuJoCo is asked for
+    the distance of each part from each pole.
+    """
+    it = world(robot=robot)
+    markers = arenas.load("flag-strike").game.markers
+    probes = {
+        marker: it.model.geom(f"probe:{info.name}").id
+        for marker, info in enumerate(markers)
+        if info.kind == "flag"
+    }
+    rng = np.random.default_rng(3)
+    touching = 0
+    for _ in range(150):
+        for own in it._robots:
+            at = own.root_qpos
+            flag = markers[rng.choice(list(probes))]
+            turn = rng.normal(size=4) * (1.0, 0.3, 0.3, 1.0)
+            it.data.qpos[at : at + 2] = rng.normal((flag.x_m, flag.y_m), 0.12)
+            it.data.qpos[at + 2] = rng.uniform(0.0, 0.35)
+            it.data.qpos[at + 3 : at + 7] = turn / np.linalg.norm(turn)
+            low, high = np.array(own.entry.robot.ranges_rad).T
+            it.data.qpos[own.joint_qpos] = rng.uniform(low, high)
+        found = it.touched()
+        mujoco.mj_kinematics(it.model, it.data)
+        assert list(found) == [
+            tuple(
+                marker
+                for marker, probe in probes.items()
+                if any(
+                    mujoco.mj_geomDistance(it.model, it.data, geom, probe, 1e-3, None) <= 0
+                    for geom in own.geoms.tolist()
+                )
+            )
+            for own in it._robots
+        ]
+        touching += sum(map(len, found))
+    assert touching > 50
 
 
 def test_touch_costs_no_bit() -> None:

@@ -14,7 +14,7 @@ MOST_GROWTH_HERE = 0.03
 """Three minutes are short: heaps still fill, by up to 1.7 %. 0.1 MB a match would show."""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="the kernel's own counts are read")
 def test_nothing_grows_and_nothing_is_left_over() -> None:
     """Memory of each process after two minutes; threads, files and sockets; every record."""

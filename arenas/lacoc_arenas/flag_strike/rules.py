@@ -27,6 +27,7 @@ from lacoc_arenas.game import (
     RIGHT,
     Claim,
     GameEvent,
+    NoSuchState,
     Observation,
     Place,
     RobotView,
@@ -34,6 +35,7 @@ from lacoc_arenas.game import (
 )
 from lacoc_arenas.layout import opposite
 from lacoc_shared.messages import MarkerInfo
+from lacoc_shared.words import Phrase, say
 
 from .settings import Settings
 
@@ -172,15 +174,12 @@ class FlagStrike:
         return tuple(sorted(void)), strikes
 
     def _event(self, marker: int, seat: int) -> GameEvent:
-        info = self.markers[marker]
-        kind, does = ("capture", "takes") if marker < CORNERS else ("strike", "strikes")
-        return GameEvent(
-            kind=kind,
-            seat=seat,
-            marker=info.name,
-            points=info.points,
-            text=f"{{team}} {does} {info.name} for {info.points} point{'s' * (info.points != 1)}.",
-        )
+        name, points = self.markers[marker].name, self.markers[marker].points
+        if marker < CORNERS:
+            kind, said = "capture", say("event.capture", team="", marker=name, points=points)
+        else:
+            kind, said = "strike", say("event.strike", team="", marker=name, points=points)
+        return GameEvent(kind=kind, seat=seat, marker=name, points=points, said=said)
 
     def board(self, state: State) -> tuple[int, ...]:
         """State of each corner, then of each flag."""
@@ -196,10 +195,10 @@ class FlagStrike:
                 right += points
         return left, right
 
-    def over(self, state: State) -> str:
+    def over(self, state: State) -> Phrase | None:
         """Rule 4: at once when one robot holds all four corners."""
         holder = self._holder(state)
-        return "" if holder is None else f"the {('left', 'right')[holder]} team holds all corners"
+        return None if holder is None else say("over.all-corners", seat=("left", "right")[holder])
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
         """Rule 8: who has more points; with `all_corners_win`, who holds all four corners."""
@@ -217,7 +216,7 @@ class FlagStrike:
     def set(self, state: State, marker: int, value: int) -> State:
         """Give a corner or a flag a state, as a referee decides; see `Game.set`."""
         if marker < CORNERS and value == DOWN:
-            raise ValueError("a corner is neutral, left or right")
+            raise NoSuchState(say("why.corner-state"))
         board = (*state.board[:marker], value, *state.board[marker + 1 :])
         return msgspec.structs.replace(state, board=board)
 

@@ -22,6 +22,7 @@ from lacoc_arenas.game import (
     RIGHT,
     Claim,
     GameEvent,
+    NoSuchState,
     Observation,
     Place,
     RobotView,
@@ -29,6 +30,7 @@ from lacoc_arenas.game import (
 )
 from lacoc_arenas.layout import Length, opposite
 from lacoc_shared.messages import MarkerInfo
+from lacoc_shared.words import Phrase, say
 
 SIDE = 6
 """Cells along a row and along a column (5-1 rule 1)."""
@@ -212,14 +214,13 @@ class Othello:
 
     def _event(self, seat: int, flipped: tuple[int, ...]) -> GameEvent:
         entered, *run = (self.markers[cell].name for cell in flipped)
-        more = f" and with it {', '.join(run)}" if run else ""
         return GameEvent(
             kind="flip",
             seat=seat,
             marker=entered,
             also=tuple(run),
             points=len(flipped),
-            text=f"{{team}} flips {entered}{more}.",
+            said=say("event.flip", team="", marker=entered, also=run),
         )
 
     def board(self, state: State) -> tuple[int, ...]:
@@ -230,12 +231,12 @@ class Othello:
         """Rule 6: the number of discs of each colour."""
         return state.cells.count(LEFT), state.cells.count(RIGHT)
 
-    def over(self, state: State) -> str:
+    def over(self, state: State) -> Phrase | None:
         """Rules 5: at once when a team has no disc left."""
         for colour, seat in ((LEFT, "left"), (RIGHT, "right")):
             if colour not in state.cells:
-                return f"the {seat} team has no disc left"
-        return ""
+                return say("over.no-disc", seat=seat)
+        return None
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
         """Rule 7: who has more discs."""
@@ -244,7 +245,7 @@ class Othello:
     def set(self, state: State, marker: int, value: int) -> State:
         """Give a disc a colour, as a referee decides; see `Game.set`."""
         if value not in (NEUTRAL, LEFT, RIGHT):
-            raise ValueError("a disc is neutral, left or right")
+            raise NoSuchState(say("why.disc-state"))
         cells = (*state.cells[:marker], value, *state.cells[marker + 1 :])
         return State(cells, state.last)
 

@@ -6,9 +6,10 @@ from typing import Annotated, Any
 
 import msgspec
 
-from lacoc_arenas.game import Claim, GameEvent, Observation, Place
+from lacoc_arenas.game import Claim, GameEvent, NoSuchState, Observation, Place
 from lacoc_arenas.layout import Length, Point
 from lacoc_shared.messages import MarkerInfo
+from lacoc_shared.words import Phrase, say
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -59,9 +60,9 @@ class Practice:
         """Always 0."""
         return (0,)
 
-    def over(self, state: State) -> str:
+    def over(self, state: State) -> Phrase | None:
         """Never."""
-        return ""
+        return None
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
         """Nobody wins in practice."""
@@ -71,9 +72,9 @@ class Practice:
         """There is nothing to set.
 
         Raises:
-            ValueError: always.
+            NoSuchState: always.
         """
-        raise ValueError("practice has no markers")
+        raise NoSuchState(say("why.no-markers"))
 
 
 def make(settings: dict[str, Any]) -> Practice:

@@ -10,15 +10,16 @@ import typer
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
+from lacoc_client.asking import Patience
 from lacoc_client.bot_player import BotPlayer
 from lacoc_client.commands import entrance
 from lacoc_client.controller import Controller, Hold
 from lacoc_client.seat_files import SeatFiles, gather
 from lacoc_client.stopping import stop_signals
-from lacoc_client.waiting import Patience
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.network.session import open_client
+from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
@@ -96,8 +97,8 @@ def bot_command(
         sheet = controller.view.sheet
         ground = arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
         player = BotPlayer(controller, ground, name)
-        for note in patience.until(controller.join):
-            screen.show(note)
+        for hint in patience.until(controller.join):
+            screen.show(hint)
         screen.show(f"{name} holds seat {access.seat} of court {access.court}.")
         try:
             _play(controller, player, stopping, max(_GONE_S, wait or 0.0))
@@ -128,20 +129,20 @@ def _play(
         if frame is not None:
             player.see(frame)
         for refused in controller.take_refused():
-            screen.show(f"Key {refused.key} was refused: {refused.why}.")
+            screen.show(f"Key {refused.key} was refused: {render(refused.why)}.")
         for event in controller.view.take_events():
             if event.kind in ("phase", "result"):
-                screen.show(event.text)
+                screen.show(event.said)
         if controller.hold in (Hold.REPLACED, Hold.REFUSED):
-            raise UserError(f"The seat is lost: {controller.reason}.")
+            raise UserError(say("play.lost", why=controller.why_not_held))
         now_s = time.monotonic()
         link = controller.link(now_s)
         if well == bool(link):
-            well = not link
-            waits = f"Link: {link}. The robot stands; when the court is back this goes on."
-            screen.note("The court is back." if well else waits)
+            well = link is None
+            waits = "The robot stands; when the court is back this goes on."
+            screen.note("The court is back." if link is None else f"Link: {render(link)}. {waits}")
         if controller.view.silent_s(now_s) > gone_s:
-            raise UserError(f"No word from the court for {gone_s:.0f} s.")
+            raise UserError(say("play.silent", seconds=gone_s))
 
 
 def _leave(controller: Controller) -> None:

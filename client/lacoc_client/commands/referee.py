@@ -16,21 +16,21 @@ from msgspec.structs import FieldInfo
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_client.asking import NoAnswer
+from lacoc_client.asking import NoAnswer, Patience
 from lacoc_client.commands import entrance
 from lacoc_client.referee import RefereeClient
 from lacoc_client.spectator import Spectator
 from lacoc_client.stopping import stop_signals
 from lacoc_client.terminal import words
 from lacoc_client.terminal.line_view import event_columns
-from lacoc_client.terminal.plain import event_dict, frame_dict
-from lacoc_client.waiting import Patience
+from lacoc_client.terminal.plain import event_dict, frame_dict, reply_dict
 from lacoc_shared.command import options, screen
 from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Decision
 from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealth, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase, SeatFlag
+from lacoc_shared.words import Phrase, counted, render, say
 
 app = typer.Typer(
     help="Referee a match: decide, read the log, see how the court is.\n\n"
@@ -251,9 +251,10 @@ def _decide(
                 view = patience.until(lambda: Spectator(session, access.court))
                 reply = _decide_when_legal(view, wait, name, decide)
         except NoAnswer as error:
-            raise UserError(f"{error} {name}: 'lacoc referee log' says if it was done.") from None
+            said = say("referee.unsure", why=error.phrase, decision=name)
+            raise UserError(said) from None
     if json:
-        screen.print_json(reply)
+        screen.print_json(reply_dict(reply))
     else:
         _show_reply(reply)
 
@@ -272,16 +273,16 @@ def _decide_when_legal(
     deadline_s = time.monotonic() + wait_s
     seen: Health | None = None
     refused: UserError | None = None
-    reason = "the court does not say how it is"
+    why: Phrase | None = say("why.no-health")
     while True:
         view.wait_frame(0.1)
         if view.health is not None and view.health is not seen:
             seen = view.health
-            reason = seen.decisions.get(name, "the court does not know this decision")
-            if not reason and refused is not None:
+            why = seen.decisions.get(name, say("why.unknown-decision"))
+            if why is None and refused is not None:
                 raise refused
             refused = None
-            if not reason:
+            if why is None:
                 try:
                     return decide()
                 except NoAnswer:  # asked again, it could be done twice
@@ -289,7 +290,8 @@ def _decide_when_legal(
                 except UserError as error:
                     refused = error
         if time.monotonic() >= deadline_s:
-            raise refused or UserError(f"{name} is not legal after {wait_s:g} s: {reason}.")
+            said = say("referee.not-legal", decision=name, seconds=wait_s, why=why)
+            raise refused or UserError(said)
 
 
 def _look(view: Spectator) -> tuple[Frame, Health]:
@@ -301,7 +303,7 @@ def _look(view: Spectator) -> tuple[Frame, Health]:
     deadline_s = time.monotonic() + _HEALTH_S
     while view.frame is None or view.health is None:
         if time.monotonic() > deadline_s:
-            raise UserError("The court is there but does not say how it is: is it overloaded?")
+            raise UserError(say("referee.no-health"))
         view.wait_frame(0.1)
     return view.frame, view.health
 
@@ -334,24 +336,25 @@ def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
             words.event_clock(event, sheet),
             event.kind,
             Text(plain["seat"] or ""),
-            Text(event.text),
+            Text(render(event.said)),
         )
     return table
 
 
 def _show_reply(reply: DecisionReply) -> None:
     score = " : ".join(map(str, reply.scores))
-    text = f"{reply.text[:1].upper()}{reply.text[1:]}"
+    text = render(reply.said)
+    text = f"{text[:1].upper()}{text[1:]}"
     if reply.event is None:
         screen.show("Dry run: nothing is done. This is what would be done:")
         screen.show(f"  {text}")
-        for change in reply.changes or ("No other event changes.",):
-            screen.show(f"  {change}")
+        for change in reply.changes:
+            screen.show(f"  {render(change)}")
         screen.show(f"Score then: {score}")
         return
     screen.show(f"{text} (event {reply.event}, beat {reply.beat})")
     for change in reply.changes:
-        screen.show(f"  {change}")
+        screen.show(f"  {render(change)}")
     screen.show(f"Score: {score}")
 
 
@@ -368,25 +371,28 @@ def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:
     )
     speed = f"{health.real_time_factor:.2f} of real time, {health.slow_beats} slow beats"
     screen.show(f"The court runs at {speed}, the latest by {health.worst_late_ms:.0f} ms.")
-    if health.record_trouble:
+    if health.record_trouble is not None:
         screen.warn(health.record_trouble)
     if health.verdict is not None and health.verdict.advice:
-        screen.show(Text(f"Replay advised: {'; '.join(health.verdict.advice)}.", "bold yellow"))
+        screen.show(
+            Text(render(say("event.advised", reasons=health.verdict.advice)), "bold yellow")
+        )
     if health.input_delay_ms:
         screen.show(f"Links are equalised: keys take effect after {health.input_delay_ms} ms.")
     for why, count in health.dropped.items():
-        screen.show(f"  dropped {count}: {why}")
+        screen.show(f"  dropped {count}: {counted(why)}")
     seats = Table("seat", "team", "score", "ready", "key", "link", "refused")
     for index, (seat, link) in enumerate(zip(frame.seats, health.seats, strict=True)):
         ready = "yes" if seat.flags & SeatFlag.READY else "no"
         team = Text(names[index] if sheet.seats[index].team else "-")
         row = (link.id, team, str(seat.score), ready)
-        refused = ", ".join(f"{count} {why}" for why, count in link.refused.items())
+        refused = ", ".join(f"{count} {counted(why)}" for why, count in link.refused.items())
         seats.add_row(*row, words.standing_key(seat, sheet, index), _link(link), refused)
     screen.show(seats)
     decisions = Table("decision", "legal", "why not")
-    for name, why in health.decisions.items():
-        decisions.add_row(name, Text("no", "dim") if why else Text("yes", "bold green"), Text(why))
+    for name, why_not in health.decisions.items():
+        legal = Text("no", "dim") if why_not else Text("yes", "bold green")
+        decisions.add_row(name, legal, Text(render(why_not or "")))
     screen.show(decisions)
 
 

@@ -19,14 +19,13 @@ from lacoc_client.terminal.plain import event_dict, frame_dict
 from lacoc_shared.command import options, screen
 from lacoc_shared.messages import Event
 from lacoc_shared.network.session import open_client
-from lacoc_shared.seat import Phase
+from lacoc_shared.seat import SILENT_AFTER_S, Phase
 
 app = typer.Typer()
 
 _DRAW_HZ = 10.0
 _LAST_WORD_S = 2.0
 """How long the event that ends a match may come after the frame that shows the end."""
-_SILENT_S = 1.0
 _ENDED = (Phase.OFFICIAL, Phase.VOID)
 
 
@@ -108,7 +107,7 @@ def _print_json(view: Spectator, hz: float, end: _End) -> None:
             screen.print_json({"type": "event", **event_dict(event, view.sheet)})
         ended = end()
         now_s = time.monotonic()
-        if view.silent_s(now_s) > _SILENT_S and now_s - silent_s > _SILENT_S:
+        if view.silent_s(now_s) > SILENT_AFTER_S and now_s - silent_s > SILENT_AFTER_S:
             silent_s = now_s
             screen.print_json({"type": "link", "silent_s": round(view.silent_s(now_s), 1)})
         if frame is not None and hz and (ended or now_s - frame_s >= 1 / hz):

@@ -11,6 +11,7 @@ from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
+from lacoc_shared.words import render
 
 _REQUESTS = 50
 _LONG_TRIP_S = 0.15
@@ -119,4 +120,4 @@ def _record(view: Spectator) -> Iterator[Finding]:
     if view.health is not None and view.health.record_trouble:
         about, trouble = f"record of {view.keys.court}", view.health.record_trouble
         todo = "Tell the organiser: nothing goes on that is not recorded."
-        yield Finding(about, Status.PROBLEM, trouble, todo)
+        yield Finding(about, Status.PROBLEM, render(trouble), todo)

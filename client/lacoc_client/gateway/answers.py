@@ -9,8 +9,9 @@ from lacoc_client.gateway import wire
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.allowance import Allowance
+from lacoc_shared.words import say
 
-TOO_MUCH = "Too much at once: wait for the answers."
+TOO_MUCH = say("gateway.too-much")
 
 _AT_ONCE = 8
 _LOGGED_HZ, _LOGGED_BURST = 1.0, 10
@@ -34,7 +35,7 @@ class Answers:
         """Answer what was asked."""
         self._viewer.send(wire.reply(to, value))
 
-    def refuse(self, to: int, error: Exception | str) -> None:
+    def refuse(self, to: int, error: UserError | FileRefused) -> None:
         """Say why something was not done."""
         self._viewer.send(wire.refusal(to, error))
         # The sentences name no token; a page that asks for more of them is heard less often.
@@ -60,14 +61,14 @@ class Answers:
         except (UserError, FileRefused) as error:
             self.refuse(to, error)
         except Exception:  # a bug, but no page waits for ever
-            self.refuse(to, wire.FAULT)
+            self.refuse(to, UserError(wire.FAULT))
             raise
 
-    def from_thread(self, to: int) -> Callable[[Any, Exception | None], None]:
+    def from_thread(self, to: int) -> Callable[[Any, UserError | FileRefused | None], None]:
         """Make a function that takes the answer on any thread."""
         loop = asyncio.get_running_loop()
 
-        def answer(value: Any, error: Exception | None) -> None:
+        def answer(value: Any, error: UserError | FileRefused | None) -> None:
             if error is None:
                 in_loop(loop, lambda: self.reply(to, value))
             else:

@@ -10,6 +10,7 @@ from lacoc_client.gateway.threads import Threads
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase, say
 
 _THREADS = 16
 _FILES_S = 0.5
@@ -43,7 +44,7 @@ class Courts:
         courts = self.home.courts
         name = name or next(iter(courts))
         if name not in courts:
-            raise UserError(f"There is no court {name!r} here; there is {', '.join(courts)}.")
+            raise UserError(say("gateway.no-court", court=name, courts=list(courts)))
         if name not in self._feeds:
             feed = CourtFeed(courts[name], self.threads)
             self._feeds[name] = (feed, Referees())
@@ -56,13 +57,13 @@ class Courts:
         return [feed for feed, _ in list(self._feeds.values())]
 
     def over(self) -> list[str]:
-        """The matches that are over and still on at their courts; may be asked from any thread."""
+        """List the matches that are over and still on at their courts; any thread may ask."""
         pictures = [feed.picture for feed in self.feeds]
         ended = (Phase.OFFICIAL, Phase.VOID)
         return [picture.view.match_id for picture in pictures if picture.phase in ended]
 
-    def why_full(self, viewer: Viewer) -> str:
-        """Why there is no room for a page; "" if there is.
+    def why_full(self, viewer: Viewer) -> Phrase | None:
+        """Say why there is no room for a page; None if there is.
 
         Who can act has the key: a hall of spectators, or whoever opens as many pages without it,
         takes no place from them.
@@ -70,13 +71,10 @@ class Courts:
         acts = viewer.can_act
         most = ACTING_MOST if acts else self.home.viewers_most
         if sum(feed.audience.others(viewer) for feed in self.feeds) < most:
-            return ""
+            return None
         if acts:
-            return f"{most} pages with the key are open here already: close those nobody needs."
-        return (
-            f"This gateway shows the match to {most} pages already: "
-            "try again later, or watch the stream if there is one."
-        )
+            return say("gateway.full-with-key", most=most)
+        return say("gateway.full", most=most)
 
     async def watch_files(self) -> None:
         """Tell the pages that may act when the files on this machine were saved again."""

@@ -19,9 +19,8 @@ from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Mailbox, Session, open_client
-
-SILENT_AFTER_S = 1.0
-"""A court that sends no frame for so long is not connected: it sends one every 20 ms."""
+from lacoc_shared.seat import SILENT_AFTER_S
+from lacoc_shared.words import Phrase, render, say
 
 _EVENTS_DEPTH = 4096
 _LOOK_S = 0.25
@@ -56,7 +55,7 @@ class CourtFeed:
         self._frame_s = time.monotonic()
         self._connected = False
         """Whether it sends frames, of the version that this gateway speaks: only then pages do."""
-        self._why = ""
+        self._why: Phrase | None = None
         """Why it does not."""
         self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
@@ -107,10 +106,10 @@ class CourtFeed:
                 )
                 await self._subscribe(self.session)
             except UserError as error:
-                self._why = str(error)
+                self._why = error.phrase
                 self.audience.send(self._link())
                 await asyncio.sleep(_RETRY_S)
-        self._why, self._frame_s = "", time.monotonic()
+        self._why, self._frame_s = None, time.monotonic()
         said_s = 0.0
         while True:
             now_s = time.monotonic()
@@ -127,20 +126,20 @@ class CourtFeed:
 
     def _come_back(self) -> None:
         """A frame after a silence: the court may be another one, so everything is sent again."""
-        self._connected, self._why = True, ""
+        self._connected, self._why = True, None
         self.log(f"Court {self.court} sends frames.", "link", connected=True)
         self.audience.send(self._link(), *self._all())
 
     def _link(self) -> bytes:
         silent_s = max(0.0, time.monotonic() - self._frame_s)
-        text = "" if self._connected else self._wrong_version or self._why
+        why = None if self._connected else self._wrong_version or self._why
         return wire.map_message(
             Kind.LINK,
             {
                 "court": self.court,
                 "connected": self._connected,
                 "silent_s": round(silent_s, 1),
-                "text": text,
+                "why": why,
                 "log": self._log_number,
             },
         )
@@ -155,8 +154,8 @@ class CourtFeed:
         self._explaining = asyncio.get_running_loop().create_task(self._find_words(self.session))
 
     async def _find_words(self, session: Session) -> None:
-        text = await self._threads.run(lambda: no_answer(session, self.court))
-        self._why = "" if self._connected else text
+        why = await self._threads.run(lambda: no_answer(session, self.court))
+        self._why = None if self._connected else why
 
     async def _subscribe(self, session: Session) -> None:
         """Listen; pages that see a frame know its sheet and all that happened before."""
@@ -259,7 +258,7 @@ class CourtFeed:
         """Show nothing of a court of another version until it has another sheet."""
         if self._other_version not in (None, before):
             self._connected = False
-            self.log(self._wrong_version, "link", connected=False)
+            self.log(render(self._wrong_version or ""), "link", connected=False)
             self.audience.send(self._link())
 
     @property
@@ -272,15 +271,12 @@ class CourtFeed:
         return self.picture.view.log.number
 
     @property
-    def _wrong_version(self) -> str:
-        """Why a court of another version is not shown; "" for one of this version."""
+    def _wrong_version(self) -> Phrase | None:
+        """Why a court of another version is not shown; None for one of this version."""
         if self._other_version is None:
-            return ""
-        speaks = f"version {self._other_version}" if self._other_version else "another version"
-        return (
-            f"Court {self.court!r} speaks {speaks} of the protocol, this gateway version "
-            f"{PROTOCOL}: install the version of lacoc that the court has."
-        )
+            return None
+        version = self._other_version or None
+        return say("gateway.other-version", court=self.court, version=version, gateway=PROTOCOL)
 
     def _catch_up(self) -> None:
         """Get what is new, was sent while this was away, or was dropped on a slow link."""

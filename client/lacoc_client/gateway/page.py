@@ -23,6 +23,7 @@ from lacoc_shared.contest.invitation import Access
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.allowance import Allowance
+from lacoc_shared.words import say
 
 TRY_LATER = 1013
 """WebSocket close code: come again later."""
@@ -84,7 +85,7 @@ class Page:
             if to is None:
                 await self._websocket.close(GARBAGE, "not a message")
                 return False
-            self._answers.refuse(to, f"This was not understood: {error}.")
+            self._answers.refuse(to, UserError(say("gateway.bad-message", error=str(error))))
             return True
         try:
             return await self._answer(asked)
@@ -127,9 +128,9 @@ class Page:
             asked.key.encode("utf-8", "surrogatepass"), self._home.key.encode()
         )
         viewer.rate(USUAL_HZ if asked.hz is None else asked.hz)
-        if why := self._courts.why_full(viewer):
+        if (why := self._courts.why_full(viewer)) is not None:
             self._courts.sent_away += 1
-            self._answers.refuse(asked.id, why)
+            self._answers.refuse(asked.id, UserError(why))
             await self._websocket.close(TRY_LATER, "full")
             return False
         self._leave_court()
@@ -171,20 +172,17 @@ class Page:
 
     def _acting(self) -> tuple[CourtFeed, Referees]:
         if self._feed is None or self._referees is None:
-            raise UserError("Say first which court to watch.")
+            raise UserError(say("gateway.which-court"))
         if not self._viewer.can_act:
-            raise UserError(
-                "This page may only watch: open the address with its key, as the one who started "
-                "the gateway has it."
-            )
+            raise UserError(say("gateway.only-watch"))
         return self._feed, self._referees
 
     async def _enter(self, asked: wire.EnterAsk, feed: CourtFeed, referees: Referees) -> Any:
         by = asked.by.strip()
         if not (by and by.isprintable()):
-            raise UserError("Say who you are: it stands in the record.")
+            raise UserError(say("gateway.who-are-you"))
         if feed.session is None:
-            raise UserError(f"Court {feed.court!r} is not there yet.")
+            raise UserError(say("gateway.court-not-there", court=feed.court))
         access = feed.access.of_referee(asked.token)
         # One at a time, so that a page with wrong tokens is one of those that wait, not many.
         if self._entering.locked():
@@ -206,7 +204,7 @@ class Page:
             raise
         except UserError as error:
             # The court is there, as it sends frames to this gateway: so it is the token.
-            raise wire.TokenRefused(str(error)) if feed.connected else error from None
+            raise wire.TokenRefused(error.said) if feed.connected else error from None
 
     async def _decide(self, asked: wire.DecideAsk, referees: Referees) -> Any:
         access, by = referees.acting(self._viewer)
@@ -237,4 +235,4 @@ class Page:
 
 def _spend(allowance: Allowance) -> None:
     if not allowance.take(1, time.monotonic()):
-        raise UserError("Too many tries: wait a few seconds.")
+        raise UserError(say("gateway.too-many-tries"))

@@ -13,6 +13,7 @@ from lacoc_client.gateway.wire import Kind
 from lacoc_client.seat_files import SeatFiles, as_text, with_level_b
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render, say
 
 
 class PageSeat:
@@ -79,13 +80,13 @@ class PageSeat:
             UserError: if there is no seat.
         """
         if self._thread is None:
-            raise UserError("This page holds no seat: join one first.")
+            raise UserError(say("gateway.no-seat"))
         do, answer = self._thread.do, self._answers.from_thread(asked.id)
         match asked:
             case wire.ReadyAsk(ready=ready):
-                do(lambda controller: {"text": controller.ready(ready)}, answer)
+                do(lambda controller: {"said": controller.ready(ready)}, answer)
             case wire.LeaveAsk():
-                do(lambda controller: {"text": controller.leave()}, answer)
+                do(lambda controller: {"said": controller.leave()}, answer)
             case wire.KeyAsk(level=level, key=key):
                 do(lambda controller: {"seq": controller.press(level, key)}, answer)
 
@@ -113,7 +114,7 @@ class PageSeat:
                 files = SeatFiles(own.robot or theirs.robot, theirs.postures, theirs.locomotion)
             token, name = token or prefill.token, name or prefill.name
         if not token:
-            raise UserError("The token is missing: the organiser has it.")
+            raise UserError(say("gateway.no-token"))
         return watching.of_seat(asked.seat, token), name or f"Team {asked.seat}", files
 
     def _tell(self, seat: dict[str, Any], joins: int) -> None:
@@ -123,5 +124,5 @@ class PageSeat:
         hold = (seat["seat"], seat["hold"])
         if hold != self._hold:
             self._hold = hold
-            because = f" ({seat['reason']})" if seat["reason"] else ""
+            because = f" ({render(seat['reason'])})" if seat["reason"] else ""
             self._log(f"Seat {hold[0]}: {hold[1]}{because}.", "seat", seat=hold[0], hold=hold[1])

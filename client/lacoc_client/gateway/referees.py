@@ -10,6 +10,7 @@ from lacoc_client.referee import RefereeClient
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
+from lacoc_shared.words import say
 
 T = TypeVar("T")
 
@@ -52,7 +53,7 @@ class Referees:
             UserError: if it has not entered.
         """
         if viewer not in self._entered:
-            raise UserError("Enter with the referee's token first.")
+            raise UserError(say("gateway.enter-first"))
         self._act(viewer)
 
     def acting(self, viewer: Viewer) -> tuple[Access, str]:
@@ -62,10 +63,11 @@ class Referees:
             UserError: if it does not act.
         """
         if viewer not in self._entered:
-            raise UserError("Enter with the referee's token first.")
+            raise UserError(say("gateway.enter-first"))
         if viewer is not self._acting:
-            acting = "Nobody" if self._acting is None else self._entered[self._acting][1]
-            raise UserError(f"{acting} acts as referee now: take over first.")
+            if self._acting is None:
+                raise UserError(say("gateway.nobody-referees"))
+            raise UserError(say("gateway.other-referee", name=self._entered[self._acting][1]))
         return self._entered[viewer]
 
     def leave(self, viewer: Viewer) -> None:

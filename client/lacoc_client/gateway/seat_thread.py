@@ -17,12 +17,13 @@ from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.session import open_client
+from lacoc_shared.words import say
 
 LOST_AFTER_S = 1.0
 """A page that was not heard for so long has gone, though nobody closed its connection."""
 _TELL_S = 0.5
 
-Answer = Callable[[Any, Exception | None], None]
+Answer = Callable[[Any, UserError | FileRefused | None], None]
 """Takes what came of a job: its value, or the error."""
 
 
@@ -102,14 +103,14 @@ class SeatThread:
                 self._report(controller)
                 self._hold(controller)
         except Exception as error:
-            known = isinstance(error, UserError | FileRefused)
-            told = error if known else UserError(FAULT)
+            told = error if isinstance(error, UserError | FileRefused) else UserError(FAULT)
             if not self._told:
                 joined(None, told)
             else:
-                lost = {"hold": Hold.REFUSED.value, "reason": str(told), "round_trip_ms": None}
+                reason = say("hold.files-refused") if isinstance(told, FileRefused) else told.phrase
+                lost = {"hold": Hold.REFUSED.value, "reason": reason, "round_trip_ms": None}
                 self._tell(self._told | lost)
-            if not known:  # a bug, but no page waits for ever
+            if told is not error:  # a bug, but no page waits for ever
                 raise
         finally:
             self._refuse_rest()
@@ -157,5 +158,7 @@ class SeatThread:
             except queue.Empty:
                 return
             if job is not None:
-                why = self._told.get("reason") or self._told.get("hold") or "not joined"
-                job.answer(None, UserError(f"Seat {self._access.seat} is not yours now ({why})."))
+                hold = Hold(self._told.get("hold", Hold.NOT_JOINED.value))
+                why = self._told.get("reason") or hold.phrase
+                said = say("refused.not-yours", seat=self._access.seat, why=why)
+                job.answer(None, UserError(said))

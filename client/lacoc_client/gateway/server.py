@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import errno
 import os
 import re
 import socket
@@ -16,6 +17,7 @@ from lacoc_client.gateway.site import site
 from lacoc_client.gateway.wire import JOIN_BYTES
 from lacoc_client.stopping import stop_signals
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 LOOPBACK = "127.0.0.1:0"
 """Where a gateway listens if nobody says otherwise: for this machine only, on a free port."""
@@ -38,7 +40,7 @@ def listen(where: str) -> socket.socket:
     """
     match = _LISTEN.fullmatch(where)
     if match is None or int(match["port"]) > 65_535:
-        raise UserError(f"{where!r} is no place to listen at. It looks like 0.0.0.0:8080.")
+        raise UserError(say("command.bad-listen", where=where))
     host, port = match["host"].strip("[]"), int(match["port"])
     try:
         found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
@@ -47,7 +49,9 @@ def listen(where: str) -> socket.socket:
         # and the frame after it would wait 40 ms for the page's late acknowledgement.
         opened = socket.socket(family, kind, protocol)
     except OSError as error:
-        raise UserError(f"It is not possible to listen at {where}: {error.strerror}.") from None
+        raise UserError(
+            say("gateway.cannot-listen", where=where, why=error.strerror or str(error))
+        ) from None
     try:
         if os.name == "posix":  # elsewhere it would let two programs share a port
             opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -55,10 +59,10 @@ def listen(where: str) -> socket.socket:
         opened.listen(_BACKLOG)
     except OSError as error:
         opened.close()
-        raise UserError(
-            f"It is not possible to listen at {where}: {error.strerror or error}. "
-            "Is another gateway running? Choose another port; 0 takes a free one."
-        ) from None
+        if error.errno == errno.EADDRINUSE:
+            raise UserError(say("gateway.port-used", where=where)) from None
+        said = say("gateway.cannot-listen", where=where, why=error.strerror or str(error))
+        raise UserError(said) from None
     return opened
 
 

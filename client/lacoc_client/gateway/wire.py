@@ -16,6 +16,7 @@ from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import Phrase, say
 
 JOIN_BYTES = JOIN_MAX_BYTES
 """A longer message of a page closes its connection."""
@@ -23,7 +24,7 @@ REQUEST_BYTES = 4096
 """A longer message that is no join is refused."""
 
 
-FAULT = "The gateway has a fault; its window says more. Try again, or tell the organiser."
+FAULT = say("gateway.fault")
 
 
 class TokenRefused(UserError):
@@ -121,7 +122,7 @@ class DecideAsk(_Ask, frozen=True, kw_only=True, tag="decide"):
     """Decide as a referee."""
 
     decision: Decision
-    reason: str = ""
+    reason: Phrase | str = ""
 
 
 Asked = (
@@ -196,7 +197,7 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
         "version": own.version,
         "used": used,
         "changed": own.changed,
-        "error": "" if refused is None else _sentence(refused),
+        "error": None if refused is None else _said(refused),
         "mistakes": refused.mistakes if isinstance(refused, FileRefused) else [],
     }
     return map_message(Kind.FILES, body)
@@ -207,14 +208,13 @@ def reply(to: int, value: Any) -> bytes:
     return map_message(Kind.REPLY, {"id": to, "ok": True, "value": value})
 
 
-def refusal(to: int, error: Exception | str) -> bytes:
+def refusal(to: int, error: UserError | FileRefused) -> bytes:
     """The answer to what was not done."""
-    mistakes = error.mistakes if isinstance(error, FileRefused) else []
     body = {
         "id": to,
         "ok": False,
-        "error": _sentence(error),
-        "mistakes": mistakes,
+        "error": _said(error),
+        "mistakes": error.mistakes if isinstance(error, FileRefused) else [],
         "token_refused": isinstance(error, TokenRefused),
         "again": isinstance(error, NotNow),
         "unanswered": isinstance(error, NoAnswer),
@@ -222,12 +222,7 @@ def refusal(to: int, error: Exception | str) -> bytes:
     return map_message(Kind.REPLY, body)
 
 
-def _sentence(error: Exception | str) -> str:
-    mistakes = error.mistakes if isinstance(error, FileRefused) else []
-    if not mistakes:
-        return str(error)
-    return (
-        "Your file has 1 mistake."
-        if len(mistakes) == 1
-        else f"Your files have {len(mistakes)} mistakes."
-    )
+def _said(error: UserError | FileRefused) -> Phrase:
+    if isinstance(error, FileRefused):
+        return say("refused.mistakes", count=len(error.mistakes), first=None)
+    return error.phrase

@@ -9,6 +9,7 @@ from lacoc_client.spectator import Spectator
 from lacoc_client.terminal import words
 from lacoc_shared.messages import Event, Frame, Sheet
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render
 
 PHASE_STYLES = {
     Phase.LOBBY: "black on white",
@@ -39,7 +40,7 @@ class LineView:
             silent_s: how long no frame has come.
         """
         if events:
-            self._last = events[-1].text
+            self._last = render(events[-1].said)
         banner = words.link(silent_s)
         if banner:
             return Text(banner, style="bold white on red", no_wrap=True)
@@ -74,4 +75,4 @@ def status_line(frame: Frame, sheet: Sheet) -> Text:
 
 def event_columns(event: Event, sheet: Sheet) -> tuple[Text, Text]:
     """When something happened, and what, as the log has it."""
-    return Text(f"{words.event_clock(event, sheet):>7}  ", "dim"), Text(event.text)
+    return Text(f"{words.event_clock(event, sheet):>7}  ", "dim"), Text(render(event.said))

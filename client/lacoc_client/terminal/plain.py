@@ -7,14 +7,23 @@ import numpy as np
 
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.marker_states import unpack_states
-from lacoc_shared.messages import MARKER_STATES, Event, Frame, SeatFrame, Sheet, SheetSeat
-from lacoc_shared.record.export.kinematics import (
+from lacoc_shared.messages import (
+    MARKER_STATES,
     ROOT_FLOATS,
+    DecisionReply,
+    Event,
+    Frame,
+    SeatFrame,
+    Sheet,
+    SheetSeat,
+)
+from lacoc_shared.record.export.kinematics import (
     euler_zyx,
     joints_per_seat,
     split_poses,
 )
 from lacoc_shared.seat import BEAT_S, Phase, SeatFlag
+from lacoc_shared.words import render
 
 
 def frame_dict(frame: Frame, sheet: Sheet) -> dict[str, Any]:
@@ -44,12 +53,18 @@ def frame_dict(frame: Frame, sheet: Sheet) -> dict[str, Any]:
 
 
 def event_dict(event: Event, sheet: Sheet) -> dict[str, Any]:
-    """Put an event into words: its seat by name, its clock in seconds."""
-    plain: dict[str, Any] = msgspec.to_builtins(event)
+    """Give an event plain values: code and values, the words, seat by name, clock in seconds."""
+    plain: dict[str, Any] = msgspec.to_builtins(event) | {"text": render(event.said)}
     del plain["clock_ticks"]
     plain["clock_s"] = round(event.clock_ticks * BEAT_S, 2)
     plain["seat"] = sheet.seats[event.seat].id if 0 <= event.seat < len(sheet.seats) else None
     return plain
+
+
+def reply_dict(reply: DecisionReply) -> dict[str, Any]:
+    """Give the answer to a decision plain values, with the words as `text`."""
+    plain: dict[str, Any] = msgspec.to_builtins(reply)
+    return plain | {"text": render(reply.said)}
 
 
 def marker_states(frame: Frame, sheet: Sheet) -> dict[str, str]:

@@ -23,6 +23,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export.kinematics import joints_per_seat
 from lacoc_shared.record.export.pos_data import PosData
 from lacoc_shared.seat import BEAT_S, RESTART_KEY, Phase, SeatFlag
+from lacoc_shared.words import render, say
 
 POS_DATA = "Pos-data.txt"
 
@@ -94,7 +95,7 @@ class TerminalPlay:
             self._see(frame)
         for refused in controller.take_refused():
             key = "x" if refused.key == RESTART_KEY else str(refused.key)
-            self._say(f"[{key}] refused: {refused.why}.")
+            self._say(f"[{key}] refused: {render(refused.why)}.")
         for text in self._keys.take_said():
             self._say(text)
         lines = [
@@ -182,11 +183,11 @@ class TerminalPlay:
         """
         controller, frame = self._controller, self._view.frame
         if controller.hold in (Hold.REPLACED, Hold.REFUSED):
-            raise UserError(f"The seat is lost: {controller.reason}.")
+            raise UserError(say("play.lost", why=controller.why_not_held))
         if not self._keys.ended or frame is None:
             return
         if self._view.silent_s(time.monotonic()) > _GONE_S:
-            raise UserError(f"No word from the court for {_GONE_S:.0f} s.")
+            raise UserError(say("play.silent", seconds=_GONE_S))
         if frame.phase >= Phase.FINISHED or not self._view.sheet.duration_s:
             self._leaving = True
 
@@ -219,7 +220,7 @@ class TerminalPlay:
         assert frame is not None
         banner = words.link(self._view.silent_s(now_s))
         if not banner and controller.hold is not Hold.HELD:
-            banner = controller.link(now_s)
+            banner = render(controller.why_not_held)
         if banner:
             return Text(f" {banner} ", "bold white on red")
         if self._message and now_s - self._said_s < _SAID_S:
@@ -235,10 +236,9 @@ class TerminalPlay:
         controller = self._controller
         if self._view.silent_s(time.monotonic()) < 1.0 and controller.hold is Hold.HELD:
             try:
-                text = controller.leave()
-                screen.note(
-                    f"You have left. {text if self._view.sheet.duration_s else ''}".rstrip()
-                )
+                said = controller.leave()
+                told = said if self._view.sheet.duration_s else None
+                screen.note(f"You have left. {render(told or '')}".rstrip())
             except UserError as error:
                 screen.note(str(error))
         if not self._saving:

@@ -1,11 +1,10 @@
 """Clocks, scores, keys and links in words, the same on every screen of the terminal."""
 
-from lacoc_client.controller import SILENT_AFTER_S
 from lacoc_client.terminal.plain import poses
 from lacoc_shared.command.log import log_clock
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Event, Frame, SeatFrame, Sheet
-from lacoc_shared.seat import BEAT_S, BEATS_PER_S, NO_SENTENCES, Phase, SeatFlag
+from lacoc_shared.seat import BEAT_S, BEATS_PER_S, SILENT_AFTER_S, Phase, SeatFlag
 
 _PHASES = {
     Phase.CREATED: "the court opens",
@@ -93,11 +92,6 @@ def link(silent_s: float) -> str:
     if silent_s < SILENT_AFTER_S:
         return ""
     return f"No word from the court for {silent_s:.0f} s - trying again"
-
-
-def refusal(why: int) -> str:
-    """Why a command was refused, in a sentence."""
-    return {int(no): text for no, text in NO_SENTENCES.items()}.get(why, "the court refused it")
 
 
 def _missing(frame: Frame, sheet: Sheet) -> list[str]:

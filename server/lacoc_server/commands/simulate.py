@@ -21,6 +21,7 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
@@ -142,7 +143,7 @@ def _pairs(players: list[str], seats: int, both_sides: bool) -> list[tuple[str, 
     if seats == 1:
         return [(name,) for name in players]
     if len(players) < seats:
-        raise UserError(f"This arena has {seats} seats: name {seats} players, or more.")
+        raise UserError(say("simulate.players", seats=seats))
     if len(players) == seats:
         pair = tuple(players)
         return [pair, pair[::-1]] if both_sides else [pair]
@@ -197,7 +198,7 @@ def _table(results: Sequence[Result], seats: Sequence[str]) -> Table:
     for result in results:
         winner = result.teams[seats.index(result.official)] if result.official in seats else "draw"
         score = " : ".join(map(str, result.scores))
-        table.add_row(*result.teams, score, winner, result.reason, f"{result.clock_s:.1f}")
+        table.add_row(*result.teams, score, winner, render(result.reason), f"{result.clock_s:.1f}")
     return table
 
 

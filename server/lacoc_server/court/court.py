@@ -20,7 +20,7 @@ from lacoc_server.court.health import MatchHealth
 from lacoc_server.court.log import CourtLog
 from lacoc_server.court.metrics import CourtMetrics
 from lacoc_server.court.pace import Pace
-from lacoc_server.doors.network import Arrival, CourtNetwork, Outcome
+from lacoc_server.doors.network import Arrival, CourtNetwork
 from lacoc_server.journal.journal import Journal
 from lacoc_server.journal.recovery import IN_PLAY, Unfinished
 from lacoc_server.match.match import Beat, Match
@@ -28,12 +28,13 @@ from lacoc_server.world.world import World
 from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.decisions import Halt
 from lacoc_shared.inputs import Advice, Decide, Input
-from lacoc_shared.messages import Health, HealthVerdict
+from lacoc_shared.messages import Health, HealthVerdict, Outcome
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import heap
 from lacoc_shared.record.matches import MatchName
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.words import Phrase
 
 HEALTH_BEATS = BEATS_PER_S // 2
 """Health goes out twice a second."""
@@ -94,8 +95,8 @@ class Court:
         """A beat that nobody was told of yet."""
         self._frame = b""
         """The newest that was published."""
-        self._trouble = ""
-        """What is wrong with the disk of the record."""
+        self._trouble: Phrase | None = None
+        """What is wrong with the disk of the record (`record.*`)."""
         self._waits = 0
         """Beats that could have been in the time that the disk did not take the record."""
         if left is None:
@@ -141,7 +142,7 @@ class Court:
                 self._made = self._make(now_s)
             self._journal.flush()
         except UserError as trouble:
-            self._wait(now_s, str(trouble))
+            self._wait(now_s, trouble.phrase)
             return
         made, self._made, self._waits = self._made, None, 0
         self._inputs = self._follow()
@@ -156,7 +157,7 @@ class Court:
         beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
         return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])
 
-    def _wait(self, now_s: float, trouble: str) -> None:
+    def _wait(self, now_s: float, trouble: Phrase) -> None:
         """Let no beat pass: nobody may be told what is not on disk.
 
         What was published last is published again, so that nobody takes the court for dead.
@@ -190,7 +191,7 @@ class Court:
 
     def _open_next(self) -> None:
         if self._waits % HEALTH_BEATS:  # a match takes longer than a beat to make
-            raise UserError(self._trouble)
+            raise UserError(self._trouble or "")
         match = self._journal.match
         following = self._open(match.setup.match + 1)
         self._close()
@@ -202,8 +203,9 @@ class Court:
         """What comes after a beat that was recorded: the court's own decisions."""
         match, before = self._journal.match, self._trouble
         self._trouble = now = self._journal.trouble
-        if before != now and match.phase in IN_PLAY:
-            return [Decide("court", before or now, Halt())]
+        why = before or now
+        if before != now and why is not None and match.phase in IN_PLAY:
+            return [Decide("court", why, Halt())]
         if match.phase is Phase.FINISHED:
             reasons = self._health.verdict().advice
             if reasons != match.advice:

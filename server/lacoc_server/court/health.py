@@ -17,6 +17,7 @@ from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.inputs import Input, KeySeat
 from lacoc_shared.messages import HealthVerdict, LinkVerdict, Refusal
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, REPEATS_HZ, Phase
+from lacoc_shared.words import Phrase, say
 
 _LEAST_FACTOR = 1e-4
 """What a rounded real-time factor can tell from standing still."""
@@ -127,7 +128,7 @@ class MatchHealth:
         self._faults += sum(event.kind == "fault" for event in beat.events)
         for item, outcome in zip(inputs, beat.outcomes, strict=True):
             if isinstance(item, KeySeat) and isinstance(outcome, Refusal):
-                why = outcome.reason.lower().replace("_", " ")
+                why = outcome.why.code.removeprefix("key.")  # `count.*` has the same names
                 self._links[item.seat].refused[why] += 1
         if self._match.phase is not Phase.PLAYING:
             self._playing_since = None
@@ -175,40 +176,31 @@ class MatchHealth:
         return msgspec.structs.replace(verdict, advice=tuple(advice(verdict, self._limits)))
 
 
-def advice(verdict: HealthVerdict, limits: HealthLimits) -> Iterator[str]:
-    """Everything in which a match was held worse than its contest wants, in words."""
+def advice(verdict: HealthVerdict, limits: HealthLimits) -> Iterator[Phrase]:
+    """List everything in which a match was held worse than its contest wants."""
     if verdict.real_time_factor < limits.real_time_factor:
-        yield (
-            f"it ran at {verdict.real_time_factor:.3f} of real time, "
-            f"at least {limits.real_time_factor:g} is wanted"
+        yield say(
+            "health.real-time", factor=verdict.real_time_factor, least=limits.real_time_factor
         )
     slow_percent = 100 * verdict.slow_beats / max(1, verdict.played_beats)
     if slow_percent > limits.slow_beats_percent:
-        yield (
-            f"{slow_percent:.1f} % of the beats were slow, "
-            f"at most {limits.slow_beats_percent:g} % may be"
-        )
+        yield say("health.slow-beats", percent=slow_percent, most=limits.slow_beats_percent)
     if verdict.worst_late_ms > limits.worst_late_ms:
-        yield (
-            f"a beat began {verdict.worst_late_ms:.0f} ms late, "
-            f"at most {limits.worst_late_ms:g} ms may be"
-        )
+        yield say("health.late-beat", late_ms=verdict.worst_late_ms, most_ms=limits.worst_late_ms)
     for seat in verdict.seats:
         if seat.silent_s > limits.silent_s:
-            yield (
-                f"seat {seat.id} was silent for {seat.silent_s:.1f} s, "
-                f"at most {limits.silent_s:g} s may be"
+            yield say(
+                "health.silent-seat", seat=seat.id, seconds=seat.silent_s, most_s=limits.silent_s
             )
         heard_percent = 100 * seat.arrived / max(1, seat.expected)
         if seat.expected and heard_percent < limits.heard_percent:
-            yield (
-                f"{heard_percent:.0f} % of the repeats of seat {seat.id} arrived, "
-                f"at least {limits.heard_percent:g} % are wanted"
+            yield say(
+                "health.lost-commands",
+                seat=seat.id,
+                percent=heard_percent,
+                least=limits.heard_percent,
             )
     if verdict.faults > limits.faults:
-        yield f"physics stopped {verdict.faults} times, at most {limits.faults} may be"
+        yield say("health.faults", times=verdict.faults, most=limits.faults)
     if verdict.resumptions > limits.resumptions:
-        yield (
-            f"the court was started again {verdict.resumptions} times, "
-            f"at most {limits.resumptions} may be"
-        )
+        yield say("health.restarts", times=verdict.resumptions, most=limits.resumptions)

@@ -1,13 +1,14 @@
 """What a court says in its log: every event, and what goes wrong beside the match."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import msgspec
 
 from lacoc_shared.command import log
 from lacoc_shared.messages import Event, Health
 from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import Phrase, render, say
 
 _TROUBLE = frozenset({"advice", "fault", "silent"})
 """Kinds of events that an organiser looks up for."""
@@ -28,7 +29,7 @@ class CourtLog:
         self._slow_beats = 0
         self._slow_told = (0, 0)
         """Match and beat in which slow beats were told last."""
-        self._trouble = ""
+        self._trouble: Phrase | None = None
 
     def event(self, match_id: str, event: Event, duration_ticks: int = 0) -> None:
         """Log an event of a match that lasts so long; 0: without end."""
@@ -36,39 +37,43 @@ class CourtLog:
         fields = msgspec.structs.asdict(event)
         if duration_ticks:
             fields["left_ticks"] = duration_ticks - event.clock_ticks
-        write(fields.pop("text"), match_id=match_id, **fields)
+        _write(write, fields.pop("said"), match_id=match_id, **fields)
 
     def health(self, match_id: str, health: Health) -> None:
         """Log what went wrong since this was last called: refusals, slow beats, the disk."""
         write = self._log.bind(match_id=match_id, match=health.match, beat=health.beat).warning
         refused = Counter(dict(_refused(health)))
         for (seat, why), count in (refused - self._refused).items():
-            who = f"Seat {seat}" if seat else "Referee's desk"
-            write(
-                f"{who}: {count} refused, {why}.", kind="refused", seat=seat, why=why, count=count
-            )
+            said = say("log.refused", seat=seat, why=why, count=count)
+            if not seat:
+                said = say("log.refused-at-desk", why=why, count=count)
+            _write(write, said, kind="refused", seat=seat, why=why, count=count)
         self._refused = refused
         slow = health.slow_beats - self._slow_beats
         at = health.match, health.beat
         if slow and not (self._slow_told[0] == at[0] and at[1] - self._slow_told[1] < _SLOW_BEATS):
             worst_ms = health.worst_late_ms
-            in_all = f"{health.slow_beats} in all; the latest by {worst_ms:.0f} ms"
-            text = f"Slow beats: {slow}, {in_all}."
-            write(text, kind="slow", count=slow, worst_late_ms=worst_ms)
+            said = say("log.slow-beats", count=slow, all=health.slow_beats, worst_ms=worst_ms)
+            _write(write, said, kind="slow", count=slow, worst_late_ms=worst_ms)
             self._slow_beats, self._slow_told = health.slow_beats, at
         if health.record_trouble != self._trouble:
             self._trouble = health.record_trouble
-            write(self._trouble or "The record is written again.", kind="record")
+            _write(write, self._trouble or say("log.record-again"), kind="record")
 
-    def disk(self, match_id: str, trouble: str) -> None:
+    def disk(self, match_id: str, trouble: Phrase | None) -> None:
         """Log what the disk said of the record of a match that is over, if anything."""
         if trouble:
-            self._log.warning(trouble, match_id=match_id, kind="record")
+            _write(self._log.warning, trouble, match_id=match_id, kind="record")
 
     def not_packed(self, match_id: str, error: OSError) -> None:
         """Log that no record could be packed: nothing is lost by that."""
-        text = f"No record is packed now: {error}. The segments stay, and are packed later."
-        self._log.warning(text, match_id=match_id, kind="record")
+        said = say("log.not-packed", why=str(error))
+        _write(self._log.warning, said, match_id=match_id, kind="record")
+
+
+def _write(write: Callable[..., object], said: Phrase, **fields: object) -> None:
+    """Write a line: the words for a person, the code for a program."""
+    write(render(said), code=said.code, **fields)
 
 
 def _refused(health: Health) -> Iterator[tuple[tuple[str, str], int]]:

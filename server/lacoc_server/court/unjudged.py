@@ -10,6 +10,7 @@ from lacoc_server.match.match import Match
 from lacoc_shared.decisions import Decision, Next, Official, Restart, Resume
 from lacoc_shared.inputs import Decide, Input
 from lacoc_shared.seat import BEATS_PER_S, NOBODY, Phase
+from lacoc_shared.words import Phrase, say
 
 _RESULT_BEATS = 10 * BEATS_PER_S
 """How long two can read who has won, before the next match opens."""
@@ -42,11 +43,11 @@ def _put_back(match: Match) -> list[Input]:
     if match.fault is None:
         return []
     return [
-        _decide(Restart(seat.id), "physics stopped")
+        _decide(Restart(seat.id), say("reason.physics-stopped"))
         for seat in match.seats
         if match.fault.seat in (seat.index, NOBODY)
     ]
 
 
-def _decide(decision: Decision, reason: str = "") -> Input:
+def _decide(decision: Decision, reason: Phrase | str = "") -> Input:
     return Decide("court", reason, decision)

@@ -15,6 +15,7 @@ from lacoc_shared.decisions import DECISIONS, Decision
 from lacoc_shared.inputs import Decide
 from lacoc_shared.keyspace import DECISION_MAX_BYTES
 from lacoc_shared.messages import DecisionRequest, Done, Enter, Refusal
+from lacoc_shared.words import Phrase, say
 
 _NUMBER_MAX = 1e6  # seconds, points, an event's number
 
@@ -41,7 +42,7 @@ class DecisionDesk:
     def __init__(self, referee_hashes: Collection[str]) -> None:
         self._referee_hashes = tuple(referee_hashes)
         self.refused: Counter[str] = Counter()
-        """Refusals by reason."""
+        """Refusals by `Why`."""
 
     def enter(self, payload: bytes) -> Done | Refusal:
         """Judge a token that is only shown.
@@ -66,31 +67,39 @@ class DecisionDesk:
             if found not in DECISIONS or found != name:
                 raise codec.BadMessage(f"there is no decision {found!r:.40} under {name!r:.40}")
             request = codec.decode(payload, DecisionRequest)
+            if not _is_reason(request.reason):
+                raise codec.BadMessage("the reason is neither a text nor a phrase of reason.*")
         except codec.BadMessage as error:
-            return self._refuse(
-                Why.BAD_DECISION,
-                f"The decision was not understood: {error}. There are: {_all_decisions()}.",
-            )
+            said = say("refused.bad-decision", error=str(error), decisions=_all_decisions())
+            return self._refuse(Why.BAD_DECISION, said)
         if not (request.by.strip() and request.by.isprintable()):
-            return self._refuse(Why.BAD_NAME, "Say who decides: it stands in the record.")
+            return self._refuse(Why.BAD_NAME, say("refused.who-decides"))
         if not _numbers_are_sane(request.decision):
-            return self._refuse(
-                Why.OUT_OF_RANGE, f"A number of the decision {name} is beyond all reason."
-            )
+            why = say("why.number-too-large")
+            said = say("refused.decision", decision=name, why=why)
+            return self._refuse(Why.OUT_OF_RANGE, said)
         return Decide(request.by.strip(), request.reason, request.decision)
 
     def _check_token(self, payload: bytes, kind: type[_Token] | type[Enter]) -> Refusal | None:
         try:
             token = codec.decode(payload, kind, DECISION_MAX_BYTES).token
         except codec.BadMessage as error:
-            return self._refuse(Why.BAD_BYTES, f"The request was not understood: {error}.")
+            return self._refuse(Why.BAD_BYTES, say("refused.bad-request", error=str(error)))
         if not any(seal.verify_token(token, known) for known in self._referee_hashes):
-            return self._refuse(Why.WRONG_TOKEN, "This is not a referee's token of this court.")
+            return self._refuse(Why.WRONG_TOKEN, say("refused.no-referee-token"))
         return None
 
-    def _refuse(self, why: Why, reason: str) -> Refusal:
-        self.refused[why] += 1
-        return Refusal(reason)
+    def _refuse(self, why: Why, said: Phrase) -> Refusal:
+        self.refused[why.value] += 1
+        return Refusal(said)
+
+
+def _is_reason(reason: Phrase | str) -> bool:
+    """Whether a reason may stand in the record: a text, or a phrase of `reason.*` with texts."""
+    if isinstance(reason, str):
+        return True
+    plain = all(value is None or isinstance(value, str) for value in reason.values.values())
+    return plain and reason.code.startswith("reason.")
 
 
 def _numbers_are_sane(decision: Decision) -> bool:

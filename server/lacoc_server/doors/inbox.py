@@ -34,12 +34,11 @@ from lacoc_shared.messages import (
     SeatHealth,
     SeatRequest,
 )
-from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.mistakes import FileRefused, printable
 from lacoc_shared.network.allowance import Allowance
-from lacoc_shared.seat import RESTART_KEY
+from lacoc_shared.seat import RESTART_KEY, SILENT_AFTER_S
+from lacoc_shared.words import Phrase, say
 
-SILENT_AFTER_S = 1.0
-"""A joined seat without a valid command for longer than this is silent (rules 3)."""
 COMMANDS_PER_BEAT = 16
 """More of a seat's commands do not count in one beat: the newest do."""
 LOOKED_AT_PER_BEAT = 64
@@ -54,11 +53,11 @@ _JOINS_HZ, _JOINS_BURST = 1.0, 5  # each may cost the reading of three files
 _READYS_HZ, _READYS_BURST = 1.0, 5  # each may cost the making of a model, and is an event for all
 _RATE_WINDOW_S = 2.0
 
-_SESSION_SENTENCES = {
-    Why.UNKNOWN_SESSION: "The court does not know this session: join seat {seat} again.",
-    Why.REPLACED: "Seat {seat} was joined again from another window or machine.",
-    Why.LEFT: "This session has left seat {seat}: join again.",
-    Why.NOT_YOUR_SEAT: "This session holds another seat than {seat}.",
+_NO_SESSION = {
+    Why.UNKNOWN_SESSION: say("refused.unknown-session", seat=""),
+    Why.REPLACED: say("refused.replaced", seat=""),
+    Why.LEFT: say("refused.left", seat=""),
+    Why.NOT_YOUR_SEAT: say("refused.not-your-seat", seat=""),
 }
 
 
@@ -72,7 +71,7 @@ class Door(NamedTuple):
     heard: int
     """Valid commands."""
     refused: Mapping[str, int]
-    """Refusals by reason."""
+    """Refusals by `Why`."""
 
 
 class _Seat:
@@ -90,9 +89,9 @@ class _Seat:
         self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
         self.readys = Allowance(_READYS_HZ, _READYS_BURST)
 
-    def refuse(self, why: Why, reason: str, *, again: bool = False) -> Refusal:
-        self.refused[why] += 1
-        return Refusal(reason, again=again)
+    def refuse(self, why: Why, said: Phrase, *, again: bool = False) -> Refusal:
+        self.refused[why.value] += 1
+        return Refusal(said, again=again)
 
 
 class _Version(msgspec.Struct):
@@ -180,37 +179,24 @@ class Inbox:
         try:
             protocol = codec.decode(payload, _Version, JOIN_MAX_BYTES).protocol
             if protocol != PROTOCOL:
-                return seat.refuse(
-                    Why.WRONG_VERSION,
-                    f"This court speaks version {PROTOCOL} of the protocol, your program version "
-                    f"{protocol}: install the version of lacoc that the organiser uses.",
-                )
+                said = say("refused.wrong-version", court=PROTOCOL, program=protocol)
+                return seat.refuse(Why.WRONG_VERSION, said)
             join = codec.decode(payload, Join, JOIN_MAX_BYTES)
         except codec.BadMessage as error:
-            return seat.refuse(Why.BAD_BYTES, f"The join was not understood: {error}.")
+            return seat.refuse(Why.BAD_BYTES, say("refused.bad-join", error=str(error)))
         hashes = [by_seat[seat.name] for by_seat in self._token_hashes if seat.name in by_seat]
         token_hash = next((one for one in hashes if seal.verify_token(join.token, one)), None)
         if token_hash is None:
-            return seat.refuse(
-                Why.WRONG_TOKEN,
-                f"This token does not open seat {seat.name}. "
-                "Check the seat and the token that the organiser gave you.",
-            )
+            return seat.refuse(Why.WRONG_TOKEN, say("refused.wrong-token", seat=seat.name))
         if not seat.joins.take(1, self._now_s):
-            why = "Too many joins at once: wait a few seconds."
-            return seat.refuse(Why.FLOOD, why, again=True)
+            return seat.refuse(Why.FLOOD, say("refused.too-many-joins"), again=True)
         name = join.name.strip()
         if not (0 < len(name) <= NAME_MAX and name.isprintable()):
-            return seat.refuse(
-                Why.BAD_NAME,
-                f"A team's name has 1-{NAME_MAX} printable characters; found {join.name!r:.60}.",
-            )
+            said = say("refused.team-name", most=NAME_MAX, name=printable(join.name))
+            return seat.refuse(Why.BAD_NAME, said)
         files = [one for one in (join.robot, join.postures, join.locomotion) if one is not None]
         if not all(0 < len(one.name) <= FILE_NAME_MAX and one.name.isprintable() for one in files):
-            return seat.refuse(
-                Why.BAD_NAME,
-                f"A file's name has 1-{FILE_NAME_MAX} printable characters: rename it.",
-            )
+            return seat.refuse(Why.BAD_NAME, say("refused.file-name", most=FILE_NAME_MAX))
         join = msgspec.structs.replace(join, name=name)
         return self._weighed(seat, join, token_hash) or partial(
             self._weighed, seat, join, token_hash
@@ -221,11 +207,11 @@ class Inbox:
         try:
             checked = self._check_files(join)
         except FileRefused as refused:
-            seat.refused[Why.BAD_FILES] += 1
+            seat.refused[Why.BAD_FILES.value] += 1
             mistakes = refused.mistakes
-            first = f"; the first {_MISTAKES_TOLD} follow" if len(mistakes) > _MISTAKES_TOLD else ""
+            first = _MISTAKES_TOLD if len(mistakes) > _MISTAKES_TOLD else None
             return Refusal(
-                f"Your files have {len(mistakes)} mistakes{first}.",
+                say("refused.mistakes", count=len(mistakes), first=first),
                 tuple(mistakes[:_MISTAKES_TOLD]),
             )
         if checked is None:
@@ -240,7 +226,7 @@ class Inbox:
             token_hash=token_hash,
         )
 
-    def seated(self, index: int, notes: tuple[str, ...] = ()) -> Joined:
+    def seated(self, index: int, notes: tuple[Phrase, ...] = ()) -> Joined:
         """Give a seat to whoever's join was taken in; an older session of it ends."""
         seat = self._seats[index]
         number, secret = self._sessions.begin(index)
@@ -255,8 +241,7 @@ class Inbox:
             return request
         seat = self._seats[index]
         if not seat.readys.take(1, self._now_s):
-            why = "Ready and not ready too often: wait a few seconds."
-            return seat.refuse(Why.FLOOD, why, again=True)
+            return seat.refuse(Why.FLOOD, say("refused.too-many-readys"), again=True)
         return ReadySeat(index, request.ready)
 
     def leave(self, index: int, payload: bytes) -> LeaveSeat | Refusal:
@@ -309,12 +294,12 @@ class Inbox:
             looked_at += 1
             command = self._proven(seat, payload)
             if isinstance(command, Why):
-                seat.refused[command] += 1
+                seat.refused[command.value] += 1
             else:
                 own.append(command)
         seat.commands.take(len(own), self._now_s)
         if looked_at < len(payloads):
-            seat.refused[Why.FLOOD] += len(payloads) - looked_at
+            seat.refused[Why.FLOOD.value] += len(payloads) - looked_at
         return own[::-1]
 
     def _take(self, seat: _Seat, command: Command) -> None:
@@ -323,7 +308,7 @@ class Inbox:
         if why is None and not (self.links.heard(seat.index, command) or is_new):
             why = Why.STALE
         if why is not None:
-            seat.refused[why] += 1
+            seat.refused[why.value] += 1
             return
         seat.heard_s = self._now_s
         seat.heard += 1
@@ -362,20 +347,18 @@ class Inbox:
         try:
             request = codec.decode(payload, SeatRequest, COMMAND_MAX_BYTES)
         except codec.BadMessage as error:
-            return seat.refuse(Why.BAD_BYTES, f"The request was not understood: {error}.")
+            return seat.refuse(Why.BAD_BYTES, say("refused.bad-request", error=str(error)))
         secret = self._sessions.secret(index, request.session)
         if isinstance(secret, Why):
-            return seat.refuse(secret, _SESSION_SENTENCES[secret].format(seat=seat.name))
+            return seat.refuse(secret, _NO_SESSION[secret].with_values(seat=seat.name))
         key_expression = self._keys.request(seat.name, what)
         expected = seal.request_mac(
             secret, key_expression, request.session, request.seq, request.ready
         )
         if not seal.same(request.mac, expected):
-            return seat.refuse(
-                Why.BAD_SEAL, f"The request's seal is not that of seat {seat.name}: join again."
-            )
+            return seat.refuse(Why.BAD_SEAL, say("refused.bad-seal", seat=seat.name))
         if not self._sessions.is_next(request.session, request.seq):
-            return seat.refuse(Why.OLD, "This request has come before, or a newer one has.")
+            return seat.refuse(Why.OLD, say("refused.request-old"))
         return request
 
     def _presence(self, seat: _Seat, is_silent: bool) -> list[Input]:

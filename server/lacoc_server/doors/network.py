@@ -17,11 +17,11 @@ from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
 from lacoc_shared.keyspace import ENTER, EVENTS_LISTED, Keys
 from lacoc_shared.messages import (
-    DecisionReply,
     Done,
     Event,
     Health,
     Joined,
+    Outcome,
     Refusal,
     Scene,
     SeatHealth,
@@ -29,9 +29,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.network.access_rules import Protection
 from lacoc_shared.network.session import Desk, Request, Ring, open_court
-
-Outcome = Done | DecisionReply | Refusal
-"""What a match makes of an input."""
+from lacoc_shared.words import Phrase
 
 _RING = LOOKED_AT_PER_BEAT
 _DESK = 16
@@ -131,13 +129,13 @@ class CourtNetwork:
         self._serve_fetches()
         return arrivals
 
-    def turn_away(self, reason: str) -> None:
+    def turn_away(self, why: Phrase) -> None:
         """Refuse the requests that arrived: no beat can take them in.
 
         Args:
-            reason: a sentence for those who asked.
+            why: a sentence for those who asked.
         """
-        refusal = encode(Refusal(reason, again=True))
+        refusal = encode(Refusal(why, again=True))
         for desk, _ in self._desks:
             for _ in range(_REQUESTS_PER_BEAT):
                 if (request := desk.take()) is not None:
@@ -203,7 +201,7 @@ class CourtNetwork:
 
     @property
     def dropped(self) -> dict[str, int]:
-        """Refusals that belong to no seat, by reason."""
+        """Refusals that belong to no seat, by `Why`."""
         return dict(self._decision_desk.refused)
 
     def _serve_fetches(self) -> None:
@@ -239,8 +237,8 @@ class CourtNetwork:
             return
         reply: Outcome | Joined = outcome
         if isinstance(judged, JoinSeat):
-            notes = outcome.text.splitlines()
-            reply = self._inbox.seated(judged.seat, tuple(notes))
+            said = outcome.said if isinstance(outcome, Done) else None
+            reply = self._inbox.seated(judged.seat, (said,) if said else ())
         elif isinstance(judged, LeaveSeat):
             self._inbox.left(judged.seat)
         request.reply(encode(reply))

@@ -10,25 +10,25 @@ _REMEMBERED = 64
 
 
 class Why(StrEnum):
-    """Why something was not believed; the words are what a referee sees counted."""
+    """Why something was not believed: the names of `count.*`, which a referee sees counted."""
 
-    BAD_BYTES = "bad bytes"
-    TOO_LONG = "too long"
-    UNKNOWN_SESSION = "unknown session"
+    BAD_BYTES = "bad-bytes"
+    TOO_LONG = "too-long"
+    UNKNOWN_SESSION = "unknown-session"
     REPLACED = "replaced"
     LEFT = "left"
-    NOT_YOUR_SEAT = "not your seat"
-    BAD_SEAL = "bad seal"
+    NOT_YOUR_SEAT = "not-your-seat"
+    BAD_SEAL = "bad-seal"
     OLD = "old"
     STALE = "stale"
-    OUT_OF_RANGE = "out of range"
+    OUT_OF_RANGE = "out-of-range"
     AHEAD = "ahead"
     FLOOD = "flood"
-    WRONG_TOKEN = "wrong token"
-    WRONG_VERSION = "wrong version"
-    BAD_NAME = "bad name"
-    BAD_FILES = "bad files"
-    BAD_DECISION = "bad decision"
+    WRONG_TOKEN = "wrong-token"
+    WRONG_VERSION = "wrong-version"
+    BAD_NAME = "bad-name"
+    BAD_FILES = "bad-files"
+    BAD_DECISION = "bad-decision"
 
 
 @dataclass

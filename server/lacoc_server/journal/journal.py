@@ -20,6 +20,7 @@ from lacoc_shared.messages import PROTOCOL, Frame, HealthVerdict
 from lacoc_shared.record.schema import FORMAT, Header, Setup
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import Phrase
 
 SNAPSHOT_TICKS = 250
 """A full snapshot every 5 s of physics."""
@@ -105,9 +106,9 @@ class Journal:
             self.writer.flush()
 
     @property
-    def trouble(self) -> str:
-        """What the disk said of what was written before, as a sentence; "" while all is well."""
-        return "" if self.writer is None else self.writer.sync_trouble
+    def trouble(self) -> Phrase | None:
+        """What the disk said of what was written before; None while all is well."""
+        return None if self.writer is None else self.writer.sync_trouble
 
     def close(self) -> None:
         """Finish the record: the match is over, and nobody goes on with it."""

@@ -24,6 +24,7 @@ from lacoc_shared.codec import decode, encode, message_hash
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.messages import Event, Frame, Scene, Sheet
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.protocol_1 import fault_of, same_events, same_result
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header, Result
 
@@ -138,7 +139,7 @@ class Recorded:
         if self.has_frame:
             self.frame = decode(self._frames[beat], Frame)
         fault = self._faults.get(beat)
-        self.fault = None if fault is None else Fault(fault.seat, str(fault.data["words"]))
+        self.fault = None if fault is None else Fault(fault.seat, fault_of(fault))
 
     @property
     def touched(self) -> tuple[tuple[int, ...], ...]:
@@ -241,7 +242,10 @@ class Judge:
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
         """Make the physics of a match: the world itself where there is nobody on it."""
         world = World(arena, entries)
+        scene, model_hash = self._other_model(world)
         if not entries:
+            if scene is not None:
+                world.scene, world.scene_hash = scene, message_hash(encode(scene))
             return world
         setup = self._record.header.setup
         build = Build(self._builds, setup, self._folder, tuple(entries))
@@ -249,7 +253,7 @@ class Judge:
         self.worlds.keep(build, world)
         self.section = Section(build, None, world.digest)
         self._recorded.seats = len(entries)
-        return RecordedPhysics(world, self._recorded, *self._other_model(world))
+        return RecordedPhysics(world, self._recorded, scene, model_hash)
 
     def _other_model(self, world: World) -> tuple[Scene | None, str | None]:
         """Find what another arithmetic built of the same robots.
@@ -257,17 +261,18 @@ class Judge:
         Returns:
             The recorded scene and hash of the model, where these may differ by their last bits.
         """
-        made_by = header_at(self._record, self._beat).arithmetic.get("model")
+        beat = max(0, self._beat)
+        made_by = header_at(self._record, beat).arithmetic.get("model")
         if made_by in (None, arithmetic.here()["model"]):
             return None, None
-        events = self._events.get(self._beat, ())
+        events = self._events.get(beat, ())
         models = [event.data["model"] for event in events if "model" in event.data]
-        scene = self._scenes.get(self._beat)
+        scene = self._scenes.get(beat)
         if scene is not None and not _near(scene, world.scene):
             return None, None
-        if [world.model_hash] == models and scene in (None, world.scene):
+        if models in ([], [world.model_hash]) and scene in (None, world.scene):
             return None, None
-        self.other_model = self.other_model or Difference(self._beat, ("the model",))
+        self.other_model = self.other_model or Difference(beat, ("the model",))
         return scene, str(models[0]) if models else None
 
     def _differences(self, number: int, beat: Beat) -> Iterator[str]:
@@ -285,7 +290,7 @@ class Judge:
         happened = beat.ticked or beat.events or beat.sheet_changed or number in record.inputs
         if recorded is None and happened:
             yield "its frame is missing"
-        if len(events) != len(beat.events) or not all(map(_same_event, events, beat.events)):
+        if not same_events(record.header, events, beat.events):
             yield "its events"
         if beat.touch != record.touches.get(number):
             yield "what the robots touched"
@@ -335,12 +340,6 @@ def header_at(record: Record, beat: int) -> Header:
     )
 
 
-def _same_event(recorded: Event, again: Event) -> bool:
-    """Whether a recorded event is the one; words count where this software makes any."""
-    known = again if again.text else replace(again, text=recorded.text)
-    return encode(recorded) == encode(known)
-
-
 def _same_result(record: Record, again: Result | None, last: int) -> bool:
     """Whether a recorded result is the one, as far as it was answered."""
     recorded = record.result
@@ -348,7 +347,7 @@ def _same_result(record: Record, again: Result | None, last: int) -> bool:
         return again is None or len(record.headers) > 1
     if recorded.beats == last + 2 and record.cut:
         return True
-    return recorded == again
+    return again is not None and same_result(record.header, recorded, again)
 
 
 def _same_sheet(recorded: Sheet | None, again: Sheet) -> bool:

@@ -16,6 +16,7 @@ from lacoc_shared.record.files import is_held
 from lacoc_shared.record.matches import MatchName, court_matches, is_over
 from lacoc_shared.record.reader import NoMatch, Record
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
 
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 """What the court halts when its match was interrupted."""
@@ -48,9 +49,10 @@ class Unfinished:
     def inputs(self) -> list[Input]:
         """What the court does first: nobody may find a match already running."""
         if self.match.phase in IN_PLAY:
-            why = "the court was started again"
-            where = ", with another arithmetic" if self.other_arithmetic else ""
-            return [Decide("court", f"{why}{where}", Halt())]
+            why = say("reason.court-restarted")
+            if self.other_arithmetic:
+                why = say("reason.court-restarted-elsewhere")
+            return [Decide("court", why, Halt())]
         return []
 
 

@@ -108,10 +108,14 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
     physics = match.physics
     if section is not None:
         with fits_together(record):
-            physics = world = judge.worlds.at_start(section)
+            world = judge.worlds.at_start(section)
         if section.steps:
             findings.append(simulate(section, judge.worlds))
-            world.digest = section.steps[-1].digest  # the chain goes on as it was published
+            world.digest = section.steps[-1].digest
+        # What was published stays, whatever other last bits are computed here.
+        world.scene, world.scene_hash = physics.scene, physics.scene_hash
+        world.model_hash = physics.model_hash
+        physics = world
     verdict = conclude(record.headers, judge.beats, judge.frames, [judge.difference], findings)
     if not verdict.same:
         raise UserError(

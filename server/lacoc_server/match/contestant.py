@@ -12,7 +12,8 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat, KeySeat
 from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.mistakes import FileRefused
-from lacoc_shared.seat import BEATS_PER_S, RESTART_KEY, No, Phase
+from lacoc_shared.seat import BEATS_PER_S, RESTART_KEY, WHY_NO, No, Phase
+from lacoc_shared.words import Phrase, say
 
 _BEFORE = frozenset({Phase.LOBBY, Phase.READY})
 _AFTER = frozenset({Phase.OFFICIAL, Phase.VOID})
@@ -24,16 +25,15 @@ def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
     if match.phase in _BEFORE:
         return _sit_down(match, seat, item)
     if seat.join is None and match.phase not in _AFTER:
-        why = f"The match is on ({match.phase.name}): join when the next one opens."
-        return Refusal(why, again=True)
+        return Refusal(say("refused.match-on-join", phase=match.phase.word), again=True)
     seat.left = False
     seat.coming = item
     if seat.join is None:
-        return Done("This match is over: you play in the next.")
-    match.tell("join", f"{seat.team} is back.", seat=seat.index)
+        return Done(say("note.next-match"))
+    match.tell("join", say("event.back", team=seat.team), seat=seat.index)
     if _files(seat.join) == _files(item):
         return Done()
-    return Done("The match is on with the files that it began with; the next takes your new ones.")
+    return Done(say("note.files-next-match"))
 
 
 def _sit_down(match: MatchState, seat: Seat, item: JoinSeat) -> Done | Refusal:
@@ -41,54 +41,59 @@ def _sit_down(match: MatchState, seat: Seat, item: JoinSeat) -> Done | Refusal:
     try:
         entry = weigh_in(*files, match.limits, match.rules.open_levels)
     except FileRefused as refused:
-        return Refusal("Your files have mistakes.", tuple(refused.mistakes))
+        mistakes = tuple(refused.mistakes)
+        return Refusal(say("refused.mistakes", count=len(mistakes), first=None), mistakes)
     if seat.join is None or _files(seat.join) != _files(item):
         seat.ready = False
         match.back_to_lobby()  # also if everybody says ready again in this beat
     seat.join, seat.entry, seat.silent = item, entry, False
     match.sheet_changed()
-    text = f"{item.team} takes the {seat.id} seat with {entry.robot.name}."
-    match.tell("join", text, seat=seat.index)
-    return Done("\n".join(entry.notes))
+    said = say("event.joined", team=item.team, seat=seat.id, robot=entry.robot.name)
+    match.tell("join", said, seat=seat.index)
+    return Done(say("plain.sentences", sentences=entry.notes) if entry.notes else None)
 
 
 def ready(match: MatchState, seat: Seat, is_ready: bool) -> Done | Refusal:
     """Say ready, or take it back."""
     if match.phase not in _BEFORE:
-        return Refusal(f"The match is on ({match.phase.name}).")
+        return Refusal(say("refused.match-on", phase=match.phase.word))
     if seat.join is None:
-        return Refusal(f"Nobody has joined the {seat.id} seat.")
+        return Refusal(say("refused.nobody-joined", seat=seat.id))
     if seat.ready != is_ready:
         seat.ready = is_ready
-        word = "is ready" if is_ready else "is not ready after all"
-        match.tell("ready", f"{seat.team} {word}.", seat=seat.index, ready=is_ready)
+        team = seat.team
+        said = say("event.team-ready", team=team)
+        if not is_ready:
+            said = say("event.team-not-ready", team=team)
+        match.tell("ready", said, seat=seat.index, ready=is_ready)
     return Done()
 
 
 def leave(match: MatchState, seat: Seat) -> Done:
     """Free the seat; during a match it stays the contestant's, and the robot stands."""
     if match.phase in _BEFORE:
-        match.tell("leave", f"{seat.team} leaves the {seat.id} seat.", seat=seat.index)
+        said = say("event.left-seat", team=seat.team, seat=seat.id)
+        match.tell("leave", said, seat=seat.index)
         seat.join = seat.entry = None
         seat.ready = seat.silent = False
         match.sheet_changed()
         return Done()
-    match.tell("leave", f"{seat.team} has left; the seat stays theirs.", seat=seat.index)
+    match.tell("leave", say("event.left-match", team=seat.team), seat=seat.index)
     seat.silent = seat.left = True
     seat.stand()
-    return Done("The seat stays yours.")
+    return Done(say("note.seat-stays"))
 
 
-def unattended(match: MatchState) -> str:
-    """Why a match that nobody judges is over, though its game is not; "" while it goes on."""
+def unattended(match: MatchState) -> Phrase | None:
+    """Say why a match that nobody judges is over, though its game is not; None: it goes on."""
     if match.rules.start != "ready":
-        return ""
+        return None
     if all(seat.left for seat in match.seats):
-        return "everybody has left"
+        return say("over.everybody-left")
     limit = round(match.rules.unattended_s * BEATS_PER_S)
     if 0 < limit <= match.silent_beats:
-        return f"nobody has been heard for {match.rules.unattended_s / 60:g} minutes"
-    return ""
+        return say("over.nobody-heard", minutes=match.rules.unattended_s / 60)
+    return None
 
 
 def silent(match: MatchState, seat: Seat) -> Done:
@@ -96,8 +101,7 @@ def silent(match: MatchState, seat: Seat) -> Done:
     if not seat.silent:
         seat.silent = True
         seat.stand()
-        text = f"{seat.team} is not heard any more: it stands."
-        match.tell("silent", text, seat=seat.index)
+        match.tell("silent", say("event.silent", team=seat.team), seat=seat.index)
     return Done()
 
 
@@ -105,7 +109,7 @@ def heard(match: MatchState, seat: Seat) -> Done:
     """Note that a controller is heard again; its robot stands until a new command."""
     if seat.silent:
         seat.silent = False
-        match.tell("heard", f"{seat.team} is heard again.", seat=seat.index)
+        match.tell("heard", say("event.heard", team=seat.team), seat=seat.index)
     return Done()
 
 
@@ -116,13 +120,13 @@ def key(match: MatchState, seat: Seat, item: KeySeat) -> Done | Refusal:
         why = seat.why_not(item, match.ticks, match.rules.open_levels)
     if why is not No.NONE:
         seat.refused = (item.seq, why)
-        return Refusal(why.name)
+        return Refusal(WHY_NO[why])
     # An older digit may come after a newer [x]: that is the order of a tick (rules 3).
     seat.applied = (max(item.seq, seat.applied[0]), match.beats)
     if item.key == RESTART_KEY:
         seat.restart()
         seat.locked_until = match.ticks + round(match.rules.restart_freeze_s * BEATS_PER_S)
-        match.tell("restart", f"{seat.team} goes back to the start.", seat=seat.index)
+        match.tell("restart", say("event.restarted", team=seat.team), seat=seat.index)
     elif seat.drive and seat.state:
         seat.state = seat.drive.press(seat.state, Level(item.level), item.key)
     return Done()

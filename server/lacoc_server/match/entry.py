@@ -11,16 +11,13 @@ from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.messages import Join, SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.words import Phrase, say
 
 DEFAULT_LIMITS = Limits()
 
-_SEQUENCES = (
-    "a LocoTra-data file (sequences for level B; "
-    "'lacoc gait convert Loco-data.xlsx LocoTra-data.txt' makes one)"
-)
-_TABLES: dict[Level, tuple[type[PostureTable] | type[LocomotionTable], str]] = {
-    Level.POSTURE: (PostureTable, "a Loco-data file (postures for level A)"),
-    Level.LOCOMOTION: (LocomotionTable, _SEQUENCES),
+_TABLES: dict[Level, tuple[type[PostureTable] | type[LocomotionTable], Phrase]] = {
+    Level.POSTURE: (PostureTable, say("gait.loco-data")),
+    Level.LOCOMOTION: (LocomotionTable, say("gait.locotra-data")),
 }
 
 
@@ -86,14 +83,15 @@ def _weigh_in(
         if isinstance(table, kind):
             tables.append(table)
         else:
-            mistakes.append(Mistake(file=file.name, found="the other kind of table", expected=what))
+            mistakes.append(Mistake(file=file.name, found=say("gait.other-kind"), expected=what))
     gait = Gait(
         next((t for t in tables if isinstance(t, PostureTable)), None),
         next((t for t in tables if isinstance(t, LocomotionTable)), None),
     )
     if not (mistakes or any(gait.keys(level) for level in levels)):
-        expected = " or ".join(_TABLES[level][1] for level in sorted(levels))
-        mistakes.append(Mistake(file="gait files", found="none for this arena", expected=expected))
+        expected = say("robot.any-of", options=[_TABLES[level][1] for level in sorted(levels)])
+        found = say("gait.none-for-arena")
+        mistakes.append(Mistake(file="gait files", found=found, expected=expected))
     if spec is None or mistakes:
         raise FileRefused(mistakes)
     return Entry(spec, gait, tuple(notes))

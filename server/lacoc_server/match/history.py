@@ -5,15 +5,18 @@ an event back, the game is folded again from that tick with that event's claim s
 out. Paths, clock and all other decisions stay as they were.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
+
+import msgspec
+from msgspec.structs import replace
 
 from lacoc_arenas.game import AnyGame, Claim, GameEvent, Observation
 from lacoc_shared.seat import BEAT_S
+from lacoc_shared.words import Phrase
 
 
-@dataclass(frozen=True, slots=True)
-class SetMarker:
+class SetMarker(msgspec.Struct, frozen=True):
     """A referee set a marker between two ticks."""
 
     marker: int
@@ -21,8 +24,7 @@ class SetMarker:
     struck: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(msgspec.Struct, frozen=True):
     """One thing that the rules judged, with what they made of it."""
 
     seen: Observation | SetMarker
@@ -32,7 +34,7 @@ class Step:
     numbers: tuple[int, ...] = ()
     """Numbers of those events in the match's log; of a `SetMarker`, its decision's."""
     struck: frozenset[Claim] = frozenset()
-    over: str = ""
+    over: Phrase | None = None
     """Why the game was over after it; steps that come later are kept, but not judged."""
 
 
@@ -43,8 +45,8 @@ class Fold:
     steps: list[Step]
     """The whole history as judged again."""
     state: Any
-    over: str
-    """Why the game is over, "" if it is not."""
+    over: Phrase | None
+    """Why the game is over; None if it is not."""
     vanished: tuple[tuple[int, GameEvent], ...]
     """Events that are no more, with their numbers."""
     appeared: tuple[tuple[int, int, GameEvent], ...]
@@ -61,26 +63,29 @@ class History:
         self._steps: list[Step] = []
         """From the one before the first event that can be taken back."""
         self._step_of: dict[int, int] = {}
+        self._judged: tuple[Any, Phrase | None] = (None, None)
+        """The newest state after a tick, and why the game was over in it."""
 
     def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
         """Judge one tick; its events get the numbers from `next_number` on."""
         before = self.state
         self.state, events = self._game.step(before, observation, BEAT_S)
-        numbers = tuple(range(next_number, next_number + len(events)))
-        over = self._game.over(self.state)
-        self._append(Step(observation, before, events, numbers, over=over))
+        numbers = tuple(range(next_number, next_number + len(events))) if events else ()
+        if self.state is not self._judged[0]:
+            self._judged = (self.state, self._game.over(self.state))
+        self._append(Step(observation, before, events, numbers, over=self._judged[1]))
         return list(events)
 
     @property
-    def over(self) -> str:
-        """Why the game is over; "" while it is not."""
-        return self._steps[-1].over if self._steps else ""
+    def over(self) -> Phrase | None:
+        """Why the game is over; None while it is not."""
+        return self._steps[-1].over if self._steps else None
 
     def set(self, marker: int, value: int, number: int) -> None:
         """Set a marker, as the decision with this event number says.
 
         Raises:
-            ValueError: if the marker has no such state.
+            NoSuchState: if the marker has no such state.
         """
         before = self.state
         self.state = self._game.set(before, marker, value)
@@ -100,7 +105,7 @@ class History:
         first = self._step_of[number]
         steps = self._steps[:first]
         state = self._steps[first].before
-        over = self._steps[first - 1].over if first else ""
+        over = self._steps[first - 1].over if first else None
         vanished: list[tuple[int, GameEvent]] = []
         appeared: list[tuple[int, int, GameEvent]] = []
         for index in range(first, len(self._steps)):

@@ -9,9 +9,10 @@ decisions, every seat's [x], every seat's digit, one tick of physics, the rules.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from lacoc_robots.standing import FARTHEST_M
 from lacoc_server.match import contestant, referee
@@ -29,21 +30,18 @@ from lacoc_shared.inputs import (
     SilentSeat,
 )
 from lacoc_shared.marker_states import pack_states
-from lacoc_shared.messages import DecisionReply, Done, Event, Frame, Refusal
+from lacoc_shared.messages import Done, Event, Frame, Outcome
 from lacoc_shared.record.schema import Result, Setup, Touch
 from lacoc_shared.seat import RESTART_KEY, Phase
+from lacoc_shared.words import Phrase, say
 
 PHYSICS_RUNS = frozenset({Phase.READY, Phase.PLAYING})
 
 MOST_STRAYS = 3
 """A robot that leaves its start place so often before play does not stand: it is not ready."""
 
-Outcome = Done | DecisionReply | Refusal
-"""What became of an input."""
 
-
-@dataclass(frozen=True)
-class Beat:
+class Beat(msgspec.Struct, frozen=True):
     """What a beat made."""
 
     frame: Frame
@@ -65,11 +63,11 @@ class Match(MatchState):
     def __init__(self, setup: Setup, make_physics: MakePhysics, folder: Path | None = None) -> None:
         super().__init__(setup, make_physics, folder)
         self._touch: Touch | None = None
-        self._shown: tuple[Any, bytes] = (None, b"")
-        """A state of the game and its board as frames carry it."""
+        self._shown: tuple[Any, bytes, tuple[int, ...]] = (None, b"", ())
+        """A state of the game, its board as frames carry it, and each seat's points."""
 
-    def legality(self) -> dict[str, str]:
-        """List every decision: "" if it is legal now, else the reason why not."""
+    def legality(self) -> dict[str, Phrase | None]:
+        """List every decision: None if it is legal now, else the reason why not."""
         return referee.legality(self)
 
     def beat(self, inputs: Sequence[Input] = ()) -> Beat:
@@ -82,9 +80,7 @@ class Match(MatchState):
             self.enter(Phase.LOBBY)
         if self.phase is Phase.COUNTDOWN:
             self.countdown_beats -= 1
-        outcomes: list[Outcome] = [Done()] * len(inputs)
-        for index in sorted(range(len(inputs)), key=lambda index: _rank(inputs[index])):
-            outcomes[index] = self._take(inputs[index])
+        outcomes = self._take_all(inputs) if inputs else ()
         self.staging.put_back(self.seats)
         self._move_on()
         ticked = self.phase in PHYSICS_RUNS and self._tick()
@@ -92,12 +88,19 @@ class Match(MatchState):
         return Beat(
             self._frame(),
             tuple(self._events),
-            tuple(outcomes),
+            outcomes,
             ticked,
             self._touch,
             self.result() if self._result_changed else None,
             sheet_changed,
         )
+
+    def _take_all(self, inputs: Sequence[Input]) -> tuple[Outcome, ...]:
+        """Take a beat's inputs in the order of their ranks; outcomes are in the inputs' order."""
+        outcomes: list[Outcome] = [Done()] * len(inputs)
+        for index in sorted(range(len(inputs)), key=lambda index: _rank(inputs[index])):
+            outcomes[index] = self._take(inputs[index])
+        return tuple(outcomes)
 
     def _take(self, item: Input) -> Outcome:
         match item:
@@ -118,11 +121,11 @@ class Match(MatchState):
             case KeySeat():
                 return contestant.key(self, self.seats[item.seat], item)
 
-    def _take_advice(self, reasons: tuple[str, ...]) -> Done:
+    def _take_advice(self, reasons: tuple[Phrase | str, ...]) -> Done:
         """Log what the court measured; whether to play again is the referee's word."""
         self.advice = reasons
-        because = f"Replay advised: {'; '.join(reasons)}."
-        self.tell("advice", because if reasons else "A replay is not advised any more.")
+        advised = say("event.advised", reasons=reasons) if reasons else say("event.not-advised")
+        self.tell("advice", advised)
         return Done()
 
     def _move_on(self) -> None:
@@ -138,7 +141,7 @@ class Match(MatchState):
         if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
             self.enter(Phase.PLAYING)
         if self.phase is Phase.PLAYING and self.time_is_up:  # a referee moved the clock
-            self.finish("time is up")
+            self.finish(say("over.time"))
         on = self.phase in (Phase.PLAYING, Phase.HALTED)  # a countdown leads to PLAYING
         if on and (why := contestant.unattended(self)):
             self.finish(why)
@@ -166,33 +169,26 @@ class Match(MatchState):
             if gone_m <= FARTHEST_M:
                 continue
             seat.strays += 1
-            text = f"{seat.team} left its start place by {gone_m:.2f} m: it is put back."
+            said = say("event.strayed", team=seat.team, distance_m=gone_m)
             if seat.strays == MOST_STRAYS:
-                text = f"{seat.team} left its start place {MOST_STRAYS} times: it is not ready."
+                said = say("event.strayed-often", team=seat.team, times=MOST_STRAYS)
                 seat.ready = False
-            self.tell("strayed", text, seat=seat.index, distance_m=gone_m, times=seat.strays)
+            self.tell("strayed", said, seat=seat.index, distance_m=gone_m, times=seat.strays)
             seat.restart()
 
     def _judge(self) -> None:
         self.ticks += 1
         observation, self._touch = self.staging.observe()
         for event in self.history.observe(observation, self.next_number):
-            self.tell(
-                event.kind,
-                event.text.format(team=self.seats[event.seat].team),
-                seat=event.seat,
-                marker=event.marker,
-                also=event.also,
-                points=event.points,
-            )
+            self.tell_judged(event)
         if self.history.over:
             self.finish(self.history.over)
         elif self.time_is_up:
-            self.finish("time is up")
+            self.finish(say("over.time"))
 
     def _fail(self, fault: Fault) -> None:
         """MuJoCo's warning or reset: the state before the tick stands, and the match halts."""
-        self.tell("fault", f"Physics stopped: {fault.text}.", seat=fault.seat, words=fault.text)
+        self.tell("fault", say("event.fault", why=fault.why), seat=fault.seat)
         if self.phase is Phase.PLAYING:
             self.enter(Phase.HALTED)
         else:
@@ -200,21 +196,19 @@ class Match(MatchState):
                 seat.ready = False
 
     def _frame(self) -> Frame:
-        state = self.history.state
+        game, state = self.game, self.history.state
         if state is not self._shown[0]:  # it changes seldom, and frames are many
-            self._shown = (state, pack_states(self.game.board(state)))
-        scores = self.scores()
+            self._shown = (state, pack_states(game.board(state)), game.score(state))
+        _, board, points = self._shown
+        seats, scores, ticks = self.seats, self._adjusted(points), self.ticks
         return Frame(
             self.setup.match,
             self.beats,
             int(self.phase),
             self.countdown_beats if self.phase is Phase.COUNTDOWN else 0,
             self.clock_ticks,
-            tuple(
-                seat.frame(score, self.ticks)
-                for seat, score in zip(self.seats, scores, strict=True)
-            ),
-            self._shown[1],
+            tuple([seat.frame(score, ticks) for seat, score in zip(seats, scores, strict=True)]),
+            board,
             self.staging.poses,
             self.physics.scene_hash,
             self.physics.digest,

@@ -13,6 +13,7 @@ from lacoc_arenas.game import Place
 from lacoc_server.match.entry import Entry
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.messages import Scene
+from lacoc_shared.words import Phrase
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,8 @@ class Fault:
 
     seat: int
     """The robot that it began with; `NOBODY` if that is not known."""
-    text: str
+    why: Phrase
+    """`fault.*`."""
 
 
 class Physics(Protocol):

@@ -11,13 +11,16 @@ from typing import Any
 
 import msgspec
 
+from lacoc_arenas.game import NoSuchState
 from lacoc_server.match import contestant
+from lacoc_server.match.history import Fold
 from lacoc_server.match.seat import Seat
 from lacoc_server.match.state import MatchState
 from lacoc_shared import decisions as d
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import MARKER_STATES, DecisionReply, Refusal
 from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.words import Phrase, say
 
 MAX_FREEZE_S = 600.0
 MAX_CLOCK_S = 3600.0
@@ -25,7 +28,15 @@ MAX_POINTS = 1000
 
 
 class Illegal(ValueError):
-    """A decision can't be taken; the message is the reason for the referee."""
+    """A decision can't be taken.
+
+    Args:
+        why: the reason for the referee (`why.*`).
+    """
+
+    def __init__(self, why: Phrase) -> None:
+        super().__init__(why)
+        self.why = why
 
 
 @dataclass(frozen=True)
@@ -33,29 +44,31 @@ class _Rule:
     """When a decision is legal and what it does."""
 
     phases: frozenset[Phase]
-    act: Callable[[MatchState, Any], str]
-    """Does it and returns the sentence for the log; raises `Illegal` before changing anything."""
+    act: Callable[[MatchState, Any], Phrase]
+    """Does it and returns what was done; raises `Illegal` before changing anything."""
     then: Callable[[MatchState, Any], object] = lambda match, decision: None
     """What follows and is told as events of its own, after the decision."""
-    needs_reason: bool = False
-    also: Callable[[MatchState], str] = lambda match: ""
-    """Further reason why not; "" if there is none."""
+    also: Callable[[MatchState], Phrase | None] = lambda match: None
+    """Further reason why not; None if there is none."""
 
-    def why_not(self, match: MatchState) -> str:
-        """Why no decision of this kind is legal now; "" if one may be."""
-        if match.phase not in self.phases:
-            names = " or ".join(phase.name for phase in sorted(self.phases))
-            missing = "".join(f"; {reason}" for reason in self._missing(match))
-            return f"only in {names}; the match is {match.phase.name}{missing}"
-        return self.also(match)
+    def why_not(self, match: MatchState) -> Phrase | None:
+        """Say why no decision of this kind is legal now; None if one may be."""
+        if match.phase in self.phases:
+            return self.also(match)
+        return say(
+            "why.phase",
+            phase=match.phase.word,
+            phases=[phase.word for phase in sorted(self.phases)],
+            missing=self._missing(match),
+        )
 
-    def _missing(self, match: MatchState) -> list[str]:
+    def _missing(self, match: MatchState) -> list[Phrase]:
         before_ready = match.phase is Phase.LOBBY and self.phases == {Phase.READY}
         return match.missing() if before_ready else []
 
 
-def legality(match: MatchState) -> dict[str, str]:
-    """Every decision by name: "" if it is legal now, else why not."""
+def legality(match: MatchState) -> dict[str, Phrase | None]:
+    """List every decision by name: None if it is legal now, else why not."""
     return {name: _RULES[kind].why_not(match) for name, kind in d.DECISIONS.items()}
 
 
@@ -63,32 +76,39 @@ def decide(match: MatchState, item: Decide) -> DecisionReply | Refusal:
     """Take a decision, or say why it can't be taken; an illegal one changes nothing."""
     rule, decision = _RULES[type(item.decision)], item.decision
     name = str(decision.__struct_config__.tag)
-    if reason := rule.why_not(match):
-        return Refusal(f"{name}: {reason}.")
+    if why := rule.why_not(match):
+        return _refusal(name, why)
     only_asks = isinstance(decision, d.TakeBack) and decision.dry_run
-    if rule.needs_reason and not only_asks and not item.reason.strip():
-        return Refusal(f"{name}: give a reason; it goes into the record.")
+    if name in d.NEED_A_REASON and not only_asks and _is_empty(item.reason):
+        return _refusal(name, say("why.needs-reason"))
     try:
         if isinstance(decision, d.TakeBack):
             return _take_back(match, item, decision)
-        text = rule.act(match, decision)
+        did = rule.act(match, decision)
     except Illegal as illegal:
-        return Refusal(f"{name}: {illegal}")
-    number = _log(match, item, name, text)
+        return _refusal(name, illegal.why)
+    number = _log(match, item, name, did)
     rule.then(match, decision)
     match.tell_result()
-    return DecisionReply(beat=match.beats, event=number, text=text, scores=match.scores())
+    return DecisionReply(beat=match.beats, event=number, said=did, scores=match.scores())
 
 
-def _log(match: MatchState, item: Decide, name: str, text: str, **data: Any) -> int:
-    because = f" Reason: {item.reason}" if item.reason else ""
+def _refusal(name: str, why: Phrase) -> Refusal:
+    return Refusal(say("refused.decision", decision=name, why=why))
+
+
+def _is_empty(reason: Phrase | str) -> bool:
+    return isinstance(reason, str) and not reason.strip()
+
+
+def _log(match: MatchState, item: Decide, name: str, did: Phrase, **data: Any) -> int:
     match.result_changed()
     return match.tell(
         "decision",
-        f"Referee {item.by}: {text}{because}",
+        say("event.decided", by=item.by, did=did, reason=item.reason or None),
         decision=name,
         by=item.by,
-        reason=item.reason,
+        reason=msgspec.to_builtins(item.reason),
         arguments=msgspec.to_builtins(item.decision),
         **data,
     )
@@ -98,125 +118,124 @@ def _seat(match: MatchState, seat_id: str) -> Seat:
     for seat in match.seats:
         if seat.id == seat_id:
             return seat
-    raise Illegal(f"there is no seat {seat_id!r}; there are {_list(s.id for s in match.seats)}.")
+    raise Illegal(say("why.no-seat", seat=seat_id, seats=[seat.id for seat in match.seats]))
 
 
-def _list(names: Any) -> str:
-    return ", ".join(names)
-
-
-def _number(value: float, limit: float, what: str) -> float:
-    if not -limit <= value <= limit or value == 0:  # NaN fails the comparison
-        raise Illegal(f"{value:g} {what}? Give a number between {-limit:g} and {limit:g}, not 0.")
-    return value
+def _is_within(value: float, most: float) -> bool:
+    return -most <= value <= most and value != 0  # NaN fails the comparison
 
 
 def _ticks(seconds: float) -> int:
     ticks = round(seconds * BEATS_PER_S)
     if ticks == 0:
-        raise Illegal(f"{seconds:g} s is less than a tick of 20 ms.")
+        raise Illegal(say("why.less-than-tick", seconds=seconds))
     return ticks
 
 
-def _ready(match: MatchState, decision: d.Ready) -> str:
+def _ready(match: MatchState, decision: d.Ready) -> Phrase:
     seat = _seat(match, decision.seat)
     if seat.join is None:
-        raise Illegal(f"nobody has joined {seat.id}.")
-    return f"ready for {seat.team}."
+        raise Illegal(say("why.nobody-in-seat", seat=seat.id))
+    return say("decision.ready", team=seat.team)
 
 
-def _start(match: MatchState, decision: d.Start) -> str:
-    return f"play begins in {match.rules.countdown_s:g} s."
+def _start(match: MatchState, decision: d.Start) -> Phrase:
+    return say("decision.start", seconds=match.rules.countdown_s)
 
 
-def _resume(match: MatchState, decision: d.Resume) -> str:
-    return f"play goes on in {match.rules.countdown_s:g} s."
+def _resume(match: MatchState, decision: d.Resume) -> Phrase:
+    return say("decision.resume", seconds=match.rules.countdown_s)
 
 
-def _restart(match: MatchState, decision: d.Restart) -> str:
+def _restart(match: MatchState, decision: d.Restart) -> Phrase:
     seat = _seat(match, decision.seat)
     seat.restart()
-    return f"{seat.team} goes back to the start."
+    return say("decision.restart", team=seat.team)
 
 
-def _freeze(match: MatchState, decision: d.Freeze) -> str:
+def _freeze(match: MatchState, decision: d.Freeze) -> Phrase:
     seat = _seat(match, decision.seat)
     if not 0 < decision.seconds <= MAX_FREEZE_S:
-        raise Illegal(f"{decision.seconds:g} s? Freeze for more than 0 and at most 600 s.")
+        raise Illegal(say("why.bad-freeze", seconds=decision.seconds, most=MAX_FREEZE_S))
     seat.frozen_until = match.ticks + _ticks(decision.seconds)
     seat.stand()
-    return f"{seat.team} is frozen for {decision.seconds:g} s."
+    return say("decision.freeze", team=seat.team, seconds=decision.seconds)
 
 
-def _unfreeze(match: MatchState, decision: d.Unfreeze) -> str:
+def _unfreeze(match: MatchState, decision: d.Unfreeze) -> Phrase:
     seat = _seat(match, decision.seat)
     if seat.frozen_until <= match.ticks:
-        raise Illegal(f"{seat.team} is not frozen.")
+        raise Illegal(say("why.not-frozen", team=seat.team))
     seat.frozen_until = 0
-    return f"{seat.team} may move again."
+    return say("decision.unfreeze", team=seat.team)
 
 
-def _adjust(match: MatchState, decision: d.Adjust) -> str:
+def _adjust(match: MatchState, decision: d.Adjust) -> Phrase:
     seat = _seat(match, decision.seat)
-    points = int(_number(decision.points, MAX_POINTS, "points"))
+    points = decision.points
+    if not _is_within(points, MAX_POINTS):
+        raise Illegal(say("why.bad-points", points=points, most=MAX_POINTS))
     match.adjustments[match.next_number] = (seat.index, points)
-    return f"{points:+d} for {seat.team}."
+    return say("decision.adjust", points=points, team=seat.team)
 
 
-def _set(match: MatchState, decision: d.Set) -> str:
+def _set(match: MatchState, decision: d.Set) -> Phrase:
     names = [marker.name for marker in match.game.markers]
     if decision.marker not in names:
-        raise Illegal(f"there is no {decision.marker!r} on this board; there are {_list(names)}.")
+        raise Illegal(say("why.no-marker", marker=decision.marker, markers=names))
     if decision.state not in MARKER_STATES:
-        raise Illegal(f"{decision.state!r} is no state; there are {_list(MARKER_STATES)}.")
+        raise Illegal(say("why.no-state", state=decision.state, states=MARKER_STATES))
     try:
         match.history.set(
             names.index(decision.marker),
             MARKER_STATES.index(decision.state),
             match.next_number,
         )
-    except ValueError as error:
-        raise Illegal(str(error)) from None
-    return f"{decision.marker} is set to {decision.state}."
+    except NoSuchState as error:
+        raise Illegal(error.why) from None
+    return say("decision.set", marker=decision.marker, state=decision.state)
 
 
-def _clock(match: MatchState, decision: d.Clock) -> str:
-    if decision.seconds:  # an old record's: it must give the same match and words again
-        taken = _number(decision.seconds, MAX_CLOCK_S, "s")
-        match.clock_offset += _ticks(taken)
-        return f"the clock moves by {taken:+g} s."
-    given = _number(decision.gives_s, MAX_CLOCK_S, "s")
+def _clock(match: MatchState, decision: d.Clock) -> Phrase:
+    given = decision.gives_s - decision.seconds  # the latter in an old record only
+    if not _is_within(given, MAX_CLOCK_S):
+        raise Illegal(say("why.bad-clock", seconds=given, most=MAX_CLOCK_S))
     match.clock_offset -= _ticks(given)
-    return f"{given:+g} s to play."
+    if given < 0:
+        return say("decision.clock-less", seconds=-given)
+    return say("decision.clock-more", seconds=given)
 
 
-def _abort(match: MatchState, decision: d.Abort) -> str:
-    match.ended = match.ended or "aborted by the referee"
-    return "the match is void."
+def _abort(match: MatchState, decision: d.Abort) -> Phrase:
+    match.ended = match.ended or say("over.aborted")
+    return say("decision.abort")
 
 
-def _declare(match: MatchState, decision: d.Declare) -> str:
+def _declare(match: MatchState, decision: d.Declare) -> Phrase:
     choices = [*(seat.id for seat in match.seats), "draw"]
     if decision.winner not in choices:
-        raise Illegal(f"{decision.winner!r} can't win; there are {_list(choices)}.")
+        raise Illegal(say("why.can-not-win", winner=decision.winner, choices=choices))
     match.declared = decision.winner
     if decision.winner == "draw":
-        return "the match is declared a draw."
-    return f"{_seat(match, decision.winner).team} is declared the winner."
+        return say("decision.declare-draw")
+    return say("decision.declare", team=match.team(decision.winner))
 
 
 def _end_play(match: MatchState, decision: d.Declare) -> None:
     if match.phase is Phase.HALTED:
-        match.finish("ended by the referee")
+        match.finish(say("over.ended"))
 
 
-def _official(match: MatchState, decision: d.Official) -> str:
-    return f"the result is official: {match.declared or match.winner()}."
+def _official(match: MatchState, decision: d.Official) -> Phrase:
+    winner = match.declared or match.winner()
+    if winner == "draw":
+        return say("decision.official-draw")
+    return say("decision.official", team=match.team(winner))
 
 
-def _next(match: MatchState, decision: d.Next) -> str:
+def _next(match: MatchState, decision: d.Next) -> Phrase:
     match.next_wanted = True
-    return "the next match opens."
+    return say("decision.next")
 
 
 def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> DecisionReply:
@@ -226,71 +245,69 @@ def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> Decisio
         scores = match.scores(adjustments=adjustments)
         if not decision.dry_run:
             match.adjustments = adjustments
-        changes: tuple[str, ...] = ()
+        vanished: list[int] = []
+        changes: tuple[Phrase, ...] = ()
         fold = None
     elif match.history.knows(decision.event):
         fold = match.history.without(decision.event)
         scores = match.scores(fold.state)
-        changes = (
-            *(
-                f"event {number} vanishes: {event.kind} {event.marker}"
-                for number, event in fold.vanished
-            ),
-            *(f"appears: {event.kind} {event.marker}" for _, _, event in fold.appeared),
-        )
+        vanished = [number for number, _ in fold.vanished]
+        changes = _changes(fold)
     else:
-        raise Illegal(
-            f"event {decision.event} can't be taken back: give the number of a capture, flip, "
-            "strike, adjust or set that stands."
-        )
-    text = f"event {decision.event} is taken back."
+        raise Illegal(say("why.can-not-take-back", event=decision.event))
+    did = say("decision.take-back", event=decision.event)
     if decision.dry_run:
-        return DecisionReply(beat=match.beats, text=text, scores=scores, changes=changes)
-    number = _log(match, item, "take-back", text, changes=changes, scores=scores)
+        return DecisionReply(beat=match.beats, said=did, scores=scores, changes=changes)
+    number = _log(match, item, "take-back", did, vanished=vanished, scores=scores)
     if fold is not None:
         match.history.accept(fold, match.next_number)
         for _, _, event in fold.appeared:
-            team = match.seats[event.seat].team
-            match.tell(
-                event.kind,
-                f"Judged again: {event.text.format(team=team)}",
-                seat=event.seat,
-                marker=event.marker,
-                also=event.also,
-                points=event.points,
-            )
+            match.tell_judged(event, again=True)
         _follow(match, fold.over)
     match.tell_result()
     return DecisionReply(
-        beat=match.beats, event=number, text=text, scores=match.scores(), changes=changes
+        beat=match.beats, event=number, said=did, scores=match.scores(), changes=changes
     )
 
 
-def _follow(match: MatchState, over: str) -> None:
+def _changes(fold: Fold) -> tuple[Phrase, ...]:
+    """List the events that vanish, then those that appear."""
+    vanished = [
+        say("change.vanishes", event=number, kind=event.kind, marker=event.marker)
+        for number, event in fold.vanished
+    ]
+    appeared = [
+        say("change.appears", kind=event.kind, marker=event.marker) for _, _, event in fold.appeared
+    ]
+    return (*vanished, *appeared)
+
+
+def _follow(match: MatchState, over: Phrase | None) -> None:
     """Let the phase follow from what the game is after a take-back."""
     if match.phase is Phase.HALTED and over:
         match.finish(over)
     elif match.phase is Phase.FINISHED and not (over or match.time_is_up or match.declared):
-        match.ended = ""
+        match.ended = None
         match.enter(Phase.HALTED)
     elif match.phase is Phase.FINISHED and not match.declared:
-        match.ended = over or "time is up"
+        match.ended = over or say("over.time")
 
 
-def _no_board(match: MatchState) -> str:
-    return "" if match.game.markers else "this game has no board"
+def _no_board(match: MatchState) -> Phrase | None:
+    return None if match.game.markers else say("why.no-board")
 
 
-def _nobody(match: MatchState) -> str:
-    return "" if any(seat.join for seat in match.seats) else "nobody has joined"
+def _nobody(match: MatchState) -> Phrase | None:
+    return None if any(seat.join for seat in match.seats) else say("why.nobody-joined")
 
 
-def _missing(match: MatchState) -> str:
-    return "; ".join(match.missing())  # also what changed a moment ago, in this beat
+def _missing(match: MatchState) -> Phrase | None:
+    missing = match.missing()  # also what changed a moment ago, in this beat
+    return say("plain.sentences", sentences=missing) if missing else None
 
 
-def _no_end(match: MatchState) -> str:
-    return "" if match.duration_ticks else "this match has no end"
+def _no_end(match: MatchState) -> Phrase | None:
+    return None if match.duration_ticks else say("why.no-end")
 
 
 _PLAY = frozenset({Phase.PLAYING, Phase.HALTED})
@@ -316,25 +333,22 @@ _RULES: dict[type[d.Decision], _Rule] = {
     d.Start: _Rule(frozenset({Phase.READY}), _start, _begin_countdown, also=_missing),
     d.Halt: _Rule(
         frozenset({Phase.COUNTDOWN, Phase.PLAYING}),
-        lambda match, decision: "halted.",
+        lambda match, decision: say("decision.halt"),
         _enter(Phase.HALTED),
     ),
     d.Resume: _Rule(frozenset({Phase.HALTED}), _resume, _begin_countdown),
-    d.Restart: _Rule(_PLAY, _restart, needs_reason=True),
-    d.Freeze: _Rule(_PLAY, _freeze, needs_reason=True),
+    d.Restart: _Rule(_PLAY, _restart),
+    d.Freeze: _Rule(_PLAY, _freeze),
     d.Unfreeze: _Rule(_PLAY, _unfreeze),
-    d.Adjust: _Rule(_SCORED, _adjust, needs_reason=True),
-    d.Set: _Rule(_SCORED, _set, needs_reason=True, also=_no_board),
+    d.Adjust: _Rule(_SCORED, _adjust),
+    d.Set: _Rule(_SCORED, _set, also=_no_board),
     d.TakeBack: _Rule(
         frozenset({Phase.HALTED, Phase.FINISHED}),
-        lambda match, decision: "",
-        needs_reason=True,
+        lambda match, decision: say("decision.take-back", event=decision.event),
     ),
-    d.Clock: _Rule(_PLAY, _clock, needs_reason=True, also=_no_end),
-    d.Abort: _Rule(_OPEN, _abort, _enter(Phase.VOID), needs_reason=True),
-    d.Declare: _Rule(
-        frozenset({Phase.HALTED, Phase.FINISHED}), _declare, _end_play, needs_reason=True
-    ),
+    d.Clock: _Rule(_PLAY, _clock, also=_no_end),
+    d.Abort: _Rule(_OPEN, _abort, _enter(Phase.VOID)),
+    d.Declare: _Rule(frozenset({Phase.HALTED, Phase.FINISHED}), _declare, _end_play),
     d.Official: _Rule(frozenset({Phase.FINISHED}), _official, _enter(Phase.OFFICIAL)),
     d.Next: _Rule(frozenset({Phase.OFFICIAL, Phase.VOID}), _next),
 }

@@ -3,6 +3,7 @@
 import math
 import struct
 from collections.abc import Sequence
+from typing import Any
 
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Observation, Place, RobotView
@@ -34,7 +35,8 @@ class Staging:
         self.physics: Physics = self.make_physics(self._arena, ())
         self.poses = b""
         """The robots as `Frame.poses`: exactly the numbers that everybody sees."""
-        self._views: tuple[RobotView, ...] = ()
+        self._bodies: list[tuple[Any, ...]] = []
+        """For each seat the first numbers of `RobotView`."""
         self._offsets: tuple[int, ...] = ()
         self._radii_m: tuple[float, ...] = ()
         self._placed: list[Place | None] = []
@@ -54,13 +56,11 @@ class Staging:
     def look(self) -> None:
         """Take in where the robots are now."""
         self.poses = self.physics.poses()
-        self._views = tuple(
-            RobotView(*_BODY.unpack_from(self.poses, offset)) for offset in self._offsets
-        )
+        self._bodies = [_BODY.unpack_from(self.poses, offset) for offset in self._offsets]
 
     def from_start_m(self, seat: int) -> float:
         """Measure how far a robot's centre is from where it was put, seen from above."""
-        return math.dist(self._starts[seat][:2], self._views[seat][:2])
+        return math.dist(self._starts[seat][:2], self._bodies[seat][:2])
 
     def observe(self) -> tuple[Observation, Touch | None]:
         """What the rules see of a tick.
@@ -70,11 +70,11 @@ class Staging:
         """
         touched, placed = self.physics.touched(), self._placed
         if not (any(touched) or any(placed)):
-            return self._views, None
+            return tuple([RobotView(*body) for body in self._bodies]), None
         self._placed = [None] * len(placed)
         seen = tuple(
-            view._replace(placed=place, touched=touch)
-            for view, place, touch in zip(self._views, placed, touched, strict=True)
+            RobotView._make((*body, place, touch))
+            for body, place, touch in zip(self._bodies, placed, touched, strict=True)
         )
         return seen, Touch(tuple(touched), tuple(placed))
 
@@ -98,7 +98,7 @@ class Staging:
 
         def room_m(place: Place) -> float:
             gaps_m = (
-                math.dist(place[:2], self._views[other.index][:2])
+                math.dist(place[:2], self._bodies[other.index][:2])
                 - max(MIN_START_DISTANCE_M, self._radii_m[seat.index] + self._radii_m[other.index])
                 for other in others
             )

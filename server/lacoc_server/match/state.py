@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from lacoc_arenas import arena as arenas
+from lacoc_arenas.game import GameEvent
 from lacoc_robots.limits import Limits
 from lacoc_server.match.history import History
 from lacoc_server.match.physics import Fault, MakePhysics, Physics
@@ -19,6 +20,7 @@ from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import PROTOCOL, Event, Sheet
 from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, NOBODY, Phase
+from lacoc_shared.words import Phrase, say
 
 TRANSITIONS: dict[Phase, frozenset[Phase]] = {
     Phase.CREATED: frozenset({Phase.LOBBY}),
@@ -32,6 +34,17 @@ TRANSITIONS: dict[Phase, frozenset[Phase]] = {
     Phase.VOID: frozenset(),
 }
 """The phases that can follow each phase; `next` opens a new match instead."""
+
+_ENTERED = {
+    Phase.LOBBY: say("event.lobby"),
+    Phase.READY: say("event.ready"),
+    Phase.COUNTDOWN: say("event.countdown"),
+    Phase.PLAYING: say("event.playing"),
+    Phase.HALTED: say("event.halted"),
+    Phase.OFFICIAL: say("event.official"),
+    Phase.VOID: say("event.void"),
+}
+"""What the log says of a phase; of FINISHED also why."""
 
 _ENDED = frozenset({Phase.FINISHED, Phase.OFFICIAL, Phase.VOID})
 """A match has a result in these phases."""
@@ -55,6 +68,8 @@ class MatchState:
         self.game = self.arena.game
         self.limits = Limits.of(setup.limits)
         self.rules = self.arena.match
+        self.duration_ticks = round(self.rules.duration_s * BEATS_PER_S)
+        """Ticks that the match lasts; 0: without end."""
         self.phase = Phase.CREATED
         self.beats = -1
         """Number of the beat; the first is 0."""
@@ -76,9 +91,9 @@ class MatchState:
         """Seat and points of each correction, by the number of its event."""
         self.declared: str | None = None
         """The winner whom a referee declared: a seat's id or "draw"."""
-        self.ended = ""
-        """Why play ended; "" while it has not."""
-        self.advice: tuple[str, ...] = ()
+        self.ended: Phrase | None = None
+        """Why play ended; None while it has not."""
+        self.advice: tuple[Phrase | str, ...] = ()
         """Why the court advises a replay."""
         self.next_wanted = False
         self.fault: Fault | None = None
@@ -105,11 +120,6 @@ class MatchState:
         return self.ticks + self.clock_offset
 
     @property
-    def duration_ticks(self) -> int:
-        """Ticks that the match lasts; 0: without end."""
-        return round(self.rules.duration_s * BEATS_PER_S)
-
-    @property
     def time_is_up(self) -> bool:
         """Whether the last tick has been played: none follows it (docs/rules.md 4)."""
         return 0 < self.duration_ticks <= self.clock_ticks
@@ -128,9 +138,19 @@ class MatchState:
             state: a state of the game; None: the present one.
             adjustments: corrections by event number; None: the present ones.
         """
-        scores = list(self.game.score(self.history.state if state is None else state))
-        for seat, points in (self.adjustments if adjustments is None else adjustments).values():
-            scores[seat] += points
+        points = self.game.score(self.history.state if state is None else state)
+        return self._adjusted(points, adjustments)
+
+    def _adjusted(
+        self, points: tuple[int, ...], adjustments: Mapping[int, tuple[int, int]] | None = None
+    ) -> tuple[int, ...]:
+        """Add the referee's points to the game's."""
+        adjustments = self.adjustments if adjustments is None else adjustments
+        if not adjustments:
+            return points
+        scores = list(points)
+        for seat, more in adjustments.values():
+            scores[seat] += more
         return tuple(scores)
 
     def winner(self) -> str:
@@ -138,14 +158,18 @@ class MatchState:
         seat = self.game.winner(self.history.state, self.scores())
         return "draw" if seat is None else self.seats[seat].id
 
-    def missing(self) -> list[str]:
-        """List everything that the match still needs to be READY, in words."""
+    def team(self, seat_id: str) -> str:
+        """Return the team of a seat, by the seat's id."""
+        return next(seat.team for seat in self.seats if seat.id == seat_id)
+
+    def missing(self) -> list[Phrase]:
+        """List everything that the match still needs to be READY (`why.*`)."""
         reasons = []
         for seat in self.seats:
             if seat.join is None:
-                reasons.append(f"nobody has joined {seat.id}")
+                reasons.append(say("why.nobody-in-seat", seat=seat.id))
             elif not seat.ready:
-                reasons.append(f"{seat.id} ({seat.team}) has not said ready")
+                reasons.append(say("why.not-ready", seat=seat.id, team=seat.team))
         return reasons
 
     def next_joins(self) -> list[JoinSeat]:
@@ -183,7 +207,7 @@ class MatchState:
             scores=self.scores(),
             computed=self.winner() if self.ended else "",
             official=official.get(self.phase, ""),
-            reason=self.ended,
+            reason=self.ended or "",
             clock_s=self.clock_ticks * BEAT_S,
             beats=self.beats + 1,
             digest=self.physics.digest.hex(),
@@ -196,13 +220,8 @@ class MatchState:
         """Change the phase."""
         assert phase in TRANSITIONS[self.phase], f"{self.phase.name} to {phase.name}"
         before, self.phase, self.entered_beat = self.phase, phase, self.beats
-        self.tell(
-            "phase",
-            f"{phase.name}" + (f": {self.ended}." if phase is Phase.FINISHED else "."),
-            before=before.name,
-            after=phase.name,
-            **data,
-        )
+        said = _ENTERED.get(phase) or say("event.finished", why=self.ended)
+        self.tell("phase", said, before=before.name, after=phase.name, **data)
         if phase in _ENDED:
             self._result_changed = True
 
@@ -230,9 +249,13 @@ class MatchState:
         self.countdown_beats = round(self.rules.countdown_s * BEATS_PER_S)
         self.enter(Phase.COUNTDOWN)
 
-    def finish(self, reason: str) -> None:
-        """End play."""
-        self.ended = reason
+    def finish(self, why: Phrase) -> None:
+        """End play.
+
+        Args:
+            why: `over.*`.
+        """
+        self.ended = why
         self.enter(Phase.FINISHED)
         self._told_result = None
         self.tell_result()
@@ -249,7 +272,7 @@ class MatchState:
 
     # The log.
 
-    def tell(self, kind: str, text: str, seat: int = NOBODY, **data: Any) -> int:
+    def tell(self, kind: str, said: Phrase, seat: int = NOBODY, **data: Any) -> int:
         """Log an event; returns its number."""
         self._event_count += 1
         self._events.append(
@@ -259,12 +282,29 @@ class MatchState:
                 beat=self.beats,
                 clock_ticks=self.clock_ticks,
                 kind=kind,
-                text=text,
+                said=said,
                 seat=seat,
                 data=data,
             )
         )
         return self._event_count
+
+    def tell_judged(self, event: GameEvent, again: bool = False) -> None:
+        """Log what the rules decided.
+
+        Args:
+            event: of the game.
+            again: whether they decided it anew, after a take-back.
+        """
+        said = event.said.with_values(team=self.seats[event.seat].team)
+        self.tell(
+            event.kind,
+            say("event.judged-again", event=said) if again else said,
+            seat=event.seat,
+            marker=event.marker,
+            also=event.also,
+            points=event.points,
+        )
 
     def tell_result(self) -> None:
         """Log winner and scores by the rules after play, whenever they differ from the log's."""
@@ -274,9 +314,11 @@ class MatchState:
         if result == self._told_result:
             return
         self._told_result = result
-        word = "a draw" if winner == "draw" else f"{self._team(winner)} wins"
-        text = f"By the rules: {word}, {' : '.join(map(str, scores))}."
-        self.tell("result", text, winner=winner, scores=scores)
+        if winner == "draw":
+            said = say("event.draw", scores=scores)
+        else:
+            said = say("event.wins", team=self.team(winner), scores=scores)
+        self.tell("result", said, winner=winner, scores=scores)
 
     def result_changed(self) -> None:
         """Let this beat carry the result, if the match has one."""
@@ -285,6 +327,3 @@ class MatchState:
     def sheet_changed(self) -> None:
         """Let this beat carry the sheet."""
         self._sheet_changed = True
-
-    def _team(self, seat_id: str) -> str:
-        return next(seat.team for seat in self.seats if seat.id == seat_id)

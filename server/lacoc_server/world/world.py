@@ -2,8 +2,9 @@
 
 import hashlib
 import math
+import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import mujoco
@@ -15,10 +16,13 @@ from lacoc_arenas.game import Place
 from lacoc_robots.model import add_robot, set_options
 from lacoc_server.match.entry import Entry
 from lacoc_server.match.physics import Fault
+from lacoc_server.world.robot import Robot
 from lacoc_server.world.scene import make_scene
+from lacoc_server.world.touch import TouchTest
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.seat import NOBODY
+from lacoc_shared.words import say
 
 SUBSTEPS = 10
 """Physics steps of 2 ms in a tick of 20 ms."""
@@ -29,31 +33,15 @@ MUJOCO_VERSION = mujoco.mj_versionString()
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 """Everything the next step depends on; less (FULLPHYSICS) is not exact (physics.md 1)."""
 
-_TOUCH_M = 1e-3
-"""Distances between geoms are worked out up to here; farther apart is no touch."""
-
 _WARNINGS = {
-    mujoco.mjtWarning.mjWARN_BADQPOS: "a position became not a number or too large",
-    mujoco.mjtWarning.mjWARN_BADQVEL: "a velocity became not a number or too large",
-    mujoco.mjtWarning.mjWARN_BADQACC: "an acceleration became not a number or too large",
-    mujoco.mjtWarning.mjWARN_BADCTRL: "a commanded angle was not a number",
-    mujoco.mjtWarning.mjWARN_CONTACTFULL: "too many contacts",
-    mujoco.mjtWarning.mjWARN_CNSTRFULL: "too many constraints",
-    mujoco.mjtWarning.mjWARN_INERTIA: "the inertia matrix is singular",
+    mujoco.mjtWarning.mjWARN_BADQPOS: say("fault.position"),
+    mujoco.mjtWarning.mjWARN_BADQVEL: say("fault.velocity"),
+    mujoco.mjtWarning.mjWARN_BADQACC: say("fault.acceleration"),
+    mujoco.mjtWarning.mjWARN_BADCTRL: say("fault.control"),
+    mujoco.mjtWarning.mjWARN_CONTACTFULL: say("fault.contacts"),
+    mujoco.mjtWarning.mjWARN_CNSTRFULL: say("fault.constraints"),
+    mujoco.mjtWarning.mjWARN_INERTIA: say("fault.inertia"),
 }
-
-
-@dataclass(frozen=True)
-class _Robot:
-    """Where a robot lies in the model's arrays."""
-
-    entry: Entry
-    root_qpos: int
-    root_dof: int
-    joint_qpos: npt.NDArray[np.intp]
-    joint_dofs: npt.NDArray[np.intp]
-    actuators: slice
-    geoms: npt.NDArray[np.intp]
 
 
 class World:
@@ -89,33 +77,25 @@ class World:
         mujoco.mj_saveModel(self.model, None, buffer)
         self.model_hash = hashlib.blake2b(buffer.data, digest_size=8).hexdigest()
         self.digest = bytes(8)
-        self._robots = [self._find(entry, seats[i]) for i, entry in enumerate(entries)]
-        qpos = [
-            index
-            for robot in self._robots
-            for index in (*range(robot.root_qpos, robot.root_qpos + 7), *robot.joint_qpos)
-        ]
-        self._pose_qpos = np.array(qpos, np.intp)
-        probes = {
-            marker: mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, f"probe:{info.name}")
-            for marker, info in enumerate(arena.game.markers)
-        }
-        self._probes = [(marker, probe) for marker, probe in probes.items() if probe >= 0]
-        self._touch = _TouchTest(self.model, self.data, self._robots, self._probes)
+        self._robots = [Robot.find(self.model, entry, seats[i]) for i, entry in enumerate(entries)]
+        pose_qpos = [index for robot in self._robots for index in robot.pose_qpos]
+        self._pose_qpos = np.array(pose_qpos, np.intp)
+        self._touch = TouchTest(self.model, self.data, self._robots, arena.game.markers)
         # Views into MuJoCo's own arrays: they always show what is there now.
         self._control = self.data.ctrl
+        self._write_control = struct.Struct(f"{self.model.nu}d").pack_into
         self._warned = self.data.warning.number
         self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
         self._weights = _weights(self.model)
         for seat, robot in enumerate(self._robots):
-            self._put(robot, arena.game.starts[seat][0])
+            robot.put(self.data, arena.game.starts[seat][0])
         self._keep()
 
     # Physics
 
     def place(self, seat: int, place: Place) -> None:
         """Put a robot at a start place: start posture, all velocities zero."""
-        self._put(self._robots[seat], place)
+        self._robots[seat].put(self.data, place)
         self._keep()
 
     def step(self, angles: Sequence[Posture]) -> Fault | None:
@@ -127,7 +107,7 @@ class World:
         Returns:
             None, or what went wrong; then the state before the tick stands.
         """
-        self._control[:] = [angle for posture in angles for angle in posture]
+        self._write_control(self._control, 0, *chain.from_iterable(angles))
         mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
         if any(self._warned.tobytes()):
             return self._undo()
@@ -143,8 +123,8 @@ class World:
     def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
         """For each seat the markers whose probes it touches now, in ascending order.
 
-        A probe is a geom that exerts no force. Touch is MuJoCo's own distance between geoms being
-        at most 0; the order of the contact list plays no part.
+        A probe is a geom that exerts no force. A robot touches it if MuJoCo's distance between
+        their geoms is at most 0; the order of the contact list plays no part.
 
         Args:
             gap_m: the largest distance that counts as a touch; below 0: only deeper ones count.
@@ -192,35 +172,6 @@ class World:
 
     # Private
 
-    def _find(self, entry: Entry, seat: str) -> _Robot:
-        model = self.model
-        joints = [model.joint(f"{seat}/j{joint}") for joint in range(entry.robot.joints)]
-        root = model.joint(f"{seat}/root")
-        first = model.actuator(f"{seat}/a0").id
-        body_root = int(model.body(f"{seat}/body").id)
-        return _Robot(
-            entry,
-            int(root.qposadr[0]),
-            int(root.dofadr[0]),
-            np.array([joint.qposadr[0] for joint in joints], np.intp),
-            np.array([joint.dofadr[0] for joint in joints], np.intp),
-            slice(first, first + len(joints)),
-            np.flatnonzero(model.body_rootid[model.geom_bodyid] == body_root),
-        )
-
-    def _put(self, robot: _Robot, place: Place) -> None:
-        data, spec = self.data, robot.entry.robot
-        at = robot.root_qpos
-        data.qpos[at : at + 3] = place.x_m, place.y_m, spec.start_z_m
-        half_yaw = (place.heading_rad - math.pi / 2) / 2  # the body's forward is its +y
-        # Not NumPy's, which pick their code by processor in a way of their own.
-        data.qpos[at + 3 : at + 7] = math.cos(half_yaw), 0, 0, math.sin(half_yaw)
-        data.qpos[robot.joint_qpos] = spec.start_posture
-        data.ctrl[robot.actuators] = spec.start_posture
-        dofs = np.concatenate([np.arange(robot.root_dof, robot.root_dof + 6), robot.joint_dofs])
-        data.qvel[dofs] = 0
-        data.qacc_warmstart[dofs] = 0
-
     def _keep(self) -> None:
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
 
@@ -229,10 +180,10 @@ class World:
         numbers = self.data.warning.number
         kind = int(np.flatnonzero(numbers)[0])
         where = int(self.data.warning[kind].lastinfo)
-        words = _WARNINGS.get(mujoco.mjtWarning(kind), f"MuJoCo's warning {kind}")
+        why = _WARNINGS.get(mujoco.mjtWarning(kind), say("fault.other", number=kind))
         numbers[:] = 0
         mujoco.mj_setState(self.model, self.data, self._state, _STATE)
-        return Fault(self._seat_of(mujoco.mjtWarning(kind), where), words)
+        return Fault(self._seat_of(mujoco.mjtWarning(kind), where), why)
 
     def _seat_of(self, kind: mujoco.mjtWarning, where: int) -> int:
         """The robot that a warning is about; `where` is the index that MuJoCo gives."""
@@ -251,62 +202,11 @@ class World:
         return NOBODY
 
 
-class _TouchTest:
-    """Which markers each robot touches.
-
-    Args:
-        model: the compiled model.
-        data: its data.
-        robots: the robots, seat by seat.
-        probes: marker and geom of each probe; probes stand upright and never move.
-    """
-
-    def __init__(
-        self,
-        model: Any,
-        data: Any,
-        robots: Sequence[_Robot],
-        probes: Sequence[tuple[int, int]],
-    ) -> None:
-        self._model, self._data = model, data
-        self._probes = probes
-        self._none: list[tuple[int, ...]] = [()] * len(robots)
-        self._seats = [seat for seat, robot in enumerate(robots) for _ in robot.geoms]
-        self._geoms = np.concatenate([robot.geoms for robot in robots] or [np.empty(0, np.intp)])
-        geoms = [geom for _, geom in probes]
-        mujoco.mj_kinematics(model, data)
-        self._x_m, self._y_m = data.geom_xpos[geoms, 0], data.geom_xpos[geoms, 1]
-        reach_m = model.geom_rbound[self._geoms, None] + model.geom_size[geoms, 0]
-        self._reach_m, self._reach_m2 = reach_m, reach_m**2
-        self._at = data.geom_xpos
-
-    def __call__(self, gap_m: float) -> Sequence[tuple[int, ...]]:
-        """For each seat the markers it touches, or that are this near, in ascending order."""
-        if not (self._probes and self._seats):
-            return self._none
-        # After mj_step the geoms still stand where the last step began.
-        mujoco.mj_kinematics(self._model, self._data)
-        at = self._at[self._geoms]
-        apart_m2 = (at[:, 0, None] - self._x_m) ** 2 + (at[:, 1, None] - self._y_m) ** 2
-        close = apart_m2 <= (self._reach_m2 if gap_m <= 0 else (self._reach_m + gap_m) ** 2)
-        if not close.any():
-            return self._none
-        touched: list[set[int]] = [set() for _ in self._none]
-        for geom, probe in zip(*(places.tolist() for places in close.nonzero()), strict=True):
-            marker, pole = self._probes[probe]
-            distance_m = mujoco.mj_geomDistance(
-                self._model, self._data, int(self._geoms[geom]), pole, _TOUCH_M + abs(gap_m), None
-            )
-            if distance_m <= gap_m:
-                touched[self._seats[geom]].add(marker)
-        return [tuple(sorted(markers)) for markers in touched]
-
-
 def _chained(digest: bytes, state: bytes | memoryview) -> bytes:
     """Chain a state to the digest of the tick before it."""
-    chain = hashlib.sha256(digest)
-    chain.update(state)
-    return chain.digest()[:8]
+    following = hashlib.sha256(digest)
+    following.update(state)
+    return following.digest()[:8]
 
 
 def _weights(model: Any) -> npt.NDArray[np.float64]:

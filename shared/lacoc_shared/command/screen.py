@@ -20,7 +20,7 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_shared.mistakes import ESCAPED, Mistake, text_of
-from lacoc_shared.words import render
+from lacoc_shared.words import Phrase, render
 
 _UNLIMITED = 10_000  # characters in a line that no eye must follow
 
@@ -53,24 +53,26 @@ stdout = _console(stderr=False)
 stderr = _console(stderr=True)
 
 
-def show(what: RenderableType, to: Console | None = None) -> None:
-    """Print a text or a table.
+def show(what: RenderableType | Phrase, to: Console | None = None) -> None:
+    """Print a text, a phrase or a table.
 
     Args:
         what: a plain string is printed as it is: square brackets are no markup.
         to: the console; standard output if None.
     """
+    if isinstance(what, Phrase):
+        what = render(what)
     (to or stdout).print(Text(what) if isinstance(what, str) else what)
 
 
-def note(text: str) -> None:
+def note(what: Phrase | str) -> None:
     """Say something about the result, such as the name of a file that was written."""
-    show(Text(text, style="dim"), stderr)
+    show(Text(render(what), style="dim"), stderr)
 
 
-def warn(text: str) -> None:
+def warn(what: Phrase | str) -> None:
     """Say that something may not be as the person expects."""
-    show(Text.assemble(("Note: ", "bold yellow"), text), stderr)
+    show(Text.assemble(("Note: ", "bold yellow"), render(what)), stderr)
 
 
 def error(text: str) -> None:

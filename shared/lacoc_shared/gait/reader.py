@@ -17,9 +17,9 @@ from lacoc_shared.gait.cells import (
     number_text,
     shown,
 )
+from lacoc_shared.gait.legend import KEY, contradiction, find_legend, trimmed, without_zeros
 from lacoc_shared.gait.tables import (
     JOINTS_PER_LEG,
-    LEVEL_NAMES,
     LocomotionTable,
     Posture,
     PostureTable,
@@ -36,16 +36,12 @@ each joint id."""
 MAX_MISTAKES = 1000
 """Reading ends there: a file of garbage has thousands, and a court reads files within a beat."""
 
-_KEY = re.compile(r"(\d)\s*key", re.IGNORECASE | re.ASCII)
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
 
 POSTURES_HEADER = '"Num of Posture" and their number (Loco-data)'
 ANY_HEADER = (
     '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)'
 )
-
-_IDS_LABEL = "id of joint"
-_LEGEND_LABELS = (_IDS_LABEL, "position")
 
 
 def read_cells(
@@ -77,45 +73,6 @@ def read_cells(
     return table
 
 
-def _is_legend(cells: Sequence[str]) -> bool:
-    """Whether a row explains the table: words without angles, or the joint ids (Fig. 4-1).
-
-    The labels may be in another language, but a row that could be a posture is never a legend.
-    """
-    label, *others = cells
-    if label.casefold() in _LEGEND_LABELS:
-        return True
-    if any(character.isdigit() for character in label):
-        return False
-    numbers = [number_of(cell) for cell in others]
-    return all(n is None for n in numbers) or numbers == [*range(len(numbers))]
-
-
-def _without_zeros(cells: Sequence[str]) -> list[str]:
-    """A row without what a sheet shows where it mirrors an empty cell: 0."""
-    return _trimmed(["" if number_of(cell) == 0 else cell for cell in cells])
-
-
-def _find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
-    """Part the rows of Loco-data: postures, the legend, and what else stands below it.
-
-    Below the last row with a key the legend begins at the first row that can be one. What
-    follows it is never a posture: a remark, or the empty rows of a sheet.
-    """
-    keys = [index for index, row in enumerate(rows) if _KEY.fullmatch(row.cells[0])]
-    table_end = keys[-1] + 1 if keys else 0
-    starts = (i for i in range(table_end, len(rows)) if _is_legend(rows[i].cells))
-    start = next(starts, len(rows))
-    legend, below = [], []
-    for row in rows[start:]:
-        cells = _without_zeros(row.cells)
-        if _is_legend(row.cells) or (cells and _is_legend(cells)):
-            legend.append(row)
-        elif cells:
-            below.append(row)
-    return list(rows[:start]), legend, below
-
-
 class _Reader:
     """One reading of one file; collects its mistakes."""
 
@@ -129,7 +86,7 @@ class _Reader:
         self.notes: list[str] = []
 
     def read(self, rows: Iterable[Row]) -> PostureTable | LocomotionTable:
-        filled = [Row(row.number, _trimmed(row.cells)) for row in rows]
+        filled = [Row(row.number, trimmed(row.cells)) for row in rows]
         filled = [row for row in filled if row.cells]
         table: PostureTable | LocomotionTable | None = None
         if not filled:
@@ -137,7 +94,7 @@ class _Reader:
         elif len(filled[0].cells) == 1 and number_of(filled[0].cells[0]) is not None:
             table = self._locomotion(filled)
         elif _POSTURES_HEADER.fullmatch(filled[0].cells[0]) or any(
-            _KEY.fullmatch(row.cells[0]) for row in filled
+            KEY.fullmatch(row.cells[0]) for row in filled
         ):
             table = self._postures(filled)
         else:
@@ -189,10 +146,10 @@ class _Reader:
             announced = self._count(header, 2, MAX_KEYS, "the number of postures")
         else:
             self._missing_header(rows[0])
-            if not _KEY.fullmatch(rows[0].cells[0]):
+            if not KEY.fullmatch(rows[0].cells[0]):
                 body.pop(0)
-        body, legend, below = _find_legend(body)
-        filled = [row for row in body if _without_zeros(row.cells)]
+        body, legend, below = find_legend(body)
+        filled = [row for row in body if without_zeros(row.cells)]
         if announced == len(filled):
             body = filled  # the others are empty rows of a sheet that was mirrored
         if announced is not None and announced != len(body):
@@ -203,8 +160,9 @@ class _Reader:
                 expected="as many rows as announced",
             )
         joints = self._joints(body, first=1)
-        for row in legend:
-            self._compare_labels(row, joints)
+        labels = self._labels_of(joints // JOINTS_PER_LEG)
+        contradictions = (contradiction(row, labels) for row in legend)
+        self.notes += [f"{self._file}, {note}" for note in contradictions if note]
         for row in below:
             self.notes.append(
                 f"{self._file}, row {row.number}: {shown(row.cells[0])} stands below the legend "
@@ -214,7 +172,7 @@ class _Reader:
         row_of: dict[int, int] = {}
         for row in body:
             posture = self._angles(row, 1, joints)
-            key = _KEY.fullmatch(row.cells[0])
+            key = KEY.fullmatch(row.cells[0])
             if key is None:
                 self._add(
                     row=row,
@@ -277,7 +235,7 @@ class _Reader:
     def _count(self, row: Row, column: int, highest: int, what: str) -> int | None:
         """The whole number that ends a row, from 1 to `highest`; None after a mistake."""
         cell = row.cells[column - 1] if len(row.cells) >= column else ""
-        if _without_zeros(row.cells[column:]):
+        if without_zeros(row.cells[column:]):
             self._add(
                 row=row,
                 column=column + 1,
@@ -350,31 +308,6 @@ class _Reader:
     def _labels_of(self, legs: int) -> Sequence[str]:
         return self._labels if self._labels and self._legs == legs else leg_labels(legs)
 
-    def _compare_labels(self, row: Row, joints: int) -> None:
-        """Note a label over another joint's column: the columns count, whatever they say."""
-        labels = self._labels_of(joints // JOINTS_PER_LEG)
-        known = {_plain(label): label for label in labels}
-        levels = {_plain(name): name for name in LEVEL_NAMES}
-        ids = row.cells[0].casefold() == _IDS_LABEL
-        for joint, cell in enumerate(row.cells[1 : joints + 1]):
-            leg, level = leg_and_level(joint, len(labels))
-            if ids:
-                number = number_of(cell)
-                wrong = number is not None and number != joint
-                is_what = f"this is the column of joint {joint}"
-            elif _plain(cell) in levels:
-                wrong = levels[_plain(cell)] != LEVEL_NAMES[level]
-                is_what = f"joint {joint} is a joint of level {LEVEL_NAMES[level]}"
-            else:
-                wrong = known.get(_plain(cell), labels[leg]) != labels[leg]
-                is_what = f"joint {joint} is a joint of leg {labels[leg]}"
-            if wrong:
-                self.notes.append(
-                    f"{self._file}, row {row.number}, column {joint + 2}: the legend says {cell}, "
-                    f"and {is_what}. The order of the columns counts, not the legend."
-                )
-                return  # one shows what is meant; exchanged labels come in dozens
-
     def _limits_deg(self, joint: int, joints: int) -> tuple[float, float]:
         if isinstance(self._range_deg, int | float):
             return -self._range_deg, self._range_deg
@@ -383,17 +316,5 @@ class _Reader:
         return -RANGE_DEG, RANGE_DEG  # another robot's gait, which is a mistake already
 
 
-def _plain(label: str) -> str:
-    """A label without what people write differently: "R,F", "R.F" and "rf" are one leg."""
-    return "".join(filter(str.isalnum, label)).casefold()
-
-
 def _counted(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
-def _trimmed(cells: Sequence[str]) -> list[str]:
-    kept = [cell.strip() for cell in cells]
-    while kept and not kept[-1]:
-        kept.pop()
-    return kept

@@ -20,6 +20,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export import tables as exports
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEAT_S
+from lacoc_shared.words import counted, render
 
 _NOT_IN_NAMES = re.compile(r"[^\w.-]")
 
@@ -181,12 +182,14 @@ def _held(health: HealthVerdict | None) -> str:
         f"{health.resumptions} resumptions",
     ]
     for seat in health.seats:
-        refused = ", ".join(f"{count} {why}" for why, count in seat.refused.items())
+        refused = ", ".join(f"{count} {counted(why)}" for why, count in seat.refused.items())
         words.append(
             f"{seat.id}: {seat.arrived} of {seat.expected} repeats, {seat.silences} silences of "
             f"{seat.silent_s:.1f} s, refused {refused or 'nothing'}"
         )
-    advised = f"Replay advised: {'; '.join(health.advice)}" if health.advice else "Well held"
+    advised = (
+        f"Replay advised: {'; '.join(map(render, health.advice))}" if health.advice else "Well held"
+    )
     return f"{advised} ({'; '.join(words)})"
 
 
@@ -199,7 +202,7 @@ def _lines(record: Record, found: dict[str, Any]) -> list[tuple[str, str]]:
             f"{team} {score}" for team, score in zip(result.teams, result.scores, strict=False)
         )
         winner = result.official or f"{result.computed} (not official)"
-        ended = f"{scores}; winner: {winner}; {result.reason}, after {result.clock_s:.2f} s"
+        ended = f"{scores}; winner: {winner}; {render(result.reason)}, after {result.clock_s:.2f} s"
     versions = ", ".join(f"{name} {version}" for name, version in found["versions"].items())
     counts = ("frames", "inputs", "events", "snapshots", "segments")
     return [

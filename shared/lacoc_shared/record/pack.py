@@ -4,14 +4,12 @@ A court starts `python -m lacoc_shared.record.pack FOLDER MATCH_ID...` beside it
 takes longer than a beat.
 """
 
-import hashlib
 import os
 import subprocess
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
 
 from mcap.writer import Writer
 
@@ -20,7 +18,10 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE
-from lacoc_shared.record.stream import Stop, walk
+from lacoc_shared.record.stream import Stop, walk_bytes
+
+_Message = tuple[str, int, bytes]
+"""Topic, beat and bytes."""
 
 
 def pack(segments: Sequence[Path], out: Path) -> None:
@@ -48,13 +49,11 @@ def pack(segments: Sequence[Path], out: Path) -> None:
                         "alone."
                     )
             if out.exists():
-                _compare(segments, out)
+                _compare(*_messages(segments), out)
             else:
-                # What can't be read now must not be lost for ever.
-                if cut := Record.read(segments).cut:
-                    raise UserError(f"{out} was not packed, and its segments are kept. {cut}")
-                _write(segments, unfinished)
-                _compare(segments, unfinished)
+                messages = _whole_match(segments, out)
+                _write(messages, unfinished)
+                _compare(messages, None, unfinished)
                 unfinished.rename(out)
                 files.sync_folder(out.parent)
         for segment in segments:  # no longer open: Windows removes no file that is
@@ -93,15 +92,34 @@ def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[
     )
 
 
-def _compare(segments: Sequence[Path], packed: Path) -> None:
+def _whole_match(segments: Sequence[Path], out: Path) -> list[_Message]:
+    """Read all messages of a match.
+
+    Raises:
+        UserError: if the segments can't be read to their end: what can't be read now must not be
+            lost for ever.
+    """
+    messages: list[_Message] = []
+    record = Record.read(segments, lambda *message: messages.append(message))
+    if record.cut:
+        raise UserError(f"{out} was not packed, and its segments are kept. {record.cut}")
+    return messages
+
+
+def _compare(wanted: Sequence[_Message], wrong: Stop | None, packed: Path) -> None:
     """See that nothing is lost with the segments.
 
     They may be the last ones of a match only: the others went before packing was interrupted.
 
+    Args:
+        wanted: the messages of the segments.
+        wrong: what is wrong with the end of the last segment.
+        packed: the packed file.
+
     Raises:
-        UserError: if the packed file lacks anything, or one of them is damaged.
+        UserError: if the packed file lacks anything, or either is damaged.
     """
-    (found, found_wrong), (wanted, wrong) = _messages([packed]), _messages(segments)
+    found, found_wrong = _messages([packed])
     if found_wrong or wrong or found[max(0, len(found) - len(wanted)) :] != wanted:
         raise UserError(
             f"{packed} does not hold what the segments of its match hold, so all are kept. "
@@ -109,20 +127,16 @@ def _compare(segments: Sequence[Path], packed: Path) -> None:
         )
 
 
-def _messages(paths: Sequence[Path]) -> tuple[list[bytes], Stop | None]:
-    """A hash of each message of some files, and what is wrong with the end of the last file."""
-    found: list[bytes] = []
-
-    def add(topic: str, beat: int, data: bytes, message: Any) -> None:
-        found.append(hashlib.blake2b(b"%s %d " % (topic.encode(), beat) + data).digest())
-
+def _messages(paths: Sequence[Path]) -> tuple[list[_Message], Stop | None]:
+    """Read the messages of some files, and what is wrong with the end of the last file."""
+    found: list[_Message] = []
     wrong: Stop | None = None
     for path in paths:
-        wrong = walk(path, add)
+        wrong = walk_bytes(path, lambda *message: found.append(message))
     return found, wrong
 
 
-def _write(segments: Sequence[Path], path: Path) -> None:
+def _write(messages: Sequence[_Message], path: Path) -> None:
     with path.open("wb") as file:
         writer = Writer(file)
         writer.start(profile=PROFILE, library=f"lacoc {__version__}")
@@ -131,14 +145,10 @@ def _write(segments: Sequence[Path], path: Path) -> None:
             for topic, kind in KINDS.items()
         }
         counts = dict.fromkeys(KINDS, 0)
-
-        def add(topic: str, beat: int, data: bytes, message: Any) -> None:
+        for topic, beat, data in messages:
             time_ns = beat * BEAT_NS
             writer.add_message(channels[topic], time_ns, data, time_ns, counts[topic])
             counts[topic] += 1
-
-        for segment in segments:
-            walk(segment, add)
         writer.finish()
         file.flush()
         os.fsync(file.fileno())
@@ -166,7 +176,9 @@ def main(folder: str, *match_ids: str) -> int:
 def _copy(out: Path, *segments: Path) -> int:
     unfinished = out.with_name(f"{out.name}.part")
     try:
-        _write(segments, unfinished)
+        messages: list[_Message] = []
+        Record.read(segments, lambda *message: messages.append(message))
+        _write(messages, unfinished)
         unfinished.rename(out)
     except (UserError, OSError) as error:
         print(error, file=sys.stderr)

@@ -3,7 +3,6 @@
 from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from functools import partial
 from operator import itemgetter
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,7 +12,7 @@ from lacoc_shared.messages import Event, HealthVerdict, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.schema import Header, Result, Touch
-from lacoc_shared.record.stream import walk
+from lacoc_shared.record.stream import TakeBytes, walk
 
 V = TypeVar("V")
 
@@ -71,7 +70,7 @@ class Record:
         return _newest(beat, self.scenes)
 
     @classmethod
-    def read(cls, paths: Path | Iterable[Path]) -> "Record":
+    def read(cls, paths: Path | Iterable[Path], also: TakeBytes | None = None) -> "Record":
         """Read a record, as far as it can be had.
 
         A file that was never closed (a killed court, a copy that broke off) or is damaged gives
@@ -81,6 +80,7 @@ class Record:
         Args:
             paths: a packed file, or a segment, with which all segments of its match are read;
                 or several segments, in order.
+            also: gets the bytes of every message too, as the files hold them.
 
         Raises:
             NoMatch: if no file has a whole header.
@@ -93,7 +93,7 @@ class Record:
         record = cls()
         try:
             for path in paths:
-                record._read_file(path)
+                record._read_file(path, also)
         except _Gap as gap:
             record.gap = record.lost = True
             record.cut = f"{record.cut} {gap}".lstrip()
@@ -106,9 +106,14 @@ class Record:
             )
         return record
 
-    def _read_file(self, path: Path) -> None:
+    def _read_file(self, path: Path, also: TakeBytes | None) -> None:
+        def take(topic: str, beat: int, data: bytes, message: Any) -> None:
+            self._take(path, topic, beat, data, message)
+            if also is not None:
+                also(topic, beat, data)
+
         before = len(self.headers)
-        stop = walk(path, partial(self._take, path))
+        stop = walk(path, take)
         if stop and len(self.headers) == before and before:
             return  # of a court that was killed before it had opened: nothing of it counts
         self.lost = stop is not None and stop.damaged

@@ -6,6 +6,7 @@ import msgspec
 
 from lacoc_shared.inputs import Input
 from lacoc_shared.messages import Event, Frame, HealthVerdict, Scene, Sheet
+from lacoc_shared.words import Phrase
 
 
 class Setup(msgspec.Struct, frozen=True, kw_only=True):
@@ -68,8 +69,8 @@ class Result(msgspec.Struct, frozen=True, kw_only=True):
     """Seat id of the winner by the rules, "draw", or "" if play never ended."""
     official: str
     """The same after the referee's word; "" until OFFICIAL, "void" for a void match."""
-    reason: str
-    """Why the match ended."""
+    reason: Phrase | str
+    """Why the match ended (`over.*`; a text in a record of protocol 1)."""
     clock_s: float
     beats: int
     digest: str

@@ -17,6 +17,7 @@ from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import codec
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.protocol_1 import read_event
 from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE
 from lacoc_shared.seat import BEATS_PER_S
 
@@ -46,8 +47,10 @@ _LONGEST_GAP_BEATS = 3600 * BEATS_PER_S
 """A court records a frame every second; a gap longer than an hour is a damaged time, and whoever
 counts the beats up to it would not come back."""
 
+TakeBytes = Callable[[str, int, bytes], None]
+"""Called with a message's topic, beat and bytes."""
 Take = Callable[[str, int, bytes, Any], None]
-"""Called with a message's topic, beat, bytes, and what they mean (a snapshot's: the bytes)."""
+"""The same, and what the bytes mean (a snapshot's: the bytes)."""
 
 
 class Stop(NamedTuple):
@@ -67,6 +70,16 @@ class _Format(msgspec.Struct):
 
 def walk(path: Path, take: Take) -> Stop | None:
     """Give every whole message of a file to `take`, up to where it stops or is damaged.
+
+    See `walk_bytes`. Bytes that are not the message of their topic are damage too.
+    """
+    return walk_bytes(
+        path, lambda topic, beat, data: take(topic, beat, data, _decode(path, topic, data))
+    )
+
+
+def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
+    """Give the bytes of every whole message of a file to `take`, whatever they mean.
 
     A packed file's messages are in chunks, each with a checksum: of a damaged chunk nothing is
     given.
@@ -98,7 +111,7 @@ def walk(path: Path, take: Take) -> Stop | None:
             if isinstance(record, Message):
                 topic = topics[record.channel_id]
                 beat = _next_beat(beat, record.log_time // BEAT_NS, topic)
-                take(topic, beat, record.data, _decode(path, topic, record.data))
+                take(topic, beat, record.data)
             elif isinstance(record, Channel):
                 topics[record.id] = record.topic
             elif isinstance(record, DataEnd):
@@ -190,5 +203,7 @@ def _decode(path: Path, topic: str, data: bytes) -> Any:
                 f"The record {path} has format {found}, and this software reads format {FORMAT}. "
                 "Install the version of lacoc that wrote it."
             )
+    if topic == "/lacoc/event":
+        return read_event(data, _MAX_BYTES)
     kind = KINDS[topic]
     return data if kind is None else codec.decode(data, kind, _MAX_BYTES)

@@ -23,6 +23,7 @@ from lacoc_shared.messages import Event, HealthVerdict, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header, Result, Touch
+from lacoc_shared.words import Phrase, say
 
 SYNC_S = 1.0
 """A power cut loses at most what this long has written."""
@@ -59,7 +60,7 @@ class RecordWriter:
         files.hold(self._file)
         self._backlog = bytearray()
         self._write_error = ""
-        self._sync_error = ""
+        self._sync_error: Phrase | None = None
         self._counts = [0] * (len(KINDS) + 1)
         self._first_ns = self._last_ns = header.first_beat * BEAT_NS
         self._channels = [
@@ -82,10 +83,7 @@ class RecordWriter:
         if self._backlog:
             self._file.close()
             self.path.unlink()
-            raise UserError(
-                f"No record can be written to {folder}: {self._write_error}. Make room there, or "
-                "name another folder."
-            )
+            raise UserError(say("record.folder-full", folder=str(folder), why=self._write_error))
         self._dirty = True
         self._ended = False
         self._closing = threading.Event()
@@ -101,14 +99,11 @@ class RecordWriter:
         if self._backlog:
             self._put(b"")
         if self._backlog:
-            raise UserError(
-                f"The record {self.path.name} can't be written: {self._write_error}. Make room on "
-                "its disk."
-            )
+            raise UserError(say("record.no-room", file=self.path.name, why=self._write_error))
 
     @property
-    def sync_trouble(self) -> str:
-        """What the disk said of what was written before, as a sentence; "" while all is well."""
+    def sync_trouble(self) -> Phrase | None:
+        """What the disk said of what was written before; None while all is well."""
         return self._sync_error
 
     def input(self, beat: int, item: Input) -> None:
@@ -215,9 +210,8 @@ class RecordWriter:
 
     def _sync_failed(self, error: OSError) -> None:
         # Stays: the system may have dropped what it could not write, and then says nothing more.
-        self._sync_error = (
-            f"The disk of the record {self.path.name} reports: {error.strerror}. "
-            "A power cut may lose a part of the record: check that disk."
+        self._sync_error = say(
+            "record.disk-trouble", file=self.path.name, why=error.strerror or str(error)
         )
 
     def _ending(self) -> bytes:
@@ -243,11 +237,9 @@ class RecordWriter:
 
 def _no_record(path: Path, error: OSError) -> UserError:
     if path.exists():
-        return UserError(f"The record {path} is there already, and a record is never overwritten.")
-    return UserError(
-        f"No record can be written to {path.parent}: {error.strerror}. "
-        "Name a folder that this user may write to."
-    )
+        return UserError(say("record.exists", file=str(path)))
+    why = error.strerror or str(error)
+    return UserError(say("record.no-folder", folder=str(path.parent), why=why))
 
 
 def _bytes(*records: McapRecord) -> bytes:

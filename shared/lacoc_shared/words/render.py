@@ -57,6 +57,11 @@ def render(phrase: Phrase | str, language: Language | None = None) -> str:
     return _rendered(phrase, language or _current, 0)
 
 
+def counted(name: str, language: Language | None = None) -> str:
+    """Name what was counted (`count.*`): refusals at a court's doors and by the rules."""
+    return _plain(name, ("count.*",), language or _current, 0)
+
+
 def _rendered(phrase: Phrase, language: Language, depth: int) -> str:
     entry = table().get(phrase.code)
     if entry is None or depth >= DEEPEST:

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
   claimOf,
+  isAboutToken,
   isFinal,
   keptWish,
   step,
@@ -12,10 +13,10 @@ import {
 
 const wish = { court: "main", seat: "left", token: "abc", name: "Ants" };
 const other = { ...wish, seat: "right" };
-const busy = { message: "the match runs", mistakes: [], again: true };
-const no = { message: "the court does not answer", mistakes: [], again: false };
-const wrongToken = { message: "this is not the seat's token", mistakes: [], again: false };
-const badFile = { message: "robot.toml has mistakes", mistakes: [{}], again: false };
+const busy = { why: { code: "refused.match-on" }, mistakes: [], again: true };
+const no = { why: "the court does not answer", mistakes: [], again: false };
+const wrongToken = { why: { code: "refused.wrong-token" }, mistakes: [], again: false };
+const badFile = { why: { code: "refused.mistakes" }, mistakes: [{}], again: false };
 
 const join = { is: "join", wish };
 const change = { is: "change", renews: false };
@@ -209,6 +210,6 @@ test("a lost seat is told, and nothing fights for it", () => {
 
 test("which refusals are final", () => {
   assert.deepEqual([busy, no, wrongToken, badFile].map(isFinal), [false, false, true, true]);
-  const message = "Your files are too large together: 70 KiB, at most 62 KiB travel.";
-  assert.ok(isFinal({ message, mistakes: [] }));
+  assert.ok(isFinal({ why: { code: "refused.files-too-large" }, mistakes: [] }));
+  assert.deepEqual([busy, no, wrongToken].map(isAboutToken), [false, false, true]);
 });

@@ -1,6 +1,7 @@
 /** A page's claim to a seat: how it stands, and what each event makes of it. Pure. */
 
 import type { Refused } from "./connection";
+import type { Phrase } from "./phrase";
 
 /** The seat that a person wants to hold; the page asks for it again after every break. */
 export interface Wish {
@@ -43,7 +44,7 @@ export type ClaimEvent =
   /** The pause after a failed request is over. */
   | { is: "rested" }
   /** The court tells that the seat is not this page's any more. */
-  | { is: "taken"; why: string }
+  | { is: "taken"; why: Phrase | string }
   /** The court took the seat back. */
   | { is: "released" }
   /** The court did not take the seat back, and the page holds it still. */
@@ -75,10 +76,18 @@ export interface Claim {
   /** Why the last join was refused; null once a person asks again. */
   readonly refusal: Refused | null;
   /** Why the seat was lost; "" in every other state. */
-  readonly why: string;
+  readonly why: Phrase | string;
 }
 
 const MOST_TRIES = 8;
+/** Refusals that are about the token. */
+const ABOUT_TOKEN: ReadonlySet<string> = new Set([
+  "refused.wrong-token",
+  "gateway.no-token",
+  "connect.token",
+]);
+/** Refusals that the same request would meet again. */
+const FINAL: ReadonlySet<string> = new Set([...ABOUT_TOKEN, "refused.files-too-large"]);
 
 /** Events as the table has them: a failed join is one of three. */
 type Trigger =
@@ -176,13 +185,17 @@ export function keptWish({ state, wish }: Claim): Wish | null {
 }
 
 /** Whether the same request would be refused again. */
-export function isFinal(refusal: Pick<Refused, "mistakes" | "message">): boolean {
-  return refusal.mistakes.length > 0 || /token|too large/i.test(refusal.message);
+export function isFinal(refusal: Pick<Refused, "mistakes" | "why">): boolean {
+  return refusal.mistakes.length > 0 || FINAL.has(codeOf(refusal));
 }
 
 /** Whether a refusal is about the token. */
-export function isAboutToken(refusal: Pick<Refused, "mistakes" | "message">): boolean {
-  return !refusal.mistakes.length && /token/i.test(refusal.message);
+export function isAboutToken(refusal: Pick<Refused, "why">): boolean {
+  return ABOUT_TOKEN.has(codeOf(refusal));
+}
+
+function codeOf({ why }: Pick<Refused, "why">): string {
+  return typeof why === "string" ? "" : why.code;
 }
 
 /** Note an answer: the join is not under way any more. */

@@ -1,6 +1,7 @@
 /** The WebSocket to the gateway: opens again for ever, and pairs requests with their replies. */
 
 import { signal } from "@preact/signals";
+import type { Phrase } from "./phrase";
 import {
   type BadReply,
   type Message,
@@ -20,11 +21,14 @@ export class Refused extends Error {
   readonly again: boolean;
 
   /**
-   * @param message The reason.
+   * @param why The reason.
    * @param reply The gateway's, where it is one.
    */
-  constructor(message: string, reply: Partial<BadReply> = {}) {
-    super(message);
+  constructor(
+    readonly why: Phrase | string,
+    reply: Partial<BadReply> = {},
+  ) {
+    super(typeof why === "string" ? why : why.code);
     this.mistakes = reply.mistakes ?? [];
     this.tokenRefused = reply.token_refused ?? false;
     this.again = reply.again ?? false;
@@ -40,7 +44,7 @@ export interface SocketState {
   /** Counts those since the page was greeted last: a gateway may open and send it away. */
   attempt: number;
   /** Why the gateway did not greet the page; "" if it did. Holds until it does. */
-  refused: string;
+  refused: Phrase | string;
 }
 
 interface Waiting {
@@ -82,7 +86,7 @@ export class Connection {
   /** Ask the gateway; rejects with `Refused`. */
   ask<T = unknown>(what: Request, fields: object = {}): Promise<T> {
     if (this.socket?.readyState !== WebSocket.OPEN) {
-      return Promise.reject(new Refused("not connected"));
+      return Promise.reject(new Refused({ code: "page.not-connected" }));
     }
     const id = ++this.lastId;
     const reply = new Promise<T>((resolve, reject) => {
@@ -118,12 +122,12 @@ export class Connection {
 
   private async begin(socket: WebSocket): Promise<void> {
     let { attempt } = this.state.value;
-    let refused = "";
+    let refused: Phrase | string = "";
     try {
       await this.greet();
       attempt = 0;
     } catch (error) {
-      refused = (error as Refused).message;
+      refused = (error as Refused).why;
     }
     // What broke meanwhile was not refused.
     if (socket === this.socket) this.state.value = { open: true, attempt, refused };
@@ -133,7 +137,8 @@ export class Connection {
   private lost(socket: WebSocket, later: boolean): void {
     if (socket !== this.socket) return;
     this.socket = null;
-    for (const { reject } of this.waiting.values()) reject(new Unanswered("the connection broke"));
+    for (const { reject } of this.waiting.values())
+      reject(new Unanswered({ code: "page.connection-lost" }));
     this.waiting.clear();
     if (this.ended) return;
     const { attempt, refused } = this.state.value;

@@ -5,10 +5,7 @@
  * Float64: frames are float32, and 1e-6 m would not survive a chain of four float32 rotations.
  */
 
-import type { Scene, Sheet } from "./wire";
-
-/** Of a robot's pose in `Frame.poses`: position and quaternion, before its joint angles. */
-export const ROOT_FLOATS = 7;
+import { ROOT_FLOATS, type Scene, type Sheet } from "./wire";
 
 /** Number of joints of each seat's robot; 0 while a seat has none. */
 export function jointsPerSeat(sheet: Sheet): number[] {

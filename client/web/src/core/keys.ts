@@ -15,9 +15,6 @@ export type Pressed =
   | { does: "level" }
   | { does: "view" };
 
-/** The key number of [x] in a command. */
-export const RESTART_KEY = 10;
-
 /** Arrows stand for digits of level B: the sample's forward, left, right and stand. */
 export const ARROWS: Record<string, number> = {
   ArrowUp: 2,

@@ -14,6 +14,7 @@ import {
 import type { Refused } from "./connection";
 import type { Court } from "./court";
 import { checkSizes, chosenFiles, chosenSequences } from "./files";
+import type { Phrase } from "./phrase";
 import { type PosData, PosDataLog } from "./posdata";
 import { type RefusedKey, SentKeys } from "./sent_keys";
 import { tab } from "./storage";
@@ -23,11 +24,11 @@ import { type Frame, type HeldSeat, Phase, SeatFlag, type SeatFrame } from "./wi
 export type Standing = "watching" | "outside" | "joining" | "seated" | "lost" | "left";
 
 /** What the player has to say: a sentence of the court, or a key that it refused. */
-export type Word = { text: string; tone: "plain" | "yes" | "no" } | RefusedKey;
+export type Word = { text: Phrase | string; tone: "plain" | "yes" | "no" } | RefusedKey;
 
 const KEPT_AS = "lacoc.wish";
 const HELD = "held";
-const SILENT_COURT = "the court does not answer";
+const LOST = "lost";
 /** Seats that are not this page's any more. */
 const TAKEN: ReadonlySet<string> = new Set(["replaced", "refused"]);
 const AGAIN_MS = 1500;
@@ -145,7 +146,7 @@ export class Player {
     try {
       await this.court.ask("ready", { ready });
     } catch (error) {
-      this.say({ text: (error as Refused).message, tone: "no" });
+      this.say({ text: (error as Refused).why, tone: "no" });
     }
   }
 
@@ -172,13 +173,13 @@ export class Player {
       const seat = this.seatNow();
       if (seat) this.hearRefusal(seat);
     } catch (error) {
-      this.say({ text: (error as Refused).message, tone: "no" });
+      this.say({ text: (error as Refused).why, tone: "no" });
     }
   }
 
   private isHeld(): boolean {
     const hold = this.court.seat.value?.hold;
-    return hold === HELD || hold === SILENT_COURT;
+    return hold === HELD || hold === LOST;
   }
 
   private stand(): Standing {
@@ -222,7 +223,9 @@ export class Player {
     const isNew = seat !== this.heeded;
     this.heeded = seat;
     if (isNew && seat && TAKEN.has(seat.hold)) {
-      untracked(() => this.tell({ is: "taken", why: seat.reason || seat.hold }));
+      untracked(() =>
+        this.tell({ is: "taken", why: seat.reason || { code: `hold.${seat.hold}` } }),
+      );
     }
     // Also after a break of the page, the gateway or the link; a court that was only restarted is
     // asked again by the gateway.
@@ -272,12 +275,9 @@ export class Player {
       const files = chosenFiles();
       checkSizes(Object.values(files));
       const fields = { seat, token, name, ...files, sequences: chosenSequences() };
-      const { notes, index } = await this.court.ask<{ notes: string[]; index: number }>(
-        "join",
-        fields,
-      );
-      this.tell({ is: "granted", wish, index });
-      for (const note of this.alone ? [] : notes) this.say({ text: note, tone: "plain" });
+      const joined = await this.court.ask<{ notes: Phrase[]; index: number }>("join", fields);
+      this.tell({ is: "granted", wish, index: joined.index });
+      for (const note of this.alone ? [] : joined.notes) this.say({ text: note, tone: "plain" });
     } catch (error) {
       const broke = !this.court.connection.state.peek().open;
       this.tell({ is: "failed", refusal: error as Refused, broke });
@@ -288,16 +288,16 @@ export class Player {
     this.sent = new SentKeys();
     this.isFresh = true;
     // The gateway says so in its next message; until then nothing may ask again.
-    this.court.seat.value = { seat, index, hold: HELD, reason: "", round_trip_ms: null };
+    this.court.seat.value = { seat, index, hold: HELD, reason: null, round_trip_ms: null };
   }
 
   private async release(): Promise<void> {
     try {
-      const { text } = await this.court.ask<{ text: string }>("leave");
+      const { text } = await this.court.ask<{ text: Phrase | null }>("leave");
       // Practice and a lobby free the seat: that it stays one's own is news in a match only.
       if (!this.alone && text) this.say({ text, tone: "plain" });
     } catch (error) {
-      this.say({ text: (error as Refused).message, tone: "no" });
+      this.say({ text: (error as Refused).why, tone: "no" });
       if (this.isHeld()) return this.tell({ is: "kept" });
     }
     this.tell({ is: "released" });

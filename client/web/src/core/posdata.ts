@@ -6,9 +6,8 @@
  */
 
 import { floats } from "./poses";
-import { type Frame, Phase, type Sheet, sameBytes } from "./wire";
+import { type Frame, Phase, ROOT_FLOATS, type Sheet, sameBytes } from "./wire";
 
-const ROOT_FLOATS = 7;
 const FLOAT_BYTES = 4;
 const BEAT_S = 0.02;
 const DEGREES = 180 / Math.PI;

@@ -1,6 +1,6 @@
 /** Where the robots of a frame are. */
 
-import type { Frame, Scene, Sheet } from "./wire";
+import { type Frame, ROOT_FLOATS, type Scene, type Sheet } from "./wire";
 
 /** A robot seen from above, in the world's frame. */
 export interface Place {
@@ -18,7 +18,6 @@ export interface Floor {
   halfYM: number;
 }
 
-const ROOT_FLOATS = 7;
 const MARGIN_M = 0.15;
 
 /** The numbers of a frame's poses; they may lie at any byte of a message. */

@@ -191,7 +191,7 @@ function begin(file: string, data: Uint8Array): Segment {
 function take(segment: Segment, topic: string, beat: number, data: Uint8Array): void {
   switch (topic) {
     case "/lacoc/event":
-      segment.events.push(decode(data) as Event);
+      segment.events.push(readEvent(data));
       break;
     case "/lacoc/frame": {
       const { seats, phase } = readFrame(data); // bytes that are no frame must not wait for the page
@@ -209,6 +209,13 @@ function take(segment: Segment, topic: string, beat: number, data: Uint8Array): 
       return; // its time is that of its match's end, not of its writing
   }
   segment.lastBeat = Math.max(segment.lastBeat, beat);
+}
+
+/** An event; one of protocol 1 has its sentence in English alone. */
+function readEvent(data: Uint8Array): Event {
+  const event = decode(data) as Event & { text?: string };
+  if (event.text === undefined) return event;
+  return { ...event, said: { code: "plain.text", values: { text: event.text } } };
 }
 
 /** By number; of one that is there twice (a packed file beside its segments) the fuller one. */

@@ -1,7 +1,7 @@
 /** How far and how fast a robot walks: what a student watches while a gait is tried out. */
 
 import { places } from "./poses";
-import type { Event, Frame, Sheet } from "./wire";
+import { BEATS_PER_S, type Event, type Frame, type Sheet } from "./wire";
 
 /** A robot's walk since it was put on the floor. */
 export interface Walk {
@@ -13,7 +13,6 @@ export interface Walk {
   speedMps: number;
 }
 
-const BEATS_PER_S = 50;
 /** A body sways with each step: its way is taken between points so far apart. */
 const STEP_M = 0.01;
 const WINDOW_BEATS = BEATS_PER_S;

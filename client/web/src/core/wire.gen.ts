@@ -1,8 +1,13 @@
 // Made by client/web/make_wire.py from the Python structs; not edited by hand.
 
-import type { Phrase } from "../i18n/render";
+import type { Phrase } from "./phrase";
 
-export const PROTOCOL = 1;
+export const PROTOCOL = 2;
+export const BEATS_PER_S = 50;
+export const REPEATS_HZ = 10;
+export const SILENT_AFTER_S = 1;
+export const RESTART_KEY = 10;
+export const ROOT_FLOATS = 7;
 
 export const Phase = {
   CREATED: 0,
@@ -71,7 +76,7 @@ export interface Event {
   beat: number;
   clock_ticks: number;
   kind: string;
-  text: string;
+  said: Phrase;
   seat: number;
   data: Record<string, unknown>;
 }
@@ -168,7 +173,7 @@ export interface HealthVerdict {
   faults: number;
   resumptions: number;
   seats: LinkVerdict[];
-  advice: string[];
+  advice: (Phrase | string)[];
 }
 
 export interface Health {
@@ -179,9 +184,9 @@ export interface Health {
   worst_late_ms: number;
   seats: SeatHealth[];
   dropped: Record<string, number>;
-  decisions: Record<string, string>;
+  decisions: Record<string, Phrase | null>;
   verdict: HealthVerdict | null;
-  record_trouble: string;
+  record_trouble: Phrase | null;
   input_delay_ms: number;
   events: number;
   sheet: Uint8Array;
@@ -190,9 +195,9 @@ export interface Health {
 export interface DecisionReply {
   beat: number;
   event: number | null;
-  text: string;
+  said: Phrase;
   scores: number[];
-  changes: string[];
+  changes: Phrase[];
 }
 
 export interface Mistake {
@@ -235,7 +240,7 @@ export interface Result {
   scores: number[];
   computed: string;
   official: string;
-  reason: string;
+  reason: Phrase | string;
   clock_s: number;
   beats: number;
   digest: string;
@@ -303,3 +308,15 @@ export type Decision =
   | { type: "declare"; winner: string }
   | { type: "official" }
   | { type: "next" };
+
+/** Decisions that a referee gives a reason for. */
+export const NEED_A_REASON: ReadonlySet<DecisionName> = new Set([
+  "restart",
+  "freeze",
+  "adjust",
+  "set",
+  "take-back",
+  "clock",
+  "abort",
+  "declare",
+] as const);

@@ -1,6 +1,7 @@
 /** Messages between the gateway and a page: a kind byte, then msgpack (docs/gateway.md). */
 
 import { decode, encode } from "@msgpack/msgpack";
+import type { Phrase } from "./phrase";
 import {
   type DecisionName,
   type Event,
@@ -49,7 +50,7 @@ export interface OwnFiles {
   /** The files that the newest version changed. */
   changed: string[];
   /** Why the newest version can't be used; "" if it can. */
-  error: string;
+  error: Phrase | null;
   mistakes: Mistake[];
 }
 
@@ -58,7 +59,8 @@ export interface Link {
   court: string;
   connected: boolean;
   silent_s: number;
-  text: string;
+  /** Why it is not connected. */
+  why: Phrase | null;
   /** Another number: the log of events begins anew, and all of it follows. */
   log: number;
 }
@@ -67,8 +69,9 @@ export interface Link {
 export interface HeldSeat {
   seat: string;
   index: number;
+  /** The name of `hold.*`. */
   hold: string;
-  reason: string;
+  reason: Phrase | null;
   round_trip_ms: number | null;
 }
 
@@ -87,7 +90,7 @@ interface GoodReply {
 export interface BadReply {
   id: number;
   ok: false;
-  error: string;
+  error: Phrase;
   mistakes: Mistake[];
   /** The court does not take this token: to show it again is of no use. */
   token_refused: boolean;

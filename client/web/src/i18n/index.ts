@@ -2,11 +2,12 @@
 
 import { computed, effect, signal } from "@preact/signals";
 import { setting } from "../core/address";
+import type { Phrase } from "../core/phrase";
 import { remembered } from "../core/settings";
 import { common } from "./common";
 import { play } from "./play";
 import { referee } from "./referee";
-import { type Phrase, render } from "./render";
+import { render } from "./render";
 import { replay } from "./replay";
 import { watch } from "./watch";
 

@@ -6,14 +6,10 @@
  * shows as "?", and what is nested too deep shows its code alone.
  */
 
+import type { Phrase, Value } from "../core/phrase.ts";
 import { WORDS } from "./words.gen.ts";
 
 export type Language = "en" | "ja";
-export interface Phrase {
-  code: string;
-  values?: Record<string, Value>;
-}
-export type Value = string | number | bigint | boolean | null | Phrase | Value[];
 
 type Hole = { name: string; formats: string[] };
 type Part = string | Hole | (string | Hole)[];

@@ -1,10 +1,18 @@
 /** Clocks, scores and states in words, the same on every page. */
 
 import type { Match } from "../core/match";
-import { type Event, type Frame, Phase, SeatFlag, type SeatFrame, type Sheet } from "../core/wire";
-import { catalogue, type MessageName, said, t } from "./index";
+import {
+  BEATS_PER_S,
+  type Event,
+  type Frame,
+  Phase,
+  SeatFlag,
+  type SeatFrame,
+  type Sheet,
+} from "../core/wire";
+import { type MessageName, said, t } from "./index";
 
-export const BEATS_PER_S = 50;
+export { BEATS_PER_S };
 
 /** A time of the clock, "2:05": the second that has begun counts. */
 export function clock(ticks: number): string {
@@ -32,10 +40,7 @@ export function eventClock(event: Event, sheet: Sheet | null): string {
 
 /** What an event says, in the reader's language. */
 export function told(event: Event): string {
-  const name = `told.${event.data.after}`;
-  if (event.kind !== "phase" || !(name in catalogue)) return said(event.text);
-  const reason = /^FINISHED: (.*)\.$/s.exec(event.text)?.[1];
-  return t(name as MessageName, { reason: reason ? said(reason) : "" });
+  return said(event.said);
 }
 
 /** A team's name; its seat's where nobody has joined. */

@@ -1,8 +1,8 @@
 /** The numbers of `Frame.poses` at a moment between two frames. */
 
-import { poseStarts, ROOT_FLOATS } from "../core/fk";
+import { poseStarts } from "../core/fk";
 import type { Moment } from "../core/timeline";
-import type { Frame } from "../core/wire";
+import { type Frame, ROOT_FLOATS } from "../core/wire";
 
 /** Farther in one beat than any robot walks: it was put somewhere else. */
 const JUMP_M_PER_BEAT = 0.1;

@@ -17,7 +17,7 @@ export function waitsFor(court: Court): string {
       seconds > 0 && court.begun.value
         ? t("link.court", { court: link.court, seconds })
         : t("link.noCourt", { court: link.court });
-    return link.text ? `${waits} ${said(link.text)}` : waits;
+    return link.why ? `${waits} ${said(link.why)}` : waits;
   }
   return court.begun.value && !court.live.value ? t("link.stale") : "";
 }

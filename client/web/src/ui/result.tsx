@@ -3,6 +3,7 @@
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { type Match, phaseOf } from "../core/match";
+import type { Phrase } from "../core/phrase";
 import { corrections, decisionOf, declaration, playedBeats } from "../core/rulings";
 import { type Event, Phase, type Sheet } from "../core/wire";
 import { type MessageName, said, t } from "../i18n";
@@ -99,7 +100,7 @@ export function Explained({ match }: { match: Match }) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
   const time = clock(playedBeats(events));
   const end = events.findLast(({ data }) => data.after === "FINISHED" || data.after === "VOID");
-  const reason = /^FINISHED: (.*)\.$/s.exec(end?.text ?? "")?.[1];
+  const reason = end?.said.values?.why as Phrase | undefined;
   const abort = events.findLast(({ data }) => data.decision === "abort");
   const corrected = sheet ? corrections(events) : [];
   const ruling = declaration(events);
@@ -140,7 +141,7 @@ function isDeclared(match: Match): boolean {
 /** The reason of a decision, to stand behind it; "" if it has none. */
 function reasonOf({ data }: Event): string {
   const reason = String(data.reason ?? "").trim();
-  return reason && t("result.because", { reason: said(reason) });
+  return reason && t("result.because", { reason });
 }
 
 /** A correction of the score in a few words. */

@@ -43,6 +43,7 @@ from lacoc_shared.record.export.kinematics import (
 )
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import BEAT_NS
+from lacoc_shared.words import render
 
 _TOPICS: dict[str, type[Message]] = {
     "/tf": FrameTransforms,
@@ -111,7 +112,7 @@ def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, Messa
 
 def _log(event: Event, time: Timestamp) -> Log:
     level = Log.WARNING if event.kind == "fault" else Log.INFO
-    return Log(timestamp=time, level=level, message=event.text, name=event.kind)
+    return Log(timestamp=time, level=level, message=render(event.said, "en"), name=event.kind)
 
 
 class _Picture:

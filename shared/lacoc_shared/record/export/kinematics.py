@@ -10,12 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lacoc_shared.messages import Scene, Sheet
+from lacoc_shared.messages import ROOT_FLOATS, Scene, Sheet
 
 Array = NDArray[np.float64]
-
-ROOT_FLOATS = 7
-"""Of a robot's pose in `Frame.poses`: position and quaternion, before its joint angles."""
 _AT_ORIGIN = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from lacoc_shared.messages import Frame
-from lacoc_shared.record.export.kinematics import ROOT_FLOATS, Array, euler_zyx, split_poses
+from lacoc_shared.messages import ROOT_FLOATS, Frame
+from lacoc_shared.record.export.kinematics import Array, euler_zyx, split_poses
 from lacoc_shared.seat import BEAT_S, Phase
 
 _PHYSICS = (Phase.READY, Phase.PLAYING)

@@ -12,6 +12,7 @@ from lacoc_shared.record.export.kinematics import joints_per_seat
 from lacoc_shared.record.export.pos_data import PosData
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import render, say
 
 
 def pos_data(record: Record, seat: str) -> bytes:
@@ -32,15 +33,15 @@ def pos_data(record: Record, seat: str) -> bytes:
             data = PosData(index, joints)
         data.add(frame)
     if data is None:
-        raise UserError(f"Match {record.header.match_id} has no Pos-data: no robot ever moved.")
+        raise UserError(say("export.no-path", match=record.header.match_id))
     return data.text().encode()
 
 
 def events_csv(record: Record) -> bytes:
-    """All events as a table with one header row."""
+    """Make a table of all events with one header row; the words are English."""
     file = io.StringIO()
     table = csv.writer(file, lineterminator="\n")
-    table.writerow(("number", "beat", "clock_s", "kind", "seat", "team", "text"))
+    table.writerow(("number", "beat", "clock_s", "kind", "seat", "team", "code", "text"))
     for event in record.events:
         sheet = record.sheet_at(event.beat)
         seat = sheet.seats[event.seat] if sheet is not None and event.seat >= 0 else None
@@ -52,7 +53,8 @@ def events_csv(record: Record) -> bytes:
                 event.kind,
                 seat.id if seat else "",
                 seat.team if seat else "",
-                event.text,
+                event.said.code,
+                render(event.said, "en"),
             )
         )
     return file.getvalue().encode()
@@ -65,7 +67,7 @@ def result_json(record: Record) -> bytes:
         UserError: if the match has none.
     """
     if record.result is None:
-        raise UserError(f"Match {record.header.match_id} has no result: it was never finished.")
+        raise UserError(say("export.no-result", match=record.header.match_id))
     found = msgspec.structs.asdict(record.result) | {"health": record.health}
     return msgspec.json.format(msgspec.json.encode(found), indent=2) + b"\n"
 
@@ -78,7 +80,7 @@ def seat_index(record: Record, seat: str) -> int:
     """
     seats = seat_ids(record)
     if seat not in seats:
-        raise UserError(f"There is no seat {seat!r} in this match. It has: {', '.join(seats)}.")
+        raise UserError(say("export.no-seat", seat=seat, seats=seats))
     return seats.index(seat)
 
 

@@ -3,6 +3,7 @@
 import { useComputed, useSignal } from "@preact/signals";
 import { isAboutToken } from "../../core/claim";
 import type { Court } from "../../core/court";
+import type { Phrase } from "../../core/phrase";
 import type { Player } from "../../core/player";
 import { remembered } from "../../core/settings";
 import { SeatFlag, type Sheet } from "../../core/wire";
@@ -202,7 +203,7 @@ function JoinCard({ court, player, alone }: Props) {
           </div>
           <p class="error" id="join-token-error" role="alert">
             {complaint.value === "token" && t("join.tokenMissing")}
-            {!complaint.value && aboutToken && said(refusal.message)}
+            {!complaint.value && aboutToken && said(refusal.why)}
           </p>
         </div>
       </div>
@@ -210,7 +211,7 @@ function JoinCard({ court, player, alone }: Props) {
       {refusal && !aboutToken && (
         <div class="refusal" role="alert">
           <strong>{t("join.refused")}</strong>
-          <p>{said(refusal.message)}</p>
+          <p>{said(refusal.why)}</p>
           {refusal.mistakes.length > 0 && <Mistakes mistakes={refusal.mistakes} />}
         </div>
       )}
@@ -249,7 +250,7 @@ function go(court: string): void {
 }
 
 /** A reason of the controller's, which begins small and has no full stop, as a sentence. */
-function sentence(why: string): string {
+function sentence(why: Phrase | string): string {
   const text = said(why);
   const begun = text.slice(0, 1).toUpperCase() + text.slice(1);
   return /[.。!?]$/.test(begun) ? begun : `${begun}${/[^ -~]$/.test(begun) ? "。" : "."}`;

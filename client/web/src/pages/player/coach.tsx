@@ -4,11 +4,10 @@ import { useComputed, useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
 import { chosenNames } from "../../core/files";
-import { RESTART_KEY } from "../../core/keys";
 import type { Player } from "../../core/player";
 import { remembered } from "../../core/settings";
 import { type Walk, Walker } from "../../core/walk";
-import { Level } from "../../core/wire";
+import { Level, RESTART_KEY } from "../../core/wire";
 import { type MessageName, t } from "../../i18n";
 
 interface Lesson {

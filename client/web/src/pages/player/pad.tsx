@@ -3,9 +3,9 @@
 import { useComputed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
-import { ARROWS, RESTART_KEY } from "../../core/keys";
+import { ARROWS } from "../../core/keys";
 import type { Player } from "../../core/player";
-import { Level, Phase, SeatFlag } from "../../core/wire";
+import { Level, Phase, RESTART_KEY, SeatFlag } from "../../core/wire";
 import { t } from "../../i18n";
 import { BEATS_PER_S } from "../../i18n/words";
 

@@ -2,10 +2,10 @@
 
 import { type Signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import type { DecisionReply } from "../../core/wire";
+import { type DecisionReply, NEED_A_REASON } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
-import { type Desk, NEED_A_REASON, reasonOf } from "./desk";
+import { type Desk, reasonOf } from "./desk";
 import type { Draft } from "./drafts";
 
 /** What the record says: English, as all that the court writes; pages translate it. */
@@ -173,7 +173,7 @@ function Preview({ desk, event }: { desk: Desk; event: number }) {
   const now = desk.court.frame.peek()?.seats.map((seat) => seat.score) ?? [];
   return (
     <div class="preview" aria-live="polite">
-      {entry && <blockquote>{said(entry.text)}</blockquote>}
+      {entry && <blockquote>{said(entry.said)}</blockquote>}
       {refused.value && <p class="refused">{refused.value}</p>}
       {!reply.value && !refused.value && <p class="muted">{t("ask.trying")}</p>}
       {reply.value && (
@@ -186,8 +186,8 @@ function Preview({ desk, event }: { desk: Desk; event: number }) {
           </dl>
           {reply.value.changes.length ? (
             <ul>
-              {reply.value.changes.map((change) => (
-                <li key={change}>{said(change)}</li>
+              {reply.value.changes.map(said).map((change) => (
+                <li key={change}>{change}</li>
               ))}
             </ul>
           ) : (

@@ -4,6 +4,7 @@ import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Refused, Unanswered } from "../../core/connection";
 import type { Court } from "../../core/court";
 import { part, phaseOf } from "../../core/match";
+import type { Phrase } from "../../core/phrase";
 import { remembered } from "../../core/settings";
 import { tab } from "../../core/storage";
 import {
@@ -19,18 +20,6 @@ import type { Draft } from "./drafts";
 
 const TOKEN = "lacoc-referee";
 const RETRY_MS = 1500;
-
-/** Decisions that the court takes only with a reason (lacoc_server/match/referee.py). */
-export const NEED_A_REASON: ReadonlySet<DecisionName> = new Set<DecisionName>([
-  "restart",
-  "freeze",
-  "adjust",
-  "set",
-  "take-back",
-  "clock",
-  "abort",
-  "declare",
-]);
 
 /** The newest word of the court on a decision: done, refused, or not heard. */
 export interface Answer {
@@ -56,7 +45,7 @@ export class Desk {
   readonly entered = signal(false);
   readonly busy = signal(false);
   /** Why entering failed; "" if it did not. */
-  readonly refused = signal("");
+  readonly refused = signal<Phrase | string>("");
   readonly by = remembered("referee.name", "");
   readonly answer = signal<Answer | null>(null);
   /** Whether this page may decide now. */
@@ -156,7 +145,7 @@ export class Desk {
   async decide(decision: Decision, reason: string): Promise<string> {
     try {
       const reply = await this.court.ask<DecisionReply>("decide", { decision, reason });
-      this.say("yes", said(reply.text));
+      this.say("yes", said(reply.said));
       return "";
     } catch (error) {
       if (error instanceof Unanswered) {
@@ -216,9 +205,9 @@ export class Desk {
     return this.flagsOf[seat];
   }
 
-  private illegal(name: DecisionName): string {
+  private illegal(name: DecisionName): Phrase | string {
     const health = this.court.health.value;
-    if (!health) return "the court does not answer";
+    if (!health) return { code: "hold.lost" };
     const why = health.decisions[name] ?? "";
     // Legality comes twice a second; where the phase is newer, its one next step is open already.
     const [match, beat] = this.since.value;
@@ -263,6 +252,6 @@ function nextStep(phase: number): DecisionName {
 }
 
 /** What went wrong, as the court or the gateway said it. */
-export function reasonOf(error: unknown): string {
-  return error instanceof Refused ? error.message : String(error);
+export function reasonOf(error: unknown): Phrase | string {
+  return error instanceof Refused ? error.why : String(error);
 }

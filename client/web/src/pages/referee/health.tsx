@@ -2,6 +2,7 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import type { Phrase } from "../../core/phrase";
 import type { Health } from "../../core/wire";
 import { said, t } from "../../i18n";
 import type { Desk } from "./desk";
@@ -49,7 +50,9 @@ export function HealthCard({ desk }: { desk: Desk }) {
           <dt>{t("courtHealth.dropped")}</dt>
           <dd>
             {dropped.length
-              ? dropped.map(([why, count]) => `${count} × ${said(why)}`).join(", ")
+              ? dropped
+                  .map(([why, count]) => `${count} × ${said({ code: `count.${why}` })}`)
+                  .join(", ")
               : t("seatLink.nothingRefused")}
           </dd>
           <dt>{t("courtHealth.frames")}</dt>
@@ -61,14 +64,14 @@ export function HealthCard({ desk }: { desk: Desk }) {
 }
 
 /** What the contest's limits say of this match so far; nothing while all is within them. */
-export function Advice({ advice }: { advice: readonly string[] }) {
+export function Advice({ advice }: { advice: readonly (Phrase | string)[] }) {
   if (!advice.length) return null;
   return (
     <div class="advice" role="status">
       <h3>{t("courtHealth.advice")}</h3>
       <ul>
-        {advice.map((reason) => (
-          <li key={reason}>{said(reason)}</li>
+        {advice.map(said).map((reason) => (
+          <li key={reason}>{reason}</li>
         ))}
       </ul>
     </div>

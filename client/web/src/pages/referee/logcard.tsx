@@ -101,14 +101,11 @@ function goneEvents(events: readonly Event[]): Map<number, "takenBack" | "vanish
   const gone = new Map<number, "takenBack" | "vanished">();
   for (const event of events) {
     if (event.data.decision !== "take-back") continue;
-    const { arguments: given, changes } = event.data as {
+    const { arguments: given, vanished } = event.data as {
       arguments?: { event?: number };
-      changes?: string[];
+      vanished?: number[];
     };
-    for (const change of changes ?? []) {
-      const number = /^event (\d+) vanishes/.exec(change)?.[1];
-      if (number) gone.set(Number(number), "vanished");
-    }
+    for (const number of vanished ?? []) gone.set(number, "vanished");
     if (given?.event) gone.set(given.event, "takenBack");
   }
   return gone;

@@ -136,7 +136,7 @@ function LinkFacts({ desk, sheet, index }: Props) {
       <dt>{t("seatLink.refused")}</dt>
       <dd>
         {refused.length
-          ? refused.map(([why, count]) => `${count} × ${said(why)}`).join(", ")
+          ? refused.map(([why, count]) => `${count} × ${said({ code: `count.${why}` })}`).join(", ")
           : t("seatLink.nothingRefused")}
       </dd>
     </dl>

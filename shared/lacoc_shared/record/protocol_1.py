@@ -1,0 +1,77 @@
+"""Records of protocol 1, whose sentences are English texts: how they are read and compared.
+
+Everything else knows only protocol 2 (docs/decisions/0016-words.md).
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import msgspec
+
+from lacoc_shared import codec
+from lacoc_shared.messages import Event
+from lacoc_shared.record.schema import Header, Result
+from lacoc_shared.words import Phrase, say
+
+_WORDS = ("words", "changes", "vanished")
+"""Particulars of an event that are words, or that only protocol 2 has."""
+
+
+class _OldEvent(msgspec.Struct, frozen=True, kw_only=True):
+    """An `Event` of protocol 1."""
+
+    number: int
+    match: int
+    beat: int
+    clock_ticks: int
+    kind: str
+    text: str
+    seat: int = -1
+    data: dict[str, Any] = {}
+
+
+def read_event(data: bytes, max_bytes: int) -> Event:
+    """Decode a recorded event.
+
+    Raises:
+        BadMessage: if it is an event of neither protocol.
+    """
+    try:
+        return codec.decode(data, Event, max_bytes)
+    except codec.BadMessage as error:
+        try:
+            old = codec.decode(data, _OldEvent, max_bytes)
+        except codec.BadMessage:
+            raise error from None
+    fields = msgspec.structs.asdict(old)
+    return Event(said=say("plain.text", text=fields.pop("text")), **fields)
+
+
+def fault_of(event: Event) -> Phrase:
+    """Return what a recorded event says of why physics stopped."""
+    why = event.said.values.get("why")
+    return why if isinstance(why, Phrase) else say("plain.text", text=str(event.data.get("words")))
+
+
+def same_events(header: Header, recorded: Sequence[Event], again: Sequence[Event]) -> bool:
+    """Say whether a beat's events are the recorded ones; words of protocol 1 do not count."""
+    if _is_old(header):
+        return list(map(_bare, recorded)) == list(map(_bare, again))
+    return codec.encode(tuple(recorded)) == codec.encode(tuple(again))
+
+
+def same_result(header: Header, recorded: Result, again: Result) -> bool:
+    """Say whether a result is the recorded one; words of protocol 1 do not count."""
+    if _is_old(header):
+        again = msgspec.structs.replace(again, reason=recorded.reason)
+    return recorded == again
+
+
+def _is_old(header: Header) -> bool:
+    return header.versions.get("protocol") == "1"
+
+
+def _bare(event: Event) -> bytes:
+    """Encode an event without its words."""
+    data = {name: value for name, value in event.data.items() if name not in _WORDS}
+    return codec.encode(msgspec.structs.replace(event, said=say("plain.text", text=""), data=data))
