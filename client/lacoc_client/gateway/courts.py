@@ -57,7 +57,7 @@ class Courts:
         return [feed for feed, _ in list(self._feeds.values())]
 
     def over(self) -> list[str]:
-        """The matches that are over and still on at their courts; may be asked from any thread."""
+        """List the matches that are over and still on at their courts; any thread may ask."""
         pictures = [feed.picture for feed in self.feeds]
         ended = (Phase.OFFICIAL, Phase.VOID)
         return [picture.view.match_id for picture in pictures if picture.phase in ended]

@@ -50,7 +50,7 @@ export interface OwnFiles {
   /** The files that the newest version changed. */
   changed: string[];
   /** Why the newest version can't be used; "" if it can. */
-  error: string;
+  error: Phrase | null;
   mistakes: Mistake[];
 }
 

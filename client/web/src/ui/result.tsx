@@ -141,7 +141,7 @@ function isDeclared(match: Match): boolean {
 /** The reason of a decision, to stand behind it; "" if it has none. */
 function reasonOf({ data }: Event): string {
   const reason = String(data.reason ?? "").trim();
-  return reason && t("result.because", { reason: said(reason) });
+  return reason && t("result.because", { reason });
 }
 
 /** A correction of the score in a few words. */
