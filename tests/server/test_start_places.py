@@ -45,7 +45,7 @@ def test_who_leaves_its_start_place_before_play_is_put_back() -> None:
     stage.run(10)
     assert len(strayed(stage)) == 1
     assert stage.phase is Phase.READY
-    assert stage.match.legality()["start"] == ""
+    assert stage.match.legality()["start"] is None
 
 
 def test_a_step_within_the_place_is_none() -> None:
@@ -66,7 +66,7 @@ def test_who_leaves_again_and_again_is_not_ready() -> None:
     assert render(strayed(stage)[-1].said) == words
     stage.beat()
     assert stage.phase is Phase.LOBBY
-    assert stage.match.missing() == ["left (Ants) has not said ready"]
+    assert [why.code for why in stage.match.missing()] == ["why.not-ready"]
     stage.beat(ReadySeat(LEFT, True))
     stage.run(4)
     assert stage.phase is Phase.READY
