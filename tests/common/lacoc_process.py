@@ -10,6 +10,7 @@ import socket
 import struct
 import subprocess
 import sys
+import tempfile
 import threading
 from collections.abc import Sequence
 from pathlib import Path
@@ -102,16 +103,26 @@ class _ForkServer:
 
     def __init__(self) -> None:
         self._socket, its = socket.socketpair()
+        self._trouble = tempfile.TemporaryFile()  # noqa: SIM115 - as long as the server
         self._lock = threading.Lock()
         with its:
-            command = [sys.executable, str(_SERVER), str(its.fileno())]
-            self._process = subprocess.Popen(command, pass_fds=[its.fileno()])
+            # Its children are to take no stream of it for a terminal.
+            self._process = subprocess.Popen(
+                [sys.executable, str(_SERVER), str(its.fileno())],
+                pass_fds=[its.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=self._trouble,
+            )
 
     def fork(self, request: bytes, descriptors: list[int]) -> int:
         """Fork a process; returns its id."""
         with self._lock:
             socket.send_fds(self._socket, [request], descriptors)
             answer = self._socket.recv(_STATUS.size)
+        if not answer:
+            self._trouble.seek(0)
+            raise RuntimeError(f"The fork server has ended:\n{self._trouble.read().decode()}")
         pid: int = _STATUS.unpack(answer)[0]
         return pid
 
