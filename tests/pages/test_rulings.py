@@ -22,7 +22,7 @@ const events = JSON.parse(readFileSync(0, "utf8"));
 console.log(JSON.stringify({
   corrections: rulings.corrections(events).map(({ number }) => number),
   declared: rulings.declaration(events)?.data.reason ?? null,
-  halted: rulings.whyHalted(events)?.text ?? null,
+  halted: rulings.whyHalted(events)?.data.reason ?? null,
   played: rulings.playedBeats(events),
 }));
 """
@@ -55,7 +55,7 @@ def test_corrections_that_stand_and_how_long_was_played() -> None:
     stage.decide(d.Adjust("left", 1), "a slip")
     slip = stage.numbers("decision")[-1]
     stage.decide(d.Halt(), "lights out")
-    assert shown(stage)["halted"] == "Referee Kubota: halted. Reason: lights out"
+    assert shown(stage)["halted"] == "lights out"
     stage.run(50)
     stage.decide(d.TakeBack(slip), "it was right")
     stage.decide(d.Set("c0r0", "neutral"), "count again")
@@ -65,6 +65,6 @@ def test_corrections_that_stand_and_how_long_was_played() -> None:
     assert shown(stage) == {
         "corrections": [stands],
         "declared": "a foul",
-        "halted": "Referee Kubota: halted. Reason: lights out",
+        "halted": "lights out",
         "played": stage.match.ticks,
     }

@@ -26,6 +26,7 @@ from lacoc_shared.codec import decode, encode
 from lacoc_shared.inputs import ReadySeat
 from lacoc_shared.messages import DecisionReply, Done, Refusal
 from lacoc_shared.seat import Phase, SeatFlag
+from lacoc_shared.words import say
 
 P = Phase
 PHASES = list(P)[1:]
@@ -360,7 +361,7 @@ def test_clock_in_old_records() -> None:
     old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
-    assert done(stage, old).text == "the clock moves by +10 s."
+    assert done(stage, old).said == say("decision.clock-less", seconds=10.0)
     assert stage.frame.clock_ticks == was + 1 + 500
     (event,) = (event for event in stage.events if event.data.get("decision") == "clock")
     assert event.data["arguments"] == {"type": "clock", "seconds": 10.0}

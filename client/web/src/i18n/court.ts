@@ -207,7 +207,6 @@ const DECISIONS: readonly Pattern[] = [
   ["{#n} for {team}.", "{team} の得点に {#n} 点。"],
   ["{marker} is set to {State}.", "{marker} を「{State}」にしました。"],
   ["the clock moves by {#n} s.", "時計を {#n} 秒動かしました。"],
-  ["{#n} s to play.", "残り時間を {#n} 秒変更しました。"],
   ["the match is void.", "無効試合としました。"],
   ["the match is declared a draw.", "引き分けと宣言しました。"],
   ["{team} is declared the winner.", "{team} を勝者と宣言しました。"],
@@ -409,18 +408,6 @@ const COUNTED: readonly Pattern[] = [
 
 /** Mistakes in gait files: what was expected, what was found (shared/gait_*.py, entry.py). */
 const GAITS: readonly Pattern[] = [
-  [
-    "Key {#n} of level B uses posture {#m}, but {file} has only {list}. Say which postures to join.",
-    "レベル B のキー {#n} は姿勢 {#m} を使いますが、{file} にあるのは {list} だけです。",
-  ],
-  [
-    "Key {#n} of level B has no posture: give it one, such as 0.",
-    "レベル B のキー {#n} に姿勢がありません。0 などを入れてください。",
-  ],
-  [
-    "{#n} keys, the longest of {#m} postures, do not fit in a file: it has 1 to {#keys} keys of at most {#most} postures.",
-    "キー {#n} 個（最長 {#m} 姿勢）はファイルに入りません（キー 1～{#keys} 個、各 {#most} 姿勢まで）。",
-  ],
   ["a table of angles", "角度の表"],
   [
     '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)',
