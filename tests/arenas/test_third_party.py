@@ -19,6 +19,7 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import MarkerInfo
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.schema import Setup
+from lacoc_shared.words import render
 
 mujoco = pytest.importorskip("mujoco")
 field = pytest.importorskip("lacoc_arenas.field")
@@ -47,8 +48,10 @@ def play_race(ground: arena.Arena) -> None:
     assert spec.compile().geom("marker:line:neutral").rgba[3] == 1
     views = tuple(RobotView(x, 0.0, 0.07, 1.0, 0.0, 0.0, 0.0) for x in (0.01, 0.5))
     state, events = ground.game.step(ground.game.start(), views, 0.02)
-    assert [event.text for event in events] == ["{team} is first."]
-    assert ground.game.over(state) == "the race is won"
+    assert [render(event.said.with_values(team="Ants"), "en") for event in events] == [
+        "Ants is first."
+    ]
+    assert render(ground.game.over(state), "en") == "the race is won"
     assert list(ground.bots) == ["runner"]
     assert ground.match.duration_s == 60.0
 
@@ -147,7 +150,12 @@ WRONG = {
         r"board returned \(\). Expected a tuple of 1",
     ),
     "score": ("rules.py", "(int(state.line == LEFT), ", "(0.5, ", r"score returned \(0.5, 0\)"),
-    "over": ("rules.py", 'else ""', "else False", "over returned False. Expected a text"),
+    "over": (
+        "rules.py",
+        "if state.tie else None",
+        "if state.tie else False",
+        "over returned False. Expected a Phrase",
+    ),
     "winner": (
         "rules.py",
         "leader(scores)",
@@ -200,7 +208,7 @@ def test_a_wrong_arena_is_told_in_one_sentence(race: Path, case: str) -> None:
         ("return State(seat + 1), (event,)", "return state, (7,)", "events that are each a Game"),
         ("State(seat + 1), (event,)", "1, ()", "step returned 1. Expected a State"),
         ('marker="line", points', 'marker="lime", points', "'lime' is none"),
-        ("{team} is first.", "{who} is first.", r"a text with \{team\}"),
+        ("said=FIRST", "said='x'", "an event whose said is a Phrase"),
         ("past.index(True)", "past.index(5)", r"step \(.*rules.py, line \d+\) raised ValueError"),
     ],
 )
@@ -229,5 +237,5 @@ def test_the_guide_s_game_is_played(race: Path, tmp_path: Path) -> None:
     )
     players = [simulation.player(ground, seat, "runner", late_ticks=5 * seat) for seat in (0, 1)]
     result = simulation.simulate(setup, players, tmp_path / "records", arena=ground.folder)
-    assert (result.reason, result.scores) == ("the race is won", (1, 0))
+    assert (render(result.reason, "en"), result.scores) == ("the race is won", (1, 0))
     assert result.official == "left"

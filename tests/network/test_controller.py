@@ -100,7 +100,7 @@ def test_a_join_that_the_match_refuses_makes_no_session(court: CourtStub, sessio
 
 def test_an_unknown_seat_and_an_unknown_court_are_named(session: Session) -> None:
     """What was found, and what there is."""
-    with pytest.raises(UserError, match='no seat "middle". It has left and right'):
+    with pytest.raises(UserError, match=r'no seat "middle". It has left and right'):
         Controller(session, "main", "middle", "t", "Blue")
     with pytest.raises(UserError, match=r'no court "mian" at .* There is main'):
         Controller(session, "mian", "left", "t", "Blue")
@@ -142,7 +142,7 @@ def test_ready_and_leave(court: CourtStub, session: Session) -> None:
     one.leave()
     assert court.inputs[-3:] == [ReadySeat(0, True), ReadySeat(0, False), LeaveSeat(0)]
     assert one.hold is Hold.LEFT
-    with pytest.raises(UserError, match="not yours now"):
+    with pytest.raises(UserError, match="You do not hold the left seat now"):
         one.press(1, 2)
 
 

@@ -332,7 +332,7 @@ def test_set_in_a_game_without_a_board() -> None:
     assert stage.to_ready().match.phase is P.READY
     stage.decide(d.Start())
     assert stage.match.legality()["set"] == say("why.no-board")
-    assert stage.match.legality()["clock"] == "this match has no end"
+    assert stage.match.legality()["clock"] == say("why.no-end")
 
 
 def test_clock_moves_the_end() -> None:
