@@ -6,7 +6,18 @@ import pytest
 
 from lacoc_arenas import arena
 from lacoc_arenas.flag_strike.rules import NO_CORNER, FlagStrike, State
-from lacoc_arenas.game import DOWN, LEFT, NEUTRAL, RIGHT, Claim, GameEvent, Place, RobotView
+from lacoc_arenas.game import (
+    DOWN,
+    LEFT,
+    NEUTRAL,
+    RIGHT,
+    Claim,
+    GameEvent,
+    NoSuchState,
+    Place,
+    RobotView,
+)
+from lacoc_shared.words import faults, say
 
 GAME: FlagStrike = arena.load("flag-strike").game
 INDEX = {marker.name: index for index, marker in enumerate(GAME.markers)}
@@ -104,7 +115,8 @@ def test_corner_takes_the_colour(corner: int) -> None:
     after, events = tick(START, view(CORNERS[corner]))
     assert claims(events) == [(0, f"corner{corner}")]
     assert events[0].kind == "capture"
-    assert events[0].text.format(team="Ants") == f"Ants takes corner{corner} for 5 points."
+    assert events[0].said == say("event.capture", team="", marker=f"corner{corner}", points=5)
+    assert not faults(events[0].said)
     assert after.board[corner] == LEFT
     assert GAME.score(after) == (5, 0)
 
@@ -199,7 +211,7 @@ def test_corner_points_are_a_setting() -> None:
 def all_corners_for_left(game: FlagStrike = GAME) -> State:
     state = game.start()
     for corner in range(4):
-        assert game.over(state) == ""
+        assert game.over(state) is None
         state = game.set(state, corner, LEFT)
     return state
 
@@ -207,13 +219,13 @@ def all_corners_for_left(game: FlagStrike = GAME) -> State:
 def test_all_four_end_the_match() -> None:
     """Workshop 5-2 rule 4: at once when one robot holds all four; rule 8 decides by points."""
     state = all_corners_for_left()
-    assert GAME.over(state) == "the left team holds all corners"
+    assert GAME.over(state) == say("over.all-corners", seat="left")
     assert GAME.winner(state, (20, 22)) == 1
     assert GAME.winner(state, (20, 20)) is None
-    assert GAME.over(GAME.set(state, 3, RIGHT)) == ""
+    assert GAME.over(GAME.set(state, 3, RIGHT)) is None
     for corner in range(4):
         state = GAME.set(state, corner, RIGHT)
-    assert GAME.over(state) == "the right team holds all corners"
+    assert GAME.over(state) == say("over.all-corners", seat="right")
     assert GAME.score(state) == (0, 20)
 
 
@@ -222,7 +234,7 @@ def test_ends_after_all_events_of_the_tick() -> None:
     three = GAME.set(all_corners_for_left(), 3, NEUTRAL)
     after, events = tick(three, view(CORNERS[3]), view(CORNERS[0]))
     assert claims(events) == [(1, "corner0"), (0, "corner3")]
-    assert GAME.over(after) == ""
+    assert GAME.over(after) is None
 
 
 def test_all_corners_win() -> None:
@@ -242,8 +254,8 @@ def test_strike(flag: str, points: int) -> None:
     assert claims(events) == [(0, flag)]
     assert events[0].kind == "strike"
     assert events[0].points == points
-    worth = "1 point" if points == 1 else f"{points} points"
-    assert events[0].text.format(team="Ants") == f"Ants strikes {flag} for {worth}."
+    assert events[0].said == say("event.strike", team="", marker=flag, points=points)
+    assert not faults(events[0].said)
     assert GAME.score(after) == (points, 0)
     later, events = tick(after, view(), view(touched=(flag,)))
     assert events == ()
@@ -296,7 +308,7 @@ def test_referee_sets_corners_and_flags() -> None:
     assert claims(tick(stands, view(touched=("flag19",)))[1]) == [(0, "flag19")]
     assert sum(now != was for now, was in zip(down.board, START.board, strict=True)) == 2
     assert GAME.board(GAME.set(START, INDEX["flag0"], DOWN))[INDEX["flag0"]] == DOWN
-    with pytest.raises(ValueError, match=r"^a corner is neutral, left or right$"):
+    with pytest.raises(NoSuchState, match=r"^a corner can be neutral, left or right$"):
         GAME.set(START, 0, DOWN)
 
 

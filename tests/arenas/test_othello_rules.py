@@ -5,8 +5,19 @@ import math
 import pytest
 
 from lacoc_arenas import arena
-from lacoc_arenas.game import DOWN, LEFT, NEUTRAL, RIGHT, Claim, GameEvent, Place, RobotView
+from lacoc_arenas.game import (
+    DOWN,
+    LEFT,
+    NEUTRAL,
+    RIGHT,
+    Claim,
+    GameEvent,
+    NoSuchState,
+    Place,
+    RobotView,
+)
 from lacoc_arenas.othello.rules import NO_CELL, Othello, State
+from lacoc_shared.words import faults, say
 
 GAME: Othello = arena.load("othello").game
 INDEX = {marker.name: index for index, marker in enumerate(GAME.markers)}
@@ -437,11 +448,11 @@ def test_lasts_three_minutes() -> None:
 def test_over_when_a_team_has_no_disc_left() -> None:
     """Rules 5 end: at once when a team has no disc left."""
     before = state(board("LR...."), "c0r5")
-    assert GAME.over(before) == ""
+    assert GAME.over(before) is None
     after, _ = tick(before, "c1r5")
-    assert GAME.over(after) == "the right team has no disc left"
+    assert GAME.over(after) == say("over.no-disc", seat="right")
     assert GAME.winner(after, GAME.score(after)) == 0
-    assert GAME.over(state(board("R....."), "c1r5")) == "the left team has no disc left"
+    assert GAME.over(state(board("R....."), "c1r5")) == say("over.no-disc", seat="left")
 
 
 # 5-1 rule 8, rules 4 "referee"
@@ -456,7 +467,7 @@ def test_referee_sets_a_disc() -> None:
     assert GAME.score(GAME.set(before, INDEX["c5r5"], NEUTRAL)) == (18, 17)
     one = GAME.set(State((NEUTRAL,) * 36, before.last), INDEX["c2r5"], LEFT)
     assert one.cells == board("..L...")
-    with pytest.raises(ValueError, match=r"^a disc is neutral, left or right$"):
+    with pytest.raises(NoSuchState, match=r"^a disc can be neutral, left or right$"):
         GAME.set(before, 0, DOWN)
 
 
@@ -478,11 +489,12 @@ def test_struck_is_one_claim_only() -> None:
 
 
 def test_event_says_what_happened() -> None:
-    """Rules 5: the sentence of a flip names the team, the disc and its run."""
+    """Rules 5: what is said of a flip names the team, the disc and its run."""
     _, events = tick(state(board("LRRL.."), "c0r5"), "c1r5")
-    assert events[0].text.format(team="Ants") == "Ants flips c1r5 and with it c2r5."
+    assert events[0].said == say("event.flip", team="", marker="c1r5", also=["c2r5"])
     assert events[0].kind == "flip"
     _, events = tick(state(board("LR...."), "c0r5"), "c1r5")
-    assert events[0].text.format(team="Ants") == "Ants flips c1r5."
+    assert events[0].said == say("event.flip", team="", marker="c1r5", also=[])
     _, events = tick(state(board("LRRRL."), "c0r5"), "c1r5")
-    assert events[0].text.format(team="Ants") == "Ants flips c1r5 and with it c2r5, c3r5."
+    assert events[0].said == say("event.flip", team="", marker="c1r5", also=["c2r5", "c3r5"])
+    assert not faults(events[0].said)

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from lacoc_arenas import arena
-from lacoc_arenas.game import Place, RobotView
+from lacoc_arenas.game import NoSuchState, Place, RobotView
 
 GAME = arena.load("practice").game
 
@@ -29,7 +29,7 @@ def test_nothing_happens() -> None:
     assert GAME.step(state, (view,), 0.02, frozenset({(0, "x")})) == (state, ())
     assert GAME.board(state) == ()
     assert GAME.score(state) == (0,)
-    assert GAME.over(state) == ""
+    assert GAME.over(state) is None
     assert GAME.winner(state, (3,)) is None
-    with pytest.raises(ValueError, match=r"^practice has no markers$"):
+    with pytest.raises(NoSuchState, match=r"^practice has no markers$"):
         GAME.set(state, 0, 1)

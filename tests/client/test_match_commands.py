@@ -61,10 +61,12 @@ def test_the_referee_has_every_decision(
     """Rules 4: each decision once, with its arguments, from the lobby to the next match."""
     court = open_court("--arena", "othello", "--seconds", "30", "--speed", "4")
     referee = Referee(court, capsys)
-    assert "only in READY; the match is LOBBY; nobody has joined left" in referee.refused("start")
+    assert "Now the match is in the lobby; nobody has joined the left seat" in referee.refused(
+        "start"
+    )
     court.bots()
 
-    assert referee.decide("start")["text"] == "play begins in 3 s."
+    assert referee.decide("start")["text"] == "play begins in 3 seconds."
     assert referee.decide("freeze", "left", "2")["scores"] == [18, 18]
     referee.decide("unfreeze", "left")
     referee.decide("restart", "right")
@@ -72,7 +74,7 @@ def test_the_referee_has_every_decision(
     assert "give a reason" in referee.refused("adjust", "left", "2")
     taken = referee.decide("adjust", "left", "-2")
     assert taken["scores"] == [16, 18]
-    assert "there is no seat 'middle'" in referee.refused("adjust", "middle", "1", "--reason", "x")
+    assert 'there is no seat "middle"' in referee.refused("adjust", "middle", "1", "--reason", "x")
     assert referee.decide("set", "c0r0", "neutral")["scores"] == [15, 18]
     tried = referee.decide("take-back", str(taken["event"]), "--dry-run")
     assert (tried["event"], tried["scores"]) == (None, [17, 18])
@@ -82,7 +84,7 @@ def test_the_referee_has_every_decision(
     referee.decide("halt")
     assert "Go" not in referee.refused("official")
     referee.decide("declare", "left")
-    assert "official: left" in referee.decide("official")["text"]
+    assert "the result is official: " in referee.decide("official")["text"]
     referee.decide("next")
     referee.decide("abort")
     referee.decide("next")
@@ -132,7 +134,7 @@ def test_a_waiting_referee_does_nothing_twice(
 
     monkeypatch.setattr(RefereeClient, "decide", lose_the_answer)
     said = Referee(court, capsys).refused("abort", "--wait", "20", "--reason", "a test")
-    assert "abort: 'lacoc referee log' says if it was done." in said
+    assert "abort: 'lacoc referee log' shows whether it was done." in said
     assert len(asked) == 1
 
 
@@ -143,7 +145,10 @@ def test_a_waiting_referee_gives_up_in_time(
     court = open_court("--arena", "othello")
     reason = Referee(court, capsys).refused("official", "--wait", "0.7")
 
-    assert "official is not legal after 0.7 s: only in FINISHED; the match is LOBBY." in reason
+    assert (
+        "official is still not possible after 0.7 s: it is possible only while the match is"
+        in reason
+    )
 
 
 @pytest.mark.long
@@ -166,7 +171,7 @@ def test_bots_play_match_after_match(
     assert watch.returncode == 0
     assert [event["number"] for event in events] == [*range(1, len(events) + 1)]
     assert events[-2]["text"].startswith("Referee kim: the result is official")
-    assert events[-1]["text"] == "OFFICIAL."
+    assert events[-1]["said"]["code"] == "event.official"
     assert [seat["team"] for seat in frames[-1]["seats"]] == ["planner", "nearest"]
     assert frames[-1]["phase"] == "OFFICIAL"
     assert (frames[-1]["clock_s"], frames[-1]["left_s"]) == (6.0, 0.0)
@@ -231,7 +236,7 @@ def test_a_bot_says_that_its_court_is_silent(open_court: OpenCourt) -> None:
         said = next(line for line in lines if line.startswith("Link: "))
     finally:
         os.kill(court.process.pid, signal.SIGCONT)
-    assert "court silent for" in said
+    assert "the court has sent nothing for" in said
     assert next(lines) == "The court is back.\n"
 
 

@@ -60,7 +60,7 @@ def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
     assert second["lacoc_beat_duration_seconds_sum", "main"] > 0
     assert second["lacoc_commands_total", "main", "left"] > 1
     assert second["lacoc_commands_total", "main", "right"] == 0
-    assert second["lacoc_refused_total", "main", "left", "wrong token"] == 1
+    assert second["lacoc_refused_total", "main", "left", "wrong-token"] == 1
     assert second[trip] > 0
     assert second["lacoc_seat_joined", "main", "left"] == 1
     assert second["lacoc_real_time_factor", "main"] > 0
@@ -72,7 +72,7 @@ def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
     assert all({"timestamp", "level", "court", "kind", "text"} <= line.keys() for line in lines)
     assert {line["match_id"] for line in lines} == {match_id}
     told = {line["text"] for line in lines}
-    assert "Seat left: 1 refused, wrong token." in told
+    assert "left seat: 1 refused: wrong token." in told
     assert "Ants takes the left seat with Hexapod." in told
     assert not any(token in out for token in (*court.tokens.values(), court.referee))
 

@@ -15,6 +15,7 @@ from lacoc_client.terminal.plain import event_dict, frame_dict
 from lacoc_shared.marker_states import pack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, SeatFrame, Sheet, SheetSeat
 from lacoc_shared.seat import Phase, SeatFlag
+from lacoc_shared.words import say
 
 LABELS = ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")
 SCENE = bytes(range(8))
@@ -117,7 +118,15 @@ def test_a_frame_of_another_scene_is_put_into_words_too(changes: dict[str, bytes
 
 def test_an_event_in_words() -> None:
     """Its seat by name, its clock in seconds."""
-    event = Event(number=3, match=1, beat=9, clock_ticks=75, kind="flip", text="x", seat=1)
+    event = Event(
+        number=3,
+        match=1,
+        beat=9,
+        clock_ticks=75,
+        kind="flip",
+        said=say("plain.text", text="x"),
+        seat=1,
+    )
     plain = event_dict(event, make_sheet("othello"))
 
     assert (plain["seat"], plain["clock_s"], plain["number"]) == ("right", 1.5, 3)

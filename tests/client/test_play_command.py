@@ -166,7 +166,7 @@ def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) ->
 
     assert code == 0
     assert "Line 1 is left out: 'w' is no key" in said
-    assert "FINISHED: time is up." in said
+    assert "The match is finished: time is up." in said
     assert said.rstrip().endswith("You have left. The seat stays yours.")
     assert "refused" not in said
 

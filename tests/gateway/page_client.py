@@ -11,6 +11,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import msgpack
+import msgspec
 from websockets.client import ClientProtocol
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import Opcode
@@ -21,6 +22,7 @@ from lacoc_client.gateway.wire import Kind
 from lacoc_shared.codec import decode
 from lacoc_shared.messages import Event, Frame, Health, Scene, SeatFrame, Sheet
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import Phrase, render
 
 TIMEOUT_S = 45.0
 
@@ -29,7 +31,8 @@ class Refused(Exception):
     """The gateway, or the court behind it, said no."""
 
     def __init__(self, reply: dict[str, Any]) -> None:
-        super().__init__(reply["error"])
+        self.why = msgspec.convert(reply["error"], Phrase)
+        super().__init__(render(self.why))
         self.mistakes: list[dict[str, Any]] = reply["mistakes"]
         self.is_the_token: bool = reply["token_refused"]
         self.again: bool = reply["again"]

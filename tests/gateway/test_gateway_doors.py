@@ -366,7 +366,7 @@ def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
         begin_s = time.monotonic()
         said = [why_not(page, number) for number in [page.send("watch") for _ in range(100)]]
         took_s = time.monotonic() - begin_s
-        assert set(said) == {"", "Too many tries: wait a few seconds."}
+        assert set(said) == {"", "Too many tries. Wait a few seconds."}
         assert 5 <= said.count("") <= 6 + took_s
         assert page.order.count(Kind.SCENE) <= said.count("")
         page.wait(lambda: page.frame)

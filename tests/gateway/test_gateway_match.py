@@ -11,6 +11,7 @@ from venue import TOKENS, Venue
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared.codec import encode
 from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
+from lacoc_shared.words import render
 
 pytestmark = pytest.mark.slow
 
@@ -57,11 +58,11 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
 
     referee.phase(Phase.FINISHED)
     reply = referee.ask("decide", decision={"type": "official"}, reason="")
-    assert "official" in reply["text"]
+    assert reply["said"]["code"] == "decision.official-draw"
     for page in (left, right, referee, late):
         page.phase(Phase.OFFICIAL)
     decision = next(one for one in late.events if one.kind == "decision" and one.beat)
-    assert decision.text.startswith("Referee Kim: ")
+    assert render(decision.said).startswith("Referee Kim: ")
     assert left.frame is not None
     assert x_of(left.frame, 0, robot_bytes) > began_m + 0.05
     assert left.seat["hold"] == "held"
@@ -159,7 +160,7 @@ def test_one_referee_acts_until_another_takes_over(venue: Venue) -> None:
     with pytest.raises(Refused, match=r"only in READY; the match is LOBBY"):
         lee.ask("decide", decision={"type": "start"}, reason="")
     lee.ask("decide", **abort)
-    kim.wait(lambda: any(one.text.startswith("Referee Lee: ") for one in kim.events))
+    kim.wait(lambda: any(render(one.said).startswith("Referee Lee: ") for one in kim.events))
     lee.close()
     kim.wait(lambda: kim.referee == {"acting": None, "mine": False})
     again = venue.referee("Lee")
@@ -173,7 +174,7 @@ def test_a_killed_court_comes_back(venue: Venue) -> None:
     left, _, referee = started(venue)
     court.kill()
     referee.wait(lambda: not referee.link["connected"])
-    referee.wait(lambda: f"at tcp/127.0.0.1:{venue.court_port}" in referee.link["text"])
+    referee.wait(lambda: f"at tcp/127.0.0.1:{venue.court_port}" in str(referee.link["why"]))
     silent_s = referee.link["silent_s"]
     referee.wait(lambda: referee.link["silent_s"] > silent_s + 0.8)
     known = len(referee.events)
@@ -202,15 +203,15 @@ def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
     venue.web()
     watcher = venue.page()
     left = venue.contestant("left", "Old Ants")
-    watcher.wait(lambda: any("Old Ants is ready" in event.text for event in watcher.events))
+    watcher.wait(lambda: any("Old Ants is ready" in render(event.said) for event in watcher.events))
     left.close()
     court.close()
     venue.court("--fresh")
-    watcher.wait(lambda: not any("Old Ants" in event.text for event in watcher.events))
+    watcher.wait(lambda: not any("Old Ants" in render(event.said) for event in watcher.events))
     venue.contestant("left", "New Ants")
-    watcher.wait(lambda: any("New Ants is ready" in event.text for event in watcher.events))
+    watcher.wait(lambda: any("New Ants is ready" in render(event.said) for event in watcher.events))
     assert [event.number for event in watcher.events] == [*range(1, len(watcher.events) + 1)]
-    texts = [event.text for event in watcher.events]
+    texts = [render(event.said) for event in watcher.events]
     assert not any("Old Ants" in text for text in texts), texts
     late = venue.page()
     assert late.events == watcher.events
@@ -236,7 +237,7 @@ def test_a_gateway_may_come_before_its_court(venue: Venue) -> None:
     """It waits, says so, and shows the match as soon as there is one."""
     venue.web()
     early = venue.page(venue.key)
-    early.wait(lambda: "Nobody listens at tcp/127.0.0.1:" in early.link["text"])
+    early.wait(lambda: "Nobody listens at tcp/127.0.0.1:" in str(early.link["why"]))
     assert early.link["connected"] is False
     with pytest.raises(Refused, match="Nobody listens"):
         early.ask("join", seat="left", token=TOKENS["left"], name="Ants")
@@ -318,7 +319,7 @@ def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
             page.wait(lambda seen=seen: len(page.frames) > seen)
         assert page.links[links:] == []
         court.in_a_beat(lambda: court.show(court.scene, protocol=99))
-        page.wait(lambda: "version 99" in page.link["text"])
+        page.wait(lambda: page.link["why"]["values"]["version"] == 99)
         court.in_a_beat(lambda: court.show(court.scene))
         page.wait(lambda: page.link["connected"])
 
@@ -339,5 +340,5 @@ def test_a_seat_that_can_not_be_had_now_may_be_asked_for_again(venue: Venue) -> 
         except Refused as error:
             refused.append(error)
     assert {(str(error), error.again) for error in refused} == {
-        ("Too many joins at once: wait a few seconds.", True)
+        ("Too many tries to join at once. Wait a few seconds.", True)
     }

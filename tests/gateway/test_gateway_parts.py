@@ -31,6 +31,7 @@ from lacoc_shared.contest.invitation import Access
 from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 T = TypeVar("T")
 
@@ -111,7 +112,7 @@ def test_a_refusal_says_what_a_page_can_do(error: UserError, told: set[str]) -> 
     """Ask again, ask never again, or look whether it was done."""
     body = msgpack.unpackb(wire.refusal(7, error)[3:])
     assert {name for name, value in body.items() if value is True} == told
-    assert (body["id"], body["error"]) == (7, str(error))
+    assert (body["id"], body["error"]) == (7, msgspec.to_builtins(error.phrase))
 
 
 @pytest.mark.parametrize("size", [0, 1, 124, 125, 126, 65_534, 65_535, 70_000])
@@ -198,7 +199,7 @@ def test_a_page_hears_nothing_of_the_seat_it_had_before(monkeypatch: pytest.Monk
                 Access(court="main", connect="127.0.0.1:1"),
             )
         for tell, hold in zip(tells, ("replaced", "held"), strict=True):
-            tell({"seat": "left", "hold": hold, "reason": ""})
+            tell({"seat": "left", "hold": hold, "reason": None})
         await asyncio.sleep(0)  # what threads tell goes through the loop
         return [msgpack.unpackb(framed[3:])["hold"] for framed in socket.written]
 
@@ -207,7 +208,14 @@ def test_a_page_hears_nothing_of_the_seat_it_had_before(monkeypatch: pytest.Monk
 
 
 def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:
-    return Event(number=number, match=match, beat=beat, clock_ticks=0, kind="phase", text=text)
+    return Event(
+        number=number,
+        match=match,
+        beat=beat,
+        clock_ticks=0,
+        kind="phase",
+        said=say("plain.text", text=text),
+    )
 
 
 def test_a_log_that_begins_again() -> None:
@@ -279,7 +287,7 @@ def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
 )
 def test_a_wrong_place_to_listen_is_said(where: str) -> None:
     """One sentence with the way to mend it."""
-    with pytest.raises(UserError, match=r"no place to listen|not possible to listen"):
+    with pytest.raises(UserError, match=r"not a place to listen|not possible to listen"):
         server.listen(where)
 
 

@@ -10,7 +10,7 @@ import msgspec
 
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
-from lacoc_server.doors.network import CourtNetwork, Outcome
+from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import Decide, HeardSeat, Input, JoinSeat, KeySeat, SilentSeat
@@ -23,6 +23,7 @@ from lacoc_shared.messages import (
     Frame,
     Health,
     Join,
+    Outcome,
     Refusal,
     Scene,
     SceneBody,
@@ -34,6 +35,7 @@ from lacoc_shared.messages import (
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.network.access_rules import Protection
 from lacoc_shared.seat import No, Phase
+from lacoc_shared.words import Phrase, say
 
 KEYS = Keys("main")
 SEATS = ("left", "right")
@@ -78,7 +80,8 @@ def make_sheet(scene: Scene, **changes: Any) -> Sheet:
 
 
 def make_event(number: int, match: int = 1, text: str = "something") -> Event:
-    return Event(number=number, match=match, beat=0, clock_ticks=0, kind="phase", text=text)
+    said = say("plain.text", text=text)
+    return Event(number=number, match=match, beat=0, clock_ticks=0, kind="phase", said=said)
 
 
 class CourtStub:
@@ -98,7 +101,7 @@ class CourtStub:
         inbox = Inbox(KEYS, SEATS, token_hashes, self.scales, secrets.token_bytes, **restored)
         desk = DecisionDesk([tokens.hash_token(WHISTLE)])
         self.network = CourtNetwork(KEYS, [listen], inbox, desk, protection)
-        self.trouble = ""
+        self.trouble: Phrase | None = None
         """Why it makes no beat and sends its last one again, as while the disk is full; "": it
         makes them."""
         self.inputs: list[Input] = []
@@ -197,11 +200,13 @@ class CourtStub:
         if isinstance(one, HeardSeat):
             self._silent.discard(one.seat)
         if isinstance(one, JoinSeat) and one.team == "Nobody":
-            return Refusal("there is no such team")
+            return Refusal(say("refused.match-on-join", phase="playing"))
         if isinstance(one, JoinSeat):
-            return Done("welcome")
+            return Done(say("note.next-match"))
         if isinstance(one, Decide):
-            return DecisionReply(beat=beat, event=1, text="started", scores=(0, 0))
+            return DecisionReply(
+                beat=beat, event=1, said=say("decision.start", seconds=3), scores=(0, 0)
+            )
         if isinstance(one, KeySeat) and one.key == 9:
             self._change(one.seat, refused_seq=one.seq, refused_why=No.NO_SUCH_KEY)
         elif isinstance(one, KeySeat):

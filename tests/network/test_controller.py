@@ -20,6 +20,9 @@ from lacoc_shared.messages import Command, SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import RESTART_KEY
+from lacoc_shared.words import say
+
+FULL_DISK = say("record.no-room", file="m.mcap", why="disk full")
 
 
 def controller(session: Session, seat: str = "left", **changes: object) -> Controller:
@@ -37,7 +40,7 @@ def test_a_join_travels_with_its_files(court: CourtStub, session: Session) -> No
     """The court gets name and files, and answers with notes."""
     file = SentFile("mine.txt", b"20 20")
     one = controller(session, postures=file)
-    assert one.join() == ("welcome",)
+    assert one.join() == (say("note.next-match"),)
     assert one.hold is Hold.HELD
     join = court.inputs[0]
     assert isinstance(join, JoinSeat)
@@ -73,12 +76,12 @@ def test_a_wrong_token_is_said_and_disturbs_nobody(
 ) -> None:
     """A wrong token never disturbs the seat."""
     holder = held(session)
-    with pytest.raises(UserError, match="does not open seat left"):
+    with pytest.raises(UserError, match="not valid for the left seat"):
         controller(other_session, token="guess").join()
     holder.press(1, 2)
     until(lambda: holder.poll(time.monotonic()) and holder.round_trip_ms)
     assert holder.hold is Hold.HELD
-    assert court.refused["left"] == {"wrong token": 1}
+    assert court.refused["left"] == {"wrong-token": 1}
 
 
 def test_mistakes_in_files_come_back_whole(session: Session) -> None:
@@ -90,16 +93,16 @@ def test_mistakes_in_files_come_back_whole(session: Session) -> None:
 
 def test_a_join_that_the_match_refuses_makes_no_session(court: CourtStub, session: Session) -> None:
     """A session starts only when the match has taken the join in."""
-    with pytest.raises(UserError, match="no such team"):
+    with pytest.raises(UserError, match="Join when the next match opens"):
         controller(session, team="Nobody").join()
     assert court.network.seat_health(0.0)[0].session == 0
 
 
 def test_an_unknown_seat_and_an_unknown_court_are_named(session: Session) -> None:
     """What was found, and what there is."""
-    with pytest.raises(UserError, match="no seat 'middle'; it has left, right"):
+    with pytest.raises(UserError, match=r'no seat "middle". It has left and right'):
         Controller(session, "main", "middle", "t", "Blue")
-    with pytest.raises(UserError, match=r"no court 'mian' at .*; there is main"):
+    with pytest.raises(UserError, match=r'no court "mian" at .* There is main'):
         Controller(session, "mian", "left", "t", "Blue")
 
 
@@ -127,7 +130,7 @@ def test_a_refused_key_is_said_in_a_sentence(court: CourtStub, session: Session)
     until(lambda: one.wait_frame(1.0) and one.round_trip_ms is not None)
     (refused,) = one.take_refused()
     assert (refused.level, refused.key) == (1, 9)
-    assert refused.why == "your gait file has no such key"
+    assert refused.why == say("key.no-such-key")
     assert one.take_refused() == []
 
 
@@ -139,7 +142,7 @@ def test_ready_and_leave(court: CourtStub, session: Session) -> None:
     one.leave()
     assert court.inputs[-3:] == [ReadySeat(0, True), ReadySeat(0, False), LeaveSeat(0)]
     assert one.hold is Hold.LEFT
-    with pytest.raises(UserError, match="not yours now"):
+    with pytest.raises(UserError, match="You do not hold the left seat now"):
         one.press(1, 2)
 
 
@@ -153,7 +156,7 @@ def test_a_new_window_takes_over_and_the_old_one_knows(
     new = held(other_session)
     assert new.press(1, 3) == 2
     until(lambda: old.wait_frame(1.0) and old.hold is Hold.REPLACED)
-    assert "another window" in old.link(time.monotonic())
+    assert old.link(time.monotonic()) == say("hold.replaced")
     until(lambda: court.keys() == [(1, 2), (2, 3)])
     for _ in range(20):
         new.wait_frame(1.0)
@@ -181,18 +184,18 @@ def test_one_health_of_another_session_is_not_believed(court: CourtStub, session
 def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session) -> None:
     """What only can't be done now is told apart from what is wrong; by the reply, not by words."""
     one = controller(session)
-    court.trouble = "The record can't be written: make room."
-    with pytest.raises(NotNow, match="make room"):
+    court.trouble = FULL_DISK
+    with pytest.raises(NotNow, match="Make room"):
         one.join()
     still = one.wait_frame(5.0)
     assert still
-    court.trouble = ""
+    court.trouble = None
     until(lambda: (frame := one.wait_frame(1.0)) and frame.beat > still.beat)  # it goes on
     for _ in range(5):
         one.join()
-    with pytest.raises(NotNow, match="Too many joins"):
+    with pytest.raises(NotNow, match="Too many tries to join"):
         one.join()
-    with pytest.raises(UserError, match="does not open") as refused:
+    with pytest.raises(UserError, match="not valid for") as refused:
         controller(session, token="guess").join()
     assert not isinstance(refused.value, NotNow)
 
@@ -200,7 +203,7 @@ def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session)
 @pytest.mark.parametrize("seat", ["", "a//b", "le?ft", "#"])
 def test_a_seat_that_is_no_key_is_said(court: CourtStub, session: Session, seat: str) -> None:
     """What stands in an invitation is looked up before it becomes part of a key expression."""
-    with pytest.raises(UserError, match=r"has no seat .*; it has left, right"):
+    with pytest.raises(UserError, match=r"has no seat .* It has left and right"):
         Controller(session, "main", seat, "t", "Blue")
 
 
@@ -220,7 +223,7 @@ def test_forged_commands_are_refused_and_counted(
     door.put(forged)
     door.put(b"rubbish")
     door.put(bytes(2000))  # too long: the transport drops it
-    until(lambda: court.refused["left"] == {"not your seat": 1, "bad bytes": 1})
+    until(lambda: court.refused["left"] == {"not-your-seat": 1, "bad-bytes": 1})
     assert court.keys() == [(1, 2)]
 
 
@@ -239,7 +242,7 @@ def test_a_flood_on_one_seat_does_not_touch_the_other(
         until(lambda: one.wait_frame(0.2) and one.round_trip_ms is not None)
         trips.append(one.round_trip_ms)
     assert [key for _, key in court.keys(seat=1)] == [2] * 20
-    assert court.refused["left"]["bad bytes"] > 0
+    assert court.refused["left"]["bad-bytes"] > 0
     assert court.refused["right"] == {}
     assert sorted(trips)[10] < 200
 
@@ -292,24 +295,24 @@ def test_a_controller_comes_back_after_a_restart_of_the_court() -> None:
         until(lambda: one.wait_frame(1.0) and one.round_trip_ms is not None)
     with session:
         until(lambda: not one.wait_frame(0.1) and one.link(time.monotonic()))
-        assert one.link(time.monotonic()).startswith("court silent for")
+        assert one.link(time.monotonic()).code == "hold.silent"
         with CourtStub(address, last_seqs={"left": 1}, joined=("left",)) as second:
             until(lambda: one.wait_frame(0.1) and second.network.seat_health(0.0)[0].session)
             assert one.hold is Hold.HELD
-            assert one.link(time.monotonic()) == ""
+            assert one.link(time.monotonic()) is None
             assert second.keys() == []
             assert one.press(1, 3) == 2
             until(lambda: one.wait_frame(0.1) and second.keys() == [(2, 3)])
         full = CourtStub(address)
-        full.trouble = "The record can't be written: make room."
+        full.trouble = FULL_DISK
         with full:
             until(lambda: one.wait_frame(0.1) and one.hold is Hold.LOST and one.reason)
             assert one.link(time.monotonic()) == full.trouble
-            full.trouble = ""
+            full.trouble = None
             until(lambda: one.wait_frame(0.1) and one.hold is Hold.HELD)
-            assert one.reason == ""
+            assert one.reason is None
             assert one.press(1, 4) == 3
             until(lambda: one.wait_frame(0.1) and full.keys() == [(3, 4)])
         with CourtStub(address, token_hashes={}):
             until(lambda: one.wait_frame(0.1) and one.hold is Hold.REFUSED)
-            assert "does not open seat left" in one.link(time.monotonic())
+            assert one.link(time.monotonic()) == say("refused.wrong-token", seat="left")

@@ -12,6 +12,7 @@ from lacoc_shared.codec import encode
 from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import Decide
 from lacoc_shared.messages import DecisionRequest, Done, Enter, Refusal
+from lacoc_shared.words import Phrase, faults, render, say
 
 HASHES = [tokens.hash_token("other"), tokens.hash_token("whistle")]
 
@@ -27,55 +28,82 @@ def test_a_decision_becomes_an_input() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "payload", "words", "why"),
+    ("name", "payload", "code", "why"),
     [
-        ("start", request(d.Start(), token="guess"), "not a referee's token", "wrong token"),
-        ("halt", request(d.Start()), "no decision 'start' under 'halt'", "bad decision"),
+        ("start", request(d.Start(), token="guess"), "refused.no-referee-token", "wrong-token"),
+        ("halt", request(d.Start()), "refused.bad-decision", "bad-decision"),
         (
             "bribe",
             encode({"token": "whistle", "by": "K", "decision": {"type": "bribe"}}),
-            "There are: ready (seat: str), start, halt",
-            "bad decision",
+            "refused.bad-decision",
+            "bad-decision",
         ),
         (
             "freeze",
             encode({"token": "whistle", "by": "K", "decision": {"type": "freeze", "seat": 3}}),
-            "freeze (seat: str, seconds: float)",
-            "bad decision",
+            "refused.bad-decision",
+            "bad-decision",
         ),
-        ("start", encode({"token": "whistle"}), "not understood", "bad decision"),
-        ("start", request(d.Start(), by=" "), "who decides", "bad name"),
-        ("clock", request(d.Clock(math.nan)), "beyond", "out of range"),
-        ("clock", request(d.Clock(math.inf)), "beyond", "out of range"),
-        ("adjust", request(d.Adjust("left", 2**40)), "beyond", "out of range"),
-        ("start", b"\xc1", "not understood", "bad bytes"),
+        ("start", encode({"token": "whistle"}), "refused.bad-decision", "bad-decision"),
+        ("start", request(d.Start(), by=" "), "refused.who-decides", "bad-name"),
+        ("clock", request(d.Clock(math.nan)), "refused.decision", "out-of-range"),
+        ("clock", request(d.Clock(math.inf)), "refused.decision", "out-of-range"),
+        ("adjust", request(d.Adjust("left", 2**40)), "refused.decision", "out-of-range"),
+        ("start", b"\xc1", "refused.bad-request", "bad-bytes"),
     ],
 )
 def test_a_request_is_refused_with_its_reason(
-    name: str, payload: bytes, words: str, why: str
+    name: str, payload: bytes, code: str, why: str
 ) -> None:
     """The answer says what was found and, where it helps, all that there is."""
     desk = DecisionDesk(HASHES)
     refusal = desk.decision(name, payload)
     assert isinstance(refusal, Refusal)
-    assert words in refusal.reason
+    assert (refusal.why.code, faults(refusal.why)) == (code, [])
     assert desk.refused == {why: 1}
+
+
+def test_a_decision_that_is_not_read_is_told_all_there_are() -> None:
+    """A program's author sees what was wrong, and each decision with its arguments."""
+    refusal = DecisionDesk(HASHES).decision("halt", request(d.Start()))
+    assert isinstance(refusal, Refusal)
+    words = render(refusal.why)
+    assert "no decision 'start' under 'halt'" in words
+    assert "ready (seat: str), start, halt" in words
+    assert "freeze (seat: str, seconds: float)" in words
+
+
+@pytest.mark.parametrize(
+    ("reason", "taken"),
+    [
+        ("foul", True),
+        (say("reason.stuck", note="left leg"), True),
+        (say("reason.stuck", note=None), True),
+        (say("event.heard", team="Ants"), False),
+        (say("reason.stuck", note=say("reason.stuck", note="x")), False),
+    ],
+)
+def test_a_reason_is_a_text_or_one_of_the_pages(reason: Phrase | str, taken: bool) -> None:
+    """Nobody lets the court say another sentence in the record."""
+    asked = DecisionRequest(token="whistle", by="Kubota", reason=reason, decision=d.Start())
+    judged = DecisionDesk(HASHES).decision("start", encode(asked))
+    assert isinstance(judged, Decide) == taken
 
 
 def test_a_wrong_token_learns_nothing() -> None:
     """What exists is told to referees only."""
     refusal = DecisionDesk(HASHES).decision("x", encode({"token": "guess", "decision": 3}))
-    assert refusal == Refusal("This is not a referee's token of this court.")
+    assert refusal == Refusal(say("refused.no-referee-token"))
 
 
 def test_a_token_can_be_shown_without_deciding() -> None:
     """A page asks whether it may referee before it shows buttons."""
     desk = DecisionDesk(HASHES)
     assert desk.enter(encode(Enter(token="whistle"))) == Done()
-    refusal = Refusal("This is not a referee's token of this court.")
+    refusal = Refusal(say("refused.no-referee-token"))
     assert desk.enter(encode(Enter(token="guess"))) == refusal
     assert isinstance(desk.enter(encode({"token": "whistle", "more": 1})), Refusal)
-    assert desk.refused == {"wrong token": 1, "bad bytes": 1}
+    assert desk.refused == {"wrong-token": 1, "bad-bytes": 1}
 
 
 @given(st.text(), st.binary(max_size=300))

@@ -26,4 +26,4 @@ def test_nothing_forged_is_accepted(attempts: int) -> None:
     assert [one["right"] for one in found] == [True] * 3
     assert {sum(one["accepted"].values()) for one in found} == {0}
     refused = found[1]["refused by the court"]["commands"]
-    assert {"bad seal", "old", "not your seat"} <= set(refused)  # they did arrive there
+    assert {"bad-seal", "old", "not-your-seat"} <= set(refused)  # they did arrive there

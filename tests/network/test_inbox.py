@@ -35,6 +35,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.seat import RESTART_KEY
+from lacoc_shared.words import faults, say
 
 KEYS = Keys("main")
 SEATS = ("left", "right")
@@ -104,6 +105,9 @@ def refusals(inbox: Inbox, seat: int = LEFT) -> dict[str, int]:
     return inbox.health(0.0)[seat].refused
 
 
+WELCOME = say("note.next-match")
+
+
 def test_a_join_gives_a_session_only_when_the_match_has_taken_it_in() -> None:
     """A session starts with `seated`: once the join is applied and on disk."""
     inbox = make()
@@ -112,9 +116,9 @@ def test_a_join_gives_a_session_only_when_the_match_has_taken_it_in() -> None:
         LEFT, "Blue", CONTEST_ROBOT, SentFile("a.txt", b"x"), None, HASHES["left"]
     )
     assert inbox.health(0.0)[LEFT].session == 0
-    joined = inbox.seated(LEFT, ("welcome",))
+    joined = inbox.seated(LEFT, (WELCOME,))
     assert joined.last_seq == 0
-    assert joined.notes == ("welcome",)
+    assert joined.notes == (WELCOME,)
     assert inbox.health(0.0)[LEFT].session == joined.session
     assert inbox.health(0.0)[RIGHT].session == 0
 
@@ -156,30 +160,30 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("payload", "words", "why"),
+    ("payload", "code", "why"),
     [
-        (join_bytes(token="guess"), "does not open seat left", "wrong token"),
-        (join_bytes(token=TOKENS["right"]), "does not open seat left", "wrong token"),
-        (join_bytes(protocol=PROTOCOL + 1), "install the version", "wrong version"),
-        (encode({"protocol": 99, "something": "new"}), "install the version", "wrong version"),
-        (join_bytes(name="   "), "1-24 printable", "bad name"),
-        (join_bytes(name="x" * 25), "1-24 printable", "bad name"),
-        (join_bytes(name="a\x1b[31m"), "1-24 printable", "bad name"),
-        (join_bytes(postures=SentFile("a.txt", b"wrong")), "mistakes", "bad files"),
-        (join_bytes(robot=SentFile("x" * 101, b"")), "100 printable", "bad name"),
-        (join_bytes(robot=SentFile("\x1b[2J", b"")), "100 printable", "bad name"),
-        (b"\xc1", "not understood", "bad bytes"),
-        (b"x" * 70_000, "at most", "bad bytes"),
+        (join_bytes(token="guess"), "refused.wrong-token", "wrong-token"),
+        (join_bytes(token=TOKENS["right"]), "refused.wrong-token", "wrong-token"),
+        (join_bytes(protocol=PROTOCOL + 1), "refused.wrong-version", "wrong-version"),
+        (encode({"protocol": 99, "something": "new"}), "refused.wrong-version", "wrong-version"),
+        (join_bytes(name="   "), "refused.team-name", "bad-name"),
+        (join_bytes(name="x" * 25), "refused.team-name", "bad-name"),
+        (join_bytes(name="a\x1b[31m"), "refused.team-name", "bad-name"),
+        (join_bytes(postures=SentFile("a.txt", b"wrong")), "refused.mistakes", "bad-files"),
+        (join_bytes(robot=SentFile("x" * 101, b"")), "refused.file-name", "bad-name"),
+        (join_bytes(robot=SentFile("\x1b[2J", b"")), "refused.file-name", "bad-name"),
+        (b"\xc1", "refused.bad-join", "bad-bytes"),
+        (b"x" * 70_000, "refused.bad-join", "bad-bytes"),
     ],
 )
-def test_a_join_is_refused_with_its_reason(payload: bytes, words: str, why: str) -> None:
+def test_a_join_is_refused_with_its_reason(payload: bytes, code: str, why: str) -> None:
     """A wrong file, token or version: one clear sentence, counted, and nothing else disturbed."""
     inbox = make()
     holder = take_seat(inbox)
     refusal = inbox.join(LEFT, payload)
     assert isinstance(refusal, Refusal)
-    assert words in refusal.reason
-    assert len(refusal.mistakes) == (2 if why == "bad files" else 0)
+    assert (refusal.why.code, faults(refusal.why)) == (code, [])
+    assert len(refusal.mistakes) == (2 if why == "bad-files" else 0)
     assert refusals(inbox) == {why: 1}
     assert inbox.beat(0.1, [[command(holder, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
 
@@ -213,7 +217,7 @@ def test_the_same_token_takes_the_seat_over() -> None:
     assert refusals(inbox) == {"replaced": 1}
     refusal = inbox.ready(LEFT, request(old, "ready"))
     assert isinstance(refusal, Refusal)
-    assert "another window" in refusal.reason
+    assert refusal.why == say("refused.replaced", seat="left")
 
 
 def test_a_command_counts_once_and_its_repetition_is_a_sign_of_life() -> None:
@@ -252,15 +256,15 @@ def altered(payload: bytes, field: str, value: object) -> bytes:
 @pytest.mark.parametrize(
     ("field", "value", "why"),
     [
-        ("session", 1, "unknown session"),
-        ("seq", 11, "bad seal"),
-        ("level", 0, "bad seal"),
-        ("key", 3, "bad seal"),
-        ("match", 1, "bad seal"),
-        ("seen", 1, "bad seal"),
-        ("mac", b"12345678", "bad seal"),
-        ("mac", b"", "bad seal"),
-        ("key", "2", "bad bytes"),
+        ("session", 1, "unknown-session"),
+        ("seq", 11, "bad-seal"),
+        ("level", 0, "bad-seal"),
+        ("key", 3, "bad-seal"),
+        ("match", 1, "bad-seal"),
+        ("seen", 1, "bad-seal"),
+        ("mac", b"12345678", "bad-seal"),
+        ("mac", b"", "bad-seal"),
+        ("key", "2", "bad-bytes"),
     ],
 )
 def test_an_altered_command_is_refused(field: str, value: object, why: str) -> None:
@@ -276,11 +280,11 @@ def test_an_altered_command_is_refused(field: str, value: object, why: str) -> N
     [
         (9, 1, 2, "old"),
         (1, 1, 2, "old"),
-        (11, 2, 2, "out of range"),
-        (11, 1, 11, "out of range"),
-        (11, 1, -1, "out of range"),
-        (-1, 1, 2, "out of range"),
-        (2**60, 1, 2, "out of range"),
+        (11, 2, 2, "out-of-range"),
+        (11, 1, 11, "out-of-range"),
+        (11, 1, -1, "out-of-range"),
+        (-1, 1, 2, "out-of-range"),
+        (2**60, 1, 2, "out-of-range"),
     ],
 )
 def test_a_sealed_command_that_makes_no_sense_is_refused(
@@ -305,7 +309,7 @@ def test_a_frame_that_is_not_there_yet_is_refused() -> None:
     assert inbox.beat(0.1, [early, []]) == []
     negative = [command(joined, 1, match=-1), command(joined, 1, match=1, seen=-5)]
     assert inbox.beat(0.1, [negative, []]) == []
-    assert refusals(inbox) == {"ahead": 2, "out of range": 2}
+    assert refusals(inbox) == {"ahead": 2, "out-of-range": 2}
     key = KeySeat(LEFT, 1, 1, 2, seen=6)
     assert inbox.beat(0.1, [[command(joined, 1, match=1, seen=6)], []]) == [key]
 
@@ -349,7 +353,7 @@ def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
     assert inbox.beat(0.1, [[], [forged, stolen, command(right, 1, seat=RIGHT)]]) == [
         KeySeat(RIGHT, 1, 1, 2)
     ]
-    assert refusals(inbox, RIGHT) == {"not your seat": 2}
+    assert refusals(inbox, RIGHT) == {"not-your-seat": 2}
     assert refusals(inbox, LEFT) == {}
 
 
@@ -375,7 +379,7 @@ def test_a_flood_of_rubbish_costs_a_fixed_amount() -> None:
     inbox = make()
     inbox.beat(5.0, [[b"rubbish"] * 1000, []])
     looked_at = LOOKED_AT_PER_BEAT
-    assert refusals(inbox) == {"flood": 1000 - looked_at, "bad bytes": looked_at}
+    assert refusals(inbox) == {"flood": 1000 - looked_at, "bad-bytes": looked_at}
 
 
 def test_rubbish_of_others_takes_nothing_of_what_a_seat_may_send() -> None:
@@ -457,7 +461,7 @@ def test_ready_can_not_flood_the_log() -> None:
     answers = [inbox.ready(LEFT, request(joined, "ready", n % 2 > 0, seq=n)) for n in range(1, 50)]
     assert sum(isinstance(answer, ReadySeat) for answer in answers) == 5
     assert isinstance(answers[-1], Refusal)
-    assert "wait" in answers[-1].reason
+    assert answers[-1].why == say("refused.too-many-readys")
     inbox.beat(12.0, [[], []])
     assert isinstance(inbox.ready(LEFT, request(joined, "ready", seq=50)), ReadySeat)
 
@@ -505,7 +509,7 @@ def test_ready_and_leave_are_proven_by_the_session() -> None:
     assert inbox.leave(LEFT, request(joined, "leave", seq=3)) == LeaveSeat(LEFT)
     inbox.left(LEFT)
     assert inbox.beat(9.0, [[command(joined, 1)], []]) == []
-    assert refusals(inbox) == {"bad seal": 1, "bad bytes": 1, "left": 1}
+    assert refusals(inbox) == {"bad-seal": 1, "bad-bytes": 1, "left": 1}
     assert not inbox.health(9.0)[LEFT].joined
 
 
@@ -532,7 +536,7 @@ def test_a_restarted_court_knows_its_seats() -> None:
     old = take_seat(before)
     after = make(last_seqs={"left": 41}, joined=("left",))
     assert after.beat(100.0, [[command(old, 42)], []]) == []
-    assert refusals(after) == {"unknown session": 1}
+    assert refusals(after) == {"unknown-session": 1}
     assert after.beat(101.1, [[], []]) == [SilentSeat(LEFT)]
     assert after.health(101.1)[LEFT].joined
     assert after.health(101.1)[LEFT].session == 0

@@ -24,6 +24,7 @@ from lacoc_shared.messages import (
 from lacoc_shared.record.schema import FORMAT, Header, Result, Setup, Touch
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
 
 JOINTS = 12
 _ONE = (1.0, 0.0, 0.0, 0.0)
@@ -146,7 +147,7 @@ def result() -> Result:
         scores=(20, 16),
         computed="left",
         official="left",
-        reason="time is up",
+        reason=say("over.time"),
         clock_s=180.0,
         beats=40,
         digest="00",
@@ -177,7 +178,7 @@ def write_match(
                         beat=beat,
                         clock_ticks=beat,
                         kind="flip",
-                        text='"Ants" flip a disc, and more',
+                        said=say("plain.text", text='"Ants" flip a disc, and more'),
                         seat=0,
                     )
                 )

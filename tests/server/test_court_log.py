@@ -6,6 +6,7 @@ from structlog.testing import capture_logs
 
 from lacoc_server.court.log import CourtLog
 from lacoc_shared.messages import Event, Health, SeatHealth
+from lacoc_shared.words import say
 
 pytestmark = pytest.mark.usefixtures("loud")
 
@@ -20,21 +21,24 @@ HEALTH = Health(
     dropped={},
     decisions={},
 )
+TROUBLE = say("record.no-room", file="m.mcap", why="disk full")
 
 
 def test_an_event_is_a_line_with_all_it_has() -> None:
     """One line an event, a match id everywhere; trouble stands out."""
-    flip = Event(number=7, match=1, beat=99, clock_ticks=12, kind="flip", text="A flip.", seat=0)
+    said = say("event.back", team="Ants")
+    flip = Event(number=7, match=1, beat=99, clock_ticks=12, kind="flip", said=said, seat=0)
     with capture_logs() as lines:
         log = CourtLog("main")
         log.event("m-1", flip)
         log.event("m-1", msgspec.structs.replace(flip, kind="silent"), 9000)
     assert lines[0] == {
-        "event": "A flip.",
+        "event": "Ants is back.",
+        "code": "event.back",
         "log_level": "info",
         "court": "main",
         "match_id": "m-1",
-        **{name: getattr(flip, name) for name in flip.__struct_fields__ if name != "text"},
+        **{name: getattr(flip, name) for name in flip.__struct_fields__ if name != "said"},
     }
     assert lines[1]["log_level"] == "warning"
     assert lines[1]["left_ticks"] == 8988
@@ -42,14 +46,14 @@ def test_an_event_is_a_line_with_all_it_has() -> None:
 
 def test_what_went_wrong_is_said_once() -> None:
     """New refusals, slow beats and the disk, as they change; not twice a second for ever."""
-    flooded = msgspec.structs.replace(LEFT, refused={"flood": 5, "bad seal": 1})
+    flooded = msgspec.structs.replace(LEFT, refused={"flood": 5, "bad-seal": 1})
     worse = msgspec.structs.replace(
         HEALTH,
         seats=(flooded,),
-        dropped={"wrong token": 1},
+        dropped={"wrong-token": 1},
         slow_beats=3,
         worst_late_ms=61.0,
-        record_trouble="The record can't be written.",
+        record_trouble=TROUBLE,
     )
     with capture_logs() as lines:
         log = CourtLog("main")
@@ -58,18 +62,19 @@ def test_what_went_wrong_is_said_once() -> None:
             HEALTH,
             worse,
             worse,
-            msgspec.structs.replace(worse, record_trouble=""),
+            msgspec.structs.replace(worse, record_trouble=None),
         ):
             log.health("m-1", health)
     assert [line["event"] for line in lines] == [
-        "Seat left: 2 refused, flood.",
-        "Seat left: 3 refused, flood.",
-        "Seat left: 1 refused, bad seal.",
-        "Referee's desk: 1 refused, wrong token.",
-        "Slow beats: 3, 3 in all; the latest by 61 ms.",
-        "The record can't be written.",
+        "left seat: 2 refused: too many at once.",
+        "left seat: 3 refused: too many at once.",
+        "left seat: 1 refused: wrong signature.",
+        "Referee's desk: 1 refused: wrong token.",
+        "Slow beats: 3, and 3 in all. The latest began 61 ms late.",
+        "The record m.mcap can't be written: disk full. Make room on its disk.",
         "The record is written again.",
     ]
+    assert [line["code"] for line in lines][-2:] == ["record.no-room", "log.record-again"]
     assert {line["match_id"] for line in lines} == {"m-1"}
     assert {line["log_level"] for line in lines} == {"warning"}
 

@@ -9,6 +9,7 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.words import say
 
 HEXAPOD = join(0)
 
@@ -43,7 +44,7 @@ def test_one_gait_file_is_enough() -> None:
     assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, None).gait.locomotion is None
     assert weigh_in(HEXAPOD.robot, None, HEXAPOD.locomotion).gait.postures is None
     (mistake,) = mistakes_of()
-    assert mistake.found == "none for this arena"
+    assert mistake.found == say("gait.none-for-arena")
 
 
 def test_a_gait_needs_keys_at_an_open_level() -> None:
@@ -56,9 +57,8 @@ def test_the_files_are_not_swapped() -> None:
     """Rules 2: each file is the table that it is sent as."""
     found = [m.expected for m in mistakes_of(None, HEXAPOD.locomotion, HEXAPOD.postures)]
     assert found == [
-        "a Loco-data file (postures for level A)",
-        "a LocoTra-data file (sequences for level B; "
-        "'lacoc gait convert Loco-data.xlsx LocoTra-data.txt' makes one)",
+        say("gait.loco-data"),
+        say("gait.locotra-data"),
     ]
 
 

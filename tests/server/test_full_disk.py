@@ -13,7 +13,6 @@ from typing import NamedTuple
 import pytest
 from running import WAIT_S, Party, party, served, write_contest
 
-from lacoc_server.doors.inbox import SILENT_AFTER_S
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
 from lacoc_shared.codec import decode
@@ -22,7 +21,7 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
-from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.seat import BEATS_PER_S, SILENT_AFTER_S, Phase
 
 pytestmark = pytest.mark.slow
 

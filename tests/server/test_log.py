@@ -1,7 +1,4 @@
-"""The log of a match and its answers, word for word (docs/protocol.md, Event).
-
-People read them, the record keeps them, and the pages' Japanese is made of them.
-"""
+"""The log of a match and its answers, phrase for phrase (docs/protocol.md, Event)."""
 
 from typing import Any
 
@@ -31,27 +28,37 @@ from lacoc_shared.inputs import Advice, HeardSeat, Input, LeaveSeat, ReadySeat, 
 from lacoc_shared.messages import PROTOCOL, DecisionReply, Done, Event, Frame, Refusal, SeatFrame
 from lacoc_shared.record.schema import Result
 from lacoc_shared.seat import NOBODY, No, Phase
+from lacoc_shared.words import Phrase, faults, render, say
 
 P = Phase
 FLIP = {2: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}}
 """From the middle of one's own disc c2r2 to the other's c3r2."""
-Said = tuple[str, int, str, dict[str, Any]]
-"""kind, seat, text, data"""
+Said = tuple[str, int, Phrase, dict[str, Any]]
+"""kind, seat, said, data"""
 
 
 def said(events: tuple[Event, ...]) -> list[Said]:
-    return [(event.kind, event.seat, event.text, event.data) for event in events]
+    assert not [fault for event in events for fault in faults(event.said)]
+    return [(event.kind, event.seat, event.said, event.data) for event in events]
 
 
 def phase(before: str, then: str, **data: str) -> Said:
-    return "phase", NOBODY, f"{then}.", {"before": before, "after": then, **data}
+    said = Phrase(f"event.{then.lower()}")
+    return "phase", NOBODY, said, {"before": before, "after": then, **data}
 
 
-def word(name: str, text: str, reason: str = "", **arguments: Any) -> Said:
-    text = f"Referee Kubota: {text}" + f" Reason: {reason}" * bool(reason)
+def word(name: str, did: Phrase, reason: str = "", **arguments: Any) -> Said:
     arguments = {"type": name, **arguments}
     data = {"decision": name, "by": "Kubota", "reason": reason, "arguments": arguments}
-    return "decision", NOBODY, text, data
+    said = say("event.decided", by="Kubota", did=did, reason=reason or None)
+    return "decision", NOBODY, said, data
+
+
+def joined(team: str, seat: str, robot: str) -> Phrase:
+    return say("event.joined", team=team, seat=seat, robot=robot)
+
+
+BROKE = say("fault.contacts")
 
 
 HEXAPODS, WITH_A_QUADRUPED = "3d16d9075b90decf", "280170d9694dcef7"
@@ -61,120 +68,157 @@ STORY: tuple[tuple[tuple[Input, ...], list[Said]], ...] = (
         (join(LEFT), join(RIGHT, robot="quadruped")),
         [
             phase("CREATED", "LOBBY"),
-            ("join", LEFT, "Ants takes the left seat with Hexapod.", {}),
-            ("join", RIGHT, "Bees takes the right seat with Quadruped.", {}),
+            ("join", LEFT, joined("Ants", "left", "Hexapod"), {}),
+            ("join", RIGHT, joined("Bees", "right", "Quadruped"), {}),
         ],
     ),
     (
         (ReadySeat(LEFT, True), ReadySeat(RIGHT, True)),
         [
-            ("ready", LEFT, "Ants is ready.", {"ready": True}),
-            ("ready", RIGHT, "Bees is ready.", {"ready": True}),
+            ("ready", LEFT, say("event.team-ready", team="Ants"), {"ready": True}),
+            ("ready", RIGHT, say("event.team-ready", team="Bees"), {"ready": True}),
             phase("LOBBY", "READY", model=WITH_A_QUADRUPED),
         ],
     ),
     (
         (ReadySeat(LEFT, False),),
         [
-            ("ready", LEFT, "Ants is not ready after all.", {"ready": False}),
+            ("ready", LEFT, say("event.team-not-ready", team="Ants"), {"ready": False}),
             phase("READY", "LOBBY"),
         ],
     ),
-    ((LeaveSeat(RIGHT),), [("leave", RIGHT, "Bees leaves the right seat.", {})]),
+    (
+        (LeaveSeat(RIGHT),),
+        [("leave", RIGHT, say("event.left-seat", team="Bees", seat="right"), {})],
+    ),
     (
         (join(RIGHT), decide(d.Ready("right"), ""), ReadySeat(LEFT, True)),
         [
-            ("join", RIGHT, "Bees takes the right seat with Hexapod.", {}),
-            ("ready", LEFT, "Ants is ready.", {"ready": True}),
-            word("ready", "ready for Bees.", seat="right"),
-            ("ready", RIGHT, "Bees is ready.", {"ready": True}),
+            ("join", RIGHT, joined("Bees", "right", "Hexapod"), {}),
+            ("ready", LEFT, say("event.team-ready", team="Ants"), {"ready": True}),
+            word("ready", say("decision.ready", team="Bees"), seat="right"),
+            ("ready", RIGHT, say("event.team-ready", team="Bees"), {"ready": True}),
             phase("LOBBY", "READY", model=HEXAPODS),
         ],
     ),
     (
         (decide(d.Start(), ""),),
-        [word("start", "play begins in 0.04 s."), phase("READY", "COUNTDOWN")],
+        [word("start", say("decision.start", seconds=0.04)), phase("READY", "COUNTDOWN")],
     ),
     ((), []),
     ((), [phase("COUNTDOWN", "PLAYING")]),
     ((), []),
-    ((), [("flip", LEFT, "Ants flips c3r2.", {"marker": "c3r2", "also": (), "points": 1})]),
-    ((SilentSeat(LEFT),), [("silent", LEFT, "Ants is not heard any more: it stands.", {})]),
+    (
+        (),
+        [
+            (
+                "flip",
+                LEFT,
+                say("event.flip", team="Ants", marker="c3r2", also=[]),
+                {"marker": "c3r2", "also": (), "points": 1},
+            )
+        ],
+    ),
+    ((SilentSeat(LEFT),), [("silent", LEFT, say("event.silent", team="Ants"), {})]),
     (
         (HeardSeat(LEFT),),
         [
-            ("heard", LEFT, "Ants is heard again.", {}),
-            ("fault", RIGHT, "Physics stopped: it broke.", {"words": "it broke"}),
+            ("heard", LEFT, say("event.heard", team="Ants"), {}),
+            ("fault", RIGHT, say("event.fault", why=BROKE), {}),
             phase("PLAYING", "HALTED"),
         ],
     ),
     (
         (decide(d.Resume(), ""),),
-        [word("resume", "play goes on in 0.04 s."), phase("HALTED", "COUNTDOWN")],
+        [word("resume", say("decision.resume", seconds=0.04)), phase("HALTED", "COUNTDOWN")],
     ),
     ((), []),
     ((), [phase("COUNTDOWN", "PLAYING")]),
-    ((key(RIGHT, X),), [("restart", RIGHT, "Bees goes back to the start.", {})]),
-    ((LeaveSeat(RIGHT),), [("leave", RIGHT, "Bees has left; the seat stays theirs.", {})]),
-    ((join(RIGHT),), [("join", RIGHT, "Bees is back.", {})]),
+    ((key(RIGHT, X),), [("restart", RIGHT, say("event.restarted", team="Bees"), {})]),
+    ((LeaveSeat(RIGHT),), [("leave", RIGHT, say("event.left-match", team="Bees"), {})]),
+    ((join(RIGHT),), [("join", RIGHT, say("event.back", team="Bees"), {})]),
     (
         (decide(d.Restart("left"), "stuck"),),
-        [word("restart", "Ants goes back to the start.", "stuck", seat="left")],
+        [word("restart", say("decision.restart", team="Ants"), "stuck", seat="left")],
     ),
     (
         (decide(d.Freeze("left", 2.5), "late"),),
-        [word("freeze", "Ants is frozen for 2.5 s.", "late", seat="left", seconds=2.5)],
+        [
+            word(
+                "freeze",
+                say("decision.freeze", team="Ants", seconds=2.5),
+                "late",
+                seat="left",
+                seconds=2.5,
+            )
+        ],
     ),
     (
         (decide(d.Unfreeze("left"), ""),),
-        [word("unfreeze", "Ants may move again.", seat="left")],
+        [word("unfreeze", say("decision.unfreeze", team="Ants"), seat="left")],
     ),
     (
         (decide(d.Clock(-1.5), "a pause"),),
-        [word("clock", "-1.5 s to play.", "a pause", gives_s=-1.5)],
+        [word("clock", say("decision.clock-less", seconds=1.5), "a pause", gives_s=-1.5)],
     ),
-    ((decide(d.Halt(), ""),), [word("halt", "halted."), phase("PLAYING", "HALTED")]),
+    ((decide(d.Halt(), ""),), [word("halt", say("decision.halt")), phase("PLAYING", "HALTED")]),
     (
         (decide(d.Adjust("right", 2), "fair"),),
-        [word("adjust", "+2 for Bees.", "fair", seat="right", points=2)],
+        [
+            word(
+                "adjust",
+                say("decision.adjust", points=2, team="Bees"),
+                "fair",
+                seat="right",
+                points=2,
+            )
+        ],
     ),
     (
         (decide(d.Set("c0r0", "neutral"), "torn"),),
-        [word("set", "c0r0 is set to neutral.", "torn", marker="c0r0", state="neutral")],
+        [
+            word(
+                "set",
+                say("decision.set", marker="c0r0", state="neutral"),
+                "torn",
+                marker="c0r0",
+                state="neutral",
+            )
+        ],
     ),
     (
         (decide(d.Declare("right"), "agreed"),),
         [
-            word("declare", "Bees is declared the winner.", "agreed", winner="right"),
+            word("declare", say("decision.declare", team="Bees"), "agreed", winner="right"),
             (
                 "phase",
                 NOBODY,
-                "FINISHED: ended by the referee.",
+                say("event.finished", why=say("over.ended")),
                 {"before": "HALTED", "after": "FINISHED"},
             ),
             (
                 "result",
                 NOBODY,
-                "By the rules: Bees wins, 18 : 19.",
+                say("event.wins", team="Bees", scores=(18, 19)),
                 {"winner": "right", "scores": (18, 19)},
             ),
         ],
     ),
     (
         (decide(d.Declare("draw"), "agreed"),),
-        [word("declare", "the match is declared a draw.", "agreed", winner="draw")],
+        [word("declare", say("decision.declare-draw"), "agreed", winner="draw")],
     ),
     (
         (decide(d.Official(), ""),),
-        [word("official", "the result is official: draw."), phase("FINISHED", "OFFICIAL")],
+        [word("official", say("decision.official-draw")), phase("FINISHED", "OFFICIAL")],
     ),
-    ((decide(d.Next(), ""),), [word("next", "the next match opens.")]),
+    ((decide(d.Next(), ""),), [word("next", say("decision.next"))]),
 )
 
 
 def test_the_log_of_a_match() -> None:
-    """docs/protocol.md, Event: each event with its kind, seat, sentence and particulars."""
-    script = Script(poses=dict(FLIP), faults={5: Fault(RIGHT, "it broke")})
+    """docs/protocol.md, Event: each event with its kind, seat, phrase and particulars."""
+    script = Script(poses=dict(FLIP), faults={5: Fault(RIGHT, BROKE)})
     stage = Stage(overrides={"match": {"countdown_s": 0.04}}, script=script)
     for inputs, expected in STORY:
         events = stage.beat(*inputs).events
@@ -190,11 +234,11 @@ def test_the_log_of_a_match() -> None:
 
 def test_what_a_fault_in_ready_leaves_in_the_log() -> None:
     """Rules 4, design "Failure policy": both have to say ready again."""
-    stage = Stage(script=Script(faults={3: Fault(NOBODY, "it broke")})).to_ready()
+    stage = Stage(script=Script(faults={3: Fault(NOBODY, BROKE)})).to_ready()
     stage.until(P.LOBBY)
     told = [event for beat in stage.beats[2:] for event in beat.events]
     assert said(tuple(told)) == [
-        ("fault", NOBODY, "Physics stopped: it broke.", {"words": "it broke"}),
+        ("fault", NOBODY, say("event.fault", why=BROKE), {}),
         phase("READY", "LOBBY"),
     ]
 
@@ -203,14 +247,14 @@ def test_what_the_court_measured_in_the_log() -> None:
     """Design, "Health": a replay is advised with its reasons, or not any more."""
     stage = Stage(overrides=QUICK).to(P.PLAYING)
     assert stage.match.advice == ()
-    reasons = ("3 slow beats", "a beat 80 ms late")
+    reasons = (say("health.late-beat", late_ms=80, most_ms=60), "a text of an old record")
     beat = stage.beat(Advice(reasons))
     assert beat.outcomes == (Done(),)
-    text = "Replay advised: 3 slow beats; a beat 80 ms late."
-    assert said(beat.events) == [("advice", NOBODY, text, {})]
+    advised = say("event.advised", reasons=reasons)
+    assert said(beat.events) == [("advice", NOBODY, advised, {})]
     assert stage.match.advice == reasons
     again = said(stage.beat(Advice(())).events)
-    assert again == [("advice", NOBODY, "A replay is not advised any more.", {})]
+    assert again == [("advice", NOBODY, say("event.not-advised"), {})]
 
 
 def test_what_an_abort_and_a_draw_leave_in_the_log() -> None:
@@ -219,12 +263,12 @@ def test_what_an_abort_and_a_draw_leave_in_the_log() -> None:
     assert said(stage.beats[-1].events)[-1] == (
         "result",
         NOBODY,
-        "By the rules: a draw, 18 : 18.",
+        say("event.draw", scores=(18, 18)),
         {"winner": "draw", "scores": (18, 18)},
     )
     beat = stage.beat(decide(d.Abort(), "rain"))
     assert said(beat.events) == [
-        word("abort", "the match is void.", "rain"),
+        word("abort", say("decision.abort"), "rain"),
         phase("FINISHED", "VOID"),
     ]
 
@@ -237,16 +281,19 @@ def test_what_a_take_back_leaves_in_the_log() -> None:
     stage.decide(d.Halt())
     (number,) = stage.numbers("capture")
     beat = stage.beat(decide(d.TakeBack(number), "a mistake"))
-    changes = (f"event {number} vanishes: capture corner0", "appears: capture corner0")
-    name, nobody, text, data = word(
-        "take-back", f"event {number} is taken back.", "a mistake", event=number, dry_run=False
+    changes = (
+        say("change.vanishes", event=number, kind="capture", marker="corner0"),
+        say("change.appears", kind="capture", marker="corner0"),
     )
+    did = say("decision.take-back", event=number)
+    name, nobody, told, data = word("take-back", did, "a mistake", event=number, dry_run=False)
+    capture = say("event.capture", team="Ants", marker="corner0", points=5)
     assert said(beat.events) == [
-        (name, nobody, text, {**data, "changes": changes, "scores": (5, 0)}),
+        (name, nobody, told, {**data, "vanished": [number], "scores": (5, 0)}),
         (
             "capture",
             LEFT,
-            "Judged again: Ants takes corner0 for 5 points.",
+            say("event.judged-again", event=capture),
             {"marker": "corner0", "also": (), "points": 5},
         ),
     ]
@@ -254,7 +301,7 @@ def test_what_a_take_back_leaves_in_the_log() -> None:
     assert reply == DecisionReply(
         beat=beat.frame.beat,
         event=number + 3,  # after the halt and its phase
-        text=f"event {number} is taken back.",
+        said=did,
         scores=(5, 0),
         changes=changes,
     )
@@ -280,16 +327,14 @@ def test_a_sheet_of_a_robot_that_does_not_walk() -> None:
         (
             P.PLAYING,
             join(LEFT, robot="quadruped"),
-            Done(
-                "The match is on with the files that it began with; the next takes your new ones."
-            ),
+            Done(say("note.files-next-match")),
         ),
-        (P.PLAYING, ReadySeat(LEFT, True), Refusal("The match is on (PLAYING).")),
-        (P.PLAYING, LeaveSeat(LEFT), Done("The seat stays yours.")),
+        (P.PLAYING, ReadySeat(LEFT, True), Refusal(say("refused.match-on", phase="playing"))),
+        (P.PLAYING, LeaveSeat(LEFT), Done(say("note.seat-stays"))),
         (P.PLAYING, SilentSeat(LEFT), Done()),
         (P.PLAYING, HeardSeat(LEFT), Done()),
         (P.PLAYING, key(LEFT, FORWARD), Done()),
-        (P.HALTED, key(LEFT, FORWARD), Refusal("NOT_PLAYING")),
+        (P.HALTED, key(LEFT, FORWARD), Refusal(say("key.not-playing"))),
     ],
 )
 def test_answers(at: Phase, item: Input, answer: Done | Refusal) -> None:
@@ -300,19 +345,19 @@ def test_answers(at: Phase, item: Input, answer: Done | Refusal) -> None:
 def test_answers_about_empty_seats() -> None:
     """Rules 4: seats are taken in LOBBY; who comes later plays in the next match."""
     stage = Stage(overrides=QUICK)
-    nobody = Refusal("Nobody has joined the right seat.")
+    nobody = Refusal(say("refused.nobody-joined", seat="right"))
     assert stage.send(ReadySeat(RIGHT, True)) == nobody
     wrong = stage.send(join(RIGHT, robot_file=b"name = 3"))
     assert isinstance(wrong, Refusal)
-    assert (wrong.reason, len(wrong.mistakes) > 1) == ("Your files have mistakes.", True)
+    assert (wrong.why.code, len(wrong.mistakes) > 1) == ("refused.mistakes", True)
     assert not wrong.again, "the same files never become right"
     assert stage.match.seats[RIGHT].team == "right"
     on = Stage(overrides=QUICK).to(P.PLAYING)
     on.match.seats[RIGHT].join = None
-    why = "The match is on (PLAYING): join when the next one opens."
+    why = say("refused.match-on-join", phase="playing")
     assert on.send(join(RIGHT)) == Refusal(why, again=True)
     stage.decide(d.Abort())
-    assert stage.send(join(RIGHT)) == Done("This match is over: you play in the next.")
+    assert stage.send(join(RIGHT)) == Done(say("note.next-match"))
 
 
 def test_a_robot_is_weighed_by_the_contest_and_the_arena() -> None:
@@ -322,7 +367,7 @@ def test_a_robot_is_weighed_by_the_contest_and_the_arena() -> None:
     stage.match = Match(light, lambda arena, entries: ScriptedPhysics(arena, entries, Script()))
     heavy = stage.send(join(LEFT))
     assert isinstance(heavy, Refusal)
-    assert any("0.4" in mistake.expected for mistake in heavy.mistakes), heavy.mistakes
+    assert any("0.4" in render(mistake.expected) for mistake in heavy.mistakes), heavy.mistakes
     cannot_walk = Stage().send(msgspec.structs.replace(join(LEFT), locomotion=None))
     assert isinstance(cannot_walk, Refusal)
 
@@ -341,7 +386,7 @@ def test_a_result_says_all() -> None:
         scores=(19, 17),
         computed="left",
         official="",
-        reason="time is up",
+        reason=say("over.time"),
         clock_s=3600.06,
         beats=len(stage.beats),
         digest=stage.physics.digest.hex(),

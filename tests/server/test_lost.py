@@ -29,6 +29,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase, SeatFlag
+from lacoc_shared.words import render
 
 pytestmark = pytest.mark.slow
 
@@ -139,7 +140,7 @@ def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
         os.kill(hall.process.pid, signal.SIGCONT)
     hall.walks()
     hall.walks(1)
-    done = sum("+3" in event.text for event in hall.view.events)
+    done = sum("+3" in render(event.said) for event in hall.view.events)
     assert done == 1 if answer_s < LINK_S else done <= 1
 
 

@@ -32,7 +32,8 @@ from lacoc_shared import decisions as d
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import HeardSeat, Input, KeySeat, LeaveSeat, SilentSeat
 from lacoc_shared.messages import Done, Frame, Refusal
-from lacoc_shared.seat import No, Phase, SeatFlag
+from lacoc_shared.seat import WHY_NO, No, Phase, SeatFlag
+from lacoc_shared.words import say
 
 P = Phase
 LOCK_TICKS = 250
@@ -69,8 +70,8 @@ def test_x_puts_the_robot_back_as_it_started() -> None:
     seat = stage.frame.seats[LEFT]
     assert (seat.level, seat.key, seat.posture) == (B, STAND, 0)
     assert stage.match.seats[LEFT].state.angles == stage.match.seats[LEFT].entry.robot.start_posture
-    text = next(event.text for event in stage.events if event.kind == "restart")
-    assert text == "Ants goes back to the start."
+    said = next(event.said for event in stage.events if event.kind == "restart")
+    assert said == say("event.restarted", team="Ants")
     stage.run(50)
     assert math.dist(at(stage.frame, LEFT)[:2], fresh[:2]) < 0.01
 
@@ -89,15 +90,15 @@ def test_x_locks_for_5_s_of_clock() -> None:
     stage = playing(ticks=3)
     stage.beat(key(LEFT, X, seq=1))
     assert stage.frame.seats[LEFT].locked_ticks == LOCK_TICKS - 1
-    assert stage.send(key(LEFT, FORWARD, seq=2)) == Refusal("RESTARTED")
-    assert stage.send(key(LEFT, X, seq=3)) == Refusal("RESTARTED")
+    assert stage.send(key(LEFT, FORWARD, seq=2)) == Refusal(say("key.restarted"))
+    assert stage.send(key(LEFT, X, seq=3)) == Refusal(say("key.restarted"))
     assert stage.send(key(RIGHT, FORWARD, seq=1)) == Done()
     stage.decide(d.Halt())
     stage.run(300)  # the clock stands still
     stage.decide(d.Resume())
     stage.until(P.PLAYING)
     while stage.frame.seats[LEFT].locked_ticks:
-        assert stage.send(key(LEFT, FORWARD, seq=4)) == Refusal("RESTARTED")
+        assert stage.send(key(LEFT, FORWARD, seq=4)) == Refusal(say("key.restarted"))
     assert stage.match.ticks == 3 + LOCK_TICKS
     assert stage.send(key(LEFT, FORWARD, seq=5)) == Done()
 
@@ -120,7 +121,7 @@ def test_x_comes_before_the_digit_of_its_tick() -> None:
     """Rules 3: in one tick a seat's x is applied first, then its digit; a match refuses that."""
     stage = playing(ticks=2)
     beat = stage.beat(key(LEFT, FORWARD, seq=2), key(LEFT, X, seq=1))
-    assert beat.outcomes == (Refusal("RESTARTED"), Done())
+    assert beat.outcomes == (Refusal(say("key.restarted")), Done())
     seat = stage.frame.seats[LEFT]
     assert (seat.key, seat.applied_seq, seat.refused_seq) == (STAND, 1, 2)
 
@@ -295,7 +296,7 @@ def test_refused_keys(item: KeySeat, why: No) -> None:
     stage, twin = playing(ticks=3), playing(ticks=3)
     for both in (stage, twin):
         both.beat(key(LEFT, TURN_LEFT, seq=1))
-    assert stage.send(KeySeat(LEFT, 2, item.level, item.key)) == Refusal(why.name)
+    assert stage.send(KeySeat(LEFT, 2, item.level, item.key)) == Refusal(WHY_NO[why])
     twin.beat()
     seat, was = stage.frame.seats[LEFT], twin.frame.seats[LEFT]
     assert (seat.refused_seq, seat.refused_why) == (2, why)
@@ -368,7 +369,7 @@ def test_the_order_of_a_beat_is_that_of_its_kinds() -> None:
     beat = stage.beat(*inputs)
     told = [(event.kind, event.seat) for event in beat.events]
     assert told == [("join", RIGHT), ("silent", RIGHT), ("decision", -1), ("restart", LEFT)]
-    assert beat.outcomes[0] == Refusal("FROZEN")
+    assert beat.outcomes[0] == Refusal(say("key.frozen"))
     for later, earlier in pairwise(inputs):
         one, other = playing(ticks=2), playing(ticks=2)
         one.beat(later, earlier)

@@ -10,6 +10,7 @@ from lacoc_shared.codec import encode
 from lacoc_shared.inputs import HeardSeat, Input, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import DecisionReply, Done, Event, Refusal
 from lacoc_shared.seat import No, Phase, SeatFlag
+from lacoc_shared.words import render, say
 
 P = Phase
 COUNTDOWN_BEATS = 150
@@ -98,9 +99,9 @@ def test_ready_needs_every_seat_joined_and_ready() -> None:
     assert isinstance(stage.send(ReadySeat(LEFT, True)), Refusal)
     stage.beat(join(LEFT))
     stage.beat(ReadySeat(LEFT, True))
-    assert stage.match.missing() == ["nobody has joined right"]
+    assert stage.match.missing() == [say("why.nobody-in-seat", seat="right")]
     stage.beat(join(RIGHT))
-    assert stage.match.missing() == ["right (Bees) has not said ready"]
+    assert stage.match.missing() == [say("why.not-ready", seat="right", team="Bees")]
     assert stage.phase is P.LOBBY
     stage.beat(ReadySeat(RIGHT, True))
     assert stage.phase is P.READY
@@ -129,7 +130,7 @@ def test_an_empty_seat_is_nothing_but_empty() -> None:
     stage.beat(LeaveSeat(LEFT))
     assert stage.frame.seats[LEFT].flags == 0
     assert stage.match.sheet().seats[LEFT].team == ""
-    assert stage.match.missing()[0] == "nobody has joined left"
+    assert stage.match.missing()[0] == say("why.nobody-in-seat", seat="left")
 
 
 def test_joining_again_with_other_files_takes_ready_back() -> None:
@@ -244,7 +245,7 @@ def test_tick_9000_is_played_and_judged() -> None:
     flip = next(event for event in stage.events if event.kind == "flip")
     assert (flip.clock_ticks, flip.seat) == (9000, LEFT)
     assert stage.beats[-1].result is not None
-    assert (stage.match.ended, stage.match.winner()) == ("time is up", "left")
+    assert (stage.match.ended, stage.match.winner()) == (say("over.time"), "left")
     kinds = [event.kind for event in stage.beats[-1].events]
     assert kinds == ["flip", "phase", "result"]
 
@@ -254,7 +255,7 @@ def test_a_match_that_is_over_ends_at_once() -> None:
     stage = Stage("flag-strike", script=_all_corners()).to_playing()
     stage.until(P.FINISHED)
     assert stage.frame.clock_ticks == 40
-    assert stage.match.ended == "the left team holds all corners"
+    assert stage.match.ended == say("over.all-corners", seat="left")
 
 
 def test_all_corners_win_whatever_the_points_where_the_arena_says_so() -> None:
@@ -270,12 +271,12 @@ def test_the_shortest_match_is_one_tick() -> None:
     """Rules 4: a duration is a number of ticks; only 0 is without end."""
     stage = Stage(overrides={"match": {"duration_s": 0.02}}).to_playing()
     stage.until(P.FINISHED, at_most=5)
-    assert (stage.match.ticks, stage.match.ended) == (1, "time is up")
+    assert (stage.match.ticks, stage.match.ended) == (1, say("over.time"))
 
 
 def test_a_fault_halts_before_the_tick() -> None:
     """Design, "Failure policy": the state before the tick, HALTED, which robot and when."""
-    script = Script(faults={4: Fault(RIGHT, "a velocity became not a number")})
+    script = Script(faults={4: Fault(RIGHT, say("fault.velocity"))})
     stage, twin = Stage(script=script).to_playing(), Stage().to_playing()
     stage.until(P.PLAYING)
     twin.until(P.PLAYING)
@@ -293,7 +294,7 @@ def test_a_fault_halts_before_the_tick() -> None:
 
 def test_a_fault_in_ready_goes_back_to_lobby() -> None:
     """Rules 4: without physics there is no READY; both say it again."""
-    stage = Stage(script=Script(faults={5: Fault(LEFT, "broken")})).to_ready()
+    stage = Stage(script=Script(faults={5: Fault(LEFT, say("fault.contacts"))})).to_ready()
     stage.until(P.LOBBY, at_most=10)
     assert not any(seat.flags & SeatFlag.READY for seat in stage.frame.seats)
 
@@ -308,7 +309,7 @@ def test_keys_work_only_in_playing(phase: Phase, digit: int) -> None:
     stage, twin = Stage().to(phase), Stage().to(phase)
     outcome = stage.send(key(LEFT, digit, seq=7))
     twin.beat()
-    assert outcome == Refusal(No.NOT_PLAYING.name)
+    assert outcome == Refusal(say("key.not-playing"))
     seat = stage.frame.seats[LEFT]
     assert (seat.refused_seq, seat.refused_why, seat.applied_seq) == (7, No.NOT_PLAYING, 0)
     was = twin.frame.seats[LEFT]
@@ -340,7 +341,7 @@ def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
     assert stage.send(join(LEFT)) == Done()
     changed = stage.send(join(LEFT, robot="quadruped"))
     assert isinstance(changed, Done)
-    assert "the next takes your new ones" in changed.text
+    assert changed.said == say("note.files-next-match")
     assert stage.match.next_joins() == [join(LEFT, robot="quadruped"), join(RIGHT)]
     assert stage.match.sheet().seats[LEFT].robot == "Hexapod"
     assert isinstance(stage.send(ReadySeat(LEFT, False)), Refusal)
@@ -356,7 +357,7 @@ def test_who_joins_after_the_end_plays_in_the_next_match() -> None:
     stage.decide(d.Abort())
     answer = stage.send(join(RIGHT))
     assert isinstance(answer, Done)
-    assert "next" in answer.text
+    assert answer.said == say("note.next-match")
     assert stage.match.seats[RIGHT].join is None
     assert stage.match.next_joins() == [join(LEFT), join(RIGHT)]
 
@@ -367,11 +368,13 @@ def test_who_changes_their_mind_in_the_beat_of_start_is_not_begun_without(change
     stage = Stage().to(P.READY)
     *_, started = stage.beat(change, decide(d.Start())).outcomes
     assert isinstance(started, Refusal)
-    assert "right" in started.reason
+    assert "right" in render(started.why)
     assert stage.phase is P.LOBBY
     stage.to_ready()
     *_, started = stage.beat(LeaveSeat(LEFT), LeaveSeat(RIGHT), decide(d.Start())).outcomes
-    assert started == Refusal("start: nobody has joined left; nobody has joined right.")
+    nobody = [say("why.nobody-in-seat", seat=seat) for seat in ("left", "right")]
+    why = say("plain.sentences", sentences=nobody)
+    assert started == Refusal(say("refused.decision", decision="start", why=why))
 
 
 def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
@@ -384,7 +387,7 @@ def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
     assert stage.phase is P.PLAYING
     stage.beat(LeaveSeat(LEFT))
     assert stage.phase is P.FINISHED
-    assert stage.match.ended == "everybody has left"
+    assert stage.match.ended == say("over.everybody-left")
 
 
 READY = {"match": {"start": "ready", "countdown_s": 0.1, "unattended_s": 3.0}}
@@ -401,7 +404,7 @@ def test_who_leaves_in_the_countdown_has_left(others: list[LeaveSeat]) -> None:
     stage.run(10)
     assert stage.phase is (P.FINISHED if others else P.PLAYING)
     stage.beat(LeaveSeat(RIGHT))
-    assert (stage.phase, stage.match.ended) == (P.FINISHED, "everybody has left")
+    assert (stage.phase, stage.match.ended) == (P.FINISHED, say("over.everybody-left"))
 
 
 @pytest.mark.parametrize("halted", [False, True])
@@ -420,7 +423,7 @@ def test_a_match_that_nobody_judges_ends_when_nobody_is_heard(halted: bool) -> N
     assert stage.phase is (P.HALTED if halted else P.PLAYING)
     stage.beat()
     assert stage.phase is P.FINISHED
-    assert stage.match.result().reason == "nobody has been heard for 0.05 minutes"
+    assert stage.match.result().reason == say("over.nobody-heard", minutes=0.05)
 
 
 def test_who_comes_back_is_heard() -> None:
@@ -454,7 +457,7 @@ def test_a_practice_outlives_a_coffee_break() -> None:
     assert stage.phase is P.PLAYING
     for _ in range(60 * 50):
         stage.match.beat()
-    assert stage.match.ended == "nobody has been heard for 15 minutes"
+    assert stage.match.ended == say("over.nobody-heard", minutes=15)
 
 
 def test_a_match_with_a_referee_goes_on_though_everybody_has_left() -> None:

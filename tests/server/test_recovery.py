@@ -24,6 +24,7 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.network.session import open_client
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render
 
 pytestmark = pytest.mark.slow
 
@@ -60,7 +61,9 @@ def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
         assert [seat.applied_seq for seat in after.seats] == applied
         if after.clock_ticks == seen.clock_ticks:  # else the last frame died with the court
             assert (after.poses, after.digest) == (seen.poses, seen.digest)
-        those.until(lambda: sum("is back" in event.text for event in those.view.events) == 2)
+        those.until(
+            lambda: sum("is back" in render(event.said) for event in those.view.events) == 2
+        )
         those.decide(Resume(), Phase.PLAYING)
         seq = those.left.press(Level.LOCOMOTION, 1)
         those.until(lambda: those.frame.seats[0].applied_seq == seq)
@@ -141,8 +144,8 @@ def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> 
         those.decide(Resume())
         those.until(lambda: any(event.kind == "advice" for event in those.view.events))
         assert those.phase == Phase.FINISHED
-        told = next(event.text for event in those.view.events if event.kind == "advice")
-        assert "the court was started again 1 times, at most 0 may be" in told
+        told = next(render(event.said) for event in those.view.events if event.kind == "advice")
+        assert "the court was started again 1 time (at most 0 are allowed)" in told
     record = packed(folder)
     assert record.health is not None
     assert record.health.resumptions == 1

@@ -26,7 +26,7 @@ from lacoc_shared.codec import decode, encode
 from lacoc_shared.inputs import ReadySeat
 from lacoc_shared.messages import DecisionReply, Done, Refusal
 from lacoc_shared.seat import Phase, SeatFlag
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, faults, render, say
 
 P = Phase
 PHASES = list(P)[1:]
@@ -48,30 +48,24 @@ LEGAL: dict[str, tuple[d.Decision, set[Phase]]] = {
     "official": (d.Official(), {P.FINISHED}),
     "next": (d.Next(), {P.OFFICIAL, P.VOID}),
 }
-NEED_A_REASON = {
-    "restart",
-    "freeze",
-    "adjust",
-    "set",
-    "take-back",
-    "clock",
-    "abort",
-    "declare",
-}
 
 
 def stage_in(phase: Phase, script: Script | None = None) -> Stage:
     return Stage(overrides=QUICK if phase is not P.COUNTDOWN else None, script=script).to(phase)
 
 
-def refused(stage: Stage, decision: d.Decision, reason: str = "agreed") -> str:
+def refused(stage: Stage, decision: d.Decision, reason: str = "agreed") -> Phrase:
     """The reason of a refusal, after a look that it changed nothing at all."""
     before = encode(stage.match.result()), stage.match.history.state
     outcome = stage.decide(decision, reason)
     assert isinstance(outcome, Refusal), outcome
     assert not any(event.kind == "decision" for event in stage.beats[-1].events)
     assert stage.match.history.state is before[1]
-    return outcome.reason
+    assert not faults(outcome.why)
+    assert outcome.why.code == "refused.decision"
+    why = outcome.why.values["why"]
+    assert isinstance(why, Phrase)
+    return why
 
 
 def done(stage: Stage, decision: d.Decision) -> DecisionReply:
@@ -92,10 +86,13 @@ def test_what_is_legal_is_published(phase: Phase) -> None:
     assert list(published) == list(LEGAL)
     for name, (_, phases) in LEGAL.items():
         if phase in phases:
-            assert published[name] == ""
+            assert published[name] is None
         else:
-            assert f"the match is {phase.name}" in published[name]
-            assert all(legal.name in published[name] for legal in phases)
+            why = published[name]
+            assert why is not None
+            assert (why.code, why.values["phase"]) == ("why.phase", phase.word)
+            assert why.values["phases"] == tuple(one.word for one in sorted(phases))
+            assert not faults(why)
 
 
 @pytest.mark.parametrize("name", LEGAL)
@@ -109,7 +106,7 @@ def test_an_illegal_decision_is_refused_and_changes_nothing(phase: Phase, name: 
             done(stage, decision)
         return
     why = stage.match.legality()[name]
-    assert stage.decide(decision) == Refusal(f"{name}: {why}.")
+    assert stage.decide(decision) == Refusal(say("refused.decision", decision=name, why=why))
     twin.beat()
     for _ in range(3):
         assert seen(stage) == seen(twin)
@@ -122,10 +119,13 @@ def test_why_a_match_cannot_start_names_all_that_is_missing() -> None:
     """Rules 4: why not is published: everything that is missing, at once."""
     stage = Stage()
     stage.beat(join(LEFT))
-    assert stage.match.legality()["start"] == (
-        "only in READY; the match is LOBBY; left (Ants) has not said ready; nobody has joined right"
-    )
-    assert stage.match.legality()["halt"] == "only in COUNTDOWN or PLAYING; the match is LOBBY"
+    legality = stage.match.legality()
+    not_ready = say("why.not-ready", seat="left", team="Ants")
+    nobody = say("why.nobody-in-seat", seat="right")
+    missing = [not_ready, nobody]
+    assert legality["start"] == say("why.phase", phase="lobby", phases=["ready"], missing=missing)
+    phases = ["countdown", "playing"]
+    assert legality["halt"] == say("why.phase", phase="lobby", phases=phases, missing=[])
 
 
 @pytest.mark.parametrize("name", sorted(LEGAL))
@@ -136,55 +136,47 @@ def test_which_need_a_reason(name: str) -> None:
         return
     for blank in ("", "  \n"):
         outcome = stage_in(min(phases)).decide(decision, reason=blank)
-        if name in NEED_A_REASON:
-            assert outcome == Refusal(f"{name}: give a reason; it goes into the record.")
+        if name in d.NEED_A_REASON:
+            why = say("why.needs-reason")
+            assert outcome == Refusal(say("refused.decision", decision=name, why=why))
         else:
             assert isinstance(outcome, DecisionReply)
 
 
 BAD_ARGUMENTS: list[tuple[d.Decision, Phase, str]] = [
-    (d.Ready("solo"), P.LOBBY, "no seat 'solo'"),
-    (d.Restart("Left"), P.HALTED, "no seat 'Left'; there are left, right"),
-    (d.Freeze("middle", 1.0), P.PLAYING, "no seat"),
-    (d.Freeze("left", 0.0), P.PLAYING, "more than 0"),
-    (d.Freeze("left", -1.0), P.PLAYING, "more than 0"),
-    (d.Freeze("left", 600.1), P.PLAYING, "at most 600"),
-    (d.Freeze("left", math.nan), P.PLAYING, "nan s?"),
-    (d.Freeze("left", math.inf), P.PLAYING, "inf s?"),
-    (d.Unfreeze("left"), P.PLAYING, "Ants is not frozen"),
-    (d.Unfreeze("top"), P.HALTED, "no seat"),
-    (
-        d.Adjust("left", 0),
-        P.PLAYING,
-        "adjust: 0 points? Give a number between -1000 and 1000, not 0.",
-    ),
-    (d.Adjust("left", 1001), P.PLAYING, "between -1000 and 1000"),
-    (d.Adjust("left", -1001), P.FINISHED, "between -1000 and 1000"),
-    (d.Adjust("none", 1), P.HALTED, "no seat"),
-    (d.Set("c9r9", "left"), P.HALTED, "no 'c9r9' on this board; there are c0r0, "),
-    (d.Set("c0r0", "blue"), P.HALTED, "'blue' is no state; there are neutral, left, right, down"),
-    (d.Set("c0r0", "down"), P.HALTED, "a disc is neutral, left or right"),
-    (d.Clock(0.0), P.PLAYING, "clock: 0 s? Give a number between -3600 and 3600, not 0."),
-    (d.Clock(math.nan), P.PLAYING, "nan"),
-    (d.Clock(3601.0), P.PLAYING, "between -3600 and 3600"),
-    (d.Declare("Ants"), P.FINISHED, "'Ants' can't win; there are left, right, draw"),
-    (
-        d.TakeBack(0),
-        P.HALTED,
-        "take-back: event 0 can't be taken back: give the number of a capture, flip, strike, "
-        "adjust or set that stands.",
-    ),
-    (d.TakeBack(1), P.HALTED, "event 1 can't be taken back"),
-    (d.TakeBack(-5), P.FINISHED, "can't be taken back"),
-    (d.TakeBack(10**9), P.FINISHED, "can't be taken back"),
+    (d.Ready("solo"), P.LOBBY, "why.no-seat"),
+    (d.Restart("Left"), P.HALTED, "why.no-seat"),
+    (d.Freeze("middle", 1.0), P.PLAYING, "why.no-seat"),
+    (d.Freeze("left", 0.0), P.PLAYING, "why.bad-freeze"),
+    (d.Freeze("left", -1.0), P.PLAYING, "why.bad-freeze"),
+    (d.Freeze("left", 600.1), P.PLAYING, "why.bad-freeze"),
+    (d.Freeze("left", math.nan), P.PLAYING, "why.bad-freeze"),
+    (d.Freeze("left", math.inf), P.PLAYING, "why.bad-freeze"),
+    (d.Unfreeze("left"), P.PLAYING, "why.not-frozen"),
+    (d.Unfreeze("top"), P.HALTED, "why.no-seat"),
+    (d.Adjust("left", 0), P.PLAYING, "why.bad-points"),
+    (d.Adjust("left", 1001), P.PLAYING, "why.bad-points"),
+    (d.Adjust("left", -1001), P.FINISHED, "why.bad-points"),
+    (d.Adjust("none", 1), P.HALTED, "why.no-seat"),
+    (d.Set("c9r9", "left"), P.HALTED, "why.no-marker"),
+    (d.Set("c0r0", "blue"), P.HALTED, "why.no-state"),
+    (d.Set("c0r0", "down"), P.HALTED, "why.disc-state"),
+    (d.Clock(0.0), P.PLAYING, "why.bad-clock"),
+    (d.Clock(math.nan), P.PLAYING, "why.bad-clock"),
+    (d.Clock(3601.0), P.PLAYING, "why.bad-clock"),
+    (d.Declare("Ants"), P.FINISHED, "why.can-not-win"),
+    (d.TakeBack(0), P.HALTED, "why.can-not-take-back"),
+    (d.TakeBack(1), P.HALTED, "why.can-not-take-back"),
+    (d.TakeBack(-5), P.FINISHED, "why.can-not-take-back"),
+    (d.TakeBack(10**9), P.FINISHED, "why.can-not-take-back"),
 ]
 
 
-@pytest.mark.parametrize(("decision", "phase", "words"), BAD_ARGUMENTS)
-def test_wrong_arguments(decision: d.Decision, phase: Phase, words: str) -> None:
+@pytest.mark.parametrize(("decision", "phase", "code"), BAD_ARGUMENTS)
+def test_wrong_arguments(decision: d.Decision, phase: Phase, code: str) -> None:
     """Rules 4: refused with what was found and what there is; nothing changes."""
     stage, twin = stage_in(phase), stage_in(phase)
-    assert words in refused(stage, decision)
+    assert refused(stage, decision).code == code
     twin.beat()
     assert seen(stage) == seen(twin)
 
@@ -200,7 +192,7 @@ def test_a_decision_is_an_event_with_who_beat_and_reason() -> None:
         (reply.beat, reply.event) == (event.beat, event.number) == (stage.frame.beat, event.number)
     )
     assert reply.scores == (18, 16)
-    assert event.text == "Referee Takeda: -2 for Bees. Reason: pushed the table"
+    assert render(event.said) == "Referee Takeda: -2 points for Bees. Reason: pushed the table"
     assert event.data["by"] == "Takeda"
     assert event.data["reason"] == "pushed the table"
     assert event.data["decision"] == "adjust"
@@ -214,16 +206,16 @@ def test_ready_for_a_seat() -> None:
     """Rules 4, `ready`: in the place of a contestant who cannot."""
     stage = Stage()
     stage.beat(join(LEFT), join(RIGHT))
-    assert "nobody" not in stage.match.legality()["start"]
+    assert "nobody" not in render(stage.match.legality()["start"] or "")
     done(stage, d.Ready("left"))
     assert stage.frame.seats[LEFT].flags & SeatFlag.READY
     done(stage, d.Ready("right"))
     assert stage.phase is P.READY
     empty = Stage()
     empty.beat()
-    assert refused(empty, d.Ready("left")) == "ready: nobody has joined."
+    assert refused(empty, d.Ready("left")) == say("why.nobody-joined")
     empty.beat(join(RIGHT))
-    assert refused(empty, d.Ready("left")) == "ready: nobody has joined left."
+    assert refused(empty, d.Ready("left")) == say("why.nobody-in-seat", seat="left")
 
 
 @pytest.mark.parametrize("phase", [P.PLAYING, P.HALTED])
@@ -251,8 +243,8 @@ def test_freeze_and_its_end() -> None:
     seat = stage.frame.seats[LEFT]
     assert (seat.key, seat.locked_ticks) == (STAND, 49)
     assert seat.flags == SeatFlag.JOINED | SeatFlag.READY | SeatFlag.FROZEN
-    assert stage.send(key(LEFT, FORWARD, seq=2)) == Refusal("FROZEN")
-    assert stage.send(key(LEFT, X, seq=3)) == Refusal("FROZEN")
+    assert stage.send(key(LEFT, FORWARD, seq=2)) == Refusal(say("key.frozen"))
+    assert stage.send(key(LEFT, X, seq=3)) == Refusal(say("key.frozen"))
     assert stage.send(key(RIGHT, FORWARD)) == Done()
     done(stage, d.Halt())
     stage.run(60)
@@ -283,7 +275,7 @@ def test_unfreeze_where_nothing_is_frozen_any_more() -> None:
     done(stage, d.Freeze("left", 0.04))
     assert stage.frame.seats[LEFT].locked_ticks == 1
     stage.beat()
-    assert refused(stage, d.Unfreeze("left")) == "unfreeze: Ants is not frozen."
+    assert refused(stage, d.Unfreeze("left")) == say("why.not-frozen", team="Ants")
     early = stage_in(P.COUNTDOWN)
     done(early, d.Halt())
     done(early, d.Freeze("left", 1.0))
@@ -339,8 +331,8 @@ def test_set_in_a_game_without_a_board() -> None:
     stage = Stage("practice", {"match": {"start": "referee"}})
     assert stage.to_ready().match.phase is P.READY
     stage.decide(d.Start())
-    assert stage.match.legality()["set"] == "this game has no board"
-    assert stage.match.legality()["clock"] == "this match has no end"
+    assert stage.match.legality()["set"] == say("why.no-board")
+    assert stage.match.legality()["clock"] == say("why.no-end")
 
 
 def test_clock_moves_the_end() -> None:
@@ -375,7 +367,7 @@ def test_clock_past_the_end() -> None:
     assert stage.phase is P.HALTED
     done(stage, d.Resume())
     stage.until(P.FINISHED, at_most=5)
-    assert (stage.match.ticks, stage.match.ended) == (ticks, "time is up")
+    assert (stage.match.ticks, stage.match.ended) == (ticks, say("over.time"))
     stage = stage_in(P.PLAYING)
     ticks = stage.match.ticks
     done(stage, d.Clock(-3600.0))
@@ -412,13 +404,13 @@ def test_abort_is_void() -> None:
     done(stage, d.Abort())
     result = stage.beats[-1].result
     assert result is not None
-    assert (result.official, result.reason) == ("void", "aborted by the referee")
+    assert (result.official, result.reason) == ("void", say("over.aborted"))
     finished = stage_in(P.FINISHED)
     done(finished, d.Adjust("left", 1))
     done(finished, d.Abort())
     result = finished.beats[-1].result
     assert result is not None
-    assert (result.official, result.computed, result.reason) == ("void", "left", "time is up")
+    assert (result.official, result.computed, result.reason) == ("void", "left", say("over.time"))
 
 
 @pytest.mark.parametrize("phase", [P.HALTED, P.FINISHED])
@@ -429,7 +421,7 @@ def test_declare_keeps_both_results(phase: Phase, winner: str) -> None:
     done(stage, d.Adjust("right", 4))
     done(stage, d.Declare(winner))
     assert stage.phase is P.FINISHED
-    assert stage.match.ended == ("time is up" if phase is P.FINISHED else "ended by the referee")
+    assert stage.match.ended == say("over.time") if phase is P.FINISHED else say("over.ended")
     done(stage, d.Official())
     result = stage.beats[-1].result
     assert result is not None
@@ -440,7 +432,7 @@ def test_official_without_a_word_is_what_was_computed() -> None:
     """Rules 4, `official`: makes the result official."""
     stage = stage_in(P.FINISHED)
     reply = done(stage, d.Official())
-    assert reply.text == "the result is official: draw."
+    assert reply.said == say("decision.official-draw")
     assert stage.phase is P.OFFICIAL
 
 
@@ -487,7 +479,7 @@ def test_ready_can_be_taken_back_after_the_referee_gave_it() -> None:
 @pytest.mark.parametrize("decision", [d.Freeze("left", 0.004), d.Clock(-0.009)])
 def test_less_than_a_tick_is_no_decision(decision: d.Decision) -> None:
     """Rules 4: what would change nothing is refused, not answered as if it were done."""
-    assert "less than a tick" in refused(stage_in(P.HALTED), decision)
+    assert refused(stage_in(P.HALTED), decision).code == "why.less-than-tick"
 
 
 def test_a_decision_stands_in_the_log_before_what_follows() -> None:

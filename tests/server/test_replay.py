@@ -21,8 +21,11 @@ from lacoc_shared.inputs import HeardSeat, Input, KeySeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import Event, Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import KINDS
+from lacoc_shared.record.stream import walk
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render, say
 
 INPUTS: dict[int, list[Input]] = {
     0: [join(LEFT), join(RIGHT)],
@@ -154,7 +157,7 @@ def test_nothing_of_a_record_can_be_changed_unseen(
     record = Record.read(live[0])
     if what == "event":
         event = record.events[-1]
-        record.events[-1] = msgspec.structs.replace(event, text=event.text + "!")
+        record.events[-1] = msgspec.structs.replace(event, said=say("plain.text", text="!"))
         beat = event.beat
     elif what == "touch":
         beat = max(record.touches)
@@ -163,6 +166,39 @@ def test_nothing_of_a_record_can_be_changed_unseen(
         beat, saved = record.snapshots[-1]
         record.snapshots[-1] = beat, saved[:-1] + bytes([saved[-1] ^ 1])
     assert verdict(record).text == f"beat {beat} differs: {words}"
+
+
+def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
+    """Write a record again as software of protocol 1 wrote it."""
+    header = record.header
+    versions = {**header.versions, "protocol": "1"}
+    writer = RecordWriter(folder, msgspec.structs.replace(header, versions=versions))
+
+    def take(topic: str, beat: int, data: bytes, message: object) -> None:
+        if isinstance(message, Event):
+            fields = msgspec.structs.asdict(message)
+            fields["text"] = render(fields.pop("said"))
+            data = encode(fields)
+        if topic != "/lacoc/header":
+            writer._write(1 + list(KINDS).index(topic), beat, data)
+
+    walk(live, take)
+    writer.close()
+    return writer.path
+
+
+def test_a_record_of_protocol_1_is_read_and_verified(
+    live: tuple[Path, list[Beat]], tmp_path: Path
+) -> None:
+    """Its sentences are English; everything else of it is compared."""
+    path = as_protocol_1(Record.read(live[0]), live[0], tmp_path)
+    record = Record.read(path)
+    first = Record.read(live[0]).events[0]
+    assert record.events[0].said == say("plain.text", text=render(first.said))
+    assert verdict(record).kind is Kind.SAME
+    event = record.events[-1]
+    record.events[-1] = msgspec.structs.replace(event, kind="another")
+    assert verdict(record).differs_at == event.beat
 
 
 @pytest.mark.slow

@@ -18,6 +18,7 @@ from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Result
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
 
 SHORT = {"match": {"duration_s": 4.0}}
 OTHELLO = arenas.load("othello")
@@ -33,7 +34,7 @@ def play(
 def test_a_match_to_its_end(tmp_path: Path) -> None:
     """Result and record; robots settle, then the whole ceremony."""
     result = play(tmp_path)
-    assert (result.reason, result.clock_s, sum(result.scores)) == ("time is up", 4.0, 36)
+    assert (result.reason, result.clock_s, sum(result.scores)) == (say("over.time"), 4.0, 36)
     assert result.official == result.computed != ""
     assert result.teams == ("nearest", "straight")
     record = Record.read(tmp_path / "m.mcap")
@@ -86,7 +87,7 @@ def test_practice_with_an_end() -> None:
     made = setup("practice", {"match": {"duration_s": 1.0}})
     ground = arenas.load("practice")
     result = simulate(made, [player(ground, 0, next(iter(ground.bots)))])
-    assert (result.clock_s, result.reason) == (1.0, "time is up")
+    assert (result.clock_s, result.reason) == (1.0, say("over.time"))
 
 
 def test_files_with_mistakes_are_refused() -> None:

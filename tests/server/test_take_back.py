@@ -14,6 +14,7 @@ from lacoc_server.match.history import History
 from lacoc_shared import decisions as d
 from lacoc_shared.messages import DecisionReply, Event, Refusal
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render, say
 
 P = Phase
 CORNERS = ((-0.8, -0.8), (0.8, -0.8), (-0.8, 0.8), (0.8, 0.8))
@@ -73,15 +74,15 @@ def test_a_flip_and_what_came_of_it() -> None:
     first, second = event(stage, "flip", "c3r2"), event(stage, "flip", "c4r2")
     reply = take_back(stage, first.number)
     assert reply.changes == (
-        f"event {first.number} vanishes: flip c3r2",
-        f"event {second.number} vanishes: flip c4r2",
+        say("change.vanishes", event=first.number, kind="flip", marker="c3r2"),
+        say("change.vanishes", event=second.number, kind="flip", marker="c4r2"),
     )
     assert reply.scores == stage.scores == (18, 18)
     assert stage.board["c3r2"] == stage.board["c4r2"] == "right"
     assert (stage.match.result().reason, stage.match.result().computed) == ("", "")
     logged = next(e for e in stage.beats[-1].events if e.kind == "decision")
     assert logged.number == reply.event
-    assert tuple(logged.data["changes"]) == reply.changes
+    assert logged.data["vanished"] == [first.number, second.number]
     assert stage.phase is P.HALTED
 
 
@@ -97,10 +98,10 @@ def test_an_event_may_appear() -> None:
     )
     assert stage.scores == (19, 17)
     reply = take_back(stage, event(stage, "flip", "c3r2").number)
-    assert reply.changes[1:] == ("appears: flip c2r2",)
+    assert reply.changes[1:] == (say("change.appears", kind="flip", marker="c2r2"),)
     assert reply.scores == stage.scores == (17, 19)
     new = event(stage, "flip", "c2r2")
-    assert new.text.startswith("Judged again: Bees flips c2r2")
+    assert render(new.said).startswith("Judged again: Bees flips c2r2")
     assert new.number == stage.match.next_number - 1
     assert reply.event is not None
     assert new.number > reply.event
@@ -114,8 +115,8 @@ def test_a_capture() -> None:
     assert stage.numbers("capture") == [first.number]
     reply = take_back(stage, first.number)
     assert reply.changes == (
-        f"event {first.number} vanishes: capture corner0",
-        "appears: capture corner0",
+        say("change.vanishes", event=first.number, kind="capture", marker="corner0"),
+        say("change.appears", kind="capture", marker="corner0"),
     )
     assert stage.scores == (5, 0)
     assert take_back(stage, event(stage, "capture", "corner0").number).scores == (0, 0)
@@ -129,7 +130,7 @@ def test_a_strike() -> None:
     reply = take_back(stage, event(stage, "strike", "flag18").number)
     assert (reply.scores, reply.changes) == (
         (0, 0),
-        (f"event {stage.numbers('strike')[0]} vanishes: strike flag18",),
+        (say("change.vanishes", event=stage.numbers("strike")[0], kind="strike", marker="flag18"),),
     )
     assert "flag18" not in stage.board
 
@@ -155,7 +156,7 @@ def test_a_set_that_a_later_flip_needed() -> None:
     play(stage, 50)
     assert stage.scores == (20, 16)
     reply = take_back(stage, number)
-    assert reply.changes == ("appears: flip c3r2",)
+    assert reply.changes == (say("change.appears", kind="flip", marker="c3r2"),)
     assert stage.scores == (20, 16)
 
 
@@ -181,7 +182,7 @@ def test_a_dry_run_changes_nothing_and_tells_the_truth(kind: str) -> None:
     assert (dry.event, stage.beats[-1].events) == (None, ())
     assert unexplained.beat == dry.beat + 1 == stage.frame.beat
     wet = take_back(stage, number)
-    assert (dry.scores, dry.changes, dry.text) == (wet.scores, wet.changes, wet.text)
+    assert (dry.scores, dry.changes, dry.said) == (wet.scores, wet.changes, wet.said)
     assert stage.scores == wet.scores != twin.scores
 
 
@@ -222,7 +223,7 @@ def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
     stage = flag_strike(ALL_FOUR)
     numbers = [stage.decide(d.Set(flag, "right")).event for flag in ("flag0", "flag1")]
     take_back(stage, numbers[1])
-    assert (stage.phase, stage.match.ended) == (P.FINISHED, "the left team holds all corners")
+    assert (stage.phase, stage.match.ended) == (P.FINISHED, say("over.all-corners", seat="left"))
     take_back(stage, numbers[0])
     assert stage.phase is P.FINISHED
     assert stage.scores == (20, 0)
@@ -237,9 +238,9 @@ def test_a_match_may_turn_out_to_have_been_over() -> None:
     retaken, strike = event(stage, "capture", "corner0").number, stage.numbers("strike")[0]
     reply = take_back(stage, retaken)
     assert stage.phase is P.FINISHED
-    assert stage.match.ended == "the left team holds all corners"
+    assert stage.match.ended == say("over.all-corners", seat="left")
     assert reply.scores == stage.scores == (20, 0)
-    assert f"event {strike} vanishes: strike flag18" in reply.changes
+    assert say("change.vanishes", event=strike, kind="strike", marker="flag18") in reply.changes
     # And back: without the last corner it was not over, and the strike counts again.
     reply = take_back(stage, event(stage, "capture", "corner3").number)
     assert stage.phase is P.HALTED
@@ -254,7 +255,7 @@ def test_what_turned_out_to_be_over_stays_over() -> None:
     assert (stage.phase, stage.scores) == (P.FINISHED, (20, 1))
     take_back(stage, put)
     assert (stage.phase, stage.scores) == (P.FINISHED, (20, 0))
-    assert stage.match.history.over == stage.match.ended == "the left team holds all corners"
+    assert stage.match.history.over == stage.match.ended == say("over.all-corners", seat="left")
 
 
 def test_time_is_up_stays_up() -> None:
@@ -266,7 +267,7 @@ def test_time_is_up_stays_up() -> None:
     take_back(stage, stage.numbers("flip")[0])
     result = stage.beats[-1].result
     assert result is not None
-    assert (stage.phase, result.computed, result.reason) == (P.FINISHED, "draw", "time is up")
+    assert (stage.phase, result.computed, result.reason) == (P.FINISHED, "draw", say("over.time"))
     assert stage.frame.clock_ticks == 50
 
 
@@ -275,9 +276,9 @@ def test_over_in_the_tick_in_which_time_is_up() -> None:
     short = {"match": {"duration_s": 0.8, "countdown_s": 0.02}}
     stage = play(Stage("flag-strike", short, script=Script(poses=dict(ALL_FOUR))), 40)
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
-    assert stage.match.ended == "the left team holds all corners"
+    assert stage.match.ended == say("over.all-corners", seat="left")
     take_back(stage, event(stage, "capture", "corner3").number)
-    assert (stage.phase, stage.match.ended) == (P.FINISHED, "time is up")
+    assert (stage.phase, stage.match.ended) == (P.FINISHED, say("over.time"))
 
 
 def test_time_is_never_up_in_a_match_without_end() -> None:
@@ -296,7 +297,7 @@ def test_a_declared_end_stays() -> None:
     take_back(stage, event(stage, "capture", "corner3").number)
     assert stage.phase is P.FINISHED
     assert stage.match.declared == "right"
-    assert stage.match.ended == "the left team holds all corners"
+    assert stage.match.ended == say("over.all-corners", seat="left")
 
 
 def test_paths_restarts_clock_and_other_decisions_stay() -> None:

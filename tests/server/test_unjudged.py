@@ -15,20 +15,22 @@ from lacoc_server.doors.network import Arrival
 from lacoc_server.journal.recovery import unfinished
 from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Kind, Verdict
-from lacoc_server.match.match import Match, Outcome
+from lacoc_server.match.match import Match
 from lacoc_server.match.physics import Fault
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
 from lacoc_shared.inputs import HeardSeat, Input, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
-from lacoc_shared.messages import Done, Event, SeatHealth
+from lacoc_shared.messages import Done, Event, Outcome, SeatHealth
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import NOBODY, Phase
+from lacoc_shared.words import say
 
 P = Phase
 LONG = 200
 """Beats: four seconds."""
+TROUBLE = say("record.disk-trouble", file="m.mcap", why="Input/output error")
 
 
 class Quiet:
@@ -163,8 +165,9 @@ def test_silence_keeps_a_halted_match_waiting_and_then_ends_it() -> None:
     held.beat(SilentSeat(LEFT))
     assert held.run(520).setup.match == 2
     assert (held.match.phase, held.match.seats[LEFT].team) == (P.LOBBY, "Ants")
-    reasons = [e.text for e in held.network.events if e.data.get("after") == "FINISHED"]
-    assert reasons == ["FINISHED: nobody has been heard for 0.166667 minutes."]
+    reasons = [e.said for e in held.network.events if e.data.get("after") == "FINISHED"]
+    minutes = held.match.rules.unattended_s / 60
+    assert reasons == [say("event.finished", why=say("over.nobody-heard", minutes=minutes))]
 
 
 def test_two_have_time_to_read_who_has_won() -> None:
@@ -194,7 +197,7 @@ def test_after_a_fault_the_robot_is_put_back_and_play_goes_on(
     monkeypatch: pytest.MonkeyPatch, seat: int
 ) -> None:
     """Design, "Failure policy": HALTED; from where it stopped it would fail again."""
-    script = Script(faults={10: Fault(seat, "a velocity became not a number")})
+    script = Script(faults={10: Fault(seat, say("fault.velocity"))})
     monkeypatch.setattr(
         court_module, "World", lambda arena, entries: ScriptedPhysics(arena, entries, script)
     )
@@ -210,7 +213,7 @@ def test_a_fault_that_comes_back_at_once_fills_no_log(monkeypatch: pytest.Monkey
     """A robot that can't stand is tried twice a second, for as long as somebody is there."""
     held = Held("practice")
     held.begin()
-    monkeypatch.setattr(World, "step", lambda self, angles: Fault(LEFT, "too many contacts"))
+    monkeypatch.setattr(World, "step", lambda self, angles: Fault(LEFT, say("fault.contacts")))
     held.run(10 * 50)
     assert held.decided.count("resume") in (19, 20)
     held.beat(LeaveSeat(LEFT))
@@ -242,7 +245,7 @@ def test_a_disk_that_reports_errors_halts_the_match_once(
     """Decision 13: the record is there for everybody but a power cut; so a referee may go on."""
     held = Held("practice", tmp_path)
     held.begin()
-    monkeypatch.setattr(RecordWriter, "sync_trouble", "The disk reports: Input/output error.")
+    monkeypatch.setattr(RecordWriter, "sync_trouble", TROUBLE)
     held.run(LONG)
     assert held.match.phase is P.PLAYING
     assert held.decided == ["halt", "resume"]

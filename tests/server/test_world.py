@@ -22,6 +22,7 @@ from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.seat import NOBODY, Phase
+from lacoc_shared.words import Phrase, say
 
 HEXAPOD = entry()
 KEYS = {0: (FORWARD, FORWARD), 150: (TURN_LEFT, FORWARD), 220: (FORWARD, FORWARD)}
@@ -198,18 +199,18 @@ def _spoil(name: str, value: float, seat: int, offset: int) -> Callable[[World],
 
 @pytest.mark.parametrize("seat", [LEFT, RIGHT])
 @pytest.mark.parametrize(
-    ("name", "value", "words"),
+    ("name", "value", "why"),
     [
-        ("qpos", math.nan, "a position"),
-        ("qpos", 1e11, "a position"),
-        ("qvel", math.nan, "a velocity"),
-        ("qvel", -1e11, "a velocity"),
-        ("qvel", math.inf, "a velocity"),
+        ("qpos", math.nan, say("fault.position")),
+        ("qpos", 1e11, say("fault.position")),
+        ("qvel", math.nan, say("fault.velocity")),
+        ("qvel", -1e11, say("fault.velocity")),
+        ("qvel", math.inf, say("fault.velocity")),
     ],
 )
 @pytest.mark.parametrize("offset", [0, 8, 23])
 def test_mujocos_silent_reset_is_caught(
-    name: str, value: float, words: str, seat: int, offset: int
+    name: str, value: float, why: Phrase, seat: int, offset: int
 ) -> None:
     """Design, "Failure policy", physics 6.1: the state before the tick, and which robot."""
     it, twin = world(), world()
@@ -220,7 +221,7 @@ def test_mujocos_silent_reset_is_caught(
     fault = it.step(next(commands(1)))
     assert fault is not None
     assert fault.seat == seat
-    assert fault.text.startswith(words)
+    assert fault.why == why
     assert (it.save(), it.poses()) == before
     for angles in commands(10):  # and it goes on as if nothing had been
         assert it.step(angles) is None
@@ -237,7 +238,7 @@ def test_a_command_that_is_no_number(seat: int) -> None:
     angles = next(commands(1))
     angles[seat] = (*angles[seat][:7], math.nan, *angles[seat][8:])
     fault = it.step(angles)
-    assert fault == Fault(seat, "a commanded angle was not a number")
+    assert fault == Fault(seat, say("fault.control"))
     assert it.save() == before
 
 
@@ -245,7 +246,7 @@ def test_a_fault_of_no_seat() -> None:
     """A warning that names no robot is nobody's."""
     it = world()
     it.data.warning.number[int(mujoco.mjtWarning.mjWARN_CONTACTFULL)] += 1
-    assert it.step(next(commands(1))) == Fault(NOBODY, "too many contacts")
+    assert it.step(next(commands(1))) == Fault(NOBODY, say("fault.contacts"))
     assert it.step(next(commands(1))) is None
 
 

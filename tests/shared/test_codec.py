@@ -18,13 +18,16 @@ from lacoc_shared.codec import (
 from lacoc_shared.marker_states import pack_states, unpack_states
 from lacoc_shared.messages import Command, Refusal
 from lacoc_shared.mistakes import Mistake
+from lacoc_shared.words import say
+
+NO = say("gateway.no-token")
 
 
 def test_a_payload_is_msgpack_for_anybody() -> None:
     """docs/protocol.md: every payload is one msgpack value, a map by field name."""
-    refusal = Refusal("no", (Mistake(file="a.txt", found="x", expected="a number", row=1),))
+    refusal = Refusal(NO, (Mistake(file="a.txt", found="x", expected="a number", row=1),))
     data = encode(refusal)
-    assert msgpack.unpackb(data)["reason"] == "no"
+    assert msgpack.unpackb(data)["why"] == {"code": "gateway.no-token"}
     assert msgpack.unpackb(data)["mistakes"][0]["row"] == 1
     assert decode(data, Refusal) == refusal
     assert decode(data, Refusal) == refusal, "also the second of its kind"
@@ -35,12 +38,12 @@ def test_a_payload_is_msgpack_for_anybody() -> None:
     [
         (b"", "truncated"),
         (b"\xc1", "malformed"),
-        (encode({"reason": "no"})[:-1], "truncated"),
-        (encode({"reason": "no"}) + b"\x00", "trailing"),
-        (encode({"reason": 3}), "Expected `str`, got `int`"),
-        (encode({}), "missing required field `reason`"),
+        (encode({"why": {"code": "x"}})[:-1], "truncated"),
+        (encode({"why": {"code": "x"}}) + b"\x00", "trailing"),
+        (encode({"why": 3}), "Expected `object`, got `int`"),
+        (encode({}), "missing required field `why`"),
         (encode(["no", []]), "Expected `object`"),
-        (b"\x81\xa6reason\xa2\xff\xff", "utf-8"),
+        (b"\x81\xa3why\x81\xa4code\xa2\xff\xff", "utf-8"),
         (b"\x81\xa1x" + b"\x91" * 50_000 + b"\xc0", "recursion"),
     ],
     ids=["empty", "no msgpack", "cut", "more", "type", "field", "shape", "no UTF-8", "deep"],
@@ -53,8 +56,8 @@ def test_what_is_not_the_message_is_refused(data: bytes, words: str) -> None:
 
 def test_kinds_are_not_mistaken_for_one_another() -> None:
     """Bytes are read as the message that they must be here, not as one read before."""
-    data = encode(Refusal("no"))
-    assert decode(data, Refusal) == Refusal("no")
+    data = encode(Refusal(NO))
+    assert decode(data, Refusal) == Refusal(NO)
     with pytest.raises(BadMessage):
         decode(data, Command)
 
@@ -94,6 +97,7 @@ FIRST_USE = """
 import sys, threading
 import msgspec
 from lacoc_shared.codec import decode, encode
+from lacoc_shared.words import say
 
 sys.setswitchinterval(1e-6)
 for _ in range(400):

@@ -12,6 +12,7 @@ import pytest
 from lacoc_shared.command import screen
 from lacoc_shared.messages import Done
 from lacoc_shared.mistakes import Mistake, text_of
+from lacoc_shared.words import say
 
 
 def test_text_is_no_markup_and_is_never_broken(capsys: pytest.CaptureFixture[str]) -> None:
@@ -35,11 +36,15 @@ def test_results_and_remarks_go_different_ways(capsys: pytest.CaptureFixture[str
 
 def test_json_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     """Plain values, messages and bytes, a line each, so that a program reads line by line."""
-    screen.print_json({"done": Done("ok"), "scores": (1, 2), "bytes": b"\x00"})
+    screen.print_json({"done": Done(say("note.seat-stays")), "scores": (1, 2), "bytes": b"\x00"})
     screen.print_json([])
 
     first, second = capsys.readouterr().out.splitlines()
-    assert json.loads(first) == {"done": {"text": "ok"}, "scores": [1, 2], "bytes": "AA=="}
+    assert json.loads(first) == {
+        "done": {"said": {"code": "note.seat-stays"}},
+        "scores": [1, 2],
+        "bytes": "AA==",
+    }
     assert second == "[]"
 
 
