@@ -97,7 +97,7 @@ def test_the_composition_plays(tmp_path: Path) -> None:
                 file.write_text(here(file.read_text()))
             if "service_healthy" in conditions:
                 wait_until_healthy([here(word) for word in service["healthcheck"]["test"]])
-        heard = wait_for(lines, "PLAYING.", timeout_s=60)
+        heard = wait_for(lines, "Play begins.", timeout_s=60)
         with urllib.request.urlopen(f"http://127.0.0.1:{web_port}/watch", timeout=60) as page:
             assert b"LACOC" in page.read()
 
