@@ -111,7 +111,7 @@ def test_pos_data_of_a_record(record: Record) -> None:
     assert [float(row["x_m"]) for row in rows] == pytest.approx(
         [0.01 * beat for beat in range(40)], abs=1e-6
     )
-    with pytest.raises(UserError, match=r"no seat 'middle' in this match\. It has: left, right"):
+    with pytest.raises(UserError, match=r'no seat "middle" in this match\. It has left and right'):
         export.pos_data(record, "middle")
 
 
@@ -147,6 +147,7 @@ def test_events_as_csv(record: Record) -> None:
         "kind": "flip",
         "seat": "left",
         "team": "Ants",
+        "code": "plain.text",
         "text": '"Ants" flip a disc, and more',
     }
     assert len(rows) == 4
