@@ -107,8 +107,9 @@ def test_ready_for_a_contestant_who_cannot(
     assert code == 0
     assert status["phase"] == "LOBBY"
     assert [seat["ready"] for seat in status["seats"]] == [True, False]
-    assert status["health"]["decisions"]["abort"] == ""
-    assert "nobody has joined right" in status["health"]["decisions"]["start"]
+    assert status["health"]["decisions"]["abort"] is None
+    missing = status["health"]["decisions"]["start"]["values"]["missing"]
+    assert {"code": "why.nobody-in-seat", "values": {"seat": "right"}} in missing
     code, out, _ = referee.run("status")
     assert "Slow Hands" in out
     assert "commands/s" in out

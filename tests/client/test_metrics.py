@@ -46,7 +46,7 @@ def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
     first = scrape(url)
     with open_client([court.address]) as session:
         wrong = Controller(session, "main", "left", "not the token", "Ants")
-        with pytest.raises(UserError, match="does not open"):
+        with pytest.raises(UserError, match="not valid for"):
             wrong.join()
         left = Controller(session, "main", "left", court.tokens["left"], "Ants")
         left.join()

@@ -244,7 +244,7 @@ def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
     ("changes", "expected"),
     [
         ({"token": "not-the-token-of-it"}, "token"),
-        ({"seat": "middle"}, "has no seat 'middle'; it has left, right."),
+        ({"seat": "middle"}, 'has no seat "middle". It has left and right.'),
         ({"court": "centre"}, "There is no court 'centre' at"),
         ({"connect": "tcp/127.0.0.1:1"}, "Nobody listens at tcp/127.0.0.1:1."),
         ({"connect": "my court"}, "'my court' is not an address."),

@@ -138,7 +138,7 @@ def test_watch_comes_first(open_venue: Venue, do: str, fields: dict[str, Any]) -
 def test_wrong_tokens_are_refused_and_can_not_be_guessed(open_venue: Venue) -> None:
     """Each with the court's own sentence; not more than a few tries."""
     with PageClient(open_venue.url, open_venue.key) as page:
-        with pytest.raises(Refused, match="does not open seat left"):
+        with pytest.raises(Refused, match="not valid for the left seat"):
             page.ask("join", seat="left", token=TOKENS["right"], name="Ants")
         with pytest.raises(Refused, match="not a referee's token"):
             page.ask("enter", token=TOKENS["left"], by="Kim")
@@ -305,7 +305,7 @@ def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
     venue.web("--viewers", "2")
     first, second = venue.page(), venue.page()
     third = venue.page(watch=False)
-    with pytest.raises(Refused, match="2 pages already"):
+    with pytest.raises(Refused, match="2 pages watch the match here already"):
         third.ask("watch")
     third.wait(third.closed.is_set)
     assert third.code() == TRY_LATER
@@ -330,7 +330,7 @@ def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
     contestant.close()
     contestant = venue.contestant("left")
     referee = venue.referee()
-    with pytest.raises(Refused, match="1 pages already"):
+    with pytest.raises(Refused, match="1 pages watch the match here already"):
         referee.ask("watch")
     contestant.ask("watch", key=venue.key)  # again: the place it has
 

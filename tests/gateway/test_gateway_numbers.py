@@ -33,7 +33,7 @@ def test_a_scrape_and_the_log_of_a_gateway(venue: Venue) -> None:
     with pytest.raises(Refused):
         referee.ask("enter", token="not the token", by="Kim")
     referee.ask("enter", token=REFEREE, by="Kim")
-    with pytest.raises(Refused, match="1 pages already"):
+    with pytest.raises(Refused, match="1 pages watch the match here already"):
         venue.page()
     found = scrape(url)
     assert (found["viewers"], found["connected"], found["sent_away_total"]) == (3, 1, 1)

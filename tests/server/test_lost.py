@@ -56,7 +56,7 @@ def test_a_killed_controller_is_taken_back_in_any_phase(hall: Hall) -> None:
             hall.loses(bot.kill)
             for token in (hall.court.seat["right"].token, hall.court.referee.token, "guess", ""):
                 thief = Controller(session, "main", "left", token, "Thieves")
-                with pytest.raises(UserError, match="does not open seat left"):
+                with pytest.raises(UserError, match="not valid for the left seat"):
                     thief.join()
                 assert thief.hold is Hold.NOT_JOINED
             assert hall.view.sheet.seats[0].team == "left"

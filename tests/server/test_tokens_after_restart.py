@@ -65,7 +65,7 @@ def test_the_printed_token_opens_the_seat_of_a_match_that_goes_on(tmp_path: Path
                         [controller],
                         lambda c=controller, seq=seq: frame(c).seats[0].applied_seq == seq,
                     )
-            with pytest.raises(UserError, match="does not open seat solo"):
+            with pytest.raises(UserError, match="not valid for the solo seat"):
                 practising(again, "not-the-token-of-it").__enter__()
 
 
@@ -91,6 +91,6 @@ def test_a_token_that_was_replaced_in_the_contest_file_opens_nothing(tmp_path: P
     contest.write_text(contest.read_text().replace("the token of left", "another token of left"))
     with served(contest, folder), open_client([court.address()]) as session:
         lost = Controller(session, name, "left", "the token of left", "Thief")
-        with pytest.raises(UserError, match="does not open seat left"):
+        with pytest.raises(UserError, match="not valid for the left seat"):
             lost.join()
         Controller(session, name, "left", "another token of left", "Team left").join()

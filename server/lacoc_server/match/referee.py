@@ -193,6 +193,8 @@ def _set(match: MatchState, decision: d.Set) -> Phrase:
         )
     except NoSuchState as error:
         raise Illegal(error.why) from None
+    except ValueError as error:  # a game of others says it in a text
+        raise Illegal(say("plain.text", text=str(error))) from None
     return say("decision.set", marker=decision.marker, state=decision.state)
 
 
