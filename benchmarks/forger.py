@@ -11,11 +11,13 @@ from typing import Any
 
 from msgspec import structs
 
+from lacoc_server.journal.judge import Judge
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, LeaveSeat, ReadySeat
 from lacoc_shared.marker_states import pack_states, unpack_states
 from lacoc_shared.messages import Frame
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header, Touch
 from lacoc_shared.seat import Phase
@@ -184,7 +186,7 @@ def _input_moved(copy: _Copy) -> None:
 
 
 def _angle(copy: _Copy) -> None:
-    """Change an angle of a posture that a contestant used."""
+    """Change an angle of a posture that a contestant used, so that servos are told otherwise."""
     beat, at = copy.input(JoinSeat)
     join = copy.record.inputs[beat][at]
     assert isinstance(join, JoinSeat)
@@ -212,7 +214,20 @@ def _angle(copy: _Copy) -> None:
     cells[column] = f"{angle - 1 if angle > 0 else angle + 1:g}"
     lines[row] = "\t".join(cells)
     data = "\n".join(lines).encode() + b"\n"
+    before = _commanded(copy.record)
     copy.record.inputs[beat][at] = structs.replace(join, locomotion=type(file)(file.name, data))
+    if _commanded(copy.record) == before:  # the key was left before its posture was reached
+        raise Harmless
+
+
+def _commanded(record: Record) -> tuple[Any, ...]:
+    """What a record's servos are told, up to the first beat that the match has otherwise."""
+    try:
+        judge = Judge(record, None, {})
+        steps = [step for section in judge.sections() for step in section.steps]
+    except UserError as error:
+        return (str(error),)
+    return (judge.difference, *(step.angles for step in steps))
 
 
 def _score(copy: _Copy) -> None:
