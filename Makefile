@@ -6,7 +6,9 @@ BIN := .venv/bin
 RUN := $(BIN)/python -m
 PIP := $(RUN) pip --disable-pip-version-check --quiet
 ARGS ?=
-WORKERS ?= --numprocesses 4 --dist worksteal
+# Processes that share the tests: twice the two cores, because tests wait more than they compute.
+WORKERS ?= 4
+PYTEST := $(RUN) pytest --numprocesses $(WORKERS) --dist worksteal
 
 PAGES := client/lacoc_client/pages/index.html
 PAGES_FROM := $(shell find client/web/src client/web/public -type f) \
@@ -23,10 +25,10 @@ demo: .venv/.server $(PAGES) ## See a whole match: a court, two bots and a refer
 	$(BIN)/lacoc demo $(ARGS)
 
 test: .venv/.test .venv/.web $(PAGES) ## Run the tests.
-	$(RUN) pytest $(WORKERS) $(ARGS)
+	$(PYTEST) $(ARGS)
 
 test-all: test ## Run the tests, then the long ones: soak, fuzzing, kills, forging, many examples.
-	$(RUN) pytest $(WORKERS) --long $(ARGS)
+	$(PYTEST) --long $(ARGS)
 
 web: .venv/.web ## Build the pages and build them again whenever they change.
 	$(NPM) run build -- --watch

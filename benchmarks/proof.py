@@ -97,6 +97,8 @@ def forge(paths: Sequence[Path], count: int, seed: int) -> Forged:
     passed = []
     for index, (honest, other) in enumerate(pairs):
         prover, forger = Prover(), Forger(honest, other)
+        if not (isinstance(found := prover.verdict(honest), Verdict) and found.same):
+            raise AssertionError(f"the honest record is not proven: {found}")
         for _ in range(count * (index + 1) // len(pairs) - count * index // len(pairs)):
             name, record = forger.forge(chance)
             kinds[name.partition(",")[0]] += 1

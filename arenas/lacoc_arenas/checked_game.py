@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from lacoc_arenas.game import DOWN, AnyGame, Claim, GameEvent, Observation, Place
+from lacoc_arenas.game import DOWN, AnyGame, Claim, GameEvent, NoSuchState, Observation, Place
 from lacoc_shared.messages import MARKER_STATES, MarkerInfo
 from lacoc_shared.mistakes import UserError, printable
-from lacoc_shared.words import Phrase
+from lacoc_shared.words import Phrase, say
 
 _DESCRIBED = "docs/write-an-arena.md says what a game has."
 _VALUES = ("state_type", "markers", "starts", "size_m")
@@ -175,7 +175,13 @@ class CheckedGame:
 
     def set(self, state: Any, marker: int, value: int) -> Any:
         """See `Game.set`."""
-        found = self._source.call("set", self._game.set, state, marker, value, refuses=True)
+        rule = self._game.set
+        try:
+            found = self._source.call("set", rule, state, marker, value, refuses=True)
+        except NoSuchState:
+            raise
+        except ValueError as error:  # a sentence does as well
+            raise NoSuchState(say("plain.text", text=str(error))) from error
         return self._state("set", found)
 
     def _state(self, rule: str, found: Any) -> Any:

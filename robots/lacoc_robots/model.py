@@ -10,6 +10,12 @@ from lacoc_robots.leg import LegSpec
 from lacoc_robots.robot import RobotSpec
 from lacoc_shared.gait.tables import JOINTS_PER_LEG
 
+MODEL_VERSION = 2
+"""Counts up when a robot or its solver becomes another model: then paths differ.
+
+1: dense Jacobian, motors without a highest speed.
+"""
+
 TIMESTEP_S = 0.002
 STEPS_PER_TICK = 10
 """Physics steps in a tick of 20 ms."""

@@ -186,7 +186,7 @@ def test_ladder(name: str, weak: str, strong: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["othello", "flag-strike"])
+@pytest.mark.parametrize("name", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
 @pytest.mark.parametrize(("weak", "strong"), [("straight", "nearest"), ("nearest", "planner")])
 def test_ladder_with_physics(name: str, weak: str, strong: str) -> None:
     """The same with walking hexapods, which get in one another's way."""

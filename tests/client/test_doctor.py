@@ -85,7 +85,7 @@ def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
         (folder / f"{name}.dist-info").mkdir()
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
     code = (
-        "from lacoc_client import doctor; import json; "
+        "from lacoc_client.doctor import machine as doctor; import json; "
         "print(json.dumps([[f.about, f.status, f.found, f.todo] for f in doctor.packages()]))"
     )
     path = os.pathsep.join([str(folder), *sys.path])

@@ -9,6 +9,7 @@ from lacoc_shared import decisions as d
 from lacoc_shared.inputs import LeaveSeat, ReadySeat
 from lacoc_shared.messages import Event
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render
 
 
 def straying(*ticks: int, by_m: float = 0.06, seat: int = LEFT) -> Stage:
@@ -37,14 +38,14 @@ def test_who_leaves_its_start_place_before_play_is_put_back() -> None:
     assert from_start_m(stage) > 0.05
     (event,) = strayed(stage)
     assert (event.seat, event.beat) == (LEFT, stage.frame.beat)
-    assert event.text == "Ants left its start place by 0.06 m: it is put back."
+    assert render(event.said) == "Ants moved 0.06 m away from its start place. It is put back."
     assert math.isclose(event.data["distance_m"], 0.06, abs_tol=1e-6)
     stage.beat()
     assert from_start_m(stage) < 1e-6
     stage.run(10)
     assert len(strayed(stage)) == 1
     assert stage.phase is Phase.READY
-    assert stage.match.legality()["start"] == ""
+    assert stage.match.legality()["start"] is None
 
 
 def test_a_step_within_the_place_is_none() -> None:
@@ -61,10 +62,11 @@ def test_who_leaves_again_and_again_is_not_ready() -> None:
     stage = straying(3, 6, 9).to_ready()
     stage.run(9)
     assert [event.data["times"] for event in strayed(stage)] == [1, 2, 3]
-    assert strayed(stage)[-1].text == "Ants left its start place 3 times: it is not ready."
+    words = "Ants left its start place 3 times. It is not ready any more."
+    assert render(strayed(stage)[-1].said) == words
     stage.beat()
     assert stage.phase is Phase.LOBBY
-    assert stage.match.missing() == ["left (Ants) has not said ready"]
+    assert [why.code for why in stage.match.missing()] == ["why.not-ready"]
     stage.beat(ReadySeat(LEFT, True))
     stage.run(4)
     assert stage.phase is Phase.READY

@@ -343,13 +343,15 @@ def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
 
 def _show_reply(reply: DecisionReply) -> None:
     score = " : ".join(map(str, reply.scores))
-    text = render(reply.said)
-    text = f"{text[:1].upper()}{text[1:]}"
+    said = render(reply.said)
+    text = f"{said[:1].upper()}{said[1:]}"
     if reply.event is None:
         screen.show("Dry run: nothing is done. This is what would be done:")
         screen.show(f"  {text}")
         for change in reply.changes:
             screen.show(f"  {render(change)}")
+        if not reply.changes:
+            screen.show("  No other event changes.")
         screen.show(f"Score then: {score}")
         return
     screen.show(f"{text} (event {reply.event}, beat {reply.beat})")

@@ -210,11 +210,12 @@ def reply(to: int, value: Any) -> bytes:
 
 def refusal(to: int, error: UserError | FileRefused) -> bytes:
     """The answer to what was not done."""
+    mistakes = error.mistakes if isinstance(error, FileRefused) else []
     body = {
         "id": to,
         "ok": False,
         "error": _said(error),
-        "mistakes": error.mistakes if isinstance(error, FileRefused) else [],
+        "mistakes": mistakes,
         "token_refused": isinstance(error, TokenRefused),
         "again": isinstance(error, NotNow),
         "unanswered": isinstance(error, NoAnswer),

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
+from lacoc_robots.model import MODEL_VERSION
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.world import arithmetic
 from lacoc_server.world.world import MUJOCO_VERSION
@@ -138,6 +139,7 @@ def _header(setup: Setup, segment: int, first_beat: int) -> Header:
             "lacoc": __version__,
             "protocol": str(PROTOCOL),
             "mujoco": MUJOCO_VERSION,
+            "model": str(MODEL_VERSION),
             "machine": platform.machine(),
         },
         arithmetic=dict(arithmetic.here()),

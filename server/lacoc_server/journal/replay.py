@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 
+from lacoc_robots.model import MODEL_VERSION
 from lacoc_server.journal.judge import Judge, fits_together
 from lacoc_server.journal.section import BOUND, Finding, Section, Worlds, simulate
 from lacoc_server.journal.verdict import Kind, Verdict, conclude
@@ -21,6 +22,7 @@ from lacoc_server.match.match import Match
 from lacoc_server.world.world import MUJOCO_VERSION, World
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
+from lacoc_shared.words import say
 
 _SECTIONS_PER_PROCESS = 4
 """To start a process takes as long as to simulate two or three sections."""
@@ -169,6 +171,16 @@ def _same_physics(record: Record) -> None:
         raise UserError(
             f"This record was made with MuJoCo {there}, and here is {here}: a replay is exact only "
             f"with the same. Install it: pip install mujoco=={there}"
+        )
+    model = record.header.versions.get("model", "1")  # older software did not write it
+    if model != str(MODEL_VERSION):
+        raise UserError(
+            say(
+                "replay.other-model",
+                there=model,
+                here=str(MODEL_VERSION),
+                lacoc=record.header.versions.get("lacoc", "?"),
+            )
         )
 
 

@@ -197,13 +197,14 @@ def _set(match: MatchState, decision: d.Set) -> Phrase:
 
 
 def _clock(match: MatchState, decision: d.Clock) -> Phrase:
-    given = decision.gives_s - decision.seconds  # the latter in an old record only
-    if not _is_within(given, MAX_CLOCK_S):
-        raise Illegal(say("why.bad-clock", seconds=given, most=MAX_CLOCK_S))
-    match.clock_offset -= _ticks(given)
-    if given < 0:
-        return say("decision.clock-less", seconds=-given)
-    return say("decision.clock-more", seconds=given)
+    # Records of protocol 1 have `seconds`, which took time; `gives_s` gives it.
+    given_s = -decision.seconds if decision.seconds else decision.gives_s
+    if not _is_within(given_s, MAX_CLOCK_S):
+        raise Illegal(say("why.bad-clock", seconds=given_s, most=MAX_CLOCK_S))
+    match.clock_offset -= _ticks(given_s)
+    if given_s < 0:
+        return say("decision.clock-less", seconds=-given_s)
+    return say("decision.clock-more", seconds=given_s)
 
 
 def _abort(match: MatchState, decision: d.Abort) -> Phrase:

@@ -79,19 +79,6 @@ def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Pop
     )
 
 
-def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[bytes]:
-    """Pack a copy of what there is of a match, in a process of its own; the segments stay.
-
-    Raises:
-        OSError: if the system has no room for another process.
-    """
-    return subprocess.Popen(
-        [sys.executable, "-m", __name__, "--copy", str(out), *map(str, segments)],
-        stdin=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-
-
 def _whole_match(segments: Sequence[Path], out: Path) -> list[_Message]:
     """Read all messages of a match.
 
@@ -104,6 +91,19 @@ def _whole_match(segments: Sequence[Path], out: Path) -> list[_Message]:
     if record.cut:
         raise UserError(f"{out} was not packed, and its segments are kept. {record.cut}")
     return messages
+
+
+def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[bytes]:
+    """Pack a copy of what there is of a match, in a process of its own; the segments stay.
+
+    Raises:
+        OSError: if the system has no room for another process.
+    """
+    return subprocess.Popen(
+        [sys.executable, "-m", __name__, "--copy", str(out), *map(str, segments)],
+        stdin=subprocess.DEVNULL,
+        start_new_session=True,
+    )
 
 
 def _compare(wanted: Sequence[_Message], wrong: Stop | None, packed: Path) -> None:
@@ -176,9 +176,7 @@ def main(folder: str, *match_ids: str) -> int:
 def _copy(out: Path, *segments: Path) -> int:
     unfinished = out.with_name(f"{out.name}.part")
     try:
-        messages: list[_Message] = []
-        Record.read(segments, lambda *message: messages.append(message))
-        _write(messages, unfinished)
+        _write(_messages(segments)[0], unfinished)
         unfinished.rename(out)
     except (UserError, OSError) as error:
         print(error, file=sys.stderr)

@@ -10,7 +10,7 @@ import {
   type SeatFrame,
   type Sheet,
 } from "../core/wire";
-import { type MessageName, said, t } from "./index";
+import { type MessageName, t } from "./index";
 
 export { BEATS_PER_S };
 
@@ -36,11 +36,6 @@ export function clockTicks({ clock_ticks }: { clock_ticks: number }, sheet: Shee
 /** When an event was: the time that the clock showed. */
 export function eventClock(event: Event, sheet: Sheet | null): string {
   return sheet ? logClock(clockTicks(event, sheet)) : "";
-}
-
-/** What an event says, in the reader's language. */
-export function told(event: Event): string {
-  return said(event.said);
 }
 
 /** A team's name; its seat's where nobody has joined. */

@@ -3,8 +3,8 @@
 import type { ComponentChildren } from "preact";
 import type { Match } from "../core/match";
 import type { Event } from "../core/wire";
-import { t } from "../i18n";
-import { eventClock, told } from "../i18n/words";
+import { said, t } from "../i18n";
+import { eventClock } from "../i18n/words";
 
 interface Props {
   match: Match;
@@ -27,7 +27,7 @@ export function EventLog({ match, most = 200, only, extra, toldElsewhere }: Prop
         <li key={event.number} data-kind={event.kind}>
           <time>{eventClock(event, match.sheet.value)}</time>
           <span>
-            {told(event)}
+            {said(event.said)}
             {extra?.(event)}
           </span>
         </li>

@@ -7,7 +7,7 @@ import type { Phrase } from "../core/phrase";
 import { corrections, decisionOf, declaration, playedBeats } from "../core/rulings";
 import { type Event, Phase, type Sheet } from "../core/wire";
 import { type MessageName, said, t } from "../i18n";
-import { byRules, clock, markerName, team, told, winnerOf } from "../i18n/words";
+import { byRules, clock, markerName, team, winnerOf } from "../i18n/words";
 import { ReplayLink } from "./replay_link";
 import { SeatMark } from "./score";
 import "./result.css";
@@ -164,9 +164,9 @@ function correction(event: Event, sheet: Sheet, events: readonly Event[]): strin
     }
     case "take-back": {
       const struck = events.find(({ number }) => number === decision.event);
-      return t("result.struck", { what: struck ? told(struck) : `${decision.event}` });
+      return t("result.struck", { what: struck ? said(struck.said) : `${decision.event}` });
     }
     default:
-      return told(event);
+      return said(event.said);
   }
 }

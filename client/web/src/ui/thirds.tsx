@@ -4,8 +4,8 @@ import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import type { Match } from "../core/match";
 import type { Event } from "../core/wire";
-import { t } from "../i18n";
-import { BEATS_PER_S, markerName, team, told } from "../i18n/words";
+import { said, t } from "../i18n";
+import { BEATS_PER_S, markerName, team } from "../i18n/words";
 import { SeatMark } from "./score";
 import "./thirds.css";
 
@@ -75,7 +75,7 @@ function Third({ match, event }: { match: Match; event: Event }) {
 export function sentence(match: Match, event: Event): string {
   const sheet = match.sheet.peek();
   const { marker, also } = event.data as { marker?: string; also?: string[] };
-  if (!sheet || !marker || event.seat < 0) return told(event);
+  if (!sheet || !marker || event.seat < 0) return said(event.said);
   const name = team(sheet, event.seat);
   switch (event.kind) {
     case "flip": {
@@ -87,7 +87,7 @@ export function sentence(match: Match, event: Event): string {
     case "strike":
       return t(`thirds.${event.kind}`, { team: name, marker: markerName(marker) });
     default:
-      return told(event);
+      return said(event.said);
   }
 }
 

@@ -5,8 +5,8 @@ import { useEffect, useMemo } from "preact/hooks";
 import { part } from "../../core/match";
 import { whyHalted } from "../../core/rulings";
 import { type DecisionName, Phase, SeatFlag } from "../../core/wire";
-import { type MessageName, t } from "../../i18n";
-import { seatName, team, told } from "../../i18n/words";
+import { type MessageName, said, t } from "../../i18n";
+import { seatName, team } from "../../i18n/words";
 import { Hint, PhaseWord, SeatMark } from "../../ui/score";
 import { Act } from "./act";
 import type { Answer, Desk, Step } from "./desk";
@@ -108,7 +108,7 @@ function ReplayAdvice({ desk }: { desk: Desk }) {
 /** Why the match is halted, large: a court that was started again, a fault, a referee's reason. */
 function WhyHalted({ desk }: { desk: Desk }) {
   const cause = desk.phase.value === Phase.HALTED ? whyHalted(desk.court.events.value) : null;
-  return cause ? <p class="why-halted">{told(cause)}</p> : null;
+  return cause ? <p class="why-halted">{said(cause.said)}</p> : null;
 }
 
 /** What stands before the court's words. */

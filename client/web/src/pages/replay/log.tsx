@@ -2,8 +2,8 @@
 
 import { computed } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
-import { t } from "../../i18n";
-import { eventClock, told } from "../../i18n/words";
+import { said, t } from "../../i18n";
+import { eventClock } from "../../i18n/words";
 import type { Player } from "./player";
 
 export function ReplayLog({ player }: { player: Player }) {
@@ -30,7 +30,7 @@ export function ReplayLog({ player }: { player: Player }) {
         >
           <button type="button" onClick={() => player.show(event)}>
             <time>{eventClock(event, recording.sheet.value)}</time>
-            <span>{told(event)}</span>
+            <span>{said(event.said)}</span>
           </button>
         </li>
       ))}
