@@ -385,7 +385,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     assert len(rows) > 100
     assert float(rows[0].split("\t")[1]) == pytest.approx(-0.75, abs=0.02)  # column 0 (rules 5)
     page.stands("left")
-    other.wait(lambda: any("Ants has left" in event.text for event in other.events))
+    other.wait(lambda: any(event.kind == "leave" for event in other.events))
     page.page.click("text=Join again")
     page.stands("seated")
     page.phase(Phase.PLAYING)
