@@ -42,6 +42,7 @@ lint: .venv/.lint .venv/.web ## Check format and style.
 	$(RUN) ruff format --check
 	$(RUN) ruff check
 	$(RUN) codespell_lib
+	$(BIN)/python docs/references.py
 	$(RUN) validate_pyproject pyproject.toml
 	$(NPM) run lint
 

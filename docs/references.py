@@ -15,15 +15,16 @@ ROOT = Path(__file__).parents[1]
 READ = (".py", ".ts", ".tsx", ".css", ".md", ".toml", ".yaml", ".yml", ".sh", "Makefile", "run")
 """Files whose text is looked at, by the end of their name."""
 
-CITED_FILE = re.compile(r"(?<![\w/.@*{}-])((?:[\w.-]+/)*[\w-]+\.(?:md|py|tsx?))\b(?![\w(*{-])")
+CITED_FILE = re.compile(r"(?<![\w/.@*{}%-])((?:[\w.-]+/)*[\w-]+\.(?:md|py|tsx?))\b(?![\w(*{-])")
 SECTION = re.compile(r"(docs/[\w/-]+\.md) (\d+(?:\.\d+)?)\b(?! (?:MB|kB|lines))")
 DECISION = re.compile(r"\b[Dd]ecision (\d+)\b")
 LINK = re.compile(r"\]\(([^)#\s]*)(?:#([\w-]+))?\)")
 ISSUE = re.compile(r"(?<![\w/-])[Ii]ssue #?\d+")
-BARE_RULE = re.compile(r"(?<![\w/.])[Rr]ules \d\b")
+RULE = re.compile(r"(?<![\w/.])[Rr]ules (\d(?:\.\d)?)\b")
+"""Code and tests cite docs/rules.md in this way."""
 
-OF_READERS = {"my_bot.py", "my_arena.py"}
-"""Files that a page asks its reader to write."""
+OF_READERS = {"my_bot.py", "your_bot.py", "walker.py", "mujoco.py"}
+"""Files that a page or a message asks its reader to write, or that a test writes."""
 
 
 @cache
@@ -69,8 +70,9 @@ def missing(path: str, line: str) -> Iterator[str]:
             yield f"there is no decision {number}"
     for what in ISSUE.findall(line):
         yield f"{what!r} is not in the repository"
-    for what in BARE_RULE.findall(line):
-        yield f"{what!r}: write docs/rules.md and the section"
+    for number in RULE.findall(line):
+        if number not in headings("docs/rules.md"):
+            yield f"docs/rules.md has no section {number}"
     if path.endswith(".md"):
         yield from missing_links(path, line)
 

@@ -39,7 +39,7 @@ TINTS: dict[str, Rgba] = {
 """The colour of a marker by its state: the default pair of teams (rules 4)."""
 
 _GROUND = {"contype": 1, "conaffinity": 0xFFFE}
-"""Touched by robots, whose own bits start at 2 (physics.md 6.14)."""
+"""Touched by robots, whose own bits start at 2 (docs/facts.md 2)."""
 
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 BOX = mujoco.mjtGeom.mjGEOM_BOX

@@ -1,4 +1,4 @@
-"""What every game is: pure rules over numbers (design.md, "The rooms").
+"""What every game is: pure rules over numbers (docs/architecture.md).
 
 A game is a value made from its settings. It holds nothing that changes: the state of
 a match goes in and comes out of `step`. It knows no physics, network or clock, so the

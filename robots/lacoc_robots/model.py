@@ -1,4 +1,4 @@
-"""The MuJoCo model of a robot, built in code, with the settings that physics.md 7 recommends."""
+"""The MuJoCo model of a robot, built in code, with the settings that docs/facts.md 2 explains."""
 
 import math
 from collections.abc import Sequence

@@ -213,7 +213,7 @@ def _packed(folder: Path, name: str) -> Path:
 
 
 def test_a_bot_ends_when_its_seat_is_taken(open_court: OpenCourt) -> None:
-    """The newest joins wins (design.md, failure policy); the older one says so and ends."""
+    """The newest joins wins (docs/reliability.md); the older one says so and ends."""
     court = open_court("--arena", "othello")
     first = court.start("bot", "straight", *court.where("left"))
     assert first.stdout is not None

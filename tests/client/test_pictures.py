@@ -142,7 +142,7 @@ def test_the_clock_counts_down(ticks: int, expected: str) -> None:
 
 
 def test_the_lobby_says_who_is_missing() -> None:
-    """interface.md 7: the state in words, with the reason."""
+    """The state in words, with the reason."""
     sheet = make_sheet("othello")
     seats = (seat_frame(flags=0), seat_frame(flags=int(SeatFlag.JOINED)))
     frame = make_frame(sheet, phase=int(Phase.LOBBY), seats=seats)
@@ -163,7 +163,7 @@ OTHELLO = Field(0.0, 0.0, 1.02, 1.02)
 
 
 def test_a_board_needs_no_colours() -> None:
-    """interface.md 7, rules 4: letters and shades tell whose a disc is; the top row is north."""
+    """Letters and shades tell whose a disc is; the top row is north."""
     sheet = make_sheet("othello")
     states = (1,) * 6 + (0,) * 24 + (2,) * 6  # the southern row is left's, the northern right's
     lines = draw(make_frame(sheet, states), sheet, OTHELLO, 20)

@@ -133,7 +133,7 @@ def test_the_terminal_is_as_before_however_one_leaves(
 def test_a_court_that_is_gone_is_said_and_comes_back(
     started: tuple[CourtProcess, Terminal],
 ) -> None:
-    """interface.md 8: a red banner while no frame comes; the match goes on after it."""
+    """A red banner while no frame comes; the match goes on after it."""
     court, terminal = started
     watch = court.start("watch", "--json", "--hz", "0", *court.where())
     assert watch.stdout is not None

@@ -210,7 +210,7 @@ def _python(code: str, *arguments: str) -> "subprocess.Popen[str]":
 @pytest.mark.slow
 @pytest.mark.parametrize("end", ["raise SystemError('oops')", "pass", "sys.exit(3)"])
 def test_a_program_that_forgets_to_close_still_ends(router: Session, end: str) -> None:
-    """No process hangs at exit, however it ends (network.md 11)."""
+    """No process hangs at exit, however it ends (docs/facts.md 6)."""
     code = (
         "import sys; from lacoc_shared.network.session import *\n"
         "client = open_client([sys.argv[1]]); client.mailbox('lacoc/main/frame', 1)\n"

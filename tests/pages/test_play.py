@@ -300,7 +300,7 @@ def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: S
 
 
 def test_a_link_without_the_key_only_watches(venue: Venue, sit: Sit) -> None:
-    """interface.md 9.3: it says where a link comes from that may act."""
+    """It says where a link comes from that may act."""
     venue.court()
     venue.web()
     page = sit(venue.url)

@@ -104,7 +104,7 @@ def test_bodies_are_where_mujoco_has_them(model: mujoco.MjModel, scene: Scene) -
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_frames_of_a_court_show_its_robots(arena: str) -> None:
-    """design.md, "Robot and world": with scene and frames alone every body is where it is.
+    """docs/architecture.md: with scene and frames alone every body is where it is.
 
     Robots of different joint counts, so that a seat's angles are looked for in their place.
     """

@@ -249,7 +249,7 @@ for beat in range(10**9):
 def test_kill_9_loses_nothing_that_was_answered(
     tmp_path: Path, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """design.md, "Record": every beat that the victim told of is in its file."""
+    """docs/architecture.md: every beat that the victim told of is in its file."""
     victim = subprocess.Popen(
         [
             sys.executable,

@@ -1,4 +1,4 @@
-"""The pace of a court: due times, catching up, and what counts as slow (design.md, "Time")."""
+"""The pace of a court: due times, catching up, and what counts as slow (docs/architecture.md)."""
 
 import pytest
 

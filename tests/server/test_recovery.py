@@ -1,4 +1,4 @@
-"""A court that is killed and started again (rules 4, design.md "Record")."""
+"""A court that is killed and started again (rules 4, docs/architecture.md)."""
 
 import os
 import signal

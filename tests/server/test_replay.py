@@ -1,4 +1,4 @@
-"""Replay: a record verified, or taken up where it ended (design.md, "Record")."""
+"""Replay: a record verified, or taken up where it ended (docs/architecture.md)."""
 
 import struct
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The scene: everything a page needs to draw the model, and no more (design.md)."""
+"""The scene: everything a page needs to draw the model, and no more (docs/architecture.md)."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The world: exact to the bit, touch without force, and no silent reset (design.md, rules 6)."""
+"""The world: exact to the bit, touch without force, and no silent reset (rules 6)."""
 
 import math
 import subprocess

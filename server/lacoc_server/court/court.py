@@ -2,7 +2,7 @@
 
 One thread; only an outbox sends beside it, and an archive puts away the records of matches that
 are over. Each beat takes what arrived, lets the match have it, records, and only then answers and
-publishes: what anybody was told is on disk (design.md, "One beat"). Where the disk does not take
+publishes: what anybody was told is on disk (docs/architecture.md). Where the disk does not take
 it, the court waits: no beat passes until it does.
 """
 
@@ -270,7 +270,7 @@ class Court:
 
 
 def _offset_s(locators: tuple[str, ...]) -> float:
-    """Part of a second by which a court's beats are shifted (design.md, "Time").
+    """Part of a second by which a court's beats are shifted (docs/architecture.md).
 
     Names of courts may be the same on one machine; where they listen is not.
     """

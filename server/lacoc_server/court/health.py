@@ -2,7 +2,7 @@
 
 Pure: times, counts and beats come in, the verdict comes out. It is no part of the match,
 which is the same at any speed and with any loss; so it stands in the record as a message
-of its own. Only its advice enters the match, as an input (design.md, "Time").
+of its own. Only its advice enters the match, as an input (docs/architecture.md).
 """
 
 from collections import Counter

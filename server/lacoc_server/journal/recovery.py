@@ -1,4 +1,4 @@
-"""A match that a killed court left behind, ready to go on (design.md, "Record")."""
+"""A match that a killed court left behind, ready to go on (docs/architecture.md)."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The world: the one place where physics is stepped (design.md, "Robot and world")."""
+"""The world: the one place where physics is stepped (docs/architecture.md)."""
 
 import hashlib
 import math
@@ -31,7 +31,7 @@ MUJOCO_VERSION = mujoco.mj_versionString()
 """A replay is exact only with the same."""
 
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
-"""Everything the next step depends on; less (FULLPHYSICS) is not exact (physics.md 1)."""
+"""Everything the next step depends on; less (FULLPHYSICS) is not exact (docs/facts.md 1)."""
 
 _WARNINGS = {
     mujoco.mjtWarning.mjWARN_BADQPOS: say("fault.position"),
@@ -176,7 +176,7 @@ class World:
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
 
     def _undo(self) -> Fault:
-        """Go back to before the tick; MuJoCo may have reset everything (physics.md 6.1)."""
+        """Go back to before the tick; MuJoCo may have reset everything (docs/facts.md 3)."""
         numbers = self.data.warning.number
         kind = int(np.flatnonzero(numbers)[0])
         where = int(self.data.warning[kind].lastinfo)

@@ -1,7 +1,7 @@
 """Addresses of courts: read as people write them, and explained when they don't work.
 
 Zenoh has one sentence for every failed connection. Here the reason is found again
-with a plain socket, after the failure, and said in words that help (network.md 4).
+with a plain socket, after the failure, and said in words that help (docs/facts.md 4).
 """
 
 import errno

@@ -1,1 +1,1 @@
-"""The record of a match: journal while it runs, replay when it is over (design.md, "Record")."""
+"""The record of a match: journal while it runs, replay when it is over (docs/architecture.md)."""
