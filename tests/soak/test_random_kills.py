@@ -10,7 +10,7 @@ sys.path.append(str(Path(__file__).parents[2]))
 from benchmarks.random_kills import run
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_whatever_is_killed_all_goes_on(tmp_path: Path) -> None:
     """No process ends by itself, and every record verifies."""
     found = run(tmp_path, 15.0, random.Random(3))
