@@ -67,11 +67,8 @@ export function chosenFiles(): Record<Slot, SentFile | null> {
 export function checkSizes(files: readonly (SentFile | null)[]): void {
   const bytes = files.reduce((sum, file) => sum + (file?.data.length ?? 0), 0);
   if (bytes <= MOST_BYTES) return;
-  const [size, most] = [bytes, MOST_BYTES].map((count) => Math.ceil(count / 1024));
-  throw new Refused(
-    `Your files are too large together: ${size} KiB, at most ${most} KiB travel. ` +
-      "Shorten the gait files.",
-  );
+  const values = { size_kib: Math.ceil(bytes / 1024), most_kib: MOST_BYTES / 1024 };
+  throw new Refused({ code: "refused.files-too-large", values });
 }
 
 /** Keep a file in the slot that its content asks for; returns the slot. */

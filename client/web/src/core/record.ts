@@ -213,9 +213,8 @@ function take(segment: Segment, topic: string, beat: number, data: Uint8Array): 
 
 /** An event; one of protocol 1 has its sentence in English alone. */
 function readEvent(data: Uint8Array): Event {
-  const event = decode(data) as Event & { text?: string };
-  if (event.text === undefined) return event;
-  return { ...event, said: { code: "plain.text", values: { text: event.text } } };
+  const { text, ...event } = decode(data) as Event & { text?: string };
+  return text === undefined ? event : { ...event, said: { code: "plain.text", values: { text } } };
 }
 
 /** By number; of one that is there twice (a packed file beside its segments) the fuller one. */

@@ -3,7 +3,6 @@
 import { decode, encode } from "@msgpack/msgpack";
 import type { Phrase } from "./phrase";
 import {
-  type DecisionName,
   type Event,
   FRAME_FIELDS,
   type Frame,
@@ -150,9 +149,6 @@ export interface SentFile {
   name: string;
   data: Uint8Array;
 }
-
-/** Why a decision is not legal now, by its name; "" if it is. */
-export type Legality = Partial<Record<DecisionName, string>>;
 
 /** Read a message; null for a kind of a newer gateway. */
 export function readMessage(bytes: Uint8Array): Message | null {

@@ -58,7 +58,7 @@ function Gone({ player, alone, isLost }: Props & { isLost?: boolean }) {
   return (
     <section class="card entrance" aria-labelledby="entrance-title">
       <h1 id="entrance-title">{t(isLost ? "lost.title" : "left.title")}</h1>
-      <p role={isLost ? "alert" : undefined}>{isLost ? sentence(why) : text}</p>
+      <p role={isLost ? "alert" : undefined}>{why ? sentence(why) : text}</p>
       <div class="row">
         {wish && (
           <button class="button strong large" type="button" onClick={() => player.join(wish)}>
@@ -250,7 +250,7 @@ function go(court: string): void {
 }
 
 /** A reason of the controller's, which begins small and has no full stop, as a sentence. */
-function sentence(why: Phrase | string): string {
+function sentence(why: Phrase): string {
   const text = said(why);
   const begun = text.slice(0, 1).toUpperCase() + text.slice(1);
   return /[.。!?]$/.test(begun) ? begun : `${begun}${/[^ -~]$/.test(begun) ? "。" : "."}`;

@@ -205,8 +205,8 @@ function posData(seat: number, joints: number[], frames: Uint8Array[], most: num
 }
 
 function speak(word: Word): void {
-  if ("text" in word) {
-    if (word.text) toast(said(word.text), word.tone);
+  if ("said" in word) {
+    toast(said(word.said), word.tone);
     return;
   }
   const name = `no.${word.refused}`;

@@ -210,7 +210,7 @@ export function FilesChanged({ court, player, alone }: ChangedProps) {
                 file: one.file,
                 row: one.row ?? one.field ?? "–",
                 column: one.column ?? "–",
-                found: typeof one.found === "string" ? one.found : said(one.found),
+                found: said(one.found),
                 expected: said(one.expected),
               })}
             </li>
