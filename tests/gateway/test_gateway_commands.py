@@ -16,10 +16,11 @@ from page_client import PageClient
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(not PageFiles().built, reason=NOT_BUILT),
+    pytest.mark.skipif(not PageFiles().built, reason=render(NOT_BUILT)),
 ]
 
 

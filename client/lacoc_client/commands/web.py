@@ -17,6 +17,7 @@ from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render
 
 app = typer.Typer()
 
@@ -104,7 +105,7 @@ def web_command(
             if exporter is not None:
                 screen.note(f"Metrics at {exporter.url}")
         if not built:
-            screen.warn(NOT_BUILT)
+            screen.warn(render(NOT_BUILT))
         log.start(json)
 
     with exporter or nullcontext():

@@ -214,6 +214,8 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "court.no-court": ["There is no court {court:quoted} at {address}. There is {courts:and}.", "{address} にコート{court:quoted}はありません（{courts:and}があります）。"],
   "court.nobody": ["No court answers at {address}. Is it running?", "{address} のコートが応答しません。起動していますか。"],
   "court.bad-answer": ["The court's answer can't be read ({error}). This program uses version {version} of the protocol. Install the version of lacoc that the organiser uses.", "コートの応答を読み取れません（{error}）。このプログラムの通信方式は第 {version} 版です。主催者と同じ版の lacoc を入れてください。"],
+  "spectator.other-version": ["The court uses version {court} of the protocol, and this program version {program}. Install the version of lacoc that the organiser uses.", "コートの通信方式は第 {court} 版、このプログラムは第 {program} 版です。主催者と同じ版の lacoc を入れてください。"],
+  "spectator.other-scene": ["The court's frames show another scene than its sheet describes. Start this program again. If that does not help, tell the organiser.", "コートの映像と競技の説明が一致しません。プログラムを起動し直してください。直らない場合は主催者に知らせてください。"],
   "health.real-time": ["the match ran at {factor:.3} of real time (at least {least} is required)", "試合が実時間の {factor:.3} 倍で進みました（{least} 倍以上が必要です）"],
   "health.slow-beats": ["{percent:.1} % of the beats were slow (at most {most} % are allowed)", "ビートの {percent:.1} % が遅れました（許容は {most} % までです）"],
   "health.late-beat": ["a beat began {late_ms:.0} ms late (at most {most_ms} ms is allowed)", "ビートの開始が最大 {late_ms:.0} ミリ秒遅れました（許容は {most_ms} ミリ秒までです）"],
