@@ -8,6 +8,7 @@ import {
   type Mistake,
   type Request,
   readMessage,
+  TRY_LATER,
   writeRequest,
 } from "./wire";
 
@@ -54,8 +55,7 @@ interface Waiting {
 
 const RETRY_FIRST_MS = 250;
 const RETRY_MOST_MS = 3000;
-/** The gateway's code for "come again later" (docs/gateway.md), and how much later. */
-const TRY_LATER = 1013;
+/** How much later a page comes again that was sent away with `TRY_LATER`. */
 const LATER_MS = 10_000;
 /** A gateway sends frames or at least a link message every second: so long a silence is a break. */
 const SILENCE_MS = 5000;

@@ -39,3 +39,11 @@ export function t(name: MessageName, holes: Record<string, string | number> = {}
 export function said(what: Phrase | string): string {
   return render(what, language.value);
 }
+
+/** The same as a sentence that stands alone: reasons begin small and have no full stop. */
+export function sentence(what: Phrase | string): string {
+  const text = said(what);
+  const begun = text.charAt(0).toUpperCase() + text.slice(1);
+  if (/[.。!?…]$/.test(begun)) return begun;
+  return begun + (language.value === "ja" ? "。" : ".");
+}

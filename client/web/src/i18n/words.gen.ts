@@ -1,5 +1,11 @@
 // Made by client/web/make_wire.py from lacoc_shared/words/texts; not edited by hand.
 
+export const DEEPEST = 5;
+export const LONGEST_LIST = 100;
+export const LONGEST_TEXT = 2000;
+export const LARGEST = 1e+15;
+export const DECIMALS = 6;
+
 /** Each code with its templates: English, Japanese. */
 export const WORDS: Record<string, readonly [string, string]> = {
   "join.comma": [", ", "、"],
