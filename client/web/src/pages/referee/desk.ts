@@ -142,7 +142,7 @@ export class Desk {
    * @returns Why it can be changed and asked again, in the reader's language; "" once it is done,
    *   and where the answer was lost: to ask again could do it twice.
    */
-  async decide(decision: Decision, reason: string): Promise<string> {
+  async decide(decision: Decision, reason: Phrase | string): Promise<string> {
     try {
       const reply = await this.court.ask<DecisionReply>("decide", { decision, reason });
       this.say("yes", reply.said);
