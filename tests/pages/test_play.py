@@ -289,7 +289,7 @@ def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: S
     page = sit(url)
     page.open(key=key)
     page.sees(".seat.on", "right")
-    page.sees(".files", "from the command line: LocoTra-data.txt")
+    page.sees(".files", "LocoTra-data.txt (from this computer's folder)")
     assert page.find("#join-name").input_value() == "Bees"
     page.misses(".safety")
     page.page.click("button[type=submit]")

@@ -6,15 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from chromium import WEB, OpenPage
+from chromium import OpenPage
 from playwright.sync_api import Locator, Page, expect
 from show import decide, violations
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_client.gateway.browser import unseen
 from lacoc_server.keys.make import make_keys
-from lacoc_server.match.referee import _RULES
-from lacoc_shared.decisions import DECISIONS
 
 pytestmark = pytest.mark.slow
 
@@ -535,16 +533,6 @@ def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
         title = page.get_by_role("dialog").locator("h2")
         expect(title).to_contain_text(f"{words} を")
         page.keyboard.press("Escape")
-
-
-def test_which_decisions_need_a_reason() -> None:
-    """The page asks for one exactly where the court does."""
-    text = (WEB / "src" / "pages" / "referee" / "desk.ts").read_text("utf-8")
-    found = re.search(r"NEED_A_REASON[^(]*\(\[(.*?)\]", text, re.DOTALL)
-    assert found
-    names = set(re.findall(r'"([a-z-]+)"', found[1]))
-    needed = {name for name, kind in DECISIONS.items() if _RULES[kind].needs_reason}
-    assert names == needed
 
 
 def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
