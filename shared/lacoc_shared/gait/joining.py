@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
 from lacoc_shared.gait.tables import SAMPLE_KEYS, LocomotionTable, PostureTable, to_locomotion
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 
 def join_postures(table: PostureTable, name: str, keys: Sequence[Sequence[int]]) -> LocomotionTable:
@@ -21,18 +22,27 @@ def join_postures(table: PostureTable, name: str, keys: Sequence[Sequence[int]])
     longest = max(map(len, keys), default=0)
     if not 1 <= len(keys) <= MAX_KEYS or longest > MAX_POSTURES_PER_KEY:
         raise UserError(
-            f"{len(keys)} keys, the longest of {longest} postures, do not fit in a file: it has "
-            f"1 to {MAX_KEYS} keys of at most {MAX_POSTURES_PER_KEY} postures."
+            say(
+                "gait.join-too-many",
+                keys=len(keys),
+                longest=longest,
+                most_keys=MAX_KEYS,
+                most_postures=MAX_POSTURES_PER_KEY,
+            )
         )
     for digit, sequence in enumerate(keys):
         if not sequence:
-            raise UserError(f"Key {digit} of level B has no posture: give it one, such as 0.")
+            raise UserError(say("gait.join-empty", key=digit))
         for posture in sequence:
             if posture not in table.postures:
-                there = ", ".join(map(str, sorted(table.postures)))
                 raise UserError(
-                    f"Key {digit} of level B uses posture {posture}, but {name} has only {there}. "
-                    "Say which postures to join."
+                    say(
+                        "gait.join-no-posture",
+                        key=digit,
+                        posture=posture,
+                        file=name,
+                        postures=sorted(table.postures),
+                    )
                 )
     return to_locomotion(table, tuple(map(tuple, keys)))
 
