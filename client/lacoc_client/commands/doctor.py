@@ -18,6 +18,7 @@ from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 app = typer.Typer()
 
@@ -105,7 +106,7 @@ def _look(
 def _host_port(address: str) -> tuple[str, int]:
     match = _HOST_PORT.match(address)
     if match is None or int(match["port"]) > 65_535:
-        raise UserError(f"{address!r} is no place to listen at. It looks like 0.0.0.0:8080.")
+        raise UserError(say("command.bad-listen", where=address))
     return match["host"].strip("[]"), int(match["port"])
 
 

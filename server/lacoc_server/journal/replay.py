@@ -21,6 +21,7 @@ from lacoc_server.match.match import Match
 from lacoc_server.world.world import MUJOCO_VERSION, World
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
+from lacoc_shared.words import say
 
 _SECTIONS_PER_PROCESS = 4
 """To start a process takes as long as to simulate two or three sections."""
@@ -166,10 +167,7 @@ def _simulate(section: Section, bound: float) -> Finding:
 def _same_physics(record: Record) -> None:
     here, there = MUJOCO_VERSION, record.header.versions.get("mujoco", "?")
     if here != there:
-        raise UserError(
-            f"This record was made with MuJoCo {there}, and here is {here}: a replay is exact only "
-            f"with the same. Install it: pip install mujoco=={there}"
-        )
+        raise UserError(say("replay.other-mujoco", there=there, here=here))
 
 
 def _versions(record: Record) -> str:

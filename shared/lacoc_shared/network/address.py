@@ -12,6 +12,7 @@ import ssl
 from collections.abc import Sequence
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 DEFAULT_PORT = 7447
 
@@ -41,10 +42,7 @@ def endpoint(text: str, protocol: str = "tcp") -> str:
     protocol = match["protocol"] or protocol if match else ""
     port = int(match["port"] or DEFAULT_PORT) if match else 0
     if match is None or protocol not in _PROTOCOLS or port > 65_535:
-        raise UserError(
-            f"{text!r} is not an address. It looks like 192.168.1.5, court.example.org:7447 "
-            "or tcp/127.0.0.1:7447."
-        )
+        raise UserError(say("address.none", text=text))
     return f"{protocol}/{match['host']}:{port}"
 
 
@@ -74,15 +72,9 @@ def check_protocols(endpoints: Sequence[str], *, keys: bool) -> None:
     for one in endpoints:
         protocol, _, place = one.partition("/")
         if keys and protocol != "tls":
-            raise UserError(
-                f"The contest has keys, and {one} is a plain address: write tls/{place}, or "
-                "leave the protocol out."
-            )
+            raise UserError(say("address.plain-with-keys", at=one, place=place))
         if protocol == "tls" and not keys:
-            raise UserError(
-                f"{one} needs keys. An organiser makes them with 'lacoc contest keys' and names "
-                "the contest file; everybody else gets an invitation: --invitation FILE."
-            )
+            raise UserError(say("address.needs-keys", at=one))
 
 
 def why_not_known(endpoints: Sequence[str]) -> str | None:
