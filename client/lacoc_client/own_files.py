@@ -6,6 +6,7 @@ from pathlib import Path
 from lacoc_client.seat_files import SeatFiles, gaits_in, gather
 from lacoc_robots.library import GAIT_NAMES
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import Phrase
 
 _Saved = tuple[tuple[Path, int, int], ...]
 """Each file with its time [ns] and size [bytes]."""
@@ -31,7 +32,7 @@ class OwnFiles:
         self._gaits = tuple(gaits)
         self._folder = folder
         self._read_as = self._seen = self._saved()
-        self.notes: list[str] = []
+        self.notes: list[Phrase] = []
         """What is no mistake in them, but may not be meant."""
         self.files = self._read()
         self.version = 1

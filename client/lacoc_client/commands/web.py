@@ -17,7 +17,7 @@ from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import render
+from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
@@ -125,7 +125,7 @@ def _courts(
 def _key(plan: Contest | None, key: str | None) -> str:
     if key is not None:
         if len(key) < _KEY_LEAST:
-            raise UserError(f"A key has at least {_KEY_LEAST} characters.")
+            raise UserError(say("web.short-key", least=_KEY_LEAST))
         return key
     return new_key() if plan is None else lasting_key(plan)
 

@@ -27,7 +27,7 @@ class Entry:
 
     robot: RobotSpec
     gait: Gait
-    notes: tuple[str, ...] = ()
+    notes: tuple[Phrase, ...] = ()
     """What is no mistake in its files, but may not be meant; sentences."""
 
 
@@ -71,7 +71,7 @@ def _weigh_in(
     except FileRefused as refused:
         mistakes += refused.mistakes
     tables: list[PostureTable | LocomotionTable] = []
-    notes: list[str] = []
+    notes: list[Phrase] = []
     for file, (kind, what) in zip((postures, locomotion), _TABLES.values(), strict=True):
         if file is None:
             continue
@@ -129,7 +129,7 @@ class Admission:
 
 
 def _read_gait(
-    file: SentFile, robot: RobotSpec | None, notes: list[str]
+    file: SentFile, robot: RobotSpec | None, notes: list[Phrase]
 ) -> PostureTable | LocomotionTable:
     """Read a gait for a robot, or for any where the robot file itself is refused."""
     if robot is None:
