@@ -1,1 +1,1 @@
-"""What a game is."""
+"""Games: their rules, fields and bots."""

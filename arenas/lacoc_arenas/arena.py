@@ -1,7 +1,7 @@
 """An arena: a folder with its TOML, rules, field and bots, ready to be played.
 
 The TOML has `title`, a table [match] that every game shares, one [[seat]] for each
-seat, and a table [game] that is the game's own. The contest's file may override any
+seat, and a table [game] for this game alone. The contest file may override any
 entry (rules 1, "Where each number lives").
 """
 
@@ -27,37 +27,37 @@ from lacoc_shared.words import say
 _GROUP = "lacoc.arenas"
 _FILE = "arena.toml"
 _PARTS = ("rules", "field", "bots")
-"""Modules of an arena, each imported where it is needed."""
+"""Modules of an arena; each is imported when it is needed."""
 
 Seconds = Annotated[float, msgspec.Meta(ge=0, le=86_400)]
 
 
 class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What every game shares (rules 4), each a setting of the arena file."""
+    """Settings that every game shares (rules 4); each can be set in the arena file."""
 
     duration_s: Seconds = 180.0
-    """Workshop 5-1 rule 2, 5-2 rule 1; 0: without end."""
+    """Workshop 5-1 rule 2, 5-2 rule 1; 0: no time limit."""
     countdown_s: Seconds = 3.0
-    """Before every start and every resume."""
+    """Counted down before every start and every resume."""
     restart_freeze_s: Seconds = 5.0
     """[x] and digits are refused for this long after [x]."""
     levels: Annotated[tuple[Literal["A", "B"], ...], msgspec.Meta(min_length=1)] = ("B",)
-    """Levels of control that are open; the first is the one a seat begins with."""
+    """Levels of control that are open; a seat begins with the first one."""
     repeat: bool = True
-    """Sequences repeat while the command stands (4-2, "continuous control")."""
+    """True: a sequence repeats until the command changes (4-2, "continuous control")."""
     start: Literal["referee", "ready"] = "referee"
-    """Who starts: the referee, or every seat by saying ready."""
+    """Who starts the match: the referee, or every seat by saying ready."""
     unattended_s: Seconds = 900.0
     """A match that starts by "ready" ends when no seat has been heard for this long; 0: never."""
 
     @property
     def open_levels(self) -> tuple[Level, ...]:
-        """The levels as values."""
+        """`levels` as `Level` values."""
         return tuple(Level("AB".index(level)) for level in self.levels)
 
 
 class SeatSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A seat and how its robot looks, unless the contest says how its team does."""
+    """A seat and how its robot looks; the contest file may give its team another look."""
 
     id: Annotated[str, msgspec.Meta(pattern="^[a-z0-9]{1,16}$")]
     colour: Colour
@@ -72,21 +72,21 @@ class _File(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Arena:
-    """An arena as played: its file with the contest's overrides, and its rules."""
+    """An arena as it is played: its file with the contest's overrides, and its rules."""
 
     def __init__(
         self, name: str, settings: dict[str, Any], module: ModuleType, folder: Path | None
     ) -> None:
-        """Use `load` or `from_settings`.
+        """Make an arena; call `load` or `from_settings` instead.
 
         Raises:
             UserError: if a setting is wrong; the message names it.
         """
         self.name = name
         self.settings = settings
-        """The whole file as plain values; with `name` it makes the same arena again."""
+        """The whole file as plain values; `name` and these values make the same arena again."""
         self.folder = folder
-        """Where it lies if it is not installed; its code was run because a user named it."""
+        """The folder of an arena that is not installed; its code runs because a user named it."""
         self._module = module.__name__
         self._source = Source(name, str(plugins.folder_of(module)))
         try:
@@ -106,16 +106,16 @@ class Arena:
         self.seats = file.seat
 
     def _make(self, settings: dict[str, Any]) -> AnyGame:
-        """Make the game of these settings; see `checked`."""
+        """Make the game from its settings; see `checked`."""
         game = self._source.call("make", self._part("rules", "make"), settings, refuses=True)
         ours = self._module.startswith(f"{__package__}.")
         return game if ours else checked(self._source, game)
 
     def _part(self, part: str, name: str) -> Any:
-        """Import a module of the arena and take what every arena has in it.
+        """Import a module of the arena and return an object from it.
 
         Raises:
-            UserError: if it can't be imported, or lacks that.
+            UserError: if the module can't be imported, or lacks the object.
         """
         module = self._source.call(f"{part}.py", importlib.import_module, f"{self._module}.{part}")
         if not hasattr(module, name):
@@ -125,9 +125,9 @@ class Arena:
         return getattr(module, name)
 
     def plays(self, recorded: str) -> bool:
-        """Whether a record's arena is this one, by the name that the record has.
+        """Say whether a record was played in this arena, judged by the arena's name in the record.
 
-        A folder may have moved since: the one that the user named stands for any.
+        A folder may have moved since: a folder that the user named matches any such name.
         """
         moved = self.folder is not None and recorded not in plugins.installed(_GROUP)
         return moved or recorded == self.name
@@ -153,12 +153,12 @@ def load(
     overrides: Mapping[str, Any] | None = None,
     looks: Mapping[str, Mapping[str, str]] | None = None,
 ) -> Arena:
-    """Load an installed arena, or one in a folder.
+    """Load an installed arena, or an arena in a folder.
 
     Args:
         name: an installed name such as "othello", or a folder's path.
         overrides: nested entries that replace those of the arena's file.
-        looks: by seat, its team's own `colour` and `pattern` (rules 4).
+        looks: by seat, the `colour` and `pattern` of its team (rules 4).
 
     Raises:
         UserError: if there is no such arena or its file is wrong.
@@ -184,10 +184,10 @@ def from_settings(name: str, settings: dict[str, Any], folder: Path | None = Non
     """Make the arena of a record again, with the settings it was played with.
 
     Args:
-        name: as the record has it. It stands for an installed arena only: a record may come from
-            anybody, and a folder's code must not run because a record names it.
+        name: as the record has it. It stands only for an installed arena: anybody may have
+            written the record, and a folder's code must not run because a record names it.
         settings: `Arena.settings`.
-        folder: of an arena that is not installed, as the user named it.
+        folder: the folder of an arena that is not installed, as the user named it.
 
     Raises:
         UserError: if the arena is not installed here, and no folder was named.
@@ -204,10 +204,10 @@ def from_settings(name: str, settings: dict[str, Any], folder: Path | None = Non
 
 
 def _require_whole(module: ModuleType) -> None:
-    """See that a package has all that an arena is made of.
+    """Check that a package has every part of an arena.
 
     Raises:
-        UserError: if it has not; the message says what is missing.
+        UserError: if a part is missing; the message names it.
     """
     folder = plugins.folder_of(module)
     missing = [] if (folder / _FILE).exists() else [_FILE]
@@ -230,7 +230,7 @@ def _require_whole(module: ModuleType) -> None:
 
 
 def merge(settings: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """Replace entries of nested tables; a list or a value is replaced whole."""
+    """Replace entries of nested tables; a list or a single value is replaced as a whole."""
     merged = dict(settings)
     for key, value in overrides.items():
         old = merged.get(key)

@@ -1,4 +1,4 @@
-"""Finding a brain: a game's own bot, another's, a file's, or the ghost of a record."""
+"""Find a brain: a game's own bot, an installed bot, a bot file, or the ghost of a record."""
 
 import importlib.util
 from collections import deque
@@ -27,17 +27,17 @@ def find(arena: Arena, name: str) -> BotFactory:
 
     Args:
         arena: the arena, with bots of its own.
-        name: one of those; an installed bot (entry-point group `lacoc.bots`); a Python file with
-            a function `bot(sheet, seat)`; or "ghost:RECORD.mcap:SEAT", which presses the keys of
-            a recorded match again.
+        name: a bot of the arena; an installed bot (entry-point group `lacoc.bots`); a Python
+            file with a function `bot(sheet, seat)`; or "ghost:RECORD.mcap:SEAT", which presses
+            the keys of a recorded match again.
 
     Returns:
-        The bot. It raises UserError, with the line of its own code, if it breaks, or gives back
-        what is no key.
+        The bot. If it breaks or returns something that is not a key, it raises UserError with
+        the line of its own code.
 
     Raises:
-        UserError: if there is no such bot, and the message lists the ones there are; or if its
-            file has a mistake.
+        UserError: if there is no such bot (the message lists the bots there are), or if the
+            bot's file has a mistake.
     """
     return checked(name, _find(arena, name))
 
@@ -63,7 +63,7 @@ def open_ghost(name: str) -> tuple[Record, int]:
     """Read the record of a ghost and find its seat.
 
     Args:
-        name: "ghost:RECORD.mcap", with ":SEAT" after it where the record has two seats.
+        name: "ghost:RECORD.mcap", followed by ":SEAT" if the record has two seats.
 
     Raises:
         UserError: if there is no such record or seat.
@@ -79,10 +79,10 @@ def open_ghost(name: str) -> tuple[Record, int]:
 
 
 def ghost_join(record: Record, seat: int) -> JoinSeat:
-    """What a ghost brought to its match: team, robot and gait files.
+    """Return the request that joined a ghost's seat: team, robot and gait files.
 
     Raises:
-        UserError: if nobody sat there.
+        UserError: if nobody joined this seat.
     """
     joins = [
         item
@@ -96,7 +96,7 @@ def ghost_join(record: Record, seat: int) -> JoinSeat:
 
 
 def ghost(record: Record, seat: int) -> Brain:
-    """A brain that presses the keys of a record again, each at the same time of the clock."""
+    """Make a brain that presses the keys of a record again, each at its recorded clock time."""
     keys: deque[tuple[int, Key]] = deque()
     clock_of = {beat: decode(encoded, Frame) for beat, encoded in record.frames}
     for beat in sorted(record.inputs):
@@ -106,7 +106,7 @@ def ghost(record: Record, seat: int) -> Brain:
                 keys.append((frame.clock_ticks, Key(Level(item.level), item.key)))
 
     def brain(frame: Frame) -> Key | None:
-        # A key that is answered to this frame takes effect in the next tick.
+        # A key returned for this frame takes effect in the next tick.
         if keys and frame.phase == Phase.PLAYING and frame.clock_ticks + 1 >= keys[0][0]:
             return keys.popleft()[1]
         return None

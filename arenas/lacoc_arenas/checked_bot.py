@@ -1,7 +1,7 @@
-"""A bot whose mistakes are told as its author needs them: the line of their own code.
+"""Check what a bot returns, and report its mistakes with the line of its own code.
 
-Bots are mostly files that somebody is just writing. What such a bot raises or gives back is
-looked at here alone, so that it is told the same way headless and at a court.
+Most bots are files that somebody is still writing. All checks are here, so that a mistake
+reads the same in a headless match and at a court.
 """
 
 import traceback
@@ -22,11 +22,11 @@ _A_KEY = (
 
 
 def checked(name: str, bot: BotFactory) -> BotFactory:
-    """The same bot, held to what every bot is.
+    """Return the same bot, with every result checked.
 
     Args:
-        name: how the person calls it.
-        bot: the function that makes a brain; it and its brains raise UserError from now on.
+        name: the bot's name, as the user typed it.
+        bot: the function that makes a brain. The checked bot and its brains raise UserError.
     """
 
     def make(sheet: Sheet, seat: int) -> Brain:
@@ -46,12 +46,12 @@ def checked(name: str, bot: BotFactory) -> BotFactory:
 
 
 def broken(name: str, error: Exception, file: str | None) -> UserError:
-    """What a bot raised, in a sentence, with the last line of its own code that led there.
+    """Make the error for an exception of a bot, with the last line of the bot's code in it.
 
     Args:
-        name: how the person calls it.
-        error: what was raised.
-        file: the bot's file as tracebacks name it; None: none of its lines was reached.
+        name: the bot's name, as the user typed it.
+        error: the exception.
+        file: the bot's file as tracebacks name it; None if none of its lines ran.
     """
     calls = traceback.extract_tb(error.__traceback__)
     lines = [call.lineno for call in calls if call.filename == file]
@@ -91,6 +91,6 @@ def _gave_back(name: str, function: object, found: object, expected: str) -> Use
 
 
 def _place(function: object) -> str | None:
-    """Say where a function begins; None for another object that can be called."""
+    """Return the file and line where a function begins; None for any other callable."""
     code = getattr(function, "__code__", None)
     return None if code is None else f"{code.co_filename}:{code.co_firstlineno}"

@@ -1,8 +1,8 @@
-"""A game whose mistakes are told as its author needs them.
+"""Check what a game returns, and report mistakes to its author.
 
-Games come from folders and packages of others. What `make` gives back is looked at when the arena
-is loaded, and each answer of its rules while the match runs, so that a mistake is one sentence
-with its place: headless, at a court and in a replay alike.
+Games come from other people's folders and packages. The result of `make` is checked when the
+arena is loaded, and each result of its rules while the match runs. A mistake is one sentence
+with its place in the code: in a headless match, at a court and in a replay.
 """
 
 import traceback
@@ -23,7 +23,7 @@ _RULES = ("start", "step", "board", "score", "over", "winner", "set")
 
 
 class Source(NamedTuple):
-    """Where an arena's code lies, as mistakes name it."""
+    """Where an arena's code lies; used in error messages."""
 
     arena: str
     folder: str
@@ -38,14 +38,14 @@ class Source(NamedTuple):
         """Call a function of the arena.
 
         Args:
-            what: its name.
+            what: the function's name.
             function: the function.
-            arguments: what it is given.
-            refuses: it may raise ValueError, for a setting or a state of a marker.
+            arguments: its arguments.
+            refuses: whether it may raise ValueError, for a setting or a state of a marker.
 
         Raises:
-            UserError: with the line of the arena's code, if it raises what it should not.
-            ValueError: as the function does, where it may.
+            UserError: if it raises anything else; with the line of the arena's code.
+            ValueError: if the function raises it and `refuses` is true.
         """
         try:
             return function(*arguments)
@@ -66,18 +66,18 @@ class Source(NamedTuple):
 
 
 def checked(source: Source, game: Any) -> AnyGame:
-    """Hold a game to what every game is.
+    """Check a game and everything that it returns later.
 
     Args:
-        source: the arena, for the mistakes.
-        game: what `make` gave back.
+        source: the arena, for error messages.
+        game: the result of `make`.
 
     Returns:
-        The same game; its rules raise UserError from now on where they break, or give back what
-        they must not.
+        The same game. Its rules raise UserError if they break, or if they return something
+        that is not allowed.
 
     Raises:
-        UserError: if it lacks something, or begins with what no game is.
+        UserError: if the game lacks something, or its first state is wrong.
     """
     missing = [name for name in _VALUES if not hasattr(game, name)]
     missing += [name for name in _RULES if not callable(getattr(game, name, None))]
@@ -96,7 +96,7 @@ def checked(source: Source, game: Any) -> AnyGame:
 
 
 class CheckedGame:
-    """A game, each of whose answers is looked at; else the game itself."""
+    """A game that checks each result of its rules; everything else is passed through."""
 
     def __init__(self, source: Source, game: AnyGame) -> None:
         self._source = source
@@ -180,7 +180,7 @@ class CheckedGame:
             found = self._source.call("set", rule, state, marker, value, refuses=True)
         except NoSuchState:
             raise
-        except ValueError as error:  # a sentence does as well
+        except ValueError as error:  # a game may give its reason as a plain sentence
             raise NoSuchState(say("plain.text", text=str(error))) from error
         return self._state("set", found)
 
@@ -206,10 +206,10 @@ class CheckedGame:
 
 
 def _check_values(source: Source, game: AnyGame) -> None:
-    """Look at what a game has beside its rules.
+    """Check what a game has besides its rules.
 
     Raises:
-        UserError: at the first that is wrong.
+        UserError: at the first value that is wrong.
     """
 
     def require(right: bool, name: str, expected: str) -> None:
@@ -245,10 +245,10 @@ def _check_values(source: Source, game: AnyGame) -> None:
 
 
 def marker_of_geom(game: AnyGame, geom: str) -> tuple[int, int]:
-    """Which marker a geom shows, and in which state; (-1, -1): it is no marker's.
+    """Return the marker that a geom shows, and the state; (-1, -1) if it shows no marker.
 
     Raises:
-        UserError: if it is named as a marker's, and there is no such marker or state.
+        UserError: if the geom's name begins as a marker's, and there is no such marker or state.
     """
     kind, _, rest = geom.partition(":")
     if kind != "marker":

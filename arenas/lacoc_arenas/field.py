@@ -1,9 +1,9 @@
-"""Pieces that the fields of all games are built of, as MuJoCo geoms.
+"""MuJoCo geoms that the fields of all games are built of.
 
-Only the floor and the four wall planes can be touched. Everything else is there to be
-seen: it has no mass and takes part in no contact, so it changes no bit of a path
-(rules 6, strike). What belongs to a marker is named "marker:NAME:STATE", with ":PART"
-after it where a state has several shapes; it is shown while the marker is in that state.
+Only the floor and the four wall planes can be touched. Every other geom is only
+visible: it has no mass and no contacts, so it does not change the physics at all
+(rules 6, strike). The geoms of a marker are named "marker:NAME:STATE", followed by
+":PART" if a state has several shapes; they are shown while the marker is in that state.
 """
 
 import math
@@ -18,7 +18,7 @@ Rgba = tuple[float, float, float, float]
 
 
 def rgba(colour: str, alpha: float = 1.0) -> Rgba:
-    """The colour "#rrggbb" as numbers from 0 to 1."""
+    """Return the colour "#rrggbb" as numbers from 0 to 1."""
     red, green, blue = (int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5))
     return red, green, blue, alpha
 
@@ -36,10 +36,10 @@ TINTS: dict[str, Rgba] = {
     "right": rgba("#e69f00"),
     "down": rgba("#a39c8f"),
 }
-"""The colour of a marker by its state: the default pair of teams (rules 4)."""
+"""The colour of a marker in each state, with the default colours of the teams (rules 4)."""
 
 _GROUND = {"contype": 1, "conaffinity": 0xFFFE}
-"""Touched by robots, whose own bits start at 2 (docs/facts.md 2)."""
+"""Collides with robots, whose own bits start at 2 (docs/facts.md 2)."""
 
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 BOX = mujoco.mjtGeom.mjGEOM_BOX
@@ -59,7 +59,7 @@ def ground(spec: mujoco.MjSpec, size_m: tuple[float, float]) -> None:
     half = (size_m[0] / 2, size_m[1] / 2)
     world.add_geom(name="floor", type=PLANE, size=[*half, 0.05], rgba=FLOOR, **_GROUND)
     s = math.sqrt(0.5)
-    inward = {  # the plane's normal is its z axis: it must point into the field
+    inward = {  # a plane's normal is its z axis: it must point into the field
         "east": ((half[0], 0.0), (s, 0.0, -s, 0.0)),
         "west": ((-half[0], 0.0), (s, 0.0, s, 0.0)),
         "north": ((0.0, half[1]), (s, s, 0.0, 0.0)),
@@ -97,7 +97,7 @@ def shape(
     colour: Rgba,
     **more: Any,
 ) -> None:
-    """Add a shape that can only be seen."""
+    """Add a geom that is only visible: without mass and contacts."""
     spec.worldbody.add_geom(
         name=name,
         type=kind,
@@ -119,7 +119,7 @@ def disc(
     top_m: float,
     colour: Rgba,
 ) -> None:
-    """Add a flat round plate on the floor, its upper face `top_m` above it."""
+    """Add a flat round plate on the floor; its upper face is `top_m` above the floor."""
     shape(spec, name, CYLINDER, [radius_m, top_m / 2], [*at_m, top_m / 2], colour)
 
 
@@ -131,10 +131,10 @@ def plate(
     top_m: float,
     colour: Rgba,
 ) -> None:
-    """Add a flat rectangular plate on the floor, its upper face `top_m` above it."""
+    """Add a flat rectangular plate on the floor; its upper face is `top_m` above the floor."""
     shape(spec, name, BOX, [*half_m, top_m / 2], [*at_m, top_m / 2], colour)
 
 
 def marker_geom(name: str, state: int, part: str = "") -> str:
-    """The name of a geom that is shown while a marker is in a state."""
+    """Return the name of a geom that is shown while a marker is in a state."""
     return f"marker:{name}:{MARKER_STATES[state]}" + (f":{part}" if part else "")

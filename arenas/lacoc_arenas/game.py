@@ -1,8 +1,8 @@
-"""What every game is: pure rules over numbers (docs/architecture.md).
+"""The interface of a game: pure rules over numbers (docs/architecture.md).
 
-A game is a value made from its settings. It holds nothing that changes: the state of
-a match goes in and comes out of `step`. It knows no physics, network or clock, so the
-same observations give the same match anywhere.
+A game is a value made from its settings. It never changes: the state of a match goes
+into `step` and comes out of it. It knows no physics, network or clock, so the same
+observations give the same match anywhere.
 """
 
 from collections.abc import Set as AbstractSet
@@ -14,17 +14,17 @@ from lacoc_shared.messages import MarkerInfo
 from lacoc_shared.words import Phrase, render
 
 NEUTRAL, LEFT, RIGHT, DOWN = range(4)
-"""States of a marker; a seat's own state is its index + 1. Same order as `MARKER_STATES`."""
+"""States of a marker, in the order of `MARKER_STATES`. A seat's own state is its index + 1."""
 
 Claim = tuple[int, str]
-"""(seat, marker): what a referee strikes out (rules 4, take-back)."""
+"""(seat, marker) of an event that a referee strikes out (rules 4, take-back)."""
 
 
 class NoSuchState(ValueError):
-    """A marker can't be set to a state.
+    """Raised when a marker can't have a state.
 
     Args:
-        why: which states it has (`why.*`).
+        why: the states that the marker can have (`why.*`).
     """
 
     def __init__(self, why: Phrase) -> None:
@@ -36,7 +36,7 @@ class NoSuchState(ValueError):
 
 
 class Place(NamedTuple):
-    """A start place on the floor, in the world's frame."""
+    """A start place on the floor, in the world frame."""
 
     x_m: float
     y_m: float
@@ -45,21 +45,21 @@ class Place(NamedTuple):
 
 
 class RobotView(NamedTuple):
-    """What the rules see of a robot after a tick."""
+    """The data of one robot that the rules see after a tick, in the world frame."""
 
     x_m: float
-    """Body frame's origin in the world."""
+    """Origin of the body frame [m]."""
     y_m: float
     z_m: float
     qw: float
-    """Quaternion of the body in the world."""
+    """Orientation of the body as a quaternion."""
     qx: float
     qy: float
     qz: float
     placed: Place | None = None
-    """Where it was put at the beginning of this tick; None if it walked."""
+    """Where the robot was put at the beginning of this tick; None if it walked."""
     touched: tuple[int, ...] = ()
-    """Indices of the markers whose probe any part of it touches."""
+    """Indices of the markers whose probe any part of the robot touches."""
 
 
 Observation = tuple[RobotView, ...]
@@ -70,17 +70,17 @@ class GameEvent(msgspec.Struct, frozen=True, kw_only=True):
     """Something that the rules decided in a tick."""
 
     kind: str
-    """flip, capture, strike: a game's own word."""
+    """The game's own word: flip, capture, strike."""
     seat: int
     marker: str
-    """The marker that was claimed; with the seat it names the claim."""
+    """The marker that was claimed; with `seat` it names the claim."""
     also: tuple[str, ...] = ()
-    """Markers that changed with it (the runs of rules 5)."""
+    """Markers that changed together with it (the runs of rules 5)."""
     points: int = 0
-    """What the seat gains by it."""
+    """Points that the seat gains."""
     said: Phrase
-    """What happened, as a whole sentence; its value `team` is "", and the match fills it in. A game
-    that is no part of LACOC says `event.other`."""
+    """What happened, as a whole sentence. Its value `team` is ""; the match fills it in. A game
+    that is not part of LACOC uses `event.other`."""
 
 
 S = TypeVar("S", bound=msgspec.Struct)
@@ -90,16 +90,16 @@ class Game(Protocol[S]):
     """The rules of a game, made by its arena's `rules.make(settings)`."""
 
     state_type: type[S]
-    """The struct that holds a match of this game; can be encoded (snapshots)."""
+    """The struct that holds the state of a match; it must be encodable (snapshots)."""
     markers: tuple[MarkerInfo, ...]
-    """The board: discs, corners, flags; empty for a game without one."""
+    """The board: discs, corners, flags; empty for a game without a board."""
     starts: tuple[tuple[Place, ...], ...]
-    """For each seat its start places, the best first."""
+    """The start places of each seat, the best first."""
     size_m: tuple[float, float]
     """Inner width (x) and depth (y) of the field between its walls."""
 
     def start(self) -> S:
-        """The state before the first tick: robots stand on their first start places."""
+        """Return the state before the first tick: robots stand on their first start places."""
 
     def step(
         self,
@@ -112,7 +112,7 @@ class Game(Protocol[S]):
 
         Args:
             state: the state before the tick.
-            observation: what the robots did in it, one view a seat.
+            observation: one view of each robot after the tick, by seat.
             dt_s: length of the tick [s].
             struck: claims of this tick that a referee struck out; they have no effect.
 
@@ -122,16 +122,16 @@ class Game(Protocol[S]):
         """
 
     def board(self, state: S) -> tuple[int, ...]:
-        """State of each marker: NEUTRAL, LEFT, RIGHT or DOWN."""
+        """Return the state of each marker: NEUTRAL, LEFT, RIGHT or DOWN."""
 
     def score(self, state: S) -> tuple[int, ...]:
-        """Points of each seat."""
+        """Return the points of each seat."""
 
     def over(self, state: S) -> Phrase | None:
-        """Why the match is over before its time is up (`over.*`); None while it is not."""
+        """Return why the match is over before its time is up (`over.*`); None if it is not over."""
 
     def winner(self, state: S, scores: tuple[int, ...]) -> int | None:
-        """Who has won if the match ends now.
+        """Return who wins if the match ends now.
 
         Args:
             state: the state at the end.
@@ -150,7 +150,7 @@ class Game(Protocol[S]):
 
 
 def leader(scores: tuple[int, ...]) -> int | None:
-    """The seat with the most points; None where two share the most (rules 5 and 6: a draw)."""
+    """Return the seat with the most points; None if two share the most (rules 5 and 6: a draw)."""
     best = max(scores)
     leaders = [seat for seat, score in enumerate(scores) if score == best]
     return leaders[0] if len(leaders) == 1 else None

@@ -1,4 +1,4 @@
-"""What the fields of all games have in common: their measures and their symmetry."""
+"""Lengths and symmetry, shared by the fields of all games."""
 
 import math
 from collections.abc import Iterable
@@ -9,7 +9,7 @@ import msgspec
 from lacoc_arenas.game import Place
 
 Length = Annotated[float, msgspec.Meta(gt=0, le=20)]
-"""A length in an arena file [m]; neither zero nor endless."""
+"""A length in an arena file [m]; above 0 and at most 20."""
 
 Point = tuple[
     Annotated[float, msgspec.Meta(ge=-20, le=20)], Annotated[float, msgspec.Meta(ge=-20, le=20)]
@@ -18,12 +18,12 @@ Point = tuple[
 
 
 def turned(place: Place) -> Place:
-    """The place that is this one when the field is turned by 180 degrees (rules 4)."""
+    """Return the place that this one becomes when the field is turned by 180 degrees (rules 4)."""
     heading_rad = math.remainder(place.heading_rad + math.pi, math.tau)
     return Place(0.0 - place.x_m, 0.0 - place.y_m, heading_rad)
 
 
 def opposite(places: Iterable[Place]) -> tuple[tuple[Place, ...], tuple[Place, ...]]:
-    """The start places of both seats: those of the left one, and the same turned."""
+    """Return the start places of both seats: the left ones, and these turned for the right seat."""
     left = tuple(places)
     return left, tuple(map(turned, left))

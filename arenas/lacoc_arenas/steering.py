@@ -1,4 +1,4 @@
-"""How bots see and steer: poses out of frames, and keys that bring a robot to a point.
+"""Steering for bots: read poses from frames, and choose keys that bring a robot to a point.
 
 The keys are those of Fig. 4-2, which every sample gait follows: [0] stand, [1] turn
 left, [2] forward, [3] turn right, at the level of locomotion.
@@ -17,33 +17,33 @@ STAND, TURN_LEFT, FORWARD, TURN_RIGHT = (Key(Level.LOCOMOTION, digit) for digit 
 RESTART = Key(Level.LOCOMOTION, RESTART_KEY)
 
 SPEED_M_S = 0.057
-"""How fast the sample hexapod walks; other robots are near enough for a plan."""
+"""Walking speed of the sample hexapod; it is close enough for plans with other robots."""
 TURN_RAD_S = math.radians(21)
 
 _POSE = Struct("<7f")
 _FLOAT_BYTES = 4
 
 _STRAY_RAD = math.radians(16)
-"""Half of what one sequence of a turn turns: where the heading is less far off, it walks."""
+"""Half the angle that one turn sequence turns by: within this bearing the robot walks."""
 _NEAR_M = 0.10
-"""So near to the target the bearing swings: the walk goes on until it is far off."""
+"""This near to the target the bearing changes fast: the robot walks until `_NEAR_STRAY_RAD`."""
 _NEAR_STRAY_RAD = math.radians(45)
 
 _FALLEN_TICKS = 2 * BEATS_PER_S
 _TANGLED_TICKS = 8 * BEATS_PER_S
 _TANGLED_M = 0.36
-"""Two robots that stay so near for so long have caught each other's legs."""
+"""Two robots this near for `_TANGLED_TICKS` have caught each other's legs."""
 _STUCK_TICKS = 4 * BEATS_PER_S
 _STUCK_M = 0.06
-"""A robot that walks for so long comes farther than this, or something is in its way."""
+"""A robot that walks for `_STUCK_TICKS` and comes less far than this is blocked."""
 _EVADE_TICKS = 6 * BEATS_PER_S
 
 _PASS_M = 0.42
-"""Two robots whose centres are this near touch, or will."""
+"""Two robots whose centres are this near touch, or soon will."""
 _AHEAD_RAD = math.radians(40)
 _PASS_RAD = math.radians(75)
 _WALL_M = 0.20
-"""How near to a wall a robot's centre comes."""
+"""Least distance of a robot's centre from a wall."""
 
 
 class Pose(NamedTuple):
@@ -54,25 +54,25 @@ class Pose(NamedTuple):
     heading_rad: float
     """Direction of the body's +y (forward), counter-clockwise from the world's +x."""
     up: float
-    """z of the body's upward direction: 1 stands, -1 lies on its back."""
+    """World z of the body's upward direction: 1 upright, -1 on its back."""
 
     def bearing_rad(self, x_m: float, y_m: float) -> float:
-        """How far to turn left to look at a point, -pi to pi."""
+        """Return the angle to turn left to face a point, -pi to pi."""
         angle = math.atan2(y_m - self.y_m, x_m - self.x_m) - self.heading_rad
         return math.remainder(angle, math.tau)
 
     def distance_m(self, x_m: float, y_m: float) -> float:
-        """Distance to a point on the floor."""
+        """Return the distance to a point on the floor."""
         return math.hypot(x_m - self.x_m, y_m - self.y_m)
 
     def travel_s(self, x_m: float, y_m: float, reach_m: float = 0.0) -> float:
-        """How long it takes to turn to a point and walk until it is within reach."""
+        """Return the time to turn to a point and to walk until it is within reach."""
         walk_m = max(0.0, self.distance_m(x_m, y_m) - reach_m)
         return abs(self.bearing_rad(x_m, y_m)) / TURN_RAD_S + walk_m / SPEED_M_S
 
 
 class Eyes:
-    """Reads the poses of all robots out of the frames of one match."""
+    """Reads the poses of all robots from the frames of one match."""
 
     def __init__(self, sheet: Sheet) -> None:
         self._offsets: list[int] = []
@@ -82,7 +82,7 @@ class Eyes:
             offset += _POSE.size + _FLOAT_BYTES * JOINTS_PER_LEG * len(seat.legs)
 
     def poses(self, frame: Frame) -> list[Pose]:
-        """Where each robot is, one pose a seat; the frame must be of READY or later."""
+        """Return the pose of each robot, by seat; the frame must be of phase READY or later."""
         return [_pose(*_POSE.unpack_from(frame.poses, offset)) for offset in self._offsets]
 
 
@@ -94,8 +94,8 @@ def _pose(x: float, y: float, z: float, qw: float, qx: float, qy: float, qz: flo
 class Pilot:
     """Brings one robot to points: turns, walks, passes the other robot, frees itself.
 
-    A key is left only where its sequence ends: a step that is broken off brings a robot
-    nowhere, and a turn in pieces turns it the wrong way.
+    It changes the key only where a sequence ends: half a step brings a robot nowhere, and
+    half a turn turns it the wrong way.
     """
 
     def __init__(self, sheet: Sheet, seat: int, size_m: tuple[float, float]) -> None:
@@ -106,16 +106,16 @@ class Pilot:
         self._upright_at = self._apart_at = self._seen = 0  # clock
         self._walked_ticks = 0
         self._mark_m = (0.0, 0.0)  # where it made its last progress
-        self._evade: tuple[int, float] | None = None  # until when, and with which heading
+        self._evade: tuple[int, float] | None = None  # until which tick, and the heading
 
     def toward(
         self, frame: Frame, poses: list[Pose], target_m: tuple[float, float] | None
     ) -> Key | None:
-        """The key that brings the robot nearer to a point; None to leave the standing one.
+        """Return the key that brings the robot nearer to a point; None to keep the current key.
 
         Args:
             frame: the newest frame.
-            poses: where all robots are in it.
+            poses: the poses of all robots in this frame.
             target_m: the point (x, y); None to stand.
         """
         seat, now = frame.seats[self._seat], frame.clock_ticks
@@ -128,14 +128,14 @@ class Pilot:
         return wanted if (seat.level, seat.key) != wanted else None
 
     def _sequence_ended(self, seat: SeatFrame) -> bool:
-        """Did the standing key just come back to its first posture, or has it no others?"""
+        """Say whether the key just came back to its first posture, or has only one."""
         before, self._posture = self._posture, seat.posture
         if seat.level != Level.LOCOMOTION or seat.key == STAND.key:
             return True
         return seat.posture < before or self._postures[seat.key] == 1
 
     def _must_restart(self, poses: list[Pose], now: int) -> bool:
-        """Does it lie on its back, or hang on the other robot, for too long?"""
+        """Say whether the robot lies on its back, or hangs on the other robot, for too long."""
         pose = poses[self._seat]
         others = [other for other in poses if other is not pose]
         tangled = any(pose.distance_m(other.x_m, other.y_m) < _TANGLED_M for other in others)
@@ -149,7 +149,7 @@ class Pilot:
         return restart
 
     def _watch_progress(self, poses: list[Pose], now: int, walks: bool) -> None:
-        """Where a long walk comes nowhere: choose another heading for a while."""
+        """Choose another heading for a while if a long walk makes no progress."""
         pose = poses[self._seat]
         if pose.distance_m(*self._mark_m) > _STUCK_M:
             self._mark_m, self._walked_ticks = (pose.x_m, pose.y_m), 0
@@ -178,7 +178,7 @@ class Pilot:
         return _key_for(bearing_rad, _NEAR_STRAY_RAD if near else _STRAY_RAD)
 
     def _pass(self, pose: Pose, other: Pose, bearing_rad: float) -> float:
-        """Go round the other robot where it stands in the way: both keep to the right."""
+        """Go round the other robot if it stands in the way: both keep to the right."""
         blocked_rad = pose.bearing_rad(other.x_m, other.y_m)
         if abs(math.remainder(bearing_rad - blocked_rad, math.tau)) > _AHEAD_RAD:
             return bearing_rad
@@ -186,7 +186,7 @@ class Pilot:
         return right_rad if self._is_free(pose, right_rad) else left_rad
 
     def _is_free(self, pose: Pose, bearing_rad: float) -> bool:
-        """Is there room before the wall in this direction?"""
+        """Say whether there is room before the wall in this direction."""
         angle = pose.heading_rad + bearing_rad
         ahead_m = pose.x_m + _WALL_M * math.cos(angle), pose.y_m + _WALL_M * math.sin(angle)
         return all(abs(at) <= limit for at, limit in zip(ahead_m, self._limits_m, strict=True))
@@ -197,7 +197,7 @@ def _is_near(pose: Pose, other: Pose) -> bool:
 
 
 def _key_for(bearing_rad: float, stray_rad: float) -> Key:
-    """Walk while the bearing is small, else turn to it."""
+    """Walk if the bearing is small, else turn towards it."""
     bearing_rad = math.remainder(bearing_rad, math.tau)
     if abs(bearing_rad) <= stray_rad:
         return FORWARD
@@ -205,7 +205,7 @@ def _key_for(bearing_rad: float, stray_rad: float) -> Key:
 
 
 def straight(sheet: Sheet, seat: int) -> Brain:
-    """The simplest bot of every game: it walks straight ahead."""
+    """Make the brain of the simplest bot of every game: it walks straight ahead."""
 
     def brain(frame: Frame) -> Key | None:
         standing = frame.seats[seat]

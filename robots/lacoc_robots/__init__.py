@@ -1,1 +1,1 @@
-"""What a robot is."""
+"""Robots: their files, models, limits and samples."""

@@ -1,4 +1,4 @@
-"""`lacoc robot`: check a robot file, export it as MJCF, list the robots there are."""
+"""`lacoc robot`: check a robot file, export it as MJCF, list the installed robots."""
 
 import math
 from pathlib import Path
@@ -112,10 +112,10 @@ def list_robots(json: options.Json = False) -> None:
 
 
 def _stands(robot: str, contest: Path | None, notes: list[Phrase]) -> RobotSpec:
-    """Read a robot that can stand.
+    """Read a robot and check that it can stand.
 
     Raises:
-        FileRefused: with every mistake of its file, or with what it did that was to stand.
+        FileRefused: with every mistake in its file, or with what it did instead of standing.
     """
     name, data = find_robot(robot)
     spec = _spec(name, data, contest)
@@ -134,7 +134,7 @@ def _spec(name: str, data: bytes, contest: Path | None) -> RobotSpec:
 
 
 def _gait_beside(robot: str, spec: RobotSpec, notes: list[Phrase]) -> Gait:
-    """Read the gait files beside a robot's file; one with mistakes is noted and left out."""
+    """Read the gait files beside a robot's file; a note names each one that has mistakes."""
     tables: list[PostureTable | LocomotionTable] = []
     for file in sample_gait_files(robot):
         if file is None:

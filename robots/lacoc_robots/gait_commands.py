@@ -1,4 +1,4 @@
-"""`lacoc gait`: look at gait files before a match does, and turn one kind into another."""
+"""`lacoc gait`: check gait files before a match, and convert one kind into another."""
 
 import itertools
 import math
@@ -42,11 +42,11 @@ app = typer.Typer(
 
 _SAMPLE_KEYS_TEXT = ";".join(",".join(map(str, sequence)) for sequence in SAMPLE_KEYS)
 _KEYS = re.compile(r"\d(,\d)*(;\d(,\d)*)*", re.ASCII)
-_LIFTED = 0.1  # of a link's length above the lowest foot: 7 mm on the workshop's robot
+_LIFTED = 0.1  # times a link's length above the lowest foot: 7 mm on the workshop's robot
 
 
 class CheckedFile(msgspec.Struct, frozen=True):
-    """What `lacoc gait check --json` says of a file without mistakes."""
+    """One file without mistakes in the output of `lacoc gait check --json`."""
 
     file: str
     kind: str
@@ -98,7 +98,7 @@ def check(
             tables.append((file, read_gait_file(file, **fits, notes=notes)))
         except FileRefused as error:
             mistakes += error.mistakes
-        except UserError as error:  # one file that can't be opened hides none of the others
+        except UserError as error:  # a file that can't be opened must not hide the others
             expected = say("gait-command.name-of-file")
             mistakes.append(Mistake(file=str(file), found=error.phrase, expected=expected))
     if spec is not None:
@@ -168,10 +168,10 @@ def convert(
 
 
 def _is_locomotion(target: Path) -> bool:
-    """Which level the file to write has, by its name.
+    """Say whether the file to write holds locomotion (level B), by its name.
 
     Raises:
-        UserError: if it is a kind of file that is not written here.
+        UserError: if this command does not write such files.
     """
     if target.suffix.lower() not in (".txt", ".xlsx"):
         raise UserError(say("convert.target", path=str(target)))
@@ -182,7 +182,7 @@ def _joined(table: PostureTable, source: Path, keys: str) -> LocomotionTable:
     """Join postures to sequences as --keys says.
 
     Raises:
-        UserError: if it says so in a wrong way, or names a posture that there is not.
+        UserError: if --keys is written wrong, or names a posture that does not exist.
     """
     compact = keys.replace(" ", "")
     if not _KEYS.fullmatch(compact):
@@ -198,7 +198,7 @@ def _tried(
     tables: Sequence[PostureTable | LocomotionTable],
     notes: list[Phrase],
 ) -> list[Mistake]:
-    """Try whether a robot stands with the key 0 of each table."""
+    """Try in physics whether a robot stands with key 0 of each table."""
     book: list[Mistake] = []
     for table in tables:
         if isinstance(table, PostureTable):
@@ -219,7 +219,7 @@ def _checked(file: Path, table: PostureTable | LocomotionTable) -> CheckedFile:
 
 
 def _summary(table: PostureTable | LocomotionTable) -> Table:
-    """What each key does."""
+    """Return a table that shows what each key does."""
     labels = leg_labels(table.joints // JOINTS_PER_LEG)
     summary = screen.table(say("fact.key"), say("fact.postures"), say("fact.feet-lifted"))
     for digit, sequence in sorted(_sequences(table).items()):
@@ -234,7 +234,7 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 
 
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
-    """The feet lifted in each posture of a sequence; postures with the same feet count once."""
+    """Name the feet lifted in each posture of a sequence; equal neighbours count once."""
     steps = [step for step, _ in itertools.groupby(_lifted(p, labels) for p in sequence)]
     none, then = render(say("gait-command.no-feet")), render(say("gait-command.then"))
     shown = then.join(" ".join(step) or none for step in steps[:6])
@@ -242,7 +242,7 @@ def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
 
 
 def _lifted(posture: Posture, labels: Sequence[str]) -> tuple[str, ...]:
-    """The legs whose feet are above the lowest, on a level body with links of one length."""
+    """Return the legs whose feet are above the lowest, on a level body with links of one length."""
     legs = len(labels)
     # Rules 1: 1st + lifts the link, 2nd + swings the shank up; both 0: it hangs straight down.
     heights = [

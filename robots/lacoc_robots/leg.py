@@ -1,7 +1,7 @@
 """A leg: three links on three hinges (workshop Fig. 3-2, rules 1).
 
-Frames: the body's is +x right, +y forward, +z up, with its origin in the middle of the
-body's box. A link is a capsule; its length is from hinge to hinge, tip to tip.
+The body frame has +x right, +y forward and +z up; its origin is the middle of the body's
+box. A link is a capsule. Its length goes from hinge to hinge, at the last link to the tip.
 """
 
 import math
@@ -12,7 +12,7 @@ import msgspec
 
 
 class Point(NamedTuple):
-    """A point in the body's frame [m]."""
+    """A point in the body frame [m]."""
 
     x: float
     y: float
@@ -20,7 +20,7 @@ class Point(NamedTuple):
 
 
 class Capsule(NamedTuple):
-    """All points within a radius of a segment, in the body's frame [m]."""
+    """All points within a radius of a segment, in the body frame [m]."""
 
     start: Point
     end: Point
@@ -31,37 +31,37 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
     """One leg as its robot file describes it."""
 
     label: str
-    """How tables name the leg, such as "R,F"."""
+    """The leg's name in tables, such as "R,F"."""
     position_m: Point
-    """The root hinge in the body's frame."""
+    """The root hinge in the body frame."""
     outward_rad: float
-    """Direction that the leg points in at root angle 0: 0 = right, pi/2 = forward, pi = left."""
+    """Direction of the leg at root angle 0: 0 = right, pi/2 = forward, pi = left."""
     lengths_m: tuple[float, float, float]
     """Root link (L0), 1st link (L1), 2nd link (L2), from hinge to hinge."""
     radius_m: float
     masses_kg: tuple[float, float, float]
-    """Root, 1st, 2nd link."""
+    """Masses of the root, 1st and 2nd link."""
     range_rad: tuple[float, float]
-    """How far each of the three joints turns."""
+    """Lowest and highest angle of each of the three joints."""
     accent: bool = False
-    """Drawn in another colour, to show where the front is (workshop 3-1)."""
+    """Whether the leg has another colour, to show where the front is (workshop 3-1)."""
 
     @property
     def range_deg(self) -> tuple[float, float]:
-        """The range as the file has it: 60 degrees, not 59.99999999999999."""
+        """The range in the file's degrees, rounded: 60 degrees, not 59.99999999999999."""
         low, high = self.range_rad
         return round(math.degrees(low), 9), round(math.degrees(high), 9)
 
     @property
     def side(self) -> int:
-        """+1 for a leg on the right, -1 for one on the left: the sign of its root axis.
+        """+1 for a leg on the right, -1 for a leg on the left: the sign of its root axis.
 
-        With it a positive root angle swings the leg forward on both sides (rules 1).
+        With this sign a positive root angle swings the leg forward on both sides (rules 1).
         """
         return 1 if math.cos(self.outward_rad) > 0 else -1
 
     def points(self, root: float, first: float, second: float) -> tuple[Point, Point, Point, Point]:
-        """Compute where the leg's hinges and its tip are.
+        """Compute the positions of the leg's hinges and its tip.
 
         Args:
             root: angle [rad]; + swings the leg forward.
@@ -69,7 +69,7 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
             second: angle [rad]; + swings the 2nd link outward and up, 0 is square to the 1st.
 
         Returns:
-            Root hinge, 1st hinge, 2nd hinge and tip, in the body's frame.
+            Root hinge, 1st hinge, 2nd hinge and tip, in the body frame [m].
         """
         heading = self.outward_rad + self.side * root
         out_x, out_y = math.cos(heading), math.sin(heading)
@@ -88,8 +88,8 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
     def capsules(self, root: float, first: float, second: float) -> tuple[Capsule, ...]:
         """Compute the shapes of the three links, each from tip to tip of its length.
 
-        The root link begins with its middle on the root hinge, so that one of the
-        workshop's length, which is its radius, is a sphere there.
+        The root link begins with its middle on the root hinge. The workshop's root link is as
+        long as its radius, so its shape is a sphere there.
         """
         points = self.points(root, first, second)
         shapes = []

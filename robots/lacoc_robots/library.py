@@ -1,7 +1,7 @@
-"""Finding robots: installed samples, folders, and single robot files.
+"""Find robots: installed samples, folders, and single robot files.
 
 A robot's folder holds `robot.toml`, and its sample gait as `Loco-data.txt` and
-`LocoTra-data.txt`. A third party's is installed under the entry-point group
+`LocoTra-data.txt`. Other people's robots are installed under the entry-point group
 `lacoc.robots`, or given as a path.
 """
 
@@ -17,7 +17,7 @@ GROUP = "lacoc.robots"
 
 
 GAIT_NAMES = ("Loco-data.txt", "LocoTra-data.txt")
-"""What the gait files of a folder are called, by level (rules 2)."""
+"""Names of the gait files in a folder, by level (rules 2)."""
 
 
 class GaitFiles(NamedTuple):
@@ -36,7 +36,7 @@ def find_robot(name_or_path: str) -> tuple[str, bytes]:
         name_or_path: an installed name such as "hexapod", a folder, or a .toml file.
 
     Returns:
-        The file's name and its content, not looked at yet.
+        The file's name and its content, not checked yet.
 
     Raises:
         UserError: if there is no such robot, or its file can't be read.
@@ -46,7 +46,7 @@ def find_robot(name_or_path: str) -> tuple[str, bytes]:
 
 
 def sample_gait_files(name_or_path: str) -> GaitFiles:
-    """Read the gait files beside a robot's file; None for one that is not there.
+    """Read the gait files beside a robot's file; None for a missing file.
 
     Raises:
         UserError: if there is no such robot, or a file can't be read.
@@ -55,7 +55,7 @@ def sample_gait_files(name_or_path: str) -> GaitFiles:
 
 
 def gait_files_in(folder: Path) -> GaitFiles:
-    """Read the gait files of a folder; None for one that is not there.
+    """Read the gait files of a folder; None for a missing file.
 
     Raises:
         UserError: if a file can't be read.
@@ -68,7 +68,7 @@ def gait_files_in(folder: Path) -> GaitFiles:
 
 
 def robot_folder(name_or_path: str) -> Path:
-    """The folder of a robot's file, where its gait files are looked for.
+    """Return the folder of a robot's file; its gait files are there too.
 
     Raises:
         UserError: if there is no such robot.
@@ -77,7 +77,7 @@ def robot_folder(name_or_path: str) -> Path:
 
 
 def installed_robots() -> tuple[str, ...]:
-    """The names of the installed robots, in alphabetical order."""
+    """Return the names of the installed robots, in alphabetical order."""
     return tuple(plugins.installed(GROUP))
 
 

@@ -1,4 +1,4 @@
-"""The contest's limits for robots (rules 1), each a setting."""
+"""The contest's limits for robots (rules 1); each can be set in the contest file."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,11 +10,11 @@ from lacoc_shared.words import say
 
 
 class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a robot may be; the units are those of the files (degrees, metres, kilograms)."""
+    """Limits for a robot, in the units of the files (degrees, metres, kilograms)."""
 
     legs_min: float = 4
     legs_max: float = 8
-    """The number of legs is even."""
+    """The number of legs must also be even."""
     width_m: float = 0.45
     """Largest extent along x with every angle 0."""
     length_m: float = 0.45
@@ -31,14 +31,14 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     radius_min_m: float = 0.005
     radius_max_m: float = 0.03
     range_deg: float = 150.0
-    """Farthest that a joint may turn either way."""
+    """Largest angle of a joint in either direction."""
     ang_min_deg_s: float = 240.0
     torque_n_m: float = 2.0
     hold_s: float = 5.0
     drop_m: float = 0.05
-    """Farthest that the lowest part may be above the floor at the start."""
+    """Largest height of the lowest part above the floor at the start."""
     kp_max: float = 200.0
-    """Stiffest servo [N m/rad]: a stiffer one is more than the time step can follow."""
+    """Stiffest servo [N m/rad]: the time step is too long for a stiffer one."""
     kv_max: float = 5.0
     """Strongest damping in a servo [N m s/rad]."""
     damping_max: float = 1.0
@@ -50,10 +50,10 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     @classmethod
     def of(cls, overrides: Mapping[str, Any]) -> "Limits":
-        """Take the defaults with some replaced.
+        """Return the defaults with some limits replaced.
 
         Raises:
-            UserError: if an override is no limit, or no number; the message names it.
+            UserError: if an override is not a limit, or not a number; the message names it.
         """
         try:
             return msgspec.convert(overrides, cls)

@@ -1,4 +1,4 @@
-"""The MuJoCo model of a robot, built in code, with the settings that docs/facts.md 2 explains."""
+"""The MuJoCo model of a robot, built in code; docs/facts.md 2 explains its settings."""
 
 import math
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from lacoc_robots.robot import RobotSpec
 from lacoc_shared.gait.tables import JOINTS_PER_LEG
 
 MODEL_VERSION = 2
-"""Counts up when a robot or its solver becomes another model: then paths differ.
+"""Increased when the model of a robot or its solver changes, because paths change then.
 
 1: dense Jacobian, motors without a highest speed.
 """
@@ -25,25 +25,25 @@ FLOOR_CONTYPE = 1
 FLOOR_CONAFFINITY = 0xFFFE
 """Floor and walls collide with every robot."""
 MOST_SEATS = 15
-"""As many robots as there are collision bits left."""
+"""Most robots in a world: each needs a collision bit, and this many are left."""
 
-# What goes wrong is in `MjData.warning`; without this MuJoCo writes MUJOCO_LOG.TXT into the current
-# folder.
+# `MjData.warning` counts warnings. Without this handler MuJoCo also writes MUJOCO_LOG.TXT into
+# the current folder.
 mj.set_mju_user_warning(lambda text: None)
 
 _SOLREF = (0.01, 1.0)  # contact time constant [s] and damping ratio
-_SHORTEST_CAPSULE_M = 1e-6  # a shorter one is a sphere
+_SHORTEST_CAPSULE_M = 1e-6  # below this length a capsule is built as a sphere
 _TORSION_AND_ROLL = (0.005, 0.0001)  # MuJoCo's defaults; unused with condim 3
 
 
 def set_options(parent: mj.MjSpec) -> None:
-    """Set the official solver options: a match is the same everywhere only with these."""
+    """Set the official solver options: only with these is a match the same everywhere."""
     parent.option.timestep = TIMESTEP_S
     parent.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
     parent.option.solver = mj.mjtSolver.mjSOL_NEWTON
     parent.option.cone = mj.mjtCone.mjCONE_ELLIPTIC  # pyramids favour some headings
     parent.option.impratio = 1.0
-    # Less work than dense. "Auto" would choose by the number of joints, and so change the path.
+    # Less work than dense. "Auto" would choose by the number of joints, which changes the path.
     parent.option.jacobian = mj.mjtJacobian.mjJAC_SPARSE
 
 
@@ -51,7 +51,7 @@ def collision_bits(seat: int, seats: int) -> tuple[int, int]:
     """Compute contype and conaffinity of a robot: floor, walls and other robots, not itself.
 
     Raises:
-        ValueError: if there is no such seat, or there are too many.
+        ValueError: if there is no such seat, or there are too many seats.
     """
     if not 0 <= seat < seats <= MOST_SEATS:
         raise ValueError(f"seat {seat} of {seats}: expected 0 to {MOST_SEATS - 1} of {MOST_SEATS}")
@@ -76,15 +76,15 @@ def add_robot(
 ) -> None:
     """Add a robot on a free joint, at the world's origin and its start height.
 
-    It has the bodies `body` and `leg{leg}_{level}`, the free joint `root`, the hinges
-    `j{id}`, and the position servos `a{id}` in the order of their ids, all with the
-    prefix. The model's own order of joints is another one, leg by leg: find a joint by
-    its name.
+    The robot has the bodies `body` and `leg{leg}_{level}`, the free joint `root`, the hinges
+    `j{id}`, and the position servos `a{id}` in the order of their ids; all names begin with
+    the prefix. The model itself orders the joints leg by leg, not by id: find a joint by its
+    name.
 
     Args:
         parent: the world; not compiled yet.
-        robot: what to build.
-        prefix: goes before every name, such as "r0_".
+        robot: the robot to build.
+        prefix: put before every name, such as "r0_".
         seat: index of the robot's seat.
         seats: number of seats in this world.
         rgba: colour; the accent legs get a shade of it.
@@ -99,7 +99,7 @@ def add_robot(
         "contype": contype,
         "conaffinity": conaffinity,
         "condim": 3,
-        "priority": 1,  # the robot's friction counts, whatever the floor's is
+        "priority": 1,  # the robot's friction counts, whatever the floor's friction is
         "friction": [robot.friction, *_TORSION_AND_ROLL],
         "solref": _SOLREF,
     }
@@ -110,7 +110,7 @@ def add_robot(
         rgba=list(rgba),
         **skin,
     )
-    # The world decides in which unit its joints' ranges are given.
+    # `parent.compiler` decides the unit of joint ranges.
     unit = math.degrees if parent.compiler.degree else float
     for index, leg in enumerate(robot.legs):
         hinge = {
@@ -118,8 +118,8 @@ def add_robot(
             "limited": True,
             "range": [unit(angle) for angle in leg.range_rad],
             "armature": robot.armature,
-            # Back-EMF works also where the servo pushes as hard as it can, so it is no part of the
-            # servo, whose torque is cut off at `torque_n_m`.
+            # Back-EMF also acts while the servo pushes with its full torque. So it belongs to the
+            # joint, not to the servo, whose torque is limited to `torque_n_m`.
             "damping": robot.damping + robot.back_emf,
         }
         colour = accent_colour(rgba) if leg.accent else list(rgba)
@@ -142,7 +142,7 @@ def add_robot(
 
 
 def on_floor(robot: RobotSpec) -> mj.MjSpec:
-    """Put a robot on a floor under a light, with nothing else there; names have no prefix."""
+    """Put a robot alone on a floor under a light; its names have no prefix."""
     world = mj.MjSpec()
     world.modelname = robot.name
     set_options(world)
@@ -183,17 +183,17 @@ def _add_leg(
     hinge: dict[str, Any],
     skin: dict[str, Any],
 ) -> None:
-    """Chain three links; every hinge goes through the origin of its link's frame.
+    """Add a chain of three links; every hinge goes through the origin of its link's frame.
 
-    A link's frame has x outward and z up at angle 0. So a hinge along -y lifts, and the
-    root's along z or -z swings forward (rules 1).
+    At angle 0 a link's frame has x outward and z up. So a hinge along -y lifts the link, and
+    the root's hinge along z or -z swings it forward (rules 1).
 
     Args:
         body: the robot's body.
-        leg: what to build.
-        names: of each link and its hinge.
-        hinge: what all hinges share.
-        skin: what all shapes share.
+        leg: the leg to build.
+        names: names of each link and its hinge.
+        hinge: attributes of all hinges.
+        skin: attributes of all shapes.
     """
     axes = ([0, 0, leg.side], [0, -1, 0], [0, -1, 0])
     places = (leg.position_m, [leg.lengths_m[0], 0, 0], [leg.lengths_m[1], 0, 0])
@@ -205,7 +205,7 @@ def _add_leg(
         if level == 0:
             link.quat = [math.cos(half_turn), 0, 0, math.sin(half_turn)]
         link.add_joint(name=hinge_name, axis=axes[level], **hinge)
-        # From tip to tip as in `LegSpec.capsules`; the workshop's root link is a sphere.
+        # From tip to tip, as in `LegSpec.capsules`; the workshop's root link is a sphere.
         radius = leg.radius_m
         near, far = (0.0 if level == 0 else radius), leg.lengths_m[level] - radius
         ends = [x * near for x in along[level]] + [x * far for x in along[level]]

@@ -1,4 +1,4 @@
-"""A robot as numbers: a box with legs, its servos, and how it starts (rules 1, workshop 4-3)."""
+"""A robot as numbers: a box with legs, its servos, and its start (rules 1, workshop 4-3)."""
 
 import math
 from typing import Literal
@@ -9,12 +9,12 @@ from lacoc_robots.leg import Capsule, LegSpec, Point
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, Posture
 
 NO_LOAD_SPEED = 3.0
-"""Highest speed of a motor, in AngMins: the workshop's robot then has a usual hobby servo's 60
-degrees in 0.17 s."""
+"""Highest speed of a motor, as a multiple of AngMin: on the workshop's robot this gives the speed
+of a common hobby servo, 60 degrees in 0.17 s."""
 
 
 class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
-    """A robot: a box with legs, its servos, and how it starts."""
+    """A robot: a box with legs, its servos, and its start."""
 
     name: str
     size_m: tuple[float, float, float]
@@ -23,27 +23,28 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
     legs: tuple[LegSpec, ...]
     """Clockwise from the right front, seen from above."""
     start_height_m: float
-    """Underside of the body above the floor at the start."""
+    """Height of the body's underside above the floor at the start."""
     start_posture: Posture
     """(joints,) angles [rad], by joint id."""
     ang_min_rad_s: float
-    """How fast a commanded angle moves toward the target posture: the workshop's AngMin."""
+    """Speed of commanded angles towards the target posture: the workshop's AngMin."""
     advance: Literal["reached", "time"]
     """When a sequence goes on to its next posture (rules 3)."""
     hold_us: int
-    """How long a posture is held once it is reached, or given, as `advance` says."""
+    """How long a posture is held: from when it is reached, or from when it is commanded; see
+    `advance`."""
     kp: float
     """Servo stiffness [N m/rad]."""
     kv: float
-    """Servo damping [N m s/rad]; it is never less than the motor's own, `back_emf`."""
+    """Servo damping [N m s/rad]; never less than the motor's own damping, `back_emf`."""
     torque_n_m: float
-    """Strongest torque of a servo at rest, either way."""
+    """Largest torque of a servo at rest, in either direction."""
     damping: float
     """Joint damping [N m s/rad]."""
     armature: float
-    """Inertia of a motor as its joint feels it [kg m2]."""
+    """Inertia of a motor at its joint [kg m2]."""
     friction: float
-    """Coulomb friction between the robot and what it touches."""
+    """Coulomb friction coefficient between the robot and what it touches."""
 
     @property
     def joints(self) -> int:
@@ -57,12 +58,12 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def ranges_rad(self) -> tuple[tuple[float, float], ...]:
-        """(joints,) lowest and highest angle, by joint id."""
+        """(joints,) lowest and highest angle [rad], by joint id."""
         return tuple(leg.range_rad for _ in range(JOINTS_PER_LEG) for leg in self.legs)
 
     @property
     def ranges_deg(self) -> tuple[tuple[float, float], ...]:
-        """(joints,) the same in the file's degrees."""
+        """(joints,) lowest and highest angle in the file's degrees, by joint id."""
         return tuple(leg.range_deg for _ in range(JOINTS_PER_LEG) for leg in self.legs)
 
     @property
@@ -72,12 +73,12 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def no_load_rad_s(self) -> float:
-        """Highest speed of a motor: its torque falls in a line from rest to nothing here."""
+        """Highest speed of a motor: its torque falls linearly with speed, to zero here."""
         return NO_LOAD_SPEED * self.ang_min_rad_s
 
     @property
     def back_emf(self) -> float:
-        """Torque that a motor loses as it turns, for its speed [N m s/rad]."""
+        """Torque that a motor loses per unit of speed [N m s/rad]."""
         return self.torque_n_m / self.no_load_rad_s
 
     @property
@@ -87,7 +88,7 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def radius_m(self) -> float:
-        """Largest horizontal distance of any part from the body's origin, as it starts."""
+        """Largest horizontal distance of any part from the body's origin, at the start."""
         corner = math.hypot(self.size_m[0], self.size_m[1]) / 2
         return max(
             corner,
@@ -99,19 +100,19 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
         )
 
     def points(self, posture: Posture) -> tuple[tuple[Point, Point, Point, Point], ...]:
-        """Compute where every leg's root hinge, 1st hinge, 2nd hinge and tip are.
+        """Compute the positions of every leg's root hinge, 1st hinge, 2nd hinge and tip.
 
         Args:
             posture: (joints,) angles [rad], by joint id.
 
         Returns:
-            For each leg, in leg order, its four points in the body's frame [m].
+            For each leg, in leg order, its four points in the body frame [m].
         """
         legs = len(self.legs)
         return tuple(leg.points(*posture[i::legs]) for i, leg in enumerate(self.legs))
 
     def capsules(self, posture: Posture) -> tuple[Capsule, ...]:
-        """Compute the shapes of all links in a posture, leg by leg, in the body's frame."""
+        """Compute the shapes of all links in a posture, leg by leg, in the body frame."""
         legs = len(self.legs)
         return tuple(
             capsule
@@ -120,7 +121,7 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
         )
 
     def bounds(self, posture: Posture) -> tuple[Point, Point]:
-        """Compute the lowest and the highest x, y and z of all parts in a posture."""
+        """Compute the lowest and highest x, y and z of all parts in a posture (body frame)."""
         half = tuple(size / 2 for size in self.size_m)
         lows, highs = [tuple(-h for h in half)], [half]
         for capsule in self.capsules(posture):

@@ -1,7 +1,7 @@
-"""Reading a robot file: TOML in degrees, metres and kilograms (rules 1, workshop 4-3).
+"""Read a robot file: TOML in degrees, metres and kilograms (rules 1, workshop 4-3).
 
-First every entry is looked at by itself, then the robot as a whole. A mistake in the
-first part makes numbers NaN, and the whole is judged only where its numbers are known.
+First every entry is checked by itself, then the robot as a whole. A wrong entry becomes
+NaN, and a check of the whole robot counts only if all its numbers are known.
 """
 
 import math
@@ -21,14 +21,14 @@ from lacoc_shared.words import say
 __all__ = ["Capsule", "LegSpec", "Limits", "Point", "RobotSpec", "read_robot"]
 
 LARGEST_FILE = 32 * 1024
-"""Bytes; the same as for gaits (rules 2)."""
+"""Bytes, as for gait files (rules 2)."""
 
-_ROUNDING_KG = 1e-9  # what a sum of decimal masses may miss by
-_ROUNDING_M = 1e-6  # where a foot stands exactly on the floor
+_ROUNDING_KG = 1e-9  # rounding error of a sum of decimal masses
+_ROUNDING_M = 1e-6  # lets a foot stand exactly on the floor
 
 
 class _Link(NamedTuple):
-    """What [link] says for all legs, and a leg may say for itself."""
+    """The entries of [link], which hold for all legs; a leg may replace any of them."""
 
     lengths_m: tuple[float, ...]
     radius_m: float
@@ -41,11 +41,11 @@ def read_robot(text: str | bytes, file: str, limits: Limits | None = None) -> Ro
 
     Args:
         text: the file's content.
-        file: its name, for the mistakes.
+        file: its name, for error messages.
         limits: the contest's limits; None: the defaults of rules 1.
 
     Raises:
-        FileRefused: with every mistake of the file.
+        FileRefused: with every mistake in the file.
     """
     mistakes: list[Mistake] = []
     root = Entries(_parse(text, file), "", file, mistakes)
@@ -65,7 +65,7 @@ def _parse(text: str | bytes, file: str) -> dict[str, object]:
 
 
 def _robot(root: Entries, limits: Limits) -> RobotSpec:
-    """Read every table; what is wrong is noted, and NaN in the robot."""
+    """Read every table; each mistake is noted, and becomes NaN in the robot."""
     body, start = root.table("body"), root.table("start")
     drive, servo = root.table("drive", optional=True), root.table("servo", optional=True)
     surface = root.table("surface", optional=True)
@@ -157,7 +157,7 @@ def _leg(table: Entries, default: _Link, limits: Limits) -> LegSpec:
 
 
 def _link(table: Entries, default: _Link | None, limits: Limits) -> _Link:
-    """Read the links of all legs, or (with a default) what one leg has of its own."""
+    """Read the links of all legs, or (given a default) the entries that one leg replaces."""
 
     def own(name: str) -> bool:
         table.ask(name)
@@ -210,7 +210,7 @@ def _posture(start: Entries, legs: tuple[LegSpec, ...], limits: Limits) -> Postu
 
 
 def _check_order(root: Entries, robot: RobotSpec) -> None:
-    """Legs are numbered clockwise from the right front, seen from above (rules 1)."""
+    """Check that legs are numbered clockwise from the right front, seen from above (rules 1)."""
     bearings = [math.atan2(leg.position_m.x, leg.position_m.y) % math.tau for leg in robot.legs]
     for i, (one, other) in enumerate(pairwise(bearings), 1):
         if other <= one:
@@ -232,7 +232,7 @@ def _check_mass(root: Entries, robot: RobotSpec, limits: Limits) -> None:
 
 
 def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits) -> None:
-    """The robot at angle 0 fits in its box, and it starts on the floor, or a little above."""
+    """Check that the robot fits in its box at angle 0, and starts on the floor or just above."""
     low, high = _bounds(robot, (0.0,) * robot.joints)
     width_m, length_m, height_m = (b - a for a, b in zip(low, high, strict=True))
     for extent_m, most_m, found in (
@@ -257,7 +257,7 @@ def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits)
 
 
 def _bounds(robot: RobotSpec, posture: Posture) -> tuple[Point, Point]:
-    """Lowest and highest x, y and z of all parts; NaN unless every number is known."""
+    """Return lowest and highest x, y and z of all parts; NaN unless every number is known."""
     ends = (c for capsule in robot.capsules(posture) for c in (*capsule.start, *capsule.end))
     radii = (leg.radius_m for leg in robot.legs)
     if any(map(math.isnan, (*robot.size_m, *ends, *radii))):

@@ -1,6 +1,6 @@
-"""To stand means to stay: what a robot is told to do before play, and what it must not do then.
+"""Standing: the posture of a robot before play, and the limits within which it must stay.
 
-Pure: a trial in physics (`trial`) or a match says where the robot went.
+Pure: a trial in physics (`trial`) or a match says how far the robot moved.
 """
 
 import math
@@ -13,40 +13,40 @@ from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import Phrase, say
 
 TRIAL_S = 2.0
-"""A robot is tried for so long."""
+"""Duration of a trial."""
 FARTHEST_M = 0.05
-"""Where a robot's centre may be while it stands, seen from its start."""
+"""Largest distance of a standing robot's centre from its start."""
 MOST_TILT_RAD = math.radians(30.0)
-"""A robot that leans more is not upright."""
+"""A robot that leans more than this is not upright."""
 REST_RAD_S = math.radians(0.2)
-"""At rest no joint turns faster. A robot whose servos just don't hold it moves as slowly as a few
-degrees a second before it falls."""
+"""Fastest joint speed at rest. It is low because a robot whose servos are just too weak sinks by
+only a few degrees a second before it falls."""
 REST_M_S = 0.0002
-"""At rest the centre moves no faster."""
+"""Fastest speed of the centre at rest."""
 
 
 class Stood(msgspec.Struct, frozen=True):
-    """What a robot did in the time of a trial."""
+    """What a robot did during a trial."""
 
     moved_m: float
     """Largest distance of the body's centre from its start, seen from above."""
     tilt_rad: float
-    """Largest angle between the body's up and the world's."""
+    """Largest angle between the body's up and the world's up."""
     joint_rad_s: float
     """Speed of the fastest joint at the end."""
     centre_m_s: float
     """Speed of the body's centre at the end."""
     fault: bool = False
-    """Physics stopped."""
+    """Whether the simulation became unstable and stopped."""
 
 
 def standing_posture(gait: Gait, level: Level, start: Posture) -> Posture:
-    """The posture of a robot that is told to stand at a level (decision 15).
+    """Return the posture of a robot that is told to stand at a level (decision 15).
 
     Args:
-        gait: its files.
-        level: of the command.
-        start: its start posture, where it stays if the gait has no key 0 at this level.
+        gait: the robot's gait.
+        level: level of the command.
+        start: the robot's start posture, used if the gait has no key 0 at this level.
     """
     return (gait.sequence(level, 0) or (start,))[0]
 
@@ -54,7 +54,7 @@ def standing_posture(gait: Gait, level: Level, start: Posture) -> Posture:
 def standing_postures(
     gait: Gait, levels: Collection[Level], start: Posture
 ) -> dict[Posture, list[Level]]:
-    """The different postures in which a robot may be told to stand, with their levels."""
+    """Return the postures in which a robot may be told to stand, with the levels of each."""
     postures: dict[Posture, list[Level]] = {}
     for level in sorted(levels):
         postures.setdefault(standing_posture(gait, level, start), []).append(level)
@@ -62,15 +62,15 @@ def standing_postures(
 
 
 def mistakes_of(stood: Stood, file: str, levels: Sequence[Level]) -> list[Mistake]:
-    """Say what kept a robot from standing.
+    """List what kept a robot from standing.
 
     Args:
-        stood: what happened.
+        stood: what the robot did.
         file: name of the robot file.
-        levels: at whose key 0 it stood.
+        levels: levels whose key 0 gave the posture.
 
     Returns:
-        One mistake for each thing that was wrong; none for a robot that stays where it is.
+        One mistake for each limit that was broken; none for a robot that stays where it is.
     """
     book = []
 

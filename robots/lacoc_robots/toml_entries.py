@@ -1,7 +1,7 @@
-"""Taking entries out of a TOML table, with every mistake noted on the way.
+"""Read entries of a TOML table and note every mistake.
 
-A number that could not be read becomes NaN. Every comparison with NaN is false, so a
-check that asks "is it too large?" finds no second mistake where there was a first.
+A number that can't be read becomes NaN. Every comparison with NaN is false, so a check
+such as "is it too large?" reports no second mistake after the first.
 """
 
 import math
@@ -19,13 +19,13 @@ class Entries:
     """The entries of one table; all tables of a file share one list of mistakes."""
 
     def __init__(self, table: dict[str, Any], place: str, file: str, book: list[Mistake]) -> None:
-        """Begin with nothing taken.
+        """Begin with no entry read.
 
         Args:
-            table: what stands in the file.
-            place: what goes before an entry's name, such as "body." or "leg 2 (R,B), ".
+            table: the table as parsed.
+            place: put before an entry's name, such as "body." or "leg 2 (R,B), ".
             file: the file's name.
-            book: where mistakes are noted.
+            book: list that mistakes are appended to.
         """
         self.place = place
         self._table = table
@@ -37,7 +37,7 @@ class Entries:
         return name in self._table
 
     def note(self, name: str, found: Phrase | str, expected: Phrase, **where: Any) -> None:
-        """Note a mistake of an entry."""
+        """Note a mistake in an entry."""
         self._book.append(
             Mistake(
                 file=self._file,
@@ -58,15 +58,15 @@ class Entries:
         *,
         with_time: bool = False,
     ) -> float:
-        """Take a number between two bounds; NaN if it is wrong or missing.
+        """Read a number between two bounds; NaN if it is wrong or missing.
 
         Args:
             name: the entry.
             low: lowest value.
             high: highest value.
-            unit: as the table has it below `unit.`, or as everybody writes it.
-            default: where it is missing; None: it may not be.
-            with_time: the bounds count because of  advance = "time".
+            unit: a code below `unit.` in the table of words, or a unit symbol.
+            default: value if the entry is missing; None: it must not be missing.
+            with_time: whether the bounds are those for  advance = "time".
         """
         if with_time:
             expected = say("robot.number-with-time", low=low, high=high, unit=unit)
@@ -82,13 +82,13 @@ class Entries:
         unit: str = "",
         where: Sequence[Mapping[str, Any]] = (),
     ) -> tuple[float, ...]:
-        """Take a list of numbers; NaN for those that are wrong or missing.
+        """Read a list of numbers; NaN for each that is wrong or missing.
 
         Args:
             name: the entry.
-            bounds: lowest and highest value of each.
-            unit: of all of them.
-            where: the place of each within the entry, as fields of `Mistake`.
+            bounds: lowest and highest value of each number.
+            unit: unit of all numbers.
+            where: place of each number within the entry, as fields of `Mistake`.
         """
         expected = say("robot.numbers", count=len(bounds))
         values = self._take(name, expected)
@@ -98,7 +98,7 @@ class Entries:
             self.note(name, _shown(values), expected)
             return (math.nan,) * len(bounds)
         if len(values) != len(bounds):
-            # Which number belongs where is unknown, but each must be one.
+            # It is unknown which number belongs where, but each entry must be a number.
             self.note(name, say("robot.entries", count=len(values)), expected)
             for i, value in enumerate(values):
                 self._check(name, value, -_HUGE, _HUGE, say("robot.number"), column=i + 1)
@@ -117,7 +117,7 @@ class Entries:
         )
 
     def text(self, name: str, longest: int) -> str:
-        """Take a word or a short text; "" if it is wrong or missing."""
+        """Read a word or a short text; "" if it is wrong or missing."""
         expected = say("robot.text", longest=longest)
         value = self._take(name, expected)
         if isinstance(value, str) and value.isprintable() and 1 <= len(value.strip()) <= longest:
@@ -127,7 +127,7 @@ class Entries:
         return ""
 
     def flag(self, name: str) -> bool:
-        """Take a switch that is off where it is missing."""
+        """Read true or false; false if it is missing or wrong."""
         expected = say("robot.flag")
         value = self._take(name, expected, False)
         if not isinstance(value, bool):
@@ -136,7 +136,7 @@ class Entries:
         return value
 
     def choice(self, name: str, options: tuple[str, ...]) -> str:
-        """Take one of some words; the first where it is missing or wrong."""
+        """Read one of several words; the first one if it is missing or wrong."""
         expected = say("robot.either", options=options)
         value = self._take(name, expected, options[0])
         if value in options:
@@ -145,7 +145,7 @@ class Entries:
         return options[0]
 
     def table(self, name: str, *, optional: bool = False) -> "Entries":
-        """Take a table; an empty one where it is missing or wrong."""
+        """Read a table; an empty one if it is missing or wrong."""
         expected = say("robot.table", line=f"[{name}]")
         value = self._take(name, expected, {} if optional else None)
         if value is not None and not isinstance(value, dict):
@@ -153,7 +153,7 @@ class Entries:
         return Entries(value if isinstance(value, dict) else {}, f"{name}.", self._file, self._book)
 
     def tables(self, name: str, expected: Phrase) -> list["Entries"]:
-        """Take tables, numbered from 0; none where they are missing or wrong."""
+        """Read a list of tables, numbered from 0; none if they are missing or wrong."""
         value = self._take(name, expected)
         if value is None:
             return []
@@ -166,11 +166,11 @@ class Entries:
         ]
 
     def ask(self, name: str) -> None:
-        """Say that an entry may stand here, without taking it."""
+        """Allow an entry without reading it."""
         self._taken.add(name)
 
     def finish(self) -> None:
-        """Note the entries that nobody has asked for."""
+        """Note the entries that were neither read nor allowed."""
         known = say("robot.one-of", names=sorted(self._taken))
         for name in self._table:
             if name not in self._taken:
@@ -187,14 +187,14 @@ class Entries:
         self, name: str, value: Any, low: float, high: float, expected: Phrase, **where: Any
     ) -> float:
         number = isinstance(value, int | float) and not isinstance(value, bool)
-        if number and low <= value <= high:  # before float(): a long int has none
+        if number and low <= value <= high:  # before float(), which fails for a very large int
             return float(value)
         self.note(name, _shown(value), expected, **where)
         return math.nan
 
 
 def _shown(value: Any) -> Phrase | str:
-    """Show a TOML value as it may stand in the file, cut short."""
+    """Show a TOML value as it stands in a file, shortened."""
     if isinstance(value, dict):
         return say("robot.a-table")
     if isinstance(value, bool):
@@ -203,6 +203,6 @@ def _shown(value: Any) -> Phrase | str:
         return say("robot.many-digits")
     try:
         text = f'"{value}"' if isinstance(value, str) else str(value)
-    except ValueError:  # such a number in a list
+    except ValueError:  # a list with an int of too many digits
         return say("robot.many-digits")
     return printable(text if len(text) <= 40 else text[:37] + "...")

@@ -1,4 +1,4 @@
-"""Try in physics whether a robot stays where it is when it is told to stand."""
+"""Try in physics whether a robot stays in place when it is told to stand."""
 
 import math
 from collections.abc import Collection
@@ -18,16 +18,16 @@ from lacoc_shared.seat import BEAT_S
 def try_standing(
     robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str
 ) -> list[Mistake]:
-    """Let a robot stand, once for each posture that key 0 has.
+    """Let a robot stand, once in each posture of key 0.
 
     Args:
         robot: the robot.
-        gait: its files.
+        gait: its gait.
         levels: levels of control that are open.
-        file: name of the robot file, for the mistakes.
+        file: name of the robot file, for error messages.
 
     Returns:
-        What keeps it from standing; nothing if it stays where it is.
+        What keeps it from standing; nothing if it stays in place.
     """
     postures = standing_postures(gait, levels, robot.start_posture)
     return [
@@ -38,11 +38,11 @@ def try_standing(
 
 
 def stand(robot: RobotSpec, posture: Posture) -> Stood:
-    """Put a robot on an empty floor as a match does, and move it to a posture with its drive.
+    """Put a robot on an empty floor as a match does, and let its drive move it to a posture.
 
     Args:
         robot: the robot.
-        posture: (joints,) where it stands [rad].
+        posture: (joints,) angles to stand with [rad].
     """
     model = on_floor(robot).compile()
     data = mj.MjData(model)

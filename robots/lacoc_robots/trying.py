@@ -1,4 +1,4 @@
-"""Trying a robot where MuJoCo is installed: a contestant's machine may have none."""
+"""Try a robot in physics if MuJoCo is installed; a contestant's machine may lack it."""
 
 from collections.abc import Collection
 
@@ -11,7 +11,7 @@ from lacoc_shared.words import Phrase, say
 def tried(
     robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str, notes: list[Phrase]
 ) -> list[Mistake]:
-    """Try whether a robot stands, as `trial.try_standing` does; a note says where it can't."""
+    """Try whether a robot stands, as `trial.try_standing` does; add a note if MuJoCo is missing."""
     try:
         from lacoc_robots.trial import try_standing
     except ModuleNotFoundError as error:

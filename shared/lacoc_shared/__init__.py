@@ -1,3 +1,3 @@
-"""What both ends of a match must agree on."""
+"""Definitions that both ends of a match share."""
 
 __version__ = "0.1.0"

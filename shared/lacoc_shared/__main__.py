@@ -1,4 +1,4 @@
-"""`python -m lacoc_shared` is `lacoc`, also where the command is not on the search path."""
+"""Run `lacoc` as `python -m lacoc_shared`, for when the command is not on the search path."""
 
 import sys
 

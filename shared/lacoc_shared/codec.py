@@ -1,7 +1,7 @@
-"""Bytes to messages and back: msgpack, typed and size-checked, one error family.
+"""Bytes to messages and back: msgpack with checks of types and size, and one error class.
 
-`msgspec` reads and writes the same bytes as `msgpack`; it also checks every type, so
-nothing that arrives is used before it is known to be what it should be.
+`msgspec` reads and writes the same bytes as `msgpack`. It also checks every type, so
+nothing that arrives is used before its type is known.
 """
 
 import hashlib
@@ -21,7 +21,7 @@ encode = _encoder.encode
 
 
 class BadMessage(ValueError):
-    """Bytes from outside that are not the message they should be: the sender's fault."""
+    """Bytes that are not the expected message; the sender is at fault."""
 
 
 def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
@@ -29,11 +29,11 @@ def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
 
     Args:
         data: the bytes as they arrived.
-        kind: the message they must be.
+        kind: the expected message.
         max_bytes: a longer payload is refused unread.
 
     Raises:
-        BadMessage: if they are too many, not msgpack, or not that message.
+        BadMessage: if there are too many bytes, or they are not msgpack or not this message.
     """
     if len(data) > max_bytes:
         raise BadMessage(f"{len(data)} bytes, at most {max_bytes} are read")
@@ -45,8 +45,8 @@ def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
 
 
 def _new_decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
-    # msgspec looks into a struct when it is first used. A thread that meets one into which another
-    # looks at that moment ends the process (SIGSEGV), so only one at a time may look.
+    # msgspec analyses a struct at its first use. If two threads do so at the same time, the process
+    # crashes (SIGSEGV), so the lock lets only one do it.
     with _looking:
         if kind not in _decoders:
             _decoders[kind] = msgspec.msgpack.Decoder(kind)
@@ -54,5 +54,5 @@ def _new_decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
 
 
 def message_hash(message: bytes) -> bytes:
-    """The 8 bytes by which frames, sheets and health name an encoded `Scene` or `Sheet`."""
+    """Return the 8 bytes by which frames, sheets and health name an encoded `Scene` or `Sheet`."""
     return hashlib.blake2b(message, digest_size=8).digest()

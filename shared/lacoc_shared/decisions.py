@@ -1,7 +1,7 @@
 """The referee's decisions (rules 4; workshop 5-1 rule 8, 5-2 rule 9), as small values.
 
-What each does and when it is legal is the court's to say (`lacoc_server.match.referee`);
-here is only what both ends must agree on: the names and the arguments. A seat is
+The court defines what each decision does and when it is legal (`lacoc_server.match.referee`).
+This module defines what both ends share: the names and the arguments. A seat is
 named by its id ("left"), a marker by its name ("c2r3", "corner0", "flag7").
 """
 
@@ -15,7 +15,7 @@ class _Decision(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Ready(_Decision, frozen=True, tag="ready"):
-    """Say ready in the place of a contestant who cannot."""
+    """Say ready for a contestant who cannot."""
 
     seat: str
 
@@ -25,7 +25,7 @@ class Start(_Decision, frozen=True, tag="start"):
 
 
 class Halt(_Decision, frozen=True, tag="halt"):
-    """Stop everything now: physics and the clock stand still."""
+    """Stop physics and the clock at once."""
 
 
 class Resume(_Decision, frozen=True, tag="resume"):
@@ -39,7 +39,7 @@ class Restart(_Decision, frozen=True, tag="restart"):
 
 
 class Freeze(_Decision, frozen=True, tag="freeze"):
-    """Let a robot stand (key 0) and refuse its keys for a while of clock."""
+    """Let a robot stand (key 0) and refuse its keys for some seconds of the clock."""
 
     seat: str
     seconds: float
@@ -52,7 +52,7 @@ class Unfreeze(_Decision, frozen=True, tag="unfreeze"):
 
 
 class Adjust(_Decision, frozen=True, tag="adjust"):
-    """Add points to a score (or take them away)."""
+    """Add points to a score; a negative number takes them away."""
 
     seat: str
     points: int
@@ -71,16 +71,16 @@ class TakeBack(_Decision, frozen=True, tag="take-back"):
     event: int
     """Number of the event."""
     dry_run: bool = False
-    """Only say what would change."""
+    """Only report what would change."""
 
 
 class Clock(_Decision, frozen=True, tag="clock", omit_defaults=True):
-    """Give time to play, or take it with a minus."""
+    """Add time to play; a negative number takes time away."""
 
     gives_s: float = 0.0
-    """Seconds by which the time left grows."""
+    """Seconds added to the time left."""
     seconds: float = 0.0
-    """Seconds taken: how records say it that are older than `gives_s`."""
+    """Seconds taken away; only in records that are older than `gives_s`."""
 
 
 class Abort(_Decision, frozen=True, tag="abort"):
@@ -88,7 +88,7 @@ class Abort(_Decision, frozen=True, tag="abort"):
 
 
 class Declare(_Decision, frozen=True, tag="declare"):
-    """Name the winner, whatever was computed."""
+    """Name the winner, whatever the rules computed."""
 
     winner: str
     """A seat's id, or "draw"."""
@@ -122,7 +122,7 @@ Decision = (
 """Any decision; on the wire a map whose entry "type" is the decision's name."""
 
 OLD_FIELDS = frozenset({(Clock, "seconds")})
-"""What is only read in old records: no program offers it."""
+"""Fields that are only read in old records; no program offers them."""
 
 DECISIONS: dict[str, type[Decision]] = {
     str(kind.__struct_config__.tag): kind for kind in get_args(Decision)
@@ -132,4 +132,4 @@ DECISIONS: dict[str, type[Decision]] = {
 NEED_A_REASON = frozenset(
     {"restart", "freeze", "adjust", "set", "take-back", "clock", "abort", "declare"}
 )
-"""Decisions that a referee gives a reason for; it is written into the record."""
+"""Decisions for which a referee must give a reason; the record keeps it."""

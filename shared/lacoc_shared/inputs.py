@@ -1,9 +1,9 @@
-"""What enters a match from outside, each at a beat: the record's inputs.
+"""The inputs of a match: what enters it from outside, each at a beat; the record keeps them.
 
-A match is a pure function of its setup and of these, beat by beat: the same inputs
-give the same match, bit for bit, live or headless, at any speed (rules 4). They have
-passed the court's checks (token, session, sequence number); whether a match heeds
-them is the match's to say, and is a part of what is replayed.
+A match is a pure function of its setup and its inputs, beat by beat: the same inputs
+give the same match, bit for bit, live or headless, at any speed (rules 4). Inputs have
+passed the court's checks (token, session, sequence number). The match then decides
+whether an input has an effect, and a replay decides the same.
 """
 
 import msgspec
@@ -18,7 +18,7 @@ class _Input(msgspec.Struct, frozen=True, array_like=True):
 
 
 class JoinSeat(_Input, frozen=True, tag="join"):
-    """A controller with the seat's token took the seat (again)."""
+    """A controller with the seat's token took the seat, or took it again."""
 
     seat: int
     team: str
@@ -26,7 +26,7 @@ class JoinSeat(_Input, frozen=True, tag="join"):
     postures: SentFile | None
     locomotion: SentFile | None
     token_hash: str
-    """Salted hash of the token: lets a restarted court know its seats."""
+    """Salted hash of the token: a restarted court recognises its seats by it."""
 
 
 class ReadySeat(_Input, frozen=True, tag="ready"):
@@ -50,9 +50,9 @@ class KeySeat(_Input, frozen=True, tag="key"):
     level: int
     key: int
     seen: int = 0
-    """Beat of the frame upon which it was pressed; 0: none of this match."""
+    """Beat of the newest frame when the key was pressed; 0: no frame of this match yet."""
     held: int = 0
-    """Beats for which the court held it, to make the seats' links equal."""
+    """Beats for which the court delayed it, to make the seats' links equal."""
     late: int = 0
     """Beats (20 ms each) by which it took effect later than the common delay allows."""
 
@@ -64,7 +64,7 @@ class SilentSeat(_Input, frozen=True, tag="silent"):
 
 
 class HeardSeat(_Input, frozen=True, tag="heard"):
-    """It was heard again."""
+    """A silent seat's controller was heard again."""
 
     seat: int
 
@@ -79,11 +79,11 @@ class Decide(_Input, frozen=True, tag="decide"):
 
 
 class Advice(_Input, frozen=True, tag="advice"):
-    """The court measured that the match was held badly, or after all well enough."""
+    """The court measured that the match ran badly, or that it ran well enough after all."""
 
     reasons: tuple[Phrase | str, ...]
-    """Why a replay is advised (`health.*`; a text in a record of protocol 1); empty: it is not any
-    more."""
+    """Why a replay is advised (`health.*`; a text in a record of protocol 1); empty: no replay is
+    advised any more."""
 
 
 Input = JoinSeat | ReadySeat | LeaveSeat | KeySeat | SilentSeat | HeardSeat | Decide | Advice

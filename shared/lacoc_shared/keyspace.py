@@ -9,16 +9,16 @@ from lacoc_shared.words import say
 EVERY_COURT = "lacoc/*/live/court"
 """Liveliness: the announcements of all courts that can be reached."""
 COMMAND_MAX_BYTES = 1024
-"""A longer command, ready or leave is not read."""
+"""Largest command, ready or leave that is read."""
 ENTER = "enter"
-"""In the place of a decision's name: the token is only shown."""
+"""Used in place of a decision's name: the referee only shows the token."""
 DECISION_MAX_BYTES = 4096
-"""A longer decision of a referee is not read."""
+"""Largest decision of a referee that is read."""
 EVENTS_LISTED = 2000
-"""A court lists, and a client keeps, at most so many events of a match, the newest: a reply has its
-limit, and a practice may go on for days."""
+"""Most events of a match that a court lists and a client keeps; the newest ones. A reply has a size
+limit, and a practice may last for days."""
 JOIN_MAX_BYTES = 65_536
-"""A longer join, with all its files, is not read."""
+"""Largest join, with all its files, that is read."""
 
 _NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}")
 
@@ -39,32 +39,32 @@ class Keys:
 
     @property
     def root(self) -> str:
-        """Everything of the court lies below this."""
+        """Prefix of all key expressions of the court."""
         return f"lacoc/{self.court}"
 
     @property
     def frame(self) -> str:
-        """Court to all, 50 Hz, the newest wins."""
+        """Court to all, 50 Hz; only the newest counts."""
         return f"{self.root}/frame"
 
     @property
     def event(self) -> str:
-        """Court to all, numbered, must arrive; by query all of the match."""
+        """Court to all, numbered, must arrive; a query returns all events of the match."""
         return f"{self.root}/event"
 
     @property
     def sheet(self) -> str:
-        """Court to all on change, and by query."""
+        """Court to all when it changes, and by query."""
         return f"{self.root}/sheet"
 
     @property
     def scene(self) -> str:
-        """By query; a frame's scene hash tells that it changed."""
+        """By query; a new scene hash in a frame tells that it changed."""
         return f"{self.root}/scene"
 
     @property
     def health(self) -> str:
-        """Court to all, 2 Hz, the newest wins."""
+        """Court to all, 2 Hz; only the newest counts."""
         return f"{self.root}/health"
 
     @property
@@ -73,18 +73,18 @@ class Keys:
         return f"{self.root}/live/court"
 
     def command(self, seat: str) -> str:
-        """Controller to court: the seat's commands."""
+        """Return the key expression of a seat's commands (controller to court)."""
         return f"{self.root}/seat/{seat}/key"
 
     def request(self, seat: str, what: str) -> str:
-        """Controller to court, with a reply: `what` is join, ready or leave."""
+        """Return the key expression of a request with a reply; `what`: join, ready or leave."""
         return f"{self.root}/seat/{seat}/{what}"
 
     @property
     def enter(self) -> str:
-        """Referee to court, with a reply: is this a referee's token?"""
+        """Referee to court, with a reply: whether this is a referee's token."""
         return f"{self.root}/referee/{ENTER}"
 
     def decision(self, name: str) -> str:
-        """Referee to court, with a reply; `*` for all decisions."""
+        """Return the key expression of a decision, which gets a reply; `*`: of all decisions."""
         return f"{self.root}/referee/{name}"

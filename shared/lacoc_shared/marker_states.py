@@ -1,4 +1,4 @@
-"""The states of a board's markers as frames carry them."""
+"""The states of a board's markers, packed as in frames."""
 
 
 def pack_states(states: tuple[int, ...]) -> bytes:
@@ -10,5 +10,5 @@ def pack_states(states: tuple[int, ...]) -> bytes:
 
 
 def unpack_states(packed: bytes, count: int) -> tuple[int, ...]:
-    """Undo `pack_states`; `count` markers."""
+    """Unpack the states of `count` markers from the bytes of `pack_states`."""
     return tuple(packed[index >> 2] >> (index & 3) * 2 & 3 for index in range(count))

@@ -1,8 +1,8 @@
-"""The messages of a court, as they travel (docs/protocol.md has them as tables).
+"""The messages of a court on the wire (docs/protocol.md has them as tables).
 
-These are not the court's own types: they are the contract with every other program.
-All are frozen structs, encoded as msgpack by `codec`. `Frame` and `Command` are
-arrays on the wire, because they travel 50 and 10 times a second; all others are maps.
+They are separate from the court's own types: they are the contract with every other
+program. All are frozen structs, encoded as msgpack by `codec`. `Frame` and `Command` are
+arrays on the wire, because they are sent 50 and 10 times a second; all others are maps.
 """
 
 from typing import Any
@@ -14,7 +14,7 @@ from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import Phrase
 
 PROTOCOL = 2
-"""Version of this contract; both ends must have the same."""
+"""Version of this contract; both ends must have the same version."""
 
 MARKER_STATES = ("neutral", "left", "right", "down")
 """The states of a marker; a frame carries the index in two bits."""
@@ -24,19 +24,19 @@ ROOT_FLOATS = 7
 
 
 class SeatFrame(msgspec.Struct, frozen=True, array_like=True):
-    """A seat at a beat."""
+    """The state of a seat at a beat."""
 
     flags: int
     """`SeatFlag` bits."""
     score: int
     level: int
-    """`Level` of the standing command."""
+    """`Level` of the current command."""
     key: int
-    """Digit of the standing command."""
+    """Digit of the current command."""
     posture: int
-    """Index of the posture that the robot moves to, in the key's sequence."""
+    """Index of the posture that the robot moves to, within the key's sequence."""
     locked_ticks: int
-    """Ticks of clock until keys are taken again after a restart or a freeze; 0: at once."""
+    """Clock ticks until keys are accepted again after a restart or a freeze; 0: accepted now."""
     applied_seq: int
     """Sequence number of the seat's newest command that took effect; 0: none yet."""
     applied_beat: int
@@ -44,40 +44,40 @@ class SeatFrame(msgspec.Struct, frozen=True, array_like=True):
     refused_seq: int
     """Sequence number of the seat's newest command that was refused; 0: none."""
     refused_why: int
-    """`No` of that refusal."""
+    """`No` code of that refusal."""
 
 
 class Frame(msgspec.Struct, frozen=True, array_like=True):
-    """The whole match at a beat; self-contained, so that a late comer needs only one."""
+    """The whole match at a beat; complete in itself, so that a latecomer needs only one."""
 
     match: int
     """Number of the match at this court, from 1."""
     beat: int
-    """Beat of the match, from 0; one every 20 ms of a court that keeps up."""
+    """Beat of the match, from 0; one every 20 ms unless the court is late."""
     phase: int
     """`Phase`."""
     countdown_beats: int
     """Beats until play begins, in COUNTDOWN; else 0."""
     clock_ticks: int
-    """Ticks of the clock that have been used; may be negative after a referee's correction."""
+    """Clock ticks that have been used; may be negative after a referee's correction."""
     seats: tuple[SeatFrame, ...]
-    """One for each seat of the arena, in its order."""
+    """One entry for each seat of the arena, in the arena's order."""
     markers: bytes
-    """Two bits a marker, the first in the lowest bits of the first byte."""
+    """Two bits for each marker, the first in the lowest bits of the first byte."""
     poses: bytes
     """Little-endian float32 for each robot: x, y, z [m, world], quaternion w, x, y, z (body to
     world), then its joint angles [rad] by joint id. Empty before READY."""
     scene: bytes
-    """First 8 bytes of the scene's hash: another scene needs another picture."""
+    """First 8 bytes of the scene's hash; if it changes, clients must fetch the scene again."""
     digest: bytes
-    """8 bytes chaining the whole state, beat after beat (the proof of a replay)."""
+    """8 bytes: a hash chain over the state of every beat so far (the proof of a replay)."""
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):
     """A key of a seat, repeated 10 times a second with the same sequence number (rules 3)."""
 
     session: int
-    """Number that the court gave with the join."""
+    """Number that the court gave in its reply to the join."""
     seq: int
     """Counts the seat's commands from 1; 0: no key yet, only a sign of life."""
     level: int
@@ -86,7 +86,7 @@ class Command(msgspec.Struct, frozen=True, array_like=True):
     match: int
     """Match of the newest frame that the controller had when it sent this; 0: none yet."""
     seen: int
-    """Beat of that frame: how long the link takes is the court's to count."""
+    """Beat of that frame; the court computes the link's delay from it."""
     mac: bytes
     """8 bytes of keyed BLAKE2 over everything above and the seat's key expression."""
 
@@ -99,7 +99,7 @@ class SentFile(msgspec.Struct, frozen=True):
 
 
 class Join(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for a seat."""
+    """A request for a seat."""
 
     protocol: int
     token: str
@@ -110,23 +110,23 @@ class Join(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     postures: SentFile | None = None
     """A Loco-data file."""
     locomotion: SentFile | None = None
-    """A LocoTra-data file. Neither file: the sample gait of the contest's robot."""
+    """A LocoTra-data file. With neither file: the sample gait of the contest's robot."""
 
 
 class Joined(msgspec.Struct, frozen=True, kw_only=True):
-    """The seat is yours."""
+    """The reply to a join that succeeded."""
 
     session: int
     secret: bytes
     """Key for the MACs of this session; 16 bytes."""
     last_seq: int
-    """The seat's sequence numbers go on after this one."""
+    """The seat's next sequence number is one above this."""
     notes: tuple[Phrase, ...] = ()
-    """What the contestant should know (`note.*`)."""
+    """Remarks for the contestant (`note.*`)."""
 
 
 class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Say ready, take it back, or leave; proven by the session's secret, not the token."""
+    """Say ready, take it back, or leave; proven by the session's secret, not by the token."""
 
     session: int
     seq: int
@@ -136,41 +136,41 @@ class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
 
 class Done(msgspec.Struct, frozen=True):
-    """It was done."""
+    """The reply to a request that succeeded."""
 
     said: Phrase | None = None
-    """What the one who asked should know (`note.*`)."""
+    """A remark for the sender (`note.*`)."""
 
 
 class Refusal(msgspec.Struct, frozen=True):
-    """It was not done; the reply's error."""
+    """The reply to a request that was refused; sent as an error."""
 
     why: Phrase
     """A whole sentence; its code says which refusal it is."""
     mistakes: tuple[Mistake, ...] = ()
     again: bool = False
-    """The same request may be taken later: nothing is wrong with it, the court can't now."""
+    """Whether to retry: the request is right, but the court can't take it now."""
 
 
 class Enter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Show a referee's token; nothing is decided."""
+    """Show a referee's token, without a decision."""
 
     token: str
 
 
 class DecisionRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A referee decides."""
+    """A decision of a referee."""
 
     token: str
     by: str
-    """Who decides, for the record."""
+    """Name of the referee, for the record."""
     reason: Phrase | str = ""
     """A text that the referee wrote, or a phrase of `reason.*`."""
     decision: Decision
 
 
 class DecisionReply(msgspec.Struct, frozen=True, kw_only=True):
-    """What a decision did; sent when it is on disk."""
+    """The effect of a decision; sent when the decision is on disk."""
 
     beat: int
     event: int | None = None
@@ -183,11 +183,11 @@ class DecisionReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 Outcome = Done | DecisionReply | Refusal
-"""What became of an input."""
+"""The result of an input."""
 
 
 class Event(msgspec.Struct, frozen=True, kw_only=True):
-    """Something happened; numbered, and never lost."""
+    """Something that happened; numbered, and never lost."""
 
     number: int
     """Counts the events of a match from 1."""
@@ -200,13 +200,13 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     said: Phrase
     """A whole sentence."""
     seat: int = -1
-    """Index of the seat it is about; -1: none."""
+    """Index of the seat that the event is about; -1: none."""
     data: dict[str, Any] = {}
-    """Particulars by name, for programs."""
+    """Details by name, for programs."""
 
 
 class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
-    """Who sits in a seat, with what."""
+    """A seat: its team, look, robot and keys."""
 
     id: str
     """The arena's name for the seat: "left"."""
@@ -215,7 +215,7 @@ class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
     colour: str
     """#rrggbb"""
     pattern: str
-    """Told apart without colours: plain, stripes, dots."""
+    """Distinguishes the seats without colours: plain, stripes, dots."""
     robot: str = ""
     legs: tuple[str, ...] = ()
     """Leg labels in leg order; joints are 3 * legs."""
@@ -237,7 +237,7 @@ class MarkerInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Sheet(msgspec.Struct, frozen=True, kw_only=True):
-    """Who plays what with which rules: everything that a frame leaves out."""
+    """Teams, robots, board and rules of a match: everything that a frame leaves out."""
 
     protocol: int
     version: str
@@ -245,11 +245,11 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     court: str
     match: int
     match_id: str = ""
-    """Names the match's record, and its lines in logs."""
+    """Names the match's record, and the match in logs."""
     arena: str
     title: str
     duration_s: float
-    """0: without end (practice)."""
+    """0: no time limit (practice)."""
     levels: tuple[int, ...]
     """`Level`s that are open."""
     settings: dict[str, Any]
@@ -261,19 +261,19 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A body in the tree; `Frame.poses` moves the roots, its joints the others."""
+    """A body in the tree; `Frame.poses` moves the root bodies, its joint angles the others."""
 
     name: str
     parent: int
     """Index of the parent; -1 for the world."""
     pos: tuple[float, float, float]
-    """In the parent's frame [m]."""
+    """Position in the parent's frame [m]."""
     quat: tuple[float, float, float, float]
-    """w, x, y, z."""
+    """Orientation in the parent's frame: w, x, y, z."""
     seat: int = -1
-    """For a robot's root body: its seat, and the pose is the frame's."""
+    """Seat of a robot's root body, whose pose is in the frame; -1 for other bodies."""
     joint: int = -1
-    """Index in the frame's joint angles of that seat (joint id); -1: no joint."""
+    """Joint id: index in the frame's joint angles of that seat; -1: no joint."""
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
     """Hinge axis in this body's frame; the hinge goes through the body's origin."""
 
@@ -285,109 +285,109 @@ class SceneGeom(msgspec.Struct, frozen=True, kw_only=True):
     type: str
     """plane, sphere, capsule, cylinder, box."""
     size: tuple[float, float, float]
-    """MuJoCo's: half sizes [m]."""
+    """MuJoCo's sizes: half lengths [m]."""
     pos: tuple[float, float, float]
     quat: tuple[float, float, float, float]
     rgba: tuple[float, float, float, float]
     marker: int = -1
-    """Index of the marker this shape belongs to; -1: none."""
+    """Index of the marker that this shape belongs to; -1: none."""
     state: int = -1
-    """Shown while the marker is in this state."""
+    """The shape is shown while the marker is in this state."""
     seat: int = -1
-    """Takes this seat's colour and pattern."""
+    """Seat whose colour and pattern the shape has; -1: none."""
 
 
 class Scene(msgspec.Struct, frozen=True, kw_only=True):
-    """The drawable model, made from the compiled one."""
+    """The model for drawing, made from the compiled MuJoCo model."""
 
     bodies: tuple[SceneBody, ...]
     geoms: tuple[SceneGeom, ...]
 
 
 class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
-    """A seat's link, as the court sees it."""
+    """The state of a seat's link, measured by the court."""
 
     id: str
     joined: bool
     session: int = 0
-    """Number of the session that holds the seat (a controller sees whether it is its own); 0: none,
-    as after a restart of the court."""
+    """Number of the session that holds the seat, so that a controller sees whether it is its own;
+    0: none, as after a restart of the court."""
     heard_ms: float | None
-    """Since the last command; None: nobody."""
+    """Time since the last command; None: no command was heard."""
     commands_hz: float
     refused: dict[str, int]
-    """How often, by the name of `count.*`: "bad-seal"."""
+    """Number of refused commands by reason, a name of `count.*` such as "bad-seal"."""
     round_trip_p50_ms: float | None = None
-    """From a frame to the beat that has the seat's answer to it, by the court's clock: the median
-    of the last 10 s; None: not known."""
+    """Time from a frame to the beat that has the seat's answer to it, by the court's clock: the
+    median of the last 10 s; None: not known."""
     round_trip_p95_ms: float | None = None
-    """The longest but 5 %."""
+    """The 95th percentile of the same times."""
     late: int = 0
     """Commands that came too late for the common delay."""
 
 
 class LinkVerdict(msgspec.Struct, frozen=True, kw_only=True):
-    """How a seat's link was in a match."""
+    """The quality of a seat's link during a match."""
 
     id: str
     silences: int
-    """How often it fell silent in PLAYING."""
+    """How often the seat fell silent in PLAYING."""
     silent_s: float
-    """Time of PLAYING in which it was silent [s]."""
+    """Time of PLAYING during which the seat was silent [s]."""
     expected: int
     """Repeats of its command that were due in PLAYING: ten a second."""
     arrived: int
-    """How many of them came."""
+    """Repeats that arrived."""
     refused: dict[str, int]
-    """What was refused in this match, by the name of `count.*`: at the court's doors and by the
-    rules."""
+    """Number of refusals in this match by reason, a name of `count.*`: at the court's doors and by
+    the rules."""
 
 
 class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
-    """How well a match was held, so far: measured on the wall clock, and no part of the match."""
+    """How well a match has run so far: measured by the wall clock, and not part of the match."""
 
     played_beats: int
-    """Beats of PLAYING; what follows is of these."""
+    """Number of beats of PLAYING; the other fields are about these beats."""
     real_time_factor: float
-    """Their 20 ms each per wall time that they took; 1 is real time."""
+    """Duration of these beats at 20 ms each, divided by the wall time they took; 1 is real time."""
     slow_beats: int
-    """How many began more than 20 ms late."""
+    """Beats that began more than 20 ms late."""
     worst_late_ms: float
-    """The latest beginning of one."""
+    """Largest delay of a beat's beginning."""
     faults: int
-    """How often physics stopped."""
+    """Number of times that physics stopped."""
     resumptions: int
-    """How often the match went on after its court was killed."""
+    """Number of times that the match continued after its court was killed."""
     seats: tuple[LinkVerdict, ...]
     advice: tuple[Phrase | str, ...]
-    """Why a replay is advised: what is beyond the contest's limits (`health.*`; a text in a record
-    of protocol 1). Empty: it is not advised."""
+    """Why a replay is advised: the limits of the contest that were broken (`health.*`; a text in a
+    record of protocol 1). Empty: it is not advised."""
 
 
 class Health(msgspec.Struct, frozen=True, kw_only=True):
-    """How the court is; twice a second."""
+    """The state of the court; sent twice a second."""
 
     match: int
     beat: int
     real_time_factor: float
-    """Beats of the last seconds per 20 ms of wall time; 1 is real time."""
+    """Beats of the last seconds at 20 ms each, divided by their wall time; 1 is real time."""
     slow_beats: int
-    """Beats that started more than 20 ms late."""
+    """Beats that began more than 20 ms late."""
     worst_late_ms: float
     seats: tuple[SeatHealth, ...]
     dropped: dict[str, int]
-    """Messages that belong to no seat, by the name of `count.*`."""
+    """Messages that belong to no seat, by reason: a name of `count.*`."""
     decisions: dict[str, Phrase | None]
-    """Every decision: None if it is legal now, else why not (`why.*`)."""
+    """Every decision by name: None if it is legal now, else why not (`why.*`)."""
     verdict: HealthVerdict | None = None
-    """How well this match was held; None: that is not measured."""
+    """How well this match has run; None: not measured."""
     record_trouble: Phrase | None = None
-    """What is wrong with the disk of the record: why the match does not go on, or what else that
-    disk reports (`record.*`). None while all is well."""
+    """A problem with the disk of the record: why the match does not go on, or another report about
+    that disk (`record.*`). None if there is none."""
     input_delay_ms: int = 0
-    """From a frame to the effect of what was done upon it, the same for all seats; 0: the contest
-    does not make links equal."""
+    """Delay from a frame to the effect of a key that answers it, the same for all seats; 0: the
+    contest does not make links equal."""
     events: int = 0
-    """Number of the newest event: whoever has fewer asks for them."""
+    """Number of the newest event: a client that has fewer asks for the rest."""
     sheet: bytes = b""
-    """8 bytes of BLAKE2 over the newest sheet: whoever has another asks for it."""
+    """8 bytes of BLAKE2 over the newest sheet: a client that has another asks for it."""

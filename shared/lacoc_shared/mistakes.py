@@ -1,10 +1,10 @@
-"""What is wrong with something a person gave us, said so that they can mend it.
+"""Errors about something that a user gave us, worded so that the user can correct it.
 
-Two families. `FileRefused` carries every mistake of a file, each with its place: a
-file is refused whole (rules 2), so all its mistakes are listed at once.
-`UserError` is one sentence that says what was found and what to do; the command
-line prints it and exits with code 2. Both carry phrases (`lacoc_shared.words`), which become
-words in the language of the process; a plain text is shown as it is.
+There are two families. `FileRefused` carries every mistake in a file, each with its place: a
+file is refused as a whole (rules 2), so all its mistakes are listed at once.
+`UserError` is one sentence that says what was found and what to do; the command line prints
+it and exits with code 2. Both carry phrases (`lacoc_shared.words`), which are rendered in
+the language of the process; a plain text is shown as it is.
 """
 
 import codecs
@@ -17,9 +17,9 @@ import msgspec
 from lacoc_shared.words import Phrase, render, say
 
 ESCAPED = "lacoc-escaped"
-r"""Error handler of `str.encode`: what an encoding lacks is written as numbers.
+r"""Error handler of `str.encode`: characters that an encoding lacks become escape codes.
 
-A character becomes what JSON has for it (`\u30c1`), so that a line of JSON stays one. A byte of
+A character becomes its JSON escape (`\u30c1`), so that a line of JSON stays valid. A byte of
 a file name that is not UTF-8 becomes `\x98`.
 """
 
@@ -28,25 +28,25 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One mistake in a file, with its place."""
 
     file: str
-    """Name of the file as the person knows it."""
+    """Name of the file as the user knows it."""
     found: Phrase | str
-    """What stands there; a text is quoted from the file."""
+    """What is there; a text is quoted from the file."""
     expected: Phrase | str
-    """What should stand there, or what to do."""
+    """What should be there, or what to do."""
     row: int | None = None
-    """Row (text file: line) counted from 1."""
+    """Row (in a text file: line), counted from 1."""
     column: int | None = None
-    """Cell in the row counted from 1."""
+    """Cell in the row, counted from 1."""
     joint: int | None = None
     """Joint id, 0-17 for six legs (rules 1)."""
     leg: str | None = None
     """Label of the joint's leg, such as "R,F"."""
     field: str | None = None
-    """Name of the entry, where a file has named entries (a robot file)."""
+    """Name of the entry, in a file with named entries (a robot file)."""
 
     @property
     def place(self) -> str:
-        """Say the place: "row 3, column 7, joint 5 (L,F)"."""
+        """The place in words: "row 3, column 7, joint 5 (L,F)"."""
         return ", ".join(map(render, self._places()))
 
     def _places(self) -> list[Phrase | str]:
@@ -70,7 +70,7 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         )
 
     def in_words(self) -> "Mistake":
-        """Return the mistake in the language of the process: for output that programs read."""
+        """Return the mistake in the language of the process, for output that programs read."""
         found, expected = render(self.found), render(self.expected)
         return msgspec.structs.replace(self, found=found, expected=expected)
 
@@ -79,7 +79,7 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class FileRefused(ValueError):
-    """A file is refused whole; `mistakes` lists everything that is wrong with it."""
+    """A file is refused as a whole; `mistakes` lists everything that is wrong with it."""
 
     def __init__(self, mistakes: list[Mistake]) -> None:
         super().__init__("\n".join(map(str, mistakes)))
@@ -87,10 +87,10 @@ class FileRefused(ValueError):
 
 
 class UserError(Exception):
-    """Something a person can put right; the message says how.
+    """A mistake that a user can correct; the message says how.
 
     Args:
-        said: what was found and what to do; a text for what is not in the table yet.
+        said: what was found and what to do; a plain text if the table has no phrase for it yet.
     """
 
     def __init__(self, said: Phrase | str = "") -> None:
@@ -99,7 +99,7 @@ class UserError(Exception):
 
     @property
     def phrase(self) -> Phrase:
-        """What was said, as a phrase."""
+        """The message as a phrase."""
         return self.said if isinstance(self.said, Phrase) else say("plain.text", text=self.said)
 
     def __str__(self) -> str:
@@ -107,9 +107,9 @@ class UserError(Exception):
 
 
 def printable(text: str, longest: int = 40) -> str:
-    """Make somebody else's text short and safe on a terminal, as a mistake may quote it.
+    """Shorten a foreign text and make it safe for a terminal, to quote it in a message.
 
-    A space that is no plain one, or a mark that nobody sees, is written as its name.
+    An unusual space or an invisible mark is replaced by its name.
     """
     safe = "".join(c if c.isprintable() else _named(c) for c in text[:longest])
     return safe if len(text) <= longest else f"{safe}…"
@@ -122,10 +122,10 @@ def _named(character: str) -> str:
 
 
 def text_of(name: str | os.PathLike[str]) -> str:
-    r"""Turn a file name or a word of the command line into text that can be sent and stored.
+    r"""Turn a file name or a command-line word into text that can be sent and stored.
 
-    The system gives names as bytes, and Python keeps those that are not UTF-8 as characters
-    that no encoding takes. Here each such byte becomes `\x98`.
+    The system gives names as bytes. Python keeps bytes that are not UTF-8 as characters
+    that no encoding accepts; this function replaces each such byte by `\x98`.
     """
     return os.fspath(name).encode("utf-8", ESCAPED).decode()
 

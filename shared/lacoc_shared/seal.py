@@ -1,7 +1,7 @@
-"""Hashed tokens, and the seals that prove whose a command is.
+"""Hashed tokens, and the seals that prove which seat a command is from.
 
-A token opens a seat (or the referee's desk) and travels once, with the join. Then the
-session's secret, 16 bytes from the court, seals every command: a keyed BLAKE2b of 8
+A token opens a seat (or the referee's desk) and is sent once, with the join. After that
+the session's secret, 16 bytes from the court, seals every command: a keyed BLAKE2b of 8
 bytes over the key expression and the numbers as text, joined by spaces.
 """
 
@@ -15,11 +15,11 @@ _PASSWORD_BYTES = 20
 
 
 def hash_token(token: str, salt: bytes) -> str:
-    """Hash a token for keeping: "salt$hash", both hexadecimal.
+    """Hash a token for storage: "salt$hash", both hexadecimal.
 
-    The hash is fast, because a court verifies within a beat. That is right for random tokens
-    (`lacoc_shared.contest.tokens`). Whoever gets hold of the hash can guess a short word that a
-    person chose, so records with such tokens are not to be published while the tokens are in use.
+    The hash is fast, because a court must verify it within a beat. This is safe for random
+    tokens (`lacoc_shared.contest.tokens`). A short word that a person chose can be guessed from
+    the hash, so don't publish records with such tokens while the tokens are in use.
 
     Args:
         token: the token.
@@ -29,7 +29,7 @@ def hash_token(token: str, salt: bytes) -> str:
 
 
 def verify_token(token: str, token_hash: str) -> bool:
-    """Whether a token is the one that was hashed; takes the same time for every wrong one."""
+    """Say whether a token is the hashed one; takes the same time for every wrong token."""
     salt, _, digest = token_hash.partition("$")
     try:
         return hmac.compare_digest(_hash(token, bytes.fromhex(salt)), bytes.fromhex(digest))
@@ -38,9 +38,9 @@ def verify_token(token: str, token_hash: str) -> bool:
 
 
 def password(user: str, token: str) -> str:
-    """The password of a user of the network, made from the token: 40 hexadecimal digits.
+    """Derive a user's network password from the token: 40 hexadecimal digits.
 
-    It says nothing of the token, and that of another user says nothing of it.
+    It reveals nothing about the token, nor does another user's password.
     """
     data = f"{user} {token}".encode("utf-8", "surrogatepass")
     return hashlib.blake2b(data, digest_size=_PASSWORD_BYTES, person=b"lacoc password").hexdigest()
@@ -56,12 +56,12 @@ def command_mac(
     match: int,
     seen: int,
 ) -> bytes:
-    """The seal of a command."""
+    """Compute the seal of a command."""
     return _mac(secret, f"{key_expression} {session} {seq} {level} {key} {match} {seen}")
 
 
 def request_mac(secret: bytes, key_expression: str, session: int, seq: int, ready: bool) -> bytes:
-    """The seal of a ready or leave request."""
+    """Compute the seal of a ready or leave request."""
     return _mac(secret, f"{key_expression} {session} {seq} {int(ready)}")
 
 

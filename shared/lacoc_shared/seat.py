@@ -8,9 +8,9 @@ import msgspec
 from lacoc_shared.words import Phrase, say
 
 Colour = Annotated[str, msgspec.Meta(pattern="^#[0-9a-fA-F]{6}$")]
-"""Of a team, as in "#0072b2"."""
+"""A team's colour, such as "#0072b2"."""
 Pattern = Literal["plain", "stripes", "dots"]
-"""Of a team, for whom colours alone are not told apart."""
+"""A team's pattern, for people who can't distinguish the colours."""
 
 
 class Phase(IntEnum):
@@ -28,23 +28,23 @@ class Phase(IntEnum):
 
     @property
     def word(self) -> str:
-        """The name of it in the table, after `phase.`: "halted"."""
+        """The phase's name in the table of words, after `phase.`: "halted"."""
         return self.name.lower()
 
 
 class SeatFlag(IntFlag):
-    """What is true of a seat at a beat."""
+    """Properties of a seat at a beat."""
 
     JOINED = 1
     READY = 2
     SILENT = 4
-    """Its controller has not been heard for a second: it stands (rules 3)."""
+    """Its controller has not been heard for a second, so its robot stands (rules 3)."""
     FROZEN = 8
     """A referee froze it."""
 
 
 class No(IntEnum):
-    """Why a seat's command was refused; `WHY_NO` says it."""
+    """Codes for why a seat's command was refused; `WHY_NO` has the words."""
 
     NONE = 0
     NOT_PLAYING = 1
@@ -61,20 +61,20 @@ WHY_NO: dict[No, Phrase] = {
     No.RESTARTED: say("key.restarted"),
     No.FROZEN: say("key.frozen"),
 }
-"""What a contestant is told of it; `count.*` has the same names."""
+"""Phrases that tell a contestant the reason; `count.*` has the same names."""
 
 RESTART_KEY = 10
 """The key number of [x] in a command; digits are 0-9."""
 
 NOBODY = -1
-"""In a place for a seat's index: no seat."""
+"""Used in place of a seat's index: no seat."""
 
 BEAT_S = 0.02
-"""A beat comes every 20 ms in every phase (rules 4)."""
+"""Time between beats, in every phase (rules 4)."""
 BEAT_US = 20_000
 BEATS_PER_S = 50
 REPEATS_HZ = 10
-"""A controller repeats its last command so often (rules 3)."""
+"""How often a controller repeats its last command (rules 3)."""
 SILENT_AFTER_S = 1.0
-"""Whoever has sent nothing for longer than this is silent: a seat's controller to its court
-(rules 3), and a court to those who watch it."""
+"""A sender that has sent nothing for longer than this is silent: a seat's controller for its
+court (rules 3), and a court for its clients."""

@@ -1,4 +1,4 @@
-"""Bots for Flag-Strike: straight ahead, to the nearest flag, and by a plan."""
+"""Bots for Flag-Strike: `straight`, `nearest` (to the nearest flag) and `planner`."""
 
 import math
 from abc import ABC, abstractmethod
@@ -15,21 +15,21 @@ from .rules import CORNERS, State, make
 
 _NOWHERE = -1
 _FLAG_REACH_M, _CORNER_REACH_M = 0.13, 0.12
-"""How far from the centre a leg strikes a flag, and how far from its middle a corner counts."""
+"""Distance from the marker's middle at which a robot strikes a flag, or takes a corner."""
 
 _DEPTH, _BEAM = 4, 14
-"""How many targets a plan looks ahead, and how many plans are kept at each."""
+"""How many targets a plan looks ahead, and how many plans are kept at each step."""
 _PATIENCE_S = 30.0
-"""A point this much later is worth 1 / e of one now: much can happen until then."""
+"""A point gained this much later is worth 1 / e of a point now: the plan may not hold."""
 _RIVAL = 0.8
-"""What is left of a target's worth where the other robot will be there first."""
+"""Factor on a target's worth if the other robot will be there first."""
 _DECISIVE = 100.0
-"""Worth of the corner that ends the match with a win."""
+"""Worth of a corner that ends the match with a win."""
 _REPLAN_TICKS = 4 * BEATS_PER_S
 
 
 class _Hunter(ABC):
-    """A brain that walks from target to target; what differs is how it chooses the next one."""
+    """A brain that walks from target to target; subclasses choose the next target."""
 
     def __init__(self, sheet: Sheet, seat: int) -> None:
         self.game = make(sheet.settings["game"])
@@ -52,12 +52,12 @@ class _Hunter(ABC):
         return self._pilot.toward(frame, poses, target_m)
 
     def open(self, board: tuple[int, ...], marker: int) -> bool:
-        """Is there something to gain: a standing flag, or a corner that is not one's own?"""
+        """Say whether a marker can be gained: a standing flag, or a corner that is not ours."""
         return board[marker] == NEUTRAL or (marker < CORNERS and board[marker] != self.seat + 1)
 
     @abstractmethod
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
-        """The marker to go to, or `_NOWHERE`.
+        """Return the marker to go to, or `_NOWHERE`.
 
         Args:
             board: the state of each marker.
@@ -67,10 +67,10 @@ class _Hunter(ABC):
 
 
 class Nearest(_Hunter):
-    """Goes to the nearest standing flag; when all have fallen, to the nearest corner."""
+    """Goes to the nearest standing flag; if all have fallen, to the nearest corner."""
 
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
-        """The nearest flag or corner."""
+        """Return the nearest flag or corner."""
         pose = poses[self.seat]
         targets = [marker for marker in range(len(board)) if self.open(board, marker)]
         flags = [marker for marker in targets if marker >= CORNERS]
@@ -81,17 +81,17 @@ class Nearest(_Hunter):
 
 class _Plan(NamedTuple):
     worth: float
-    """Points gained, the later the less."""
+    """Points gained; later points count less."""
     time_s: float
     pose: Pose
     route: tuple[int, ...]
 
 
 class Planner(_Hunter):
-    """Weighs the points of a route over flags and corners against its time."""
+    """Weighs the points of a route over flags and corners against the time it takes."""
 
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
-        """The first target of the best route found."""
+        """Return the first target of the best route found."""
         pose = poses[self.seat]
         worths = self._worths(board, scores, poses)
         beam = [_Plan(0.0, 0.0, pose, ())]
@@ -108,7 +108,7 @@ class Planner(_Hunter):
     def _worths(
         self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]
     ) -> dict[int, float]:
-        """What each open target is worth to this seat."""
+        """Return what each open target is worth to this seat."""
         pose, other = poses[self.seat], poses[1 - self.seat]
         worths = {}
         for marker, info in enumerate(self.game.markers):
@@ -125,12 +125,12 @@ class Planner(_Hunter):
         return worths
 
     def _ends(self, board: tuple[int, ...], corner: int) -> bool:
-        """Would taking this corner end the match (workshop 5-2 rule 4)?"""
+        """Say whether taking this corner ends the match (workshop 5-2 rule 4)."""
         own = self.seat + 1
         return all(board[other] == own for other in range(CORNERS) if other != corner)
 
     def _decisive(self, board: tuple[int, ...], scores: tuple[int, ...], corner: int) -> float:
-        """All four corners end the match at once: good for who would win, else to be left."""
+        """Return the worth of a corner that ends the match: high if we win then, else 0."""
         points = self.game.markers[corner].points
         lost = points if board[corner] != NEUTRAL else 0
         finals = tuple(

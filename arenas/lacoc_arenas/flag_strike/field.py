@@ -1,7 +1,7 @@
 """The field of Flag-Strike: corners, flags that stand or lie, and poles to be touched.
 
-The pole "probe:NAME" is what a robot touches: a cylinder in no contact, whose distance
-to the robots the world measures after a tick (rules 6, strike).
+A robot touches the pole "probe:NAME": a cylinder without contacts, whose distance to
+the robots is measured after each tick (rules 6, strike).
 """
 
 import math
@@ -29,7 +29,7 @@ def build(spec: mujoco.MjSpec, game: FlagStrike) -> None:
     for number, (left, right) in enumerate(zip(*game.starts, strict=True)):
         for seat, place in (("left", left), ("right", right)):
             name = f"pad:{seat}{number}"
-            # Square, as what is round here is worth points.
+            # Square, because round shapes are worth points here.
             half_m = 0.5 * settings.corner_radius_m
             size = [half_m, half_m, _PAD_TOP_M / 2]
             pos = [place.x_m, place.y_m, _PAD_TOP_M / 2]
@@ -49,7 +49,10 @@ def build(spec: mujoco.MjSpec, game: FlagStrike) -> None:
 
 
 def _cloth_m(flag: Flag, height_m: float) -> tuple[float, float]:
-    """Half length and half height of the cloth: larger for more points, seen without colour."""
+    """Return half length and half height of the cloth [m].
+
+    It is larger for more points, so that the points show without colour.
+    """
     size = 0.16 + 0.03 * min(flag.colour.points, 6)
     return size * height_m, 0.6 * size * height_m
 
@@ -63,7 +66,7 @@ def _probe(spec: mujoco.MjSpec, flag: Flag, radius_m: float, height_m: float) ->
 
 
 def _standing(spec: mujoco.MjSpec, flag: Flag, radius_m: float, height_m: float) -> None:
-    """The pole, and the cloth at its top, blown to the right of who looks to the middle."""
+    """Add the pole and the cloth at its top; seen towards the middle, it blows to the right."""
     along = _along(flag)
     length_m, depth_m = _cloth_m(flag, height_m)
     pole = field.marker_geom(flag.name, NEUTRAL, "pole")
@@ -86,7 +89,7 @@ def _standing(spec: mujoco.MjSpec, flag: Flag, radius_m: float, height_m: float)
 
 
 def _lying(spec: mujoco.MjSpec, flag: Flag, state: int, radius_m: float, height_m: float) -> None:
-    """The pole on the floor, and the cloth beside its end in the colour of who struck it."""
+    """Add the pole on the floor, and the cloth beside its end in the colour of the striker."""
     along = _along(flag)
     ux, uy = math.cos(along), math.sin(along)
     length_m, depth_m = _cloth_m(flag, height_m)
@@ -118,7 +121,10 @@ def _lying(spec: mujoco.MjSpec, flag: Flag, state: int, radius_m: float, height_
 
 
 def _along(flag: Flag) -> float:
-    """Where the flag blows and falls [rad]: round the field, the same when it is turned."""
+    """Return the direction in which the flag blows and falls [rad]: round the field's middle.
+
+    So the field is the same when it is turned by 180 degrees.
+    """
     return math.atan2(flag.y_m, flag.x_m) + math.pi / 2
 
 

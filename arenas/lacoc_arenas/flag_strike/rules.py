@@ -2,16 +2,17 @@
 
 The markers are "corner0" to "corner3" (bottom left, bottom right, top left, top right)
 and then "flag0" to "flag19" in the order of the arena file. The board state of a flag:
-NEUTRAL stands, LEFT and RIGHT have fallen for that team, DOWN has fallen for nobody (a
-referee can set that).
+NEUTRAL stands; LEFT and RIGHT have fallen for that team; DOWN has fallen for nobody
+(only a referee sets it).
 
-Struck out claims (rules 4, take-back): a robot that came into a corner is inside it
-without having taken it, until it leaves and comes again. A struck touch of a flag is
-void from that tick until the robot lets go of the pole: else the flag would fall again
-one tick later. A void touch counts as none, so the other robot can strike the flag.
+Struck out claims (rules 4, take-back): after a struck capture the robot counts as inside
+the corner without having taken it, until it leaves and comes back. A struck touch of a
+flag is void from that tick until the robot lets go of the pole; otherwise the flag would
+fall again one tick later. A void touch does not count, so the other robot can strike the
+flag.
 
-What happens in one tick happens at once. Events come in the order of the markers,
-which says nothing about the seats.
+All events of one tick happen at the same time. They are listed in the order of the
+markers, which does not favour a seat.
 """
 
 from collections.abc import Iterator
@@ -51,11 +52,11 @@ class State(msgspec.Struct, frozen=True):
     inside: tuple[int, int]
     """The corner that each robot's centre is in, or `NO_CORNER`."""
     void: tuple[tuple[int, int], ...] = ()
-    """(seat, marker) of each touch that a referee struck out and that still goes on."""
+    """(seat, marker) of each touch that a referee struck out and that has not ended."""
 
 
 class FlagStrike:
-    """The game for one choice of settings."""
+    """The rules for one choice of settings."""
 
     state_type = State
 
@@ -92,12 +93,12 @@ class FlagStrike:
         self._radius2_m2 = settings.corner_radius_m**2
 
     def start(self) -> State:
-        """Everything is neutral and stands; the robots are on their start places."""
+        """Return the first state: all neutral, flags standing, robots on their start places."""
         left, right = (self.corner_at(places[0].x_m, places[0].y_m) for places in self.starts)
         return State((NEUTRAL,) * len(self.markers), (left, right))
 
     def corner_at(self, x_m: float, y_m: float) -> int:
-        """The corner whose circle a point is in, or `NO_CORNER`."""
+        """Return the corner whose circle contains a point, or `NO_CORNER`."""
         dx_m, dy_m = abs(x_m) - self._corner_x_m, abs(y_m) - self._corner_y_m
         if dx_m * dx_m + dy_m * dy_m <= self._radius2_m2:
             return (x_m > 0) + 2 * (y_m > 0)
@@ -138,12 +139,12 @@ class FlagStrike:
         inside: tuple[int, int],
         struck: AbstractSet[Claim],
     ) -> Iterator[tuple[int, int]]:
-        """(corner, seat) of each capture: outside in the tick before, inside now."""
+        """Yield (corner, seat) of each capture: outside in the tick before, inside now."""
         came = [
             now if now != self._inside(was, robot) else NO_CORNER
             for now, was, robot in zip(inside, state.inside, observation, strict=True)
         ]
-        if came[0] == came[1]:  # both in one tick: it stays
+        if came[0] == came[1]:  # both in one tick: the corner keeps its state
             return
         for seat, corner in enumerate(came):
             if (
@@ -161,7 +162,7 @@ class FlagStrike:
     def _strikes(
         self, state: State, observation: Observation, struck: AbstractSet[Claim]
     ) -> tuple[tuple[tuple[int, int], ...], list[tuple[int, int]]]:
-        """Touches that are void after this tick, and (flag, seat) of each strike."""
+        """Return the touches that are void after this tick, and (flag, seat) of each strike."""
         void: list[tuple[int, int]] = []
         touching: dict[int, list[int]] = {}
         for seat, robot in enumerate(observation):
@@ -182,11 +183,11 @@ class FlagStrike:
         return GameEvent(kind=kind, seat=seat, marker=name, points=points, said=said)
 
     def board(self, state: State) -> tuple[int, ...]:
-        """State of each corner, then of each flag."""
+        """Return the state of each corner, then of each flag."""
         return state.board
 
     def score(self, state: State) -> tuple[int, ...]:
-        """Rule 7: the points of the corners held and of the flags struck."""
+        """Return each seat's points: corners held and flags struck (5-2 rule 7)."""
         left = right = 0
         for owner, points in zip(state.board, self._points, strict=True):
             if owner == LEFT:
@@ -196,12 +197,15 @@ class FlagStrike:
         return left, right
 
     def over(self, state: State) -> Phrase | None:
-        """Rule 4: at once when one robot holds all four corners."""
+        """Return why the match is over: a robot holds all four corners (5-2 rule 4); else None."""
         holder = self._holder(state)
         return None if holder is None else say("over.all-corners", seat=("left", "right")[holder])
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
-        """Rule 8: who has more points; with `all_corners_win`, who holds all four corners."""
+        """Return the seat with more points; or, if `all_corners_win`, the one with all corners.
+
+        Workshop 5-2 rule 8.
+        """
         if self.settings.all_corners_win:
             holder = self._holder(state)
             if holder is not None:
@@ -214,7 +218,7 @@ class FlagStrike:
         return first - 1 if first != NEUTRAL and others == [first] * len(others) else None
 
     def set(self, state: State, marker: int, value: int) -> State:
-        """Give a corner or a flag a state, as a referee decides; see `Game.set`."""
+        """Set a corner or a flag, as a referee decides; see `Game.set`."""
         if marker < CORNERS and value == DOWN:
             raise NoSuchState(say("why.corner-state"))
         board = (*state.board[:marker], value, *state.board[marker + 1 :])
@@ -222,7 +226,7 @@ class FlagStrike:
 
 
 def make(settings: dict[str, Any]) -> FlagStrike:
-    """The game of an arena file's table [game].
+    """Make the game from the table [game] of an arena file.
 
     Raises:
         msgspec.ValidationError: if a setting is wrong; the message names it.

@@ -1,4 +1,4 @@
-"""The table [game] of a Flag-Strike arena file, and what makes a layout fair (rules 6)."""
+"""The table [game] of a Flag-Strike arena file, and the checks for a fair layout (rules 6)."""
 
 import math
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ import msgspec
 from lacoc_arenas.layout import Length, Point
 
 FLAGS, COLOURS = 20, 4
-"""Workshop 5-2 rule 6."""
+"""Numbers of flags and of their colours (workshop 5-2 rule 6)."""
 
 Points = Annotated[int, msgspec.Meta(ge=1, le=1000)]
 
@@ -48,7 +48,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     pole_radius_m: Length
     pole_height_m: Length
     clearance_m: Annotated[float, msgspec.Meta(ge=0, le=20)]
-    """No flag is nearer to a corner's edge or to a start of either team."""
+    """Least distance of a flag from the edge of a corner and from a start of either team [m]."""
     colour: tuple[FlagColour, ...]
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""Bots for Robot-Othello: straight ahead, to the nearest disc, and by a plan."""
+"""Bots for Robot-Othello: `straight`, `nearest` (to the nearest disc) and `planner`."""
 
 import math
 from abc import ABC, abstractmethod
@@ -14,16 +14,16 @@ from lacoc_shared.seat import BEATS_PER_S
 from .rules import NO_CELL, SIDE, make
 
 _DEPTH, _BEAM = 7, 20
-"""How many cells a plan looks ahead, and how many plans are kept at each."""
+"""How many cells a plan looks ahead, and how many plans are kept at each step."""
 _PATIENCE_S = 25.0
-"""A disc this much later is worth 1 / e of one now: much can happen until then."""
+"""A disc gained this much later is worth 1 / e of a disc now: the plan may not hold."""
 _BLOCKED_M, _BLOCKED_S = 0.35, 12.0
-"""A disc with the other robot so near to it is blocked; what it costs to go there all the same."""
+"""A disc this near to the other robot is blocked, and going there costs this much more time."""
 _REPLAN_TICKS = 4 * BEATS_PER_S
 
 
 class _Walker(ABC):
-    """A brain that walks from cell to cell; what differs is how it chooses the next one."""
+    """A brain that walks from cell to cell; subclasses choose the next cell."""
 
     def __init__(self, sheet: Sheet, seat: int) -> None:
         self.game = make(sheet.settings["game"])
@@ -50,7 +50,7 @@ class _Walker(ABC):
         return self._pilot.toward(frame, poses, target_m)
 
     def blocked(self, cell: int, poses: list[Pose]) -> bool:
-        """Does another robot stand in the way?"""
+        """Say whether another robot stands in the way."""
         return any(
             other.distance_m(*self.discs[cell]) < _BLOCKED_M
             for seat, other in enumerate(poses)
@@ -59,7 +59,7 @@ class _Walker(ABC):
 
     @abstractmethod
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
-        """The cell to go to, or `NO_CELL`.
+        """Return the cell to go to, or `NO_CELL`.
 
         Args:
             cells: the board.
@@ -69,10 +69,10 @@ class _Walker(ABC):
 
 
 class Nearest(_Walker):
-    """Goes to the nearest disc that flips; where none does, to a disc of its own beside one."""
+    """Goes to the nearest disc that flips; if none does, to an own disc next to one that can."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
-        """The nearest useful cell."""
+        """Return the nearest useful cell."""
         own, pose = self.seat + 1, poses[self.seat]
         flips = [n for n in self.game.neighbours[last] if cells[n] != own == cells[last]]
         starts = [
@@ -93,20 +93,20 @@ class Nearest(_Walker):
 
 class _Plan(NamedTuple):
     worth: float
-    """Discs gained, the later the less."""
+    """Discs gained; later discs count less."""
     time_s: float
     pose: Pose
     cell: int
     cells: tuple[int, ...]
     first: int
-    """The cell it begins with."""
+    """The first cell of the route."""
 
 
 class Planner(_Walker):
-    """Looks several cells ahead and weighs the discs of a route against its time."""
+    """Looks several cells ahead and weighs the discs of a route against the time it takes."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
-        """The first cell of the best route found."""
+        """Return the first cell of the best route found."""
         pose = poses[self.seat]
         beam = [_Plan(0.0, 0.0, pose, last, cells, NO_CELL)]
         best = beam[0]
@@ -127,7 +127,7 @@ class Planner(_Walker):
             worth, cells = plan.worth, plan.cells
             flips = self.game.flips(cells, self.seat, plan.cell, cell)
             if flips:
-                # A disc of the other team counts twice: one more here, one less there.
+                # A disc of the other team counts twice: one more for us, one less for them.
                 gain = sum(1 if cells[flip] == NEUTRAL else 2 for flip in flips)
                 worth += gain * math.exp(-time_s / _PATIENCE_S)
                 after = list(cells)
@@ -141,7 +141,7 @@ class Planner(_Walker):
 
 
 def _around(cell: int) -> list[int]:
-    """The up to eight cells next to one, the diagonal ones too."""
+    """Return the up to eight cells next to a cell, the diagonal ones too."""
     row, column = divmod(cell, SIDE)
     return [
         SIDE * r + c

@@ -1,4 +1,4 @@
-"""The field of Robot-Othello: a board of 36 discs, each there once in each of its colours."""
+"""The field of Robot-Othello: a board of 36 discs, with one geom for each colour of a disc."""
 
 import mujoco
 

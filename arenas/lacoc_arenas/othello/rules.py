@@ -4,11 +4,11 @@ Column 0 has the smallest x, row 0 the smallest y; a disc is named "c2r3" by col
 row, and its index is 6 * row + column. A robot's *last cell* is the disc it entered
 most recently; walking off a disc does not change it.
 
-Struck out claims (rules 4, take-back): the disc and its runs keep their colours, and
-the disc becomes the robot's last cell all the same, because it has walked there.
+Struck out claims (rules 4, take-back): the disc and its runs keep their colours. The
+disc still becomes the robot's last cell, because the robot has walked there.
 
-The flips of one tick happen at once. Their events come in the order of the discs'
-indices, which says nothing about the seats.
+All flips of one tick happen at the same time. Their events are listed in the order of
+the discs' indices, which does not favour a seat.
 """
 
 from collections.abc import Set as AbstractSet
@@ -69,7 +69,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 
 class State(msgspec.Struct, frozen=True):
-    """A match of Robot-Othello."""
+    """The state of a match of Robot-Othello."""
 
     cells: tuple[int, ...]
     """(36,) NEUTRAL, LEFT or RIGHT, by disc index."""
@@ -78,7 +78,7 @@ class State(msgspec.Struct, frozen=True):
 
 
 class Othello:
-    """The game for one choice of settings."""
+    """The rules for one choice of settings."""
 
     state_type = State
 
@@ -105,19 +105,19 @@ class Othello:
         self.size_m = (side_m, side_m)
         self._rays = tuple(_rays(cell) for cell in range(SIDE * SIDE))
         self.neighbours = tuple(tuple(ray[0] for ray in rays) for rays in self._rays)
-        """For each disc those next to it along its row and its column."""
+        """For each disc, the discs next to it in its row and its column."""
 
     def start(self) -> State:
-        """The opening, with the robots on their start cells."""
+        """Return the opening, with the robots on their start cells."""
         left, right = (self.cell_at(places[0].x_m, places[0].y_m) for places in self.starts)
         return State(_opening(self.settings.opening, left, right), (left, right))
 
     def cell_at(self, x_m: float, y_m: float) -> int:
-        """The disc that a point lies on, or `NO_CELL`.
+        """Return the disc that a point lies on, or `NO_CELL`.
 
-        Where discs touch (the pitch is twice the radius), the point between two belongs
-        to the outer one, and on the field's middle line to neither: so the field turned
-        by 180 degrees is the same.
+        If discs touch (the pitch is twice the radius), the point between two belongs to the
+        outer one, and a point on the field's middle line to neither. So the board is the same
+        when the field is turned by 180 degrees.
         """
         ax_m, ay_m = abs(x_m), abs(y_m)
         if not (0.0 < ax_m < self._half_m and 0.0 < ay_m < self._half_m):
@@ -133,13 +133,13 @@ class Othello:
         )
 
     def flips(self, cells: tuple[int, ...], seat: int, origin: int, cell: int) -> tuple[int, ...]:
-        """The discs that flip when a robot enters one (5-1 rules 4 and 5).
+        """Return the discs that flip when a robot enters one (5-1 rules 4 and 5).
 
         Args:
-            cells: the board before.
+            cells: the board before the flip.
             seat: the robot's seat.
-            origin: its last cell.
-            cell: the disc it enters.
+            origin: the robot's last cell.
+            cell: the disc that it enters.
 
         Returns:
             The entered disc, then the runs that flip with it; empty if nothing flips.
@@ -224,26 +224,26 @@ class Othello:
         )
 
     def board(self, state: State) -> tuple[int, ...]:
-        """State of each disc."""
+        """Return the state of each disc."""
         return state.cells
 
     def score(self, state: State) -> tuple[int, ...]:
-        """Rule 6: the number of discs of each colour."""
+        """Return the number of discs of each colour (5-1 rule 6)."""
         return state.cells.count(LEFT), state.cells.count(RIGHT)
 
     def over(self, state: State) -> Phrase | None:
-        """Rules 5: at once when a team has no disc left."""
+        """Return why the match is over: a team has no disc left (rules 5); else None."""
         for colour, seat in ((LEFT, "left"), (RIGHT, "right")):
             if colour not in state.cells:
                 return say("over.no-disc", seat=seat)
         return None
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
-        """Rule 7: who has more discs."""
+        """Return the seat with more discs (5-1 rule 7)."""
         return leader(scores)
 
     def set(self, state: State, marker: int, value: int) -> State:
-        """Give a disc a colour, as a referee decides; see `Game.set`."""
+        """Set the colour of a disc, as a referee decides; see `Game.set`."""
         if value not in (NEUTRAL, LEFT, RIGHT):
             raise NoSuchState(say("why.disc-state"))
         cells = (*state.cells[:marker], value, *state.cells[marker + 1 :])
@@ -251,7 +251,7 @@ class Othello:
 
 
 def make(settings: dict[str, Any]) -> Othello:
-    """The game of an arena file's table [game].
+    """Make the game from the table [game] of an arena file.
 
     Raises:
         msgspec.ValidationError: if a setting is wrong; the message names it.
@@ -260,7 +260,7 @@ def make(settings: dict[str, Any]) -> Othello:
 
 
 def _rays(cell: int) -> tuple[tuple[int, ...], ...]:
-    """From a disc outward along its row and its column: right, left, up, down; none empty."""
+    """Return the rays from a disc: right, left, up and down to the board's edge; none empty."""
     row, column = divmod(cell, SIDE)
     rays = (
         tuple(SIDE * row + c for c in range(column + 1, SIDE)),
@@ -272,7 +272,7 @@ def _rays(cell: int) -> tuple[tuple[int, ...], ...]:
 
 
 def _opening(name: str, left_start: int, right_start: int) -> tuple[int, ...]:
-    """The board at the start of a match, one of the four of rules 5."""
+    """Return the board at the start of a match: one of the four openings of rules 5."""
     half = SIDE // 2
     cells = []
     for cell in range(SIDE * SIDE):

@@ -1,1 +1,1 @@
-"""Practice: one robot, an open field, no end (workshop 4-4)."""
+"""Practice: one robot, an open field, no time limit (workshop 4-4)."""

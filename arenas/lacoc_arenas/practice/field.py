@@ -1,4 +1,4 @@
-"""The field of practice: walls and a grid to see distances by."""
+"""The field of practice: walls and a grid that shows distances."""
 
 import math
 
@@ -29,5 +29,5 @@ def _lines(half_m: float) -> range:
 
 
 def _look(number: int) -> tuple[float, field.Rgba]:
-    """Upper face and colour; the axes stand out."""
+    """Return upper face [m] and colour of a grid line; the two axes stand out."""
     return (2 * _LINE_TOP_M, field.RIM) if number == 0 else (_LINE_TOP_M, field.LINE)

@@ -1,4 +1,4 @@
-"""The rules of practice (rules 4): a place to walk, with nothing to win."""
+"""The rules of practice (rules 4): a robot walks; there is nothing to win."""
 
 import math
 from collections.abc import Set as AbstractSet
@@ -25,11 +25,11 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 
 class State(msgspec.Struct, frozen=True):
-    """Nothing is kept: there is nothing to win."""
+    """The state of practice; empty, because there is nothing to win."""
 
 
 class Practice:
-    """The game for one choice of settings."""
+    """The rules for one choice of settings."""
 
     state_type = State
     markers: tuple[MarkerInfo, ...] = ()
@@ -39,7 +39,7 @@ class Practice:
         self.starts = ((Place(*settings.start, math.radians(settings.heading_deg)),),)
 
     def start(self) -> State:
-        """The one state there is."""
+        """Return the only state."""
         return State()
 
     def step(
@@ -49,27 +49,27 @@ class Practice:
         dt_s: float,
         struck: AbstractSet[Claim] = frozenset(),
     ) -> tuple[State, tuple[GameEvent, ...]]:
-        """Nothing happens."""
+        """Return the same state and no events."""
         return state, ()
 
     def board(self, state: State) -> tuple[int, ...]:
-        """There are no markers."""
+        """Return no states: there are no markers."""
         return ()
 
     def score(self, state: State) -> tuple[int, ...]:
-        """Always 0."""
+        """Return 0, always."""
         return (0,)
 
     def over(self, state: State) -> Phrase | None:
-        """Never."""
+        """Return None: practice is never over early."""
         return None
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
-        """Nobody wins in practice."""
+        """Return None: nobody wins in practice."""
         return None
 
     def set(self, state: State, marker: int, value: int) -> State:
-        """There is nothing to set.
+        """Raise an error: there is no marker to set.
 
         Raises:
             NoSuchState: always.
@@ -78,7 +78,7 @@ class Practice:
 
 
 def make(settings: dict[str, Any]) -> Practice:
-    """The game of an arena file's table [game].
+    """Make the game from the table [game] of an arena file.
 
     Raises:
         msgspec.ValidationError: if a setting is wrong; the message names it.

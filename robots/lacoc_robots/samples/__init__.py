@@ -1,1 +1,1 @@
-"""Robots to begin with, each with a gait that walks."""
+"""Sample robots, each with a gait that walks."""

@@ -1,12 +1,13 @@
 """The command `lacoc`.
 
-Subcommands are the entries of an entry-point group, each imported when it is asked for
-(or when help lists them all): so a contestant's machine needs nothing of the court's,
-a third party adds a command by installing a package, and `lacoc --version` is quick.
+Subcommands are the entries of an entry-point group. Each is imported only when it is
+called (or when help lists them all). So a contestant's machine needs nothing of the
+court's, a third party adds a command by installing a package, and `lacoc --version` is
+quick.
 
-An entry names a `typer.Typer`; one with a single command is that command, any other is
-a group. Commands raise `UserError` and `FileRefused`; here alone they become words on
-the screen and an exit code.
+An entry names a `typer.Typer`. If it holds a single command, it becomes that command;
+otherwise a group. Commands raise `UserError` and `FileRefused`; only this module turns
+them into words on the screen and an exit code.
 """
 
 import os
@@ -25,7 +26,7 @@ from lacoc_shared.command import language, plugins, screen
 from lacoc_shared.mistakes import FileRefused, UserError, printable, text_of
 
 WRONG_USE = 2
-"""Exit code: something that a person can put right."""
+"""Exit code: a mistake that the user can correct."""
 INTERRUPTED = 130
 """Exit code: Ctrl-C."""
 
@@ -40,12 +41,12 @@ _PANELS: Panels = {
 }
 _OTHERS = "Commands of other packages"
 _EXTRAS = {"mujoco": "server", "cryptography": "server"}
-"""What the base install leaves out -> the extra that has it."""
-_COMPLETION = {"install_completion", "show_completion"}  # options of the outermost command alone
+"""Packages that the base install leaves out -> the extra that contains each."""
+_COMPLETION = {"install_completion", "show_completion"}  # options of the outermost command only
 
 
 class _Commands(UserDict[str, Any]):
-    """Commands by name; an entry point becomes a command when it is first looked at."""
+    """Commands by name; an entry point is loaded when its command is first read."""
 
     def __init__(self, own: Mapping[str, Any], entries: Mapping[str, EntryPoint], panels: Panels):
         self._panel = {name: panel for panel, names in panels.items() for name in names}
@@ -73,18 +74,18 @@ class LazyGroup(TyperGroup):
         self.commands = _Commands(self.commands, entries, self.panels)
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Names of all commands, in the order of the help; imports none of them."""
+        """Return the names of all commands, in the order of the help; imports none of them."""
         return list(self.commands)
 
 
 def lazy_group(entry_points: str, help: str, panels: Panels | None = None) -> typer.Typer:
-    """Make a group of commands that are imported when they are asked for.
+    """Make a group of commands that are imported only when they are called.
 
     Args:
         entry_points: name of the entry-point group; each entry names a `typer.Typer`.
-        help: what the group is for; its first line is shown where groups are listed.
+        help: what the group is for; lists of groups show its first line.
         panels: headings of the help and the commands below each, in order; without them the
-            commands stand in alphabetical order.
+            commands are in alphabetical order.
     """
     cls = type("_Group", (LazyGroup,), {"entry_points": entry_points, "panels": panels or {}})
     app = typer.Typer(
@@ -101,7 +102,7 @@ def _load(entry: EntryPoint) -> Any:
     try:
         command: Any = typer.main.get_command(entry.load())
     except Exception as error:
-        command = _broken(error)  # it must not hide the other commands
+        command = _broken(error)  # a broken command must not hide the others
     command.name = entry.name
     _join_lines(command)
     command.params = [param for param in command.params if param.name not in _COMPLETION]
@@ -109,19 +110,19 @@ def _load(entry: EntryPoint) -> Any:
 
 
 def _join_lines(command: Any) -> None:
-    """Let help break its lines where the terminal is full, not where the source does."""
+    """Let the terminal's width break the lines of help, not the source."""
     if command.help:
         paragraphs = command.help.split("\n\n")
         command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
     subcommands = getattr(command, "commands", {})
     loaded = subcommands.data if isinstance(subcommands, _Commands) else subcommands
     for subcommand in loaded.values():
-        if not isinstance(subcommand, EntryPoint):  # it has its turn when it is loaded
+        if not isinstance(subcommand, EntryPoint):  # others follow when they are loaded
             _join_lines(subcommand)
 
 
 def _broken(error: Exception) -> TyperCommand:
-    """A command in the place of one that can't be imported; it tells why when it is run."""
+    """Make a command that replaces one that can't be imported; running it shows the error."""
 
     def fail() -> None:
         raise error
@@ -136,7 +137,7 @@ def _broken(error: Exception) -> TyperCommand:
 
 
 def _missing_extra(error: Exception) -> str | None:
-    """How to install what is missing, if the base install leaves it out on purpose."""
+    """Say how to install a missing package that the base install leaves out on purpose."""
     module = (error.name or "").partition(".")[0] if isinstance(error, ImportError) else ""
     if module not in _EXTRAS:
         return None
@@ -173,14 +174,14 @@ def main(args: Sequence[str] | None = None) -> int:
     """Run the command line.
 
     Args:
-        args: the words after `lacoc`; those of this process if None.
+        args: the words after `lacoc`; None takes those of this process.
 
     Returns:
-        The exit code: 0 done, 2 a mistake that a person can put right, 130 Ctrl-C.
+        The exit code: 0 done, 2 a mistake that the user can correct, 130 Ctrl-C.
 
     Raises:
-        SystemExit: with such a code, where the command-line library ends the command.
-        Exception: what nobody foresaw: a bug, shown with its traceback.
+        SystemExit: with such a code, if the command-line library ends the command.
+        Exception: any other error; it is a bug and is shown with its traceback.
     """
     words.use(language.of_process())
     screen.accept_any_text()
@@ -210,7 +211,7 @@ def main(args: Sequence[str] | None = None) -> int:
 
 
 def _no_text(error: UnicodeEncodeError) -> str:
-    """Say which name or word of the system can't be sent or stored, because it is no text."""
+    """Say which file name or argument can't be sent or stored because it is not text."""
     return (
         f"'{printable(text_of(error.object))}' holds bytes that are not text in UTF-8. "
         "Rename the file or folder, or write the word again."
@@ -218,7 +219,7 @@ def _no_text(error: UnicodeEncodeError) -> str:
 
 
 def _flush() -> None:
-    """Write what is left, so that a reader who has gone is no error at the very end."""
+    """Write what is left in the buffer; a reader that has closed the pipe is no error."""
     try:
         sys.stdout.flush()
     except BrokenPipeError:

@@ -1,4 +1,4 @@
-"""Files that are written without losing the ones before them (workshop 4-1, rules 2)."""
+"""Write files without losing older ones of the same name (workshop 4-1, rules 2)."""
 
 import itertools
 import os
@@ -9,10 +9,10 @@ from lacoc_shared.words import say
 
 
 def save(path: Path, data: bytes) -> Path | None:
-    """Write a file; an older one of that name is kept with a number.
+    """Write a file; an older one of the same name is kept under a numbered name.
 
     Returns:
-        Where the older file is now ("Loco-data.1.txt"), or None if there was none.
+        Path of the older file ("Loco-data.1.txt"), or None if there was none.
 
     Raises:
         UserError: if the file can't be written.
@@ -25,16 +25,16 @@ def save(path: Path, data: bytes) -> Path | None:
                 file.write(data)
             return kept
         except FileExistsError:
-            continue  # made by another program meanwhile: it is kept too
+            continue  # another program just made it: that file is kept too
         except OSError as error:
             raise _cannot_write(path, error) from error
 
 
 def make_room(path: Path) -> Path | None:
-    """Give a file the first free number, so that its own name is free for a new file.
+    """Rename a file with the first free number, so that its name is free for a new file.
 
     Returns:
-        Where the file is now ("Loco-data.1.txt"), or None if there is none of that name.
+        New path of the file ("Loco-data.1.txt"), or None if there is no such file.
 
     Raises:
         UserError: if it can't be renamed, or is a folder.
@@ -58,7 +58,7 @@ def make_room(path: Path) -> Path | None:
 
 
 def _claimed(path: Path) -> Path:
-    """Make an empty file of the first free number, so that no other program takes that number."""
+    """Make an empty file with the first free number, so that no other program takes it."""
     for number in itertools.count(1):
         numbered = path.with_name(f"{path.stem}.{number}{path.suffix}")
         try:

@@ -1,4 +1,4 @@
-"""The language of the person at this terminal."""
+"""The language of the user at this terminal."""
 
 import locale
 import os
@@ -14,15 +14,16 @@ _JAPANESE = 0x11
 
 
 def of_process(environment: Mapping[str, str] | None = None) -> Language:
-    """Find the language that a terminal speaks.
+    """Find the language of a terminal.
 
-    The first of LACOC_LANGUAGE, LC_ALL, LC_MESSAGES and LANG that is set decides; without any
-    of them Windows says what it shows its own menus in, another system its locale.
+    The first of LACOC_LANGUAGE, LC_ALL, LC_MESSAGES and LANG that is set decides. If none
+    is set, the language of the Windows menus counts, or the locale of another system.
 
     Args:
-        environment: variables of the process; None takes them from the system.
+        environment: variables of the process; None reads them from the system.
 
     Returns:
+        The language; English if LACOC has no words in that language.
         The language; English for one that LACOC does not speak.
     """
     variables = os.environ if environment is None else environment
@@ -31,7 +32,7 @@ def of_process(environment: Mapping[str, str] | None = None) -> Language:
 
 
 def _spoken(name: str) -> Language:
-    """Read "ja", "ja_JP.UTF-8" or Windows' "Japanese_Japan"."""
+    """Read a name such as "ja", "ja_JP.UTF-8" or Windows' "Japanese_Japan"."""
     short = name[:2].lower()
     return next((language for language in LANGUAGES if language == short), "en")
 

@@ -1,8 +1,7 @@
-"""The log of what runs for long: one line an event, for a person or for a program.
+"""The log of a long-running process: one line for each event, for a person or a program.
 
-`start` switches it on; before, and in every other command, it is silent. Lines go out on
-a thread of their own: a terminal that is held still, or a pipe that nobody reads, must
-never hold a beat.
+The log is silent until `start` switches it on. Lines are written on a thread of their own:
+a stopped terminal, or a pipe that nobody reads, must never delay a beat.
 """
 
 import atexit
@@ -20,15 +19,15 @@ from lacoc_shared.command import screen
 from lacoc_shared.seat import BEATS_PER_S
 
 _WAITING_MOST = 10_000
-"""Lines that wait for a reader; what comes then is lost, and it is said how much."""
+"""Lines that may wait to be written; further lines are dropped, and their number is logged."""
 _END_S = 1.0
-"""At the end a reader gets so long to take what waits."""
+"""At the end, time to write the lines that still wait."""
 _CLOCK = "%H:%M:%S"
 _DIM, _WARN, _PLAIN = "\x1b[2m", "\x1b[33m", "\x1b[0m"
 
 
 class _Writer:
-    """Prints lines in their order, beside whoever logs."""
+    """Writes lines in order on its own thread."""
 
     def __init__(self) -> None:
         self._lines: queue.Queue[str | None] = queue.Queue(_WAITING_MOST)
@@ -38,7 +37,7 @@ class _Writer:
         atexit.register(self.close)
 
     def msg(self, line: str) -> None:
-        """Take a line; never waits."""
+        """Take a line; never blocks."""
         try:
             if self._lost:
                 self._lines.put_nowait(f"({self._lost} lines of the log were lost here)")
@@ -50,7 +49,7 @@ class _Writer:
     info = warning = msg  # structlog calls the method of the level
 
     def close(self) -> None:
-        """Let what waits go out, unless nobody takes it."""
+        """Write the lines that still wait, unless the queue is full because nobody reads."""
         try:
             self._lines.put_nowait(None)
         except queue.Full:
@@ -62,18 +61,18 @@ class _Writer:
             try:
                 sys.stdout.write(f"{line}\n")
                 sys.stdout.flush()
-            except (OSError, ValueError):  # who read it has gone
+            except (OSError, ValueError):  # the reader has gone
                 return
 
 
 def start(as_json: bool) -> None:
-    """Switch the log on. Where a person reads it, the stack of a crash goes there too.
+    """Switch the log on. A log for a person also gets the stack of a crash.
 
     Args:
-        as_json: lines of JSON for a program; else words for a person.
+        as_json: True writes lines of JSON for a program; False words for a person.
     """
     screen.accept_any_text()
-    if not as_json:  # a program reads objects: there the stack goes to standard error
+    if not as_json:  # a program expects only objects: for it the stack goes to standard error
         screen.show_crashes(sys.stdout)
     writer = _Writer()
     structlog.configure(
@@ -90,7 +89,7 @@ def start(as_json: bool) -> None:
 
 
 def get(**always: Any) -> FilteringBoundLogger:
-    """A logger; every line of it has these values."""
+    """Return a logger that adds these values to every line."""
     logger: FilteringBoundLogger = structlog.get_logger(**always)
     return logger
 
@@ -100,7 +99,7 @@ def _json(_: Any, __: str, line: structlog.typing.EventDict) -> str:
 
 
 def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
-    """Wall time, match, match clock and what happened; particulars are for programs."""
+    """Write wall time, match, match clock and event; the other values are for programs."""
     at = datetime.fromisoformat(line["timestamp"]).astimezone().strftime(_CLOCK)
     head = " ".join(filter(None, (at, line.get("match_id") or line.get("court"))))
     ticks = line.get("left_ticks", line.get("clock_ticks"))
@@ -112,7 +111,7 @@ def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
 
 
 def log_clock(ticks: int) -> str:
-    """Write ticks of a match's clock with their tenths of a second: "2:04.6"."""
+    """Format ticks of a match's clock with tenths of a second: "2:04.6"."""
     tenths = max(0, ticks) * 10 // BEATS_PER_S
     return f"{tenths // 600}:{tenths % 600 / 10:04.1f}"
 

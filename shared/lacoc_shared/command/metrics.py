@@ -1,7 +1,7 @@
-"""Numbers of a running process for Prometheus, at an address of their own.
+"""Metrics of a running process for Prometheus, at their own address.
 
-Whoever has the numbers keeps them as plain values; a scrape reads them on a thread of
-its own, and no lock is shared with what is measured.
+Each owner keeps its numbers as plain values. A scrape reads them on its own thread,
+without a lock, so it never delays what is measured.
 """
 
 import re
@@ -22,7 +22,7 @@ class Exporter:
         where: "HOST:PORT"; port 0 takes a free one.
 
     Raises:
-        UserError: if it is no such address, or can't be listened on.
+        UserError: if this is not such an address, or the port can't be opened.
     """
 
     def __init__(self, where: str) -> None:
@@ -30,7 +30,7 @@ class Exporter:
         if match is None or int(match["port"]) > 65_535:
             raise UserError(say("command.bad-metrics", where=where))
         self.registry = CollectorRegistry()
-        """Takes the collectors of what is to be seen."""
+        """Register collectors here."""
         host = match["host"].strip("[]")
         try:
             self._server, self._thread = start_http_server(int(match["port"]), host, self.registry)
@@ -38,7 +38,7 @@ class Exporter:
             why = error.strerror or str(error)
             raise UserError(say("command.metrics-fail", where=where, why=why)) from None
         self.url = f"http://{match['host']}:{self._server.server_port}/metrics"
-        """Where a scraper finds them."""
+        """Address for a scraper."""
 
     def __enter__(self) -> Self:
         return self

@@ -1,8 +1,8 @@
-"""Options that several commands share: the same name, variable and sentence in each.
+"""Options that several commands share, with the same name, variable and help in each.
 
-The order of precedence is made of two steps. The command line goes before the
-environment: typer's `envvar`. Both go before the contest file and the defaults: an
-option nobody gave is None, and `contest` looks further.
+The command line takes precedence over the environment: typer's `envvar` does this. Both
+take precedence over the contest file and the defaults: an option that is not given is
+None, and `contest` looks it up.
 """
 
 from pathlib import Path

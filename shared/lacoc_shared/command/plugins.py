@@ -1,4 +1,4 @@
-"""Games, robots, bots and commands that others bring: by entry point or by folder."""
+"""Games, robots, bots and commands of third parties, by entry point or by folder."""
 
 import functools
 import hashlib
@@ -18,7 +18,7 @@ def installed(group: str) -> Mapping[str, EntryPoint]:
     return _installed(group, tuple(sys.path))
 
 
-@functools.cache  # to read what is installed takes 30 ms, and a match asks several times
+@functools.cache  # reading the installed packages takes 30 ms, and a match asks several times
 def _installed(group: str, path: tuple[str, ...]) -> Mapping[str, EntryPoint]:
     entries = sorted(entry_points(group=group), key=lambda entry: entry.name)
     return MappingProxyType({entry.name: entry for entry in entries})
@@ -29,11 +29,11 @@ def package(group: str, what: str, name: str) -> ModuleType:
 
     Args:
         group: the entry-point group.
-        what: what it is called in an error, such as "game".
+        what: its name in error messages, such as "game".
         name: an installed name, or the path of a folder (anything with a slash or a dot).
 
     Raises:
-        UserError: if there is no such package; the message lists the ones there are.
+        UserError: if there is no such package; the message lists the installed ones.
     """
     if name not in installed(group) and (folder := Path(name).expanduser()).is_dir():
         return package_of_folder(folder)
@@ -47,12 +47,12 @@ def package(group: str, what: str, name: str) -> ModuleType:
 
 
 def installed_package(group: str, what: str, name: str) -> ModuleType:
-    """Import an installed package: for names that a file or a court gives.
+    """Import an installed package, for a name that comes from a file or a court.
 
-    A folder is never taken: its code would run only because somebody wrote its name.
+    Folders are refused here: otherwise code would run only because somebody wrote its path.
 
     Raises:
-        UserError: if no package of that name is installed; the message lists the ones there are.
+        UserError: if no such package is installed; the message lists the installed ones.
     """
     module = _loaded(group, name)
     if module is None:
@@ -67,7 +67,7 @@ def _loaded(group: str, name: str) -> ModuleType | None:
 
 
 def package_of_folder(folder: Path) -> ModuleType:
-    """Make a folder importable as a package of its own name, so that `.rules` works in it."""
+    """Make a folder importable as a package with a unique name, so that `.rules` works in it."""
     folder = folder.resolve()
     name = f"lacoc_folder_{hashlib.blake2b(str(folder).encode(), digest_size=6).hexdigest()}"
     if name in sys.modules:
@@ -88,5 +88,5 @@ def package_of_folder(folder: Path) -> ModuleType:
 
 
 def folder_of(module: ModuleType) -> Path:
-    """The folder of a package."""
+    """Return the folder of a package."""
     return Path(next(iter(module.__path__)))

@@ -1,8 +1,8 @@
-"""What the command line shows: one pair of consoles, and the few things printed on them.
+"""The output of the command line: two consoles, and the few things printed on them.
 
-Results go to standard output, everything said about them to standard error, so that a
-pipe carries results only. Colours and tables are for terminals; in a pipe a line is as
-long as it needs to be, because a program reads it.
+Results go to standard output and all other messages to standard error, so that a pipe
+carries results only. Colours and tables are for terminals; in a pipe a line is never
+wrapped, because a program reads it.
 """
 
 import contextlib
@@ -22,7 +22,7 @@ from rich.text import Text
 from lacoc_shared.mistakes import ESCAPED, Mistake, text_of
 from lacoc_shared.words import Phrase, render, say
 
-_UNLIMITED = 10_000  # characters in a line that no eye must follow
+_UNLIMITED = 10_000  # characters in a line that only a program reads
 
 
 def _console(stderr: bool) -> Console:
@@ -35,8 +35,8 @@ def _console(stderr: bool) -> Console:
 def accept_any_text() -> None:
     """Let standard output and standard error take every character.
 
-    A terminal of Japanese Windows has no "ö", and a file name may hold bytes that are no text.
-    Such a character is written as its number: a name never ends a program.
+    A terminal of Japanese Windows has no "ö", and a file name may hold bytes that are not text.
+    Such a character is written as an escape code, so a name never crashes a program.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -44,7 +44,7 @@ def accept_any_text() -> None:
 
 
 def show_crashes(stream: TextIO | None) -> None:
-    """Let the stack of every thread be written where a library crashes the process (SIGSEGV)."""
+    """Write the stack of every thread if a library crashes the process (SIGSEGV)."""
     with contextlib.suppress(io.UnsupportedOperation, RuntimeError):  # no stream, or no file
         faulthandler.enable(stream or sys.stderr)
 
@@ -57,8 +57,8 @@ def show(what: RenderableType | Phrase, to: Console | None = None) -> None:
     """Print a text, a phrase or a table.
 
     Args:
-        what: a plain string is printed as it is: square brackets are no markup.
-        to: the console; standard output if None.
+        what: a plain string is printed as it is; square brackets are not markup.
+        to: the console; None is standard output.
     """
     if isinstance(what, Phrase):
         what = render(what)
@@ -66,28 +66,28 @@ def show(what: RenderableType | Phrase, to: Console | None = None) -> None:
 
 
 def note(what: Phrase | str) -> None:
-    """Say something about the result, such as the name of a file that was written."""
+    """Print a remark about the result, such as the name of a file that was written."""
     show(Text(render(what), style="dim"), stderr)
 
 
 def warn(what: Phrase | str) -> None:
-    """Say that something may not be as the person expects."""
+    """Print a warning that something may not be as the user expects."""
     show(Text.assemble((render(say("command.note")), "bold yellow"), render(what)), stderr)
 
 
 def error(what: Phrase | str) -> None:
-    """Say in one line why the command stops."""
+    """Print in one line why the command stops."""
     show(Text.assemble((render(say("command.error")), "bold red"), (render(what), "red")), stderr)
 
 
 def refused(mistakes: Sequence[Mistake]) -> None:
-    """List everything that is wrong with a file (rules 2)."""
+    """List all mistakes in a file (rules 2)."""
     error(say("command.mistakes", count=len(mistakes)))
     show(mistakes_table(mistakes), stderr)
 
 
 def mistakes_table(mistakes: Sequence[Mistake]) -> Table:
-    """Make a table of mistakes; a column that no mistake fills is left out."""
+    """Make a table of mistakes, without the columns that no mistake uses."""
     columns: tuple[tuple[Phrase, Callable[[Mistake], Any]], ...] = (
         (say("fact.file"), lambda m: m.file),
         (say("fact.row"), lambda m: m.row),
@@ -118,7 +118,7 @@ def print_json(value: Any) -> None:
 
 
 def json_line(value: Any) -> str:
-    """Turn a value into one line of JSON; names that are not UTF-8 are written by `text_of`."""
+    """Return a value as one line of JSON; `text_of` rewrites names that are not UTF-8."""
     try:
         return msgspec.json.encode(value).decode()
     except UnicodeEncodeError:
@@ -138,7 +138,7 @@ def _encodable(value: Any) -> Any:
 
 
 def progress() -> Progress:
-    """Make a progress bar on standard error; one task a bar, gone when it is closed."""
+    """Make a progress bar on standard error; each task is one bar, and all vanish at the end."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),

@@ -1,1 +1,1 @@
-"""The contest file, and how each person gets into a contest."""
+"""The contest file, and the ways for each person to get into a contest."""

@@ -1,6 +1,6 @@
-"""The ways into a contest's courts, found from its file and from what somebody said.
+"""Find court, address and token for each kind of client, from options and the contest file.
 
-What is None was not said, and is looked up in the contest file.
+An option that is None was not given; it is looked up in the contest file.
 """
 
 from lacoc_shared.contest.file import LOOPBACK, MAIN, OTHERS, Contest, Court
@@ -11,15 +11,15 @@ from lacoc_shared.words import say
 
 
 def spectator_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
-    """Find the way to a court for somebody who only watches.
+    """Return court and address for a client that only watches.
 
     Args:
-        contest: the contest file, if there is one: it says what the others leave open.
+        contest: the contest file, if there is one; it gives what the options leave open.
         court: the court's name, or None.
         connect: the court's address, or None.
 
     Raises:
-        UserError: if the contest has no such court, or the address is none.
+        UserError: if the contest has no such court, or the address is wrong.
     """
     name, entry = _court_of(contest, court)
     address = connect or (entry.address() if entry else LOOPBACK)
@@ -35,13 +35,13 @@ def seat_access(
     seat: str | None,
     token: str | None,
 ) -> Access:
-    """Find the way to a seat, for its contestant or a bot.
+    """Return court, address, seat and token for a contestant or a bot.
 
     Args:
-        contest: the contest file, if there is one: it says what the others leave open.
+        contest: the contest file, if there is one; it gives what the options leave open.
         court: the court's name, or None.
         connect: the court's address, or None.
-        seat: the seat's name, or None: the only seat of the contest's court.
+        seat: the seat's name; None takes the only seat of the contest's court.
         token: the seat's token, or None.
 
     Raises:
@@ -64,7 +64,7 @@ def seat_access(
 def referee_access(
     contest: Contest | None, court: str | None, connect: str | None, token: str | None
 ) -> Access:
-    """Find the way to a court for its referee; arguments as for a seat.
+    """Return court, address and token for a referee; arguments as in `seat_access`.
 
     Raises:
         UserError: if the token is neither given nor in the contest file.
@@ -78,22 +78,22 @@ def referee_access(
 
 
 def gateway_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
-    """Find the way to a court for a gateway; arguments and errors as for a spectator."""
+    """Return the access of a gateway; arguments and errors as in `spectator_access`."""
     access = spectator_access(contest, court, connect)
     keys = contest.keys if contest else None
     return access.of_gateway(keys.read(keys.gateway_token).strip()) if keys else access
 
 
 def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict[str, Access]:
-    """Find the way of each person to a court with keys: the seats, the referee, others.
+    """Return everybody's access to a court with keys: the seats, the referee, others.
 
     Args:
         contest: a contest with keys.
         court: the court's name.
-        any_host: the host to name where the court listens at every address of its machine.
+        any_host: the host to name if the court listens on all addresses of its machine.
 
     Raises:
-        UserError: if its keys can't be read.
+        UserError: if the contest's keys can't be read.
     """
     entry = contest.courts[court]
     address = entry.address(any_host)
@@ -110,7 +110,7 @@ def join_lines(name: str, court: Court, any_host: str = "HOST") -> dict[str, str
     Args:
         name: the court's name.
         court: its entry.
-        any_host: the host to name where the court listens at every address of its machine.
+        any_host: the host to name if the court listens on all addresses of its machine.
     """
     where = f"--court {name} --connect {court.address(any_host)}"
     seats = {
@@ -125,10 +125,10 @@ def join_lines(name: str, court: Court, any_host: str = "HOST") -> dict[str, str
 
 
 def invitation_lines(everybody: dict[str, Access]) -> dict[str, str]:
-    """Write the command line for each person who has an invitation beside them.
+    """Write the command line for each person whose invitation file is in the current folder.
 
     Args:
-        everybody: the way of each, by the person.
+        everybody: the access of each person, by name.
     """
     commands = {"seat": "play", "referee": "referee status", "gateway": "web"}
     return {

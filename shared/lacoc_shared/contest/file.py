@@ -1,9 +1,9 @@
 """The contest file: courts, addresses, tokens, limits (rules 1, "Where each number lives").
 
-An organiser writes it once ('lacoc contest init'); a court is started from it, and a
-client that has it needs no address and no token. Every setting can also be said on the
-command line or in the environment, and goes before the file then: `options` has both,
-and what is still None is looked up by `entrances`.
+An organiser writes it once ('lacoc contest init'). A court is started from it, and a
+client that has it needs no address and no token. Every setting can also be given on the
+command line or in the environment, which take precedence: `options` reads both, and
+`entrances` looks up in this file what is still None.
 """
 
 import itertools
@@ -35,76 +35,76 @@ T = TypeVar("T")
 
 _NO_NAME = "Contest"
 MAIN = "main"
-"""Name of the court where nobody names one."""
+"""Name of the court if none is given."""
 LOOPBACK = "127.0.0.1:7447"
-"""Where a court listens, and where a client looks for it, if nobody says otherwise."""
+"""Default address on which a court listens and to which a client connects."""
 
 OTHERS = ("referee", "gateway", "spectators")
-"""With the seats, all who come to a court."""
+"""Everybody at a court besides the seats."""
 
 Token = Annotated[str, msgspec.Meta(min_length=12, max_length=64)]
 
 
 class Holder(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Who holds a seat, or the referee's place: whoever knows the token."""
+    """A place at a court, seat or referee; whoever knows its token holds it."""
 
     token: Token
 
 
 class SeatHolder(Holder, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Who holds a seat, and how its robot looks there."""
+    """A seat of a court, with the look of its team's robot."""
 
     colour: Colour | None = None
-    """The team's own; None: the seat's, as the arena's file has it."""
+    """The team's own colour; None: the colour of the seat in the arena file."""
     pattern: Pattern | None = None
 
     @property
     def look(self) -> dict[str, str]:
-        """What of these is the team's own."""
+        """The colour and pattern that the team has chosen."""
         both = {"colour": self.colour, "pattern": self.pattern}
         return {name: own for name, own in both.items() if own}
 
 
 class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A court and all that is needed to start it, or to reach it."""
+    """A court: all that is needed to start it or to reach it."""
 
     arena: str
     """Name of an installed arena, or the path of an arena's folder."""
     listen: Annotated[tuple[str, ...], msgspec.Meta(min_length=1)] = (LOOPBACK,)
-    """Where the court listens."""
+    """Addresses on which the court listens."""
     connect: str = ""
-    """Where others reach it; "": the first of `listen`."""
+    """Address for clients; "": the first of `listen`."""
     seat: dict[str, SeatHolder] = {}
-    """By the arena's name of the seat."""
+    """Holders by the seat's name in the arena."""
     referee: Holder
     settings: dict[str, Any] = {}
-    """Entries that replace those of the arena's file."""
+    """Entries that replace those of the arena file."""
     input_delay: Literal["none", "equal"] = "none"
-    """Whether keys are held until all seats' links have the same delay."""
+    """Whether keys are delayed until the links of all seats have the same delay."""
     input_delay_max_ms: Annotated[int, msgspec.Meta(ge=20, le=1000)] = 400
-    """That delay is never longer; a link that is slower stays behind."""
+    """Largest delay added for this; a slower link stays slower."""
 
     @property
     def most_delay_ms(self) -> int:
-        """The longest delay that makes links equal; 0: none does."""
+        """Largest delay that makes links equal; 0: links are not made equal."""
         return self.input_delay_max_ms if self.input_delay == "equal" else 0
 
     @property
     def host(self) -> str:
-        """Where others reach it; "" if it listens at every address and nothing says which."""
+        """Host for clients; "" if the court listens on all addresses and `connect` names none."""
         found = address_host(self.connect or self.listen[0])
         return "" if found in ANY_HOST else found
 
     @property
     def looks(self) -> dict[str, dict[str, str]]:
-        """By seat, its team's own colour and pattern, if it has them."""
+        """The teams' own colours and patterns, by seat."""
         return {seat: holder.look for seat, holder in self.seat.items()}
 
     def address(self, any_host: str = "127.0.0.1") -> str:
-        """Where a client connects.
+        """Return the address to which a client connects.
 
         Args:
-            any_host: the host to name where the court listens at every address of its machine.
+            any_host: the host to name if the court listens on all addresses of its machine.
         """
         address = self.connect or self.listen[0]
         if self.host:
@@ -120,27 +120,27 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     recordings: Path = Path("recordings")
     """Folder of the records."""
     robot: str = "hexapod"
-    """For a team that sends no robot file: an installed robot's name, or a file."""
+    """Robot of a team that sends no robot file: an installed robot's name, or a file."""
     limits: dict[str, float] = {}
     """Limits for robots that differ from the defaults of rules 1, by name."""
     health: HealthLimits = HealthLimits()
-    """When a replay is advised."""
+    """Limits beyond which a match should be played again."""
     keys: KeyFolder | None = None
-    """What its courts encrypt and let in with; None: by tokens alone, and nothing is encrypted."""
+    """Certificates for encryption and access; None: tokens alone, and no encryption."""
     courts: dict[str, Court]
 
     @property
     def protocol(self) -> str:
-        """Of an address that names none."""
+        """Protocol of an address that names none."""
         return "tls" if self.keys else "tcp"
 
     @property
     def given_name(self) -> str:
-        """The name that its organiser gave it; "" if there is none."""
+        """The name that the organiser gave the contest; "" if none."""
         return "" if self.name == _NO_NAME else self.name
 
     def court(self, name: str | None = None) -> tuple[str, Court]:
-        """Find a court with its name; without a name the only one.
+        """Return a court and its name; without a name, the only court.
 
         Raises:
             UserError: if there is no such court, or more than one to choose from.
@@ -156,7 +156,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def load(path: Path) -> Contest:
-    """Read a contest file; the paths in it start from its own folder.
+    """Read a contest file; relative paths in it start from its own folder.
 
     Raises:
         UserError: if it can't be read, or at the first wrong entry; the message names it.
@@ -168,11 +168,11 @@ def load(path: Path) -> Contest:
 
 
 def loads(data: bytes, path: Path) -> Contest:
-    """Read what stands in a contest file, or will.
+    """Read the content of a contest file, which may not be written yet.
 
     Args:
         data: its bytes.
-        path: where it is.
+        path: the file's path.
 
     Raises:
         UserError: at the first wrong entry.
@@ -208,7 +208,7 @@ def _cannot_read(path: Path, why: Phrase | str) -> UserError:
 
 
 class _Wrong(Exception):
-    """What is wrong with a contest file, and where in it."""
+    """An entry of a contest file is wrong; the text says which and why."""
 
     def __init__(self, said: Phrase) -> None:
         super().__init__(said)
@@ -280,7 +280,7 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
 
 
 def _check_ports(courts: dict[str, Court]) -> None:
-    """See that all courts can run at once; two `connect` hosts mean two machines."""
+    """Check that all courts can run at once; two different `connect` hosts mean two machines."""
     taken = [at for court in courts.values() for at in court.listen]
     for (first, one), (second, other) in itertools.combinations(courts.items(), 2):
         apart = one.connect and other.connect and one.host != other.host
@@ -308,9 +308,9 @@ def _convert(value: Any, kind: type[T], where: str) -> T:
 
 
 def _beside(folder: Path, name: str) -> str:
-    """A name of something installed as it is; a path as seen from the contest file's folder."""
+    """Return an installed name unchanged; resolve a path from the contest file's folder."""
     is_path = "/" in name or "." in name or "\\" in name
     try:
         return str((folder / Path(name).expanduser()).resolve()) if is_path else name
-    except (ValueError, RuntimeError, OSError):  # a NUL, a user who is not known, a loop of links
+    except (ValueError, RuntimeError, OSError):  # a NUL, an unknown user, a loop of links
         raise _Wrong(say("contest.no-path", path=name[:80])) from None

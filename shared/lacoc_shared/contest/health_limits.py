@@ -1,4 +1,4 @@
-"""How well a match must be held: beyond these limits a replay is advised."""
+"""Limits for how well a match must run; beyond one of them a replay is advised."""
 
 from typing import Annotated
 
@@ -10,19 +10,19 @@ _Times = Annotated[int, msgspec.Meta(ge=0)]
 
 
 class HealthLimits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A match that was held worse than this gets the advice to be played again."""
+    """Limits of a match's health; beyond any of them the match should be played again."""
 
     real_time_factor: _Amount = 0.98
-    """Least over the whole of PLAYING."""
+    """Least real-time factor over the whole of PLAYING."""
     slow_beats_percent: _Percent = 1.0
-    """Most, of the beats of PLAYING."""
+    """Largest share of slow beats in PLAYING."""
     worst_late_ms: _Amount = 200.0
-    """The latest that a beat of PLAYING may begin; from 100 on the match runs late."""
+    """Largest delay at which a beat of PLAYING may begin; from 100 ms on the match runs late."""
     silent_s: _Amount = 5.0
-    """Most that a seat may be silent in PLAYING."""
+    """Longest time that a seat may be silent in PLAYING."""
     heard_percent: _Percent = 70.0
-    """Least of a seat's repeats that have to arrive."""
+    """Least share of a seat's repeated keys that must arrive."""
     faults: _Times = 0
-    """Most stops of physics."""
+    """Largest number of times that physics may stop."""
     resumptions: _Times = 2
-    """Most restarts of a killed court."""
+    """Largest number of times that the court may be restarted after it was killed."""

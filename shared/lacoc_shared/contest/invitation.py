@@ -1,9 +1,9 @@
-"""Who somebody is at a court, and the small file that says it: an invitation.
+"""A client's access to a court, and its file: an invitation.
 
-An organiser hands one to each person (`lacoc contest keys` makes them). It holds all that
-a command needs to get in: court, address, seat and token, and the certificate by which
-the court is known. The user's password for the network comes from the token, so one
-secret a person is enough.
+An organiser gives one to each person (`lacoc contest keys` makes them). It holds all that
+a command needs: court, address, seat and token, and the certificate that proves the
+court's identity. The user's network password is derived from the token, so each person
+has only one secret.
 """
 
 from pathlib import Path
@@ -25,48 +25,48 @@ _MAX_BYTES = 1 << 16
 
 
 class Access(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Where a client goes, and what proves who it is; an invitation file holds just this."""
+    """Address and proof of identity for a client; an invitation file has just these entries."""
 
     court: str
     connect: str
     """Address of the court."""
     role: Role = "spectators"
     seat: str = ""
-    """The seat it holds; "" for everybody else."""
+    """The seat's name; "" for every other role."""
     token: str = ""
-    """"" for spectators."""
+    """The person's secret; "" for spectators."""
     ca: str = ""
-    """Certificate (PEM) of the authority that vouches for the court; "": a court without keys."""
+    """Certificate (PEM) of the authority that signs the court's; "": a court without keys."""
 
     def __repr__(self) -> str:
         return f"Access(user={self.user!r}, connect={self.connect!r})"
 
     @property
     def user(self) -> str:
-        """The network's name for it, such as "main.left"."""
+        """User name on the network, such as "main.left"."""
         return f"{self.court}.{self.seat if self.role == 'seat' else self.role}"
 
     @property
     def credentials(self) -> Credentials | None:
-        """For the network; None for a court without keys."""
+        """Network credentials; None for a court without keys."""
         if not self.ca:
             return None
         return Credentials(self.user, seal.password(self.user, self.token), self.ca)
 
     def watching(self) -> Self:
-        """The same way for somebody who only watches."""
+        """Return the access of a spectator to the same court."""
         return msgspec.structs.replace(self, role="spectators", seat="", token="")
 
     def of_seat(self, seat: str, token: str) -> Self:
-        """The same way for a seat's holder."""
+        """Return the access of a seat at the same court."""
         return msgspec.structs.replace(self, role="seat", seat=seat, token=token)
 
     def of_referee(self, token: str) -> Self:
-        """The same way for a referee."""
+        """Return the access of a referee to the same court."""
         return msgspec.structs.replace(self, role="referee", seat="", token=token)
 
     def of_gateway(self, token: str) -> Self:
-        """The same way for a gateway."""
+        """Return the access of a gateway to the same court."""
         return msgspec.structs.replace(self, role="gateway", seat="", token=token)
 
 
@@ -74,7 +74,7 @@ def read_invitation(path: Path) -> Access:
     """Read an invitation.
 
     Raises:
-        UserError: if it can't be read, or is none.
+        UserError: if it can't be read, or is not an invitation.
     """
     try:
         access = msgspec.convert(read_toml(path.read_bytes(), _MAX_BYTES), Access)
@@ -94,10 +94,10 @@ def read_invitation(path: Path) -> Access:
 
 
 def invitation_text(access: Access, contest: str) -> str:
-    """Write an invitation.
+    """Write an invitation as TOML.
 
     Args:
-        access: what it says.
+        access: its entries.
         contest: the contest's name.
     """
     whose = f"seat {access.seat}" if access.role == "seat" else access.role
@@ -105,7 +105,7 @@ def invitation_text(access: Access, contest: str) -> str:
     lines = [f"# {_one_line(contest)}: invitation of court {access.court} for {whose}. {known}"]
     for name, value in msgspec.structs.asdict(access).items():
         if value:
-            # A JSON string is a TOML string as well; a certificate is better read in lines.
+            # A JSON string is also a TOML string; a certificate is easier to read in lines.
             text = f'"""\n{value}"""' if name == "ca" else msgspec.json.encode(value).decode()
             lines.append(f"{name} = {text}")
     return "\n".join([*lines, ""])

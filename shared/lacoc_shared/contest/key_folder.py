@@ -1,4 +1,4 @@
-"""The folder of a contest's keys: what `lacoc contest keys` makes beside the contest file."""
+"""The key folder: what `lacoc contest keys` makes beside the contest file."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +9,7 @@ from lacoc_shared.words import say
 
 @dataclass(frozen=True)
 class KeyFolder:
-    """Names the files of a contest's keys, and reads them."""
+    """Names and reads the files in a key folder."""
 
     path: Path
 
@@ -20,7 +20,7 @@ class KeyFolder:
 
     @property
     def ca_key(self) -> Path:
-        """Its private key: only new certificates need it, no court does."""
+        """The authority's private key: needed only to make certificates, never by a court."""
         return self.path / "ca.key"
 
     @property
@@ -35,20 +35,20 @@ class KeyFolder:
 
     @property
     def gateway_token(self) -> Path:
-        """What the gateways of the contest share with its courts."""
+        """The secret that the contest's gateways share with its courts."""
         return self.path / "gateway.token"
 
     @property
     def invitations(self) -> Path:
-        """Folder of the files that are handed out."""
+        """Folder of the invitations."""
         return self.path / "invitations"
 
     def invitation(self, user: str) -> Path:
-        """The invitation of a user, such as "main.left"."""
+        """Return the path of a user's invitation; a user is such as "main.left"."""
         return self.invitations / f"{user}.toml"
 
     def read(self, path: Path) -> str:
-        """Read one of the files.
+        """Read a file of the folder.
 
         Raises:
             UserError: if it can't be read.

@@ -14,5 +14,5 @@ def new_token() -> str:
 
 
 def hash_token(token: str) -> str:
-    """Hash a token for keeping, with a salt of its own (`seal.hash_token`)."""
+    """Hash a token for storage, with its own salt (`seal.hash_token`)."""
     return seal.hash_token(token, secrets.token_bytes(_SALT_BYTES))

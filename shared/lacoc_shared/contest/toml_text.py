@@ -1,8 +1,8 @@
-"""TOML as people write it, read so that no file can hurt whoever reads it.
+"""Read TOML that may be hostile.
 
-`tomllib` meets hostile text with three kinds of exceptions, and takes seconds and a
-gigabyte for 32 KiB of `a.a.a.a`. Here there is one error, and what comes out is small:
-tables that are not deep, and numbers that every other program can hold.
+On hostile text `tomllib` raises three kinds of exceptions, and takes seconds and a
+gigabyte for 32 KiB of `a.a.a.a`. This module raises one error, and its result is
+bounded: nesting is limited, and every number fits into 64 bits unless the caller allows more.
 """
 
 import re
@@ -12,20 +12,20 @@ from typing import Any
 from lacoc_shared.words import Phrase, render, say
 
 MAX_BYTES = 1 << 20
-"""For files that an organiser writes; a contestant's may have less."""
+"""Limit for files that an organiser writes; a contestant's file may have a lower one."""
 
-_DOTS = 100  # a line with more: a key of so many parts costs its square in time and memory
+_DOTS = 100  # in a line; a key with more parts costs time and memory quadratically
 _DEEPEST = 32
-_INTEGERS = range(-(2**63), 2**64)  # what a message can carry
+_INTEGERS = range(-(2**63), 2**64)  # the integers that a message can carry
 _TOO_LONG = re.compile(r"[0-9][0-9_]{4000,}")
 _PLACE = re.compile(r" \(at line (\d+), column \d+\)")
 
 
 class BadToml(ValueError):
-    """It can't be read as TOML; `row` is the line, counted from 1, where that is known.
+    """The text can't be read as TOML; `row` is the line, counted from 1, if it is known.
 
-    `remedy` says what should stand there, where that is more than TOML. A reason that is a text
-    comes from Python's own reader.
+    `remedy` says what should be there, if that is not obvious. A reason that is a text comes from
+    Python's own parser.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class BadToml(ValueError):
 
     @property
     def phrase(self) -> Phrase:
-        """Say the reason, the line and the remedy as one phrase, for a sentence."""
+        """Reason, line and remedy as one phrase, for use in a sentence."""
         return say("toml.bad", reason=self.reason, row=self.row, remedy=self.remedy)
 
     def __str__(self) -> str:
@@ -52,11 +52,11 @@ def read_toml(
 
     Args:
         text: the file; bytes are UTF-8, with or without a byte order mark.
-        max_bytes: a longer one is refused unread.
-        any_integers: leave integers beyond 64 bits to the caller, who can name their place.
+        max_bytes: a longer text is refused unread.
+        any_integers: leave integers beyond 64 bits to the caller, which can name their place.
 
     Raises:
-        BadToml: if it is too long, no TOML, too deep, or has an integer beyond 64 bits.
+        BadToml: if it is too long, not TOML, nested too deep, or has an integer beyond 64 bits.
     """
     if len(text) > max_bytes:
         raise BadToml(say("toml.too-long", bytes=len(text), most=max_bytes))
@@ -94,10 +94,10 @@ def _row_of_long_number(text: str) -> int | None:
 
 
 def _check_values(table: dict[str, Any], any_integers: bool) -> None:
-    """Look at every value, without recursion.
+    """Check every value, without recursion.
 
     Raises:
-        BadToml: if one is too deep or too large.
+        BadToml: if a value is nested too deep or too large.
     """
     level: list[Any] = [table]
     for _ in range(_DEEPEST):

@@ -2,4 +2,4 @@
 
 from lacoc_shared.gait.tables import Level
 
-__all__ = ["Level"]  # what bots of others import
+__all__ = ["Level"]  # imported by other people's bots

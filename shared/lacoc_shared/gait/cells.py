@@ -1,7 +1,7 @@
-"""The cells of a gait file: what stands in which row and column (rules 2, Fig. 4-1, Fig. 4-2).
+"""The cells of a gait file, by row and column (rules 2, Fig. 4-1, Fig. 4-2).
 
-Text files and workbooks are the same table: both are written from the cells made here, and
-`reader` reads both once they are split into cells. Degrees outside, radians inside.
+Text files and workbooks hold the same table: both are written from the cells made here, and
+`reader` reads both once they are split into cells. Files have degrees, LACOC has radians.
 """
 
 import math
@@ -30,11 +30,11 @@ LEG_LABELS: dict[int, tuple[str, ...]] = {
     6: ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F"),
     8: ("R,F", "R,FC", "R,BC", "R,B", "L,B", "L,BC", "L,FC", "L,F"),
 }
-"""Number of legs -> their labels, for the robots whose gaits are told apart by their columns."""
+"""Number of legs -> leg labels, for the robots that a gait's number of columns identifies."""
 
-# Full-width forms (what a Japanese input method types) to ASCII, the ideographic space and
-# those that break no line (a web page's) to a space, the minus sign U+2212 to a hyphen. U+FF0D
-# is among the full-width forms.
+# Maps full-width forms (typed with a Japanese input method) to ASCII, the ideographic space and
+# no-break spaces (copied from web pages) to a space, the minus sign U+2212 to a hyphen. U+FF0D
+# is one of the full-width forms.
 _SPACES = "\u3000\u00a0\u2007\u202f"
 _NARROW = {0xFF01 + i: 0x21 + i for i in range(94)} | {ord(c): " " for c in _SPACES} | {0x2212: "-"}
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
@@ -42,14 +42,14 @@ _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row of a file: its number from 1, and its cells."""
+    """One row of a file: its number, counted from 1, and its cells."""
 
     number: int
     cells: list[str]
 
 
 def posture_cells(table: PostureTable, legs: Sequence[str]) -> list[list[str | float]]:
-    """The cells of Fig. 4-1 for a table: the number, the postures [deg], the three legend rows.
+    """Return the cells of Fig. 4-1: number of postures, postures [deg], three legend rows.
 
     Raises:
         ValueError: if the table is not for a robot with these legs.
@@ -68,7 +68,7 @@ def posture_cells(table: PostureTable, legs: Sequence[str]) -> list[list[str | f
 
 
 def locomotion_cells(table: LocomotionTable, legs: Sequence[str]) -> list[list[str | float]]:
-    """The cells of Fig. 4-2 for a table: the number of keys, then each key's postures [deg].
+    """Return the cells of Fig. 4-2: number of keys, then the postures of each key [deg].
 
     Raises:
         ValueError: if the table is not for a robot with these legs.
@@ -82,43 +82,43 @@ def locomotion_cells(table: LocomotionTable, legs: Sequence[str]) -> list[list[s
 
 
 def leg_labels(legs: int) -> tuple[str, ...]:
-    """Labels of a robot's legs, clockwise from the right front, where no robot file gives them."""
+    """Return a robot's leg labels, clockwise from the right front, if no robot file gives them."""
     return LEG_LABELS.get(legs) or tuple(map(str, range(legs)))
 
 
 def degrees_of(angle_rad: float) -> float:
-    """The number of degrees with the fewest digits that reads back as exactly this angle.
+    """Return the shortest number of degrees that reads back as exactly this angle.
 
-    An angle that came from a file always has one. For any other the nearest is taken.
+    An angle that came from a file always has one. For other angles, return the nearest number.
     """
     near = math.degrees(angle_rad)
     for digits in range(1, 16):
         value = float(f"{near:.{digits}g}")
         if angle_of(value) == angle_rad:
             return value + 0.0  # never "-0"
-    # The way to radians and back rounds a few times, so the number may lie just beside.
+    # Converting to radians and back rounds several times, so the number may lie just beside.
     beside = (near + steps * math.ulp(near) for steps in (0, 1, -1, 2, -2, 3, -3))
     same = [value for value in beside if angle_of(value) == angle_rad]
     return min(same, key=lambda value: len(number_text(value)), default=near)
 
 
 def number_text(value: float) -> str:
-    """A number as short as it can be without loss: "45", "-22.5"."""
+    """Write a number as short as possible without loss: "45", "-22.5"."""
     return repr(float(value)).removesuffix(".0")
 
 
 def narrow(text: str) -> str:
-    """Full-width characters, and the minus sign that is no hyphen, as their ASCII forms."""
+    """Replace full-width characters, and the minus sign U+2212, by their ASCII forms."""
     return text.translate(_NARROW)
 
 
 def number_of(cell: str) -> float | None:
-    """The number in a cell, with a decimal point or a decimal comma; None if it is no number."""
+    """Read the number in a cell, with a decimal point or comma; None if it is not a number."""
     return float(cell.replace(",", ".")) if _NUMBER.fullmatch(cell) else None
 
 
 def shown(cell: str) -> Phrase | str:
-    """Quote a cell for a mistake: short, and safe to print."""
+    """Quote a cell for an error message: short, and safe to print."""
     if not cell:
         return say("gait.nothing")
     return quoted(cell)
@@ -131,8 +131,8 @@ def quoted(cell: str) -> str:
 
 
 def angle_of(value_deg: float) -> float:
-    """An angle [rad] from a number of degrees."""
-    return math.radians(value_deg) + 0.0  # makes -0.0 the same zero
+    """Convert degrees to an angle [rad]."""
+    return math.radians(value_deg) + 0.0  # turns -0.0 into 0.0
 
 
 def _require_fit(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> None:

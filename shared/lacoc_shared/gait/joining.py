@@ -1,4 +1,4 @@
-"""Makes level B of level A: the sequences of a locomotion table from the postures of another."""
+"""Make level B from level A: join postures to the sequences of a locomotion table."""
 
 from collections.abc import Sequence
 
@@ -13,8 +13,8 @@ def join_postures(table: PostureTable, name: str, keys: Sequence[Sequence[int]])
 
     Args:
         table: the postures.
-        name: of their file, for the messages.
-        keys: for each digit key from 0 on, the postures it runs through, by their digits.
+        name: name of their file, for error messages.
+        keys: for each digit key from 0 on, the digits of the postures of its sequence.
 
     Raises:
         UserError: if there are too many, a key has no posture, or a posture is not in the file.
@@ -49,6 +49,6 @@ def join_postures(table: PostureTable, name: str, keys: Sequence[Sequence[int]])
 
 
 def sample_sequences(table: PostureTable) -> LocomotionTable | None:
-    """Join postures as the sample's keys do; None if one of their postures is not there."""
+    """Join postures as the sample's keys do; None if a posture that they need is missing."""
     used = {posture for sequence in SAMPLE_KEYS for posture in sequence}
     return to_locomotion(table, SAMPLE_KEYS) if used <= table.postures.keys() else None

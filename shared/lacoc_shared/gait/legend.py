@@ -1,4 +1,4 @@
-"""The rows that explain Loco-data: where they begin, and whether they fit (Fig. 4-1)."""
+"""The legend rows of Loco-data: find them, and compare them with the columns (Fig. 4-1)."""
 
 import re
 from collections.abc import Sequence
@@ -8,17 +8,17 @@ from lacoc_shared.gait.tables import LEVEL_NAMES, leg_and_level
 from lacoc_shared.words import Phrase, say
 
 KEY = re.compile(r"(\d)\s*key", re.IGNORECASE | re.ASCII)
-"""The label of a posture's row."""
+"""Matches the label of a posture's row."""
 
 _IDS_LABEL = "id of joint"
 _LABELS = (_IDS_LABEL, "position")
 
 
 def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
-    """Part the rows of Loco-data: postures, the legend, and what else stands below it.
+    """Split the rows of Loco-data into postures, legend, and the rows below it.
 
-    Below the last row with a key the legend begins at the first row that can be one. What
-    follows it is never a posture: a remark, or the empty rows of a sheet.
+    The legend begins at the first row below the last key that can be a legend row. A row
+    after it is never a posture: it is a remark, or an empty row of a sheet.
     """
     keys = [index for index, row in enumerate(rows) if KEY.fullmatch(row.cells[0])]
     table_end = keys[-1] + 1 if keys else 0
@@ -35,9 +35,9 @@ def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
 
 
 def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
-    """Say which label of a legend stands over another joint's column.
+    """Find a label in a legend row that does not fit its column.
 
-    The columns count, whatever the legend says.
+    The order of the columns counts, not the legend.
 
     Args:
         file: the file's name.
@@ -45,7 +45,7 @@ def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
         labels: labels of the robot's legs, in order.
 
     Returns:
-        The first such place and label: exchanged labels come in dozens. None if there is none.
+        The first such place and label, because one mix-up gives dozens. None if all fit.
     """
     known = {_plain(label): label for label in labels}
     levels = {_plain(name): name for name in LEVEL_NAMES}
@@ -75,12 +75,12 @@ def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
 
 
 def without_zeros(cells: Sequence[str]) -> list[str]:
-    """Take away what a sheet shows where it mirrors an empty cell: 0."""
+    """Remove the zeros that a sheet shows where a formula refers to an empty cell."""
     return trimmed(["" if number_of(cell) == 0 else cell for cell in cells])
 
 
 def trimmed(cells: Sequence[str]) -> list[str]:
-    """Take away the spaces around cells, and the empty cells at a row's end."""
+    """Remove the spaces around cells, and the empty cells at the end of a row."""
     kept = [cell.strip() for cell in cells]
     while kept and not kept[-1]:
         kept.pop()
@@ -88,9 +88,9 @@ def trimmed(cells: Sequence[str]) -> list[str]:
 
 
 def _is_legend(cells: Sequence[str]) -> bool:
-    """Say whether a row explains the table: words without angles, or the joint ids (Fig. 4-1).
+    """Say whether a row belongs to the legend: words without angles, or the joint ids (Fig. 4-1).
 
-    The labels may be in another language, but a row that could be a posture is never a legend.
+    The labels may be in any language, but a row that could be a posture never counts as legend.
     """
     label, *others = cells
     if label.casefold() in _LABELS:
@@ -102,5 +102,5 @@ def _is_legend(cells: Sequence[str]) -> bool:
 
 
 def _plain(label: str) -> str:
-    """Leave out what people write differently: "R,F", "R.F" and "rf" are one leg."""
+    """Normalise a label: people write "R,F", "R.F" and "rf" for the same leg."""
     return "".join(filter(str.isalnum, label)).casefold()

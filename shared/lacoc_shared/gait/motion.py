@@ -1,18 +1,18 @@
-"""How commanded angles move from one posture to another (docs/rules.md 2)."""
+"""Motion of commanded angles from one posture to another (docs/rules.md 2)."""
 
 from lacoc_shared.gait.tables import Posture
 
 _ROUNDING = 1 + 1e-9
-"""24 degrees at 2.4 degrees a tick are 10 ticks, though their sum in binary may miss by a bit."""
+"""24 degrees at 2.4 degrees a tick are 10 ticks, though the binary sum may be off by a bit."""
 
 
 def toward(angles: Posture, target: Posture, step_rad: float) -> Posture:
-    """Move every angle by at most a step; the target itself when all have arrived.
+    """Move every angle by at most one step; return the target itself once all have arrived.
 
     Args:
         angles: (joints,) commanded angles [rad].
-        target: (joints,) where they go [rad].
-        step_rad: how far an angle goes in one tick.
+        target: (joints,) angles to reach [rad].
+        step_rad: largest change of an angle in one tick [rad].
     """
     if angles == target:
         return target

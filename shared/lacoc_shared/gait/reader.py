@@ -1,4 +1,4 @@
-"""Reading the cells of a gait file, with every mistake that is in them (rules 2)."""
+"""Read the cells of a gait file, and list every mistake in them (rules 2)."""
 
 import re
 from collections import Counter
@@ -31,11 +31,11 @@ from lacoc_shared.words import Phrase, say
 Legs = Sequence[str] | int | None
 """The robot's legs: their labels, their number, or None for any robot."""
 Range = float | Sequence[tuple[float, float]]
-"""Range of the angles [deg]: the same bound both ways for every joint, or (lowest, highest) of
-each joint id."""
+"""Range of the angles [deg]: one bound for both directions of every joint, or (lowest, highest)
+for each joint id."""
 
 MAX_MISTAKES = 1000
-"""Reading ends there: a file of garbage has thousands, and a court reads files within a beat."""
+"""Reading stops here: a garbage file has thousands, and a court reads files within a beat."""
 
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
 
@@ -52,15 +52,15 @@ def read_cells(
     headers: Phrase = ANY_HEADER,
     notes: list[Phrase] | None = None,
 ) -> PostureTable | LocomotionTable:
-    """Read a gait; which kind it is shows in the first row.
+    """Read a gait; its first row shows which kind it is.
 
     Args:
-        rows: the rows in order; blank ones and empty cells at a row's end are skipped.
-        file: the file's name, for the mistakes.
-        legs: the legs of the robot it must fit; None takes any robot of 4, 6 or 8 legs.
+        rows: the rows in order; blank rows, and empty cells at the end of a row, are skipped.
+        file: the file's name, for error messages.
+        legs: the legs of the robot that it must fit; None takes any robot with 4, 6 or 8 legs.
         range_deg: the range of the angles.
-        headers: what is expected in the first row of a file that has neither header.
-        notes: takes what is no mistake, but may not be meant.
+        headers: the expected first row, for a message about a file that has neither header.
+        notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
     Raises:
         FileRefused: with every mistake, or the first `MAX_MISTAKES`.
@@ -73,7 +73,7 @@ def read_cells(
 
 
 class _Reader:
-    """One reading of one file; collects its mistakes."""
+    """Reads one file and collects its mistakes."""
 
     def __init__(self, file: str, legs: Legs, range_deg: Range, headers: Phrase) -> None:
         self._file = file
@@ -137,7 +137,7 @@ class _Reader:
         )
 
     def _postures(self, rows: list[Row]) -> PostureTable:
-        """Loco-data: the number of postures, a row for each, and legend rows or none."""
+        """Read Loco-data: the number of postures, a row for each, and perhaps legend rows."""
         body = list(rows)
         announced = None
         if _POSTURES_HEADER.fullmatch(rows[0].cells[0]):
@@ -150,7 +150,7 @@ class _Reader:
         body, legend, below = find_legend(body)
         filled = [row for row in body if without_zeros(row.cells)]
         if announced == len(filled):
-            body = filled  # the others are empty rows of a sheet that was mirrored
+            body = filled  # the other rows are empty rows of a mirrored sheet
         if announced is not None and announced != len(body):
             self._add(
                 row=rows[0],
@@ -190,7 +190,7 @@ class _Reader:
         return PostureTable(postures)
 
     def _locomotion(self, rows: list[Row]) -> LocomotionTable:
-        """LocoTra-data: the number of keys; for each the number of postures, and a row for each."""
+        """Read LocoTra-data: the number of keys, then for each key a number and its postures."""
         header, *body = rows
         keys = self._count(header, 1, MAX_KEYS, say("gait.number-of-keys"))
         groups: list[tuple[Row | None, list[Row]]] = []
@@ -230,7 +230,7 @@ class _Reader:
         return LocomotionTable(tuple(sequences))
 
     def _count(self, row: Row, column: int, highest: int, what: Phrase) -> int | None:
-        """Take the whole number that ends a row, from 1 to `highest`; None after a mistake."""
+        """Read the whole number at the end of a row, from 1 to `highest`; None after a mistake."""
         cell = row.cells[column - 1] if len(row.cells) >= column else ""
         if without_zeros(row.cells[column:]):
             self._add(
@@ -247,7 +247,7 @@ class _Reader:
         return int(value)
 
     def _joints(self, rows: Sequence[Row], first: int) -> int:
-        """How many angles a row must have: as the robot needs, or else as the file mostly has."""
+        """Return the number of angles in a row: the robot's, else the most common in the file."""
         counts = Counter(len(row.cells) - first for row in rows)
         known = {legs * JOINTS_PER_LEG for legs in LEG_LABELS}
         usual = [joints for joints, _ in counts.most_common() if joints in known]
@@ -264,7 +264,7 @@ class _Reader:
         return usual[0]
 
     def _angles(self, row: Row, first: int, joints: int) -> Posture:
-        """The angles [rad] of a row from the cell with index `first` on; 0 in place of mistakes."""
+        """Read the angles [rad] of a row from the cell with index `first` on; mistakes become 0."""
         cells = row.cells[first:]
         legs = joints // JOINTS_PER_LEG
         angles = say("gait.angles-of-legs", count=joints, each=JOINTS_PER_LEG, legs=legs)
@@ -309,4 +309,4 @@ class _Reader:
             return -self._range_deg, self._range_deg
         if len(self._range_deg) == joints:
             return self._range_deg[joint]
-        return -RANGE_DEG, RANGE_DEG  # another robot's gait, which is a mistake already
+        return -RANGE_DEG, RANGE_DEG  # the gait of another robot; this mistake is already noted

@@ -1,4 +1,4 @@
-"""How a Loco-data workbook looks: its two sheets, their colours and their help (Fig. 4-1)."""
+"""The look of a Loco-data workbook: its two sheets, their colours and input help (Fig. 4-1)."""
 
 from collections.abc import Sequence
 
@@ -13,12 +13,12 @@ INPUT_SHEET = "EX (input)"
 MIRROR_SHEET = "Loco-data"
 
 _LEGEND_ROWS = 3
-_MIRRORED_ROWS = 1 + MAX_KEYS + _LEGEND_ROWS + 6  # a full table, and some blank rows in it
+_MIRRORED_ROWS = 1 + MAX_KEYS + _LEGEND_ROWS + 6  # a full table with some blank rows
 
 _LEVEL_COLOURS = (("#DEEAF6", "#9DC3E6"), ("#E5F2DC", "#A9D18E"), ("#FCECDF", "#F4B183"))
-"""For root, 1st and 2nd: behind the angles, and behind the legend."""
+"""Colours for root, 1st and 2nd: behind the angles, and behind the legend."""
 _LABEL_COLOUR, _EDGE_COLOUR, _WRONG_COLOUR = "#E7E6E6", "#BFBFBF", "#FF7C80"
-_MIRROR_COLOUR = "#595959"  # grey: not to be edited
+_MIRROR_COLOUR = "#595959"  # grey: not for editing
 
 
 def add_sheets(book: Workbook, cells: Sequence[Sequence[str | float]], legs: int) -> None:
@@ -29,7 +29,7 @@ def add_sheets(book: Workbook, cells: Sequence[Sequence[str | float]], legs: int
         cells: the cells of Fig. 4-1: a header row, the postures, three legend rows.
         legs: number of legs; each level has as many columns.
     """
-    book.formats[0].set_font_name("Arial")  # every system has it, or a twin of the same widths
+    book.formats[0].set_font_name("Arial")  # every system has it, or a font of the same widths
     book.formats[0].set_font_size(10)
     edited = book.add_worksheet(INPUT_SHEET)
     mirror = book.add_worksheet(MIRROR_SHEET)
@@ -72,7 +72,7 @@ def _write_edited(
 
 
 def _add_help(book: Workbook, sheet: Worksheet, last_posture: int, last_column: int) -> None:
-    """Say no to a wrong number as it is typed, and show one that was pasted."""
+    """Reject a wrong number as it is typed, and highlight one that was pasted."""
     limit = number_text(RANGE_DEG)
     angles = (1, 1, last_posture, last_column)
     sheet.data_validation(
@@ -120,8 +120,8 @@ def _write_mirror(
 ) -> None:
     label = book.add_format({"font_color": _MIRROR_COLOUR})
     centred = book.add_format({"font_color": _MIRROR_COLOUR, "align": "center"})
-    # The cell of the edited sheet is found by its place, so that inserting, deleting and moving
-    # rows there breaks nothing. An empty cell stays empty; a plain reference would show 0.
+    # The formula finds a cell by its position, so inserting, deleting and moving rows in the
+    # edited sheet breaks nothing. An empty cell stays empty; a plain reference would show 0.
     area = f"'{INPUT_SHEET}'!$A:${xl_col_to_name(columns - 1)}"
     cell = f"INDEX({area},ROW(),COLUMN())"
     for row in range(_MIRRORED_ROWS):
@@ -129,10 +129,10 @@ def _write_mirror(
         for column in range(columns):
             value = values[column] if column < len(values) else ""
             if isinstance(value, float) and value.is_integer():
-                value = int(value)  # the file says 45, as a spreadsheet program does, not 45.0
+                value = int(value)  # 45, as spreadsheet programs write it, not 45.0
             look = centred if column else label
             sheet.write_formula(row, column, f'=IF({cell}="","",{cell})', look, value)
-    sheet.protect()  # no password: only so that nobody edits the wrong sheet by mistake
+    sheet.protect()  # no password: it only prevents editing the wrong sheet by mistake
 
 
 def _format(book: Workbook, **look: object) -> Format:

@@ -1,8 +1,8 @@
-"""Gaits: what a digit key makes the legs do (workshop 3-2, rules 2 and 3).
+"""Gaits: the postures that each digit key commands (workshop 3-2, rules 2 and 3).
 
-Angles are radians here, in the order of the joint ids of rules 1: id = leg + legs *
+Angles are in radians, in the order of the joint ids of rules 1: id = leg + legs *
 level, with the legs clockwise from the right front and the levels root, 1st, 2nd.
-The files they come from are read by `text` and `workbook`.
+`text` and `workbook` read the files.
 """
 
 from enum import IntEnum
@@ -21,9 +21,9 @@ class Level(IntEnum):
     """The two levels of control (workshop 3-2)."""
 
     POSTURE = 0
-    """(A) a digit is one posture."""
+    """(A) A digit commands one posture."""
     LOCOMOTION = 1
-    """(B) a digit is a sequence of postures."""
+    """(B) A digit commands a sequence of postures."""
 
 
 class PostureTable(msgspec.Struct, frozen=True):
@@ -51,7 +51,7 @@ class LocomotionTable(msgspec.Struct, frozen=True):
 
 
 class Gait(msgspec.Struct, frozen=True):
-    """All that a seat's keys can do: either table, or both."""
+    """Everything that a seat's keys can do: one table or both."""
 
     postures: PostureTable | None = None
     locomotion: LocomotionTable | None = None
@@ -69,13 +69,13 @@ class Gait(msgspec.Struct, frozen=True):
         return counts.pop()
 
     def keys(self, level: Level) -> tuple[int, ...]:
-        """The digits that do something at a level, in ascending order."""
+        """Return the digits that do something at a level, in ascending order."""
         if level is Level.POSTURE:
             return tuple(sorted(self.postures.postures)) if self.postures else ()
         return tuple(range(len(self.locomotion.sequences))) if self.locomotion else ()
 
     def sequence(self, level: Level, digit: int) -> tuple[Posture, ...] | None:
-        """The postures of a key; one posture at level A; None where the file has no such key."""
+        """Return the postures of a key (one at level A); None if the file has no such key."""
         if level is Level.POSTURE:
             posture = self.postures.postures.get(digit) if self.postures else None
             return None if posture is None else (posture,)
@@ -93,7 +93,7 @@ def to_locomotion(table: PostureTable, keys: tuple[tuple[int, ...], ...]) -> Loc
 
     Args:
         table: the postures.
-        keys: for each digit from 0 on, the postures it takes, by their digits.
+        keys: for each digit from 0 on, the digits of the postures of its sequence.
 
     Raises:
         KeyError: if a digit is not in the table.

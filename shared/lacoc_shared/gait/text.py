@@ -1,4 +1,4 @@
-"""Loco-data.txt and LocoTra-data*.txt: gaits as text (workshop 4-1, 4-2, rules 2)."""
+"""Gaits as text: Loco-data.txt and LocoTra-data*.txt (workshop 4-1, 4-2, rules 2)."""
 
 import codecs
 import re
@@ -18,7 +18,7 @@ from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.words import Phrase, say
 
 MAX_BYTES = 32 * 1024
-_MAX_ROWS = 1200  # a gait has 1011, and lines of remarks
+_MAX_ROWS = 1200  # a gait has at most 1011, and there may be lines of remarks
 
 _BOMS = (
     (codecs.BOM_UTF8, "utf-8"),
@@ -26,9 +26,9 @@ _BOMS = (
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
 _PATH_BEGIN = b"time_s"
-"""How the header row of Pos-data.txt begins (rules 2)."""
+"""Beginning of the header row of Pos-data.txt (rules 2)."""
 _LINE_END = re.compile(r"\r\n|\r|\n")
-# A row without a tab: labels that hold spaces, quoted cells, and then what spaces part.
+# Cells of a row without tabs: labels with spaces, quoted cells, and words between spaces.
 _SPACED_CELL = re.compile(
     r"(?i:^\s*(?:num of postures?|id of joint|\d+ *key))(?!\S)|\"(?:[^\"]|\"\")*\"|\S+"
 )
@@ -42,20 +42,20 @@ def read_gait(
     range_deg: Range = RANGE_DEG,
     notes: list[Phrase] | None = None,
 ) -> PostureTable | LocomotionTable:
-    """Read Loco-data or LocoTra-data text; which of the two shows in its first cell.
+    """Read Loco-data or LocoTra-data text; the first cell shows which of the two it is.
 
     Args:
         data: the file, at most 32 KiB, in UTF-8, UTF-16 or Shift-JIS.
-        name: the file's name, for the mistakes.
+        name: the file's name, for error messages.
         legs: the robot that it must fit: the labels of its legs in order, or their
             number. None takes a gait for any robot with 4, 6 or 8 legs.
         range_deg: range of the angles: one bound for all, or (lowest, highest) of each joint.
-        notes: takes what is no mistake, but may not be meant.
+        notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
     Raises:
         FileRefused: with every mistake in the file; nothing is clamped or skipped.
     """
-    # First of all: it lies beside the gaits, and is soon longer than any of them.
+    # Checked first: Pos-data lies in the same folder, and soon exceeds the size limit of gaits.
     if data.startswith(_PATH_BEGIN):
         raise _refused(name, say("gait.path"), say("gait.gait"))
     lines = _LINE_END.split(narrow(_text(data, name)))
@@ -73,10 +73,10 @@ def read_gait(
 
 
 def write_gait(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> bytes:
-    """Write a table as Loco-data or LocoTra-data text: UTF-8, tabs, one line feed a row.
+    """Write a table as Loco-data or LocoTra-data text: UTF-8, tabs, one line feed per row.
 
     Args:
-        table: the gait; angles in radians, written in degrees as short as they are exact.
+        table: the gait; angles in radians, written as the shortest exact degrees.
         legs: labels of the robot's legs, for the legend of Loco-data.
 
     Raises:
@@ -95,7 +95,7 @@ def write_gait(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> by
 
 
 def _text(data: bytes, name: str) -> str:
-    """Decode a file: by its BOM, else UTF-16 by its NULs, else strict UTF-8, else cp932."""
+    """Decode a file: by its BOM, else UTF-16 if it has NULs, else strict UTF-8, else cp932."""
     if len(data) > MAX_BYTES:
         most_kib = say("gait.most-kib", most=MAX_BYTES // 1024)
         raise _refused(name, say("gait.bytes", count=len(data)), most_kib)
@@ -127,7 +127,7 @@ def _cells(line: str) -> list[str]:
 
 
 def _is_csv(lines: Iterable[str]) -> bool:
-    """Whether commas or semicolons part the cells: a decimal comma comes once a cell at most."""
+    """Say whether commas or semicolons separate cells: a cell has at most one decimal comma."""
     lines = list(lines)
     return not any("\t" in line for line in lines) and any(
         line.count(",") + line.count(";") > len(_cells(line)) for line in lines

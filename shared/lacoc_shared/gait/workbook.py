@@ -1,7 +1,7 @@
 """Loco-data.xlsx: postures in a workbook (workshop 4-1, Fig. 4-1, rules 2).
 
-The sheet "EX (input)" is edited. "Loco-data" shows the same cells by formulas; it is
-what a spreadsheet program can save as text. The software reads the edited sheet itself.
+People edit the sheet "EX (input)". "Loco-data" shows the same cells by formulas; a
+spreadsheet program can save it as text. LACOC reads the edited sheet itself.
 """
 
 import io
@@ -28,10 +28,10 @@ from lacoc_shared.words import Phrase, say
 
 MAX_BYTES = 1024 * 1024
 
-_MAX_UNPACKED_BYTES = 8 * MAX_BYTES  # a sheet of angles has a hundredth of that
+_MAX_UNPACKED_BYTES = 8 * MAX_BYTES  # a sheet of angles needs a hundredth of it
 _MAX_PARTS = 200  # files in the zip; a workbook has a dozen
-_MAX_ELEMENTS = 50_000  # XML elements in all of them; a table has two thousand
-_MAX_ROWS, _MAX_COLUMNS = 1000, 100  # what is looked at; a table has 14 rows, 25 columns
+_MAX_ELEMENTS = 50_000  # XML elements in all files together; a table has two thousand
+_MAX_ROWS, _MAX_COLUMNS = 1000, 100  # the rest is not read; a table has 14 rows, 25 columns
 _ZIP = b"PK\x03\x04"
 _COMPOUND_FILE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"  # .xls, or a workbook with a password
 _OTHERS = {
@@ -40,7 +40,7 @@ _OTHERS = {
     "ppt/presentation.xml": say("gait.presentation"),
     "xl/workbook.bin": say("gait.binary-workbook"),
 }
-"""The part by which another kind of document is known -> what that is."""
+"""A file in the zip that identifies another kind of document -> the name of that kind."""
 _WANTED = say("gait.workbook")
 
 
@@ -51,13 +51,13 @@ def read_gait_file(
     range_deg: Range = RANGE_DEG,
     notes: list[Phrase] | None = None,
 ) -> PostureTable | LocomotionTable:
-    """Read any gait file: text or workbook, told apart by what is in it, not by its name.
+    """Read any gait file, text or workbook; its content shows which, not its name.
 
     Args:
         path: the file.
         legs: the robot that it must fit; see `text.read_gait`.
         range_deg: range of the angles; see `text.read_gait`.
-        notes: takes what is no mistake, but may not be meant.
+        notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
     Raises:
         FileRefused: with every mistake in the file.
@@ -85,22 +85,22 @@ def read_workbook(
     """Read a Loco-data workbook: the values of its sheet "EX (input)".
 
     Args:
-        data: the .xlsx file, at most 1 MiB. "Loco-data" is read where it is the only sheet.
-        name: the file's name, for the mistakes.
+        data: the .xlsx file, at most 1 MiB. If "Loco-data" is the only sheet, it is read.
+        name: the file's name, for error messages.
         legs: the robot that it must fit; see `text.read_gait`.
         range_deg: range of the angles; see `text.read_gait`.
-        notes: takes what is no mistake, but may not be meant.
+        notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
     Raises:
         FileRefused: with every mistake in the file; each names its cell.
     """
     _require_harmless(data, name)
     try:
-        with warnings.catch_warnings(action="ignore"):  # about styles that nobody asked for
+        with warnings.catch_warnings(action="ignore"):  # openpyxl warns about unknown styles
             sheet, rows = _sheet(data, name)
     except FileRefused:
         raise
-    except Exception:  # openpyxl meets a broken workbook with any error at all
+    except Exception:  # on a broken workbook openpyxl may raise any exception
         raise _refused(name, say("gait.unreadable-workbook"), _WANTED) from None
     try:
         table = read_cells(
@@ -114,7 +114,7 @@ def read_workbook(
 
 
 def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
-    """Write a Loco-data workbook, ready to edit; numbers keep the 15 digits of spreadsheets.
+    """Write a Loco-data workbook, ready to edit; spreadsheets keep 15 digits of a number.
 
     Args:
         table: the postures.
@@ -126,17 +126,17 @@ def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
     cells = posture_cells(table, legs)
     stream = io.BytesIO()
     with xlsxwriter.Workbook(stream, {"in_memory": True}) as book:
-        # A fixed date: the same table is the same file.
+        # The date is fixed, so that the same table always gives the same file.
         book.set_properties({"title": "Loco-data", "created": datetime(2020, 1, 1, tzinfo=UTC)})
         add_sheets(book, cells, len(legs))
     return stream.getvalue()
 
 
 def _require_harmless(data: bytes, name: str) -> None:
-    """Look at the zip's list before anything is unpacked, and at the XML before openpyxl does.
+    """Check the zip's list before anything is unpacked, and the XML before openpyxl reads it.
 
     Raises:
-        FileRefused: if it is no zip, has a password, or would fill the memory or take long.
+        FileRefused: if it is not a zip, has a password, or needs too much memory or time.
     """
     if len(data) > MAX_BYTES:
         found = say("gait.more-bytes", most=MAX_BYTES)
@@ -165,12 +165,12 @@ def _require_harmless(data: bytes, name: str) -> None:
         raise
     except _TooMuchXmlError as error:
         raise _refused(name, error.found, say("gait.table")) from None
-    except Exception:  # a damaged list of contents raises more than BadZipFile
+    except Exception:  # for a damaged list of contents zipfile raises more than BadZipFile
         raise _refused(name, say("gait.damaged"), _WANTED) from None
 
 
 class _TooMuchXmlError(Exception):
-    """XML that no spreadsheet program writes."""
+    """The XML is larger than any that a spreadsheet program writes; `found` says why."""
 
     def __init__(self, found: Phrase) -> None:
         super().__init__()
@@ -178,16 +178,16 @@ class _TooMuchXmlError(Exception):
 
 
 class _ElementCounter:
-    """Counts the XML elements of a workbook: openpyxl makes objects of each."""
+    """Counts the XML elements of a workbook, because openpyxl makes objects for each."""
 
     def __init__(self) -> None:
         self._left = _MAX_ELEMENTS
 
     def look_at(self, part: bytes) -> None:
-        """Go through a part of the workbook; one that is no XML is had up to where it stops.
+        """Count the elements of one file; a file that is not valid XML is read up to the error.
 
         Raises:
-            _TooMuchXmlError: if there is too much, or a definition of entities.
+            _TooMuchXmlError: if there are too many elements, or entities are defined.
         """
         parser = expat.ParserCreate()
         parser.StartElementHandler = self._element
@@ -207,7 +207,7 @@ class _ElementCounter:
 
 
 def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
-    """The name and the rows of the sheet to read."""
+    """Return the name and the rows of the sheet to read."""
     books = [
         openpyxl.load_workbook(
             io.BytesIO(data), read_only=True, data_only=data_only, keep_links=False
@@ -224,7 +224,7 @@ def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
         for book in books
     )
     rows = [list(zip(*pair, strict=True)) for pair in zip(values, formulas, strict=True)]
-    # Programs keep the values of all formulas or of none. An empty value looks like none.
+    # Programs store the values of all formulas or of none. An empty value looks like a missing one.
     calculated = any(
         value is not None and str(formula).startswith("=") for row in rows for value, formula in row
     )
@@ -235,7 +235,7 @@ def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
 
 
 def _text(value: object, formula: object) -> str:
-    """A cell as a text file would have it; `formula` is told where no value was kept."""
+    """Return a cell as a text file would have it; the formula if no value was stored."""
     match value:
         case None:
             return "" if formula is None else f"uncalculated {formula}"

@@ -1,7 +1,7 @@
-"""Who may say what to a court: Zenoh's access rules, made from the court's users.
+"""Zenoh's access rules for a court, made from the court's users.
 
-Zenoh tells a court nothing trustworthy about a sender. These rules are its own proof:
-what a user may not send never reaches the court, nor anybody else.
+Zenoh gives a court no trustworthy information about a sender, so the rules do the check:
+a message that a user may not send reaches neither the court nor anybody else.
 """
 
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ Rules = dict[str, dict[str, Any]]
 
 
 class Credentials(NamedTuple):
-    """What proves a client to a court's network, and the court to the client."""
+    """A client's name and password for a court's network, and a certificate to check the court."""
 
     user: str
     password: str
@@ -23,17 +23,17 @@ class Credentials(NamedTuple):
     """Certificate of the contest's authority (PEM)."""
 
     def __repr__(self) -> str:
-        return f"Credentials(user={self.user!r})"  # what is printed by accident has no secret
+        return f"Credentials(user={self.user!r})"  # an accidental print must not show the password
 
 
 class Protection(NamedTuple):
-    """What a court with keys proves itself with, and whom it lets in."""
+    """Certificate and users of a court with keys."""
 
     court: str
     certificate: Path
     private_key: Path
     passwords: Mapping[str, str]
-    """By user."""
+    """Passwords by user."""
     seats: Mapping[str, str]
     """The user of each seat, by the seat's name."""
     referee: str
@@ -41,12 +41,12 @@ class Protection(NamedTuple):
 
 
 def access_control(protection: Protection | None) -> dict[str, Any]:
-    """Zenoh's access control for a court: all that is not allowed is denied.
+    """Make Zenoh's access control for a court; everything that is not allowed is denied.
 
-    Nobody but the court sends frames, events, sheets or health, or answers requests.
+    Only the court sends frames, events, sheets and health, and answers requests.
 
     Args:
-        protection: whose rules; None: anybody may act, and tokens and seals alone tell who is who.
+        protection: the court's users; None: anybody may act; tokens and seals alone identify them.
     """
     if protection is None:
         anyone = _acting(["lacoc/*/seat/*/key"], ["lacoc/*/seat/*/*", "lacoc/*/referee/*"])
@@ -101,7 +101,7 @@ def _watching() -> Rules:
 
 
 def _actors(protection: Protection) -> dict[str, Rules]:
-    """What users may do beyond watching: a seat's steers it, the referee's decides."""
+    """Make the rules beyond watching: a seat's user steers it, the referee's user decides."""
     keys = Keys(protection.court)
     seats = {
         user: _acting(

@@ -1,7 +1,7 @@
-"""Addresses of courts: read as people write them, and explained when they don't work.
+"""Addresses of courts: parse them, and explain why a connection failed.
 
-Zenoh has one sentence for every failed connection. Here the reason is found again
-with a plain socket, after the failure, and said in words that help (docs/facts.md 4).
+Zenoh reports every failed connection with the same sentence. After a failure this module
+finds the reason with a plain socket, and says what to do (docs/facts.md 4).
 """
 
 import errno
@@ -17,7 +17,7 @@ from lacoc_shared.words import Phrase, say
 DEFAULT_PORT = 7447
 
 ANY_HOST = ("0.0.0.0", "::")
-"""Every address of this machine: to listen at, not to call."""
+"""Hosts that stand for every address of this machine: for listening, not for connecting."""
 
 _PROTOCOLS = ("tcp", "tls")
 _ADDRESS = re.compile(
@@ -32,11 +32,11 @@ def endpoint(text: str, protocol: str = "tcp") -> str:
     """Complete an address: "192.168.1.5" becomes "tcp/192.168.1.5:7447".
 
     Args:
-        text: what a person wrote.
+        text: the address as a person wrote it.
         protocol: "tls" for a court with keys.
 
     Raises:
-        UserError: if it is no address.
+        UserError: if it is not an address.
     """
     match = _ADDRESS.fullmatch(text.strip())
     protocol = match["protocol"] or protocol if match else ""
@@ -47,27 +47,27 @@ def endpoint(text: str, protocol: str = "tcp") -> str:
 
 
 def host(one: str) -> str:
-    """The host of a complete address."""
+    """Return the host of a complete address."""
     return _split(one)[0]
 
 
 def collisions(these: Sequence[str], others: Sequence[str]) -> list[str]:
-    """Which of these complete addresses a machine can't listen at beside the others."""
+    """Return those complete addresses on which a machine can't listen besides the others."""
     return [one for one in these if any(_collide(_split(one), _split(other)) for other in others)]
 
 
 def free_beside(one: str, taken: Sequence[str]) -> str:
-    """A complete address as this one, with the first port that none of those taken has."""
+    """Return the same complete address with the first port that no taken address has."""
     ports = {_split(other)[1] for other in taken}
     free = next(port for port in itertools.count(DEFAULT_PORT) if port not in ports)
     return f"{one.rpartition(':')[0]}:{free}"
 
 
 def check_protocols(endpoints: Sequence[str], *, keys: bool) -> None:
-    """See that complete addresses are encrypted where there are keys, and plain elsewhere.
+    """Check that complete addresses are encrypted if there are keys, and plain if not.
 
     Raises:
-        UserError: if one is not.
+        UserError: if one is wrong.
     """
     for one in endpoints:
         protocol, _, place = one.partition("/")
@@ -78,7 +78,7 @@ def check_protocols(endpoints: Sequence[str], *, keys: bool) -> None:
 
 
 def why_not_known(endpoints: Sequence[str]) -> Phrase | None:
-    """Look up the names in complete addresses; say so if no address has a name that is known."""
+    """Say which name is unknown, if every complete address has an unknown name; else None."""
     unknown = [host for host, port in map(_split, endpoints) if not _resolves(host, port)]
     if unknown and len(unknown) == len(endpoints):
         return say("connect.name-unknown", name=unknown[0])
@@ -86,11 +86,11 @@ def why_not_known(endpoints: Sequence[str]) -> Phrase | None:
 
 
 def why_not_connected(endpoints: Sequence[str], ca: str = "") -> Phrase:
-    """Say why none of these addresses could be connected, one sentence each.
+    """Say why none of these addresses could be connected, one sentence for each.
 
     Args:
         endpoints: complete addresses.
-        ca: certificate of the authority that vouches for the court (PEM); "" without keys.
+        ca: certificate of the authority that signs the court's (PEM); "" without keys.
     """
     reasons = [_why_not_connected(one, ca) for one in endpoints]
     return reasons[0] if len(reasons) == 1 else say("plain.sentences", sentences=reasons)
@@ -101,7 +101,7 @@ def why_not_listening(endpoints: Sequence[str], error: Exception) -> Phrase:
 
     Args:
         endpoints: complete addresses.
-        error: the failure, for the case that a plain socket can listen on all of them.
+        error: the failure; used if a plain socket can listen on all of them.
     """
     for one in endpoints:
         if (why := _why_not_listening(one)) is not None:
@@ -141,11 +141,11 @@ def _why_not_connected(one: str, ca: str) -> Phrase:
 
 
 def _why_not_let_in(one: str, probe: socket.socket, ca: str) -> Phrase:
-    """Say why a court that answers did not take a client in.
+    """Say why a court that answers did not let a client in.
 
     Args:
-        one: its complete address.
-        probe: a plain connection to it.
+        one: the court's complete address.
+        probe: a plain connection to the court.
         ca: as in `why_not_connected`.
     """
     host = _split(one)[0]
@@ -158,13 +158,13 @@ def _why_not_let_in(one: str, probe: socket.socket, ca: str) -> Phrase:
             pass
     except ssl.SSLCertVerificationError as error:
         return _why_not_trusted(one, host, error)
-    except OSError:  # it speaks no TLS
+    except OSError:  # the other end has no TLS
         return say("connect.no-keys", at=one) if ca else say("connect.not-let-in", at=one)
     return say("connect.token", at=one) if ca else say("connect.needs-keys", at=one)
 
 
 def _why_not_trusted(one: str, host: str, error: ssl.SSLCertVerificationError) -> Phrase:
-    match error.verify_code:  # OpenSSL's X509_V_ERR_..., which Python has no names for
+    match error.verify_code:  # OpenSSL's X509_V_ERR_... codes; Python has no names for them
         case 9:
             return say("connect.not-valid-yet", at=one)
         case 10:
@@ -175,7 +175,7 @@ def _why_not_trusted(one: str, host: str, error: ssl.SSLCertVerificationError) -
 
 
 def _trusting_all() -> ssl.SSLContext:
-    """For a look whether there are keys at all."""
+    """Make a context that trusts everybody, only to find out whether the court has keys."""
     context = ssl.create_default_context()
     context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
     return context

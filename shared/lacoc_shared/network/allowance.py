@@ -1,4 +1,4 @@
-"""How much of something may pass: a flood never costs more than a fixed amount."""
+"""A rate limit: a flood of messages never costs more than a fixed amount."""
 
 
 class Allowance:
@@ -11,14 +11,14 @@ class Allowance:
         self._last_s = 0.0
 
     def left(self, now_s: float) -> int:
-        """How many may pass now."""
+        """Return how many may pass now."""
         grown = max(0.0, now_s - self._last_s) * self._rate_hz
         self._left = min(self._burst, self._left + grown)
         self._last_s = now_s
         return int(self._left)
 
     def take(self, wanted: int, now_s: float) -> int:
-        """Let as many of those wanted pass as may; how many."""
+        """Let as many of the wanted ones pass as allowed; return how many passed."""
         allowed = min(wanted, self.left(now_s))
         self._left -= allowed
         return allowed

@@ -1,8 +1,8 @@
-"""Zenoh's configuration for courts and for everyone else, each entry with its reason.
+"""Zenoh's configuration for courts and for everyone else, with a reason for each entry.
 
-Six of Zenoh's defaults are dangerous for a public court: a memory limit of 351
-clients, unlimited messages, blocking sends, peers that go round the access rules.
-This is the one place where they are set right.
+Six of Zenoh's defaults are dangerous for a public court, such as a memory limit of 351
+clients, unlimited messages, blocking sends, or peers that bypass the access rules. Only this
+module changes them.
 """
 
 import base64
@@ -19,32 +19,32 @@ RUNTIME_POOLS = (
     "(rx:(worker_threads:16),acc:(worker_threads:8),net:(worker_threads:8),"
     "tx:(worker_threads:1),app:(worker_threads:4))"
 )
-"""Value of ZENOH_RUNTIME for a court: with the default pools three clients that vanish silently
-hold up everybody's commands for ten seconds."""
+"""Value of ZENOH_RUNTIME for a court. With the default pools, three clients that vanish silently
+delay everybody's commands for ten seconds."""
 
 MAX_SESSIONS = 1100
-"""Of a court: 1,000 who watch it directly, which it can serve (docs/reliability.md), and room for
-seats, referees and gateways. More pages go through gateways, of which each is one session."""
+"""Most sessions of a court: 1,000 spectators, which it can serve (docs/reliability.md), and some
+for seats, referees and gateways. More pages need gateways; each gateway is one session."""
 
 _HEADERS_BYTES = 2048
-_CLIENT_MAX_BYTES = 1 << 20  # a scene is far above what a court needs to take in
+_CLIENT_MAX_BYTES = 1 << 20  # clients receive scenes, which are larger than what a court receives
 _LEASE_MS = 3000
 
 
 def court_config(
     listen: Sequence[str], protection: Protection | None = None, users: Path | None = None
 ) -> Config:
-    """The configuration of a court's own session.
+    """Make the configuration of a court's own session.
 
     Args:
         listen: complete addresses.
         protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
-        users: file of the users' passwords, which Zenoh reads when it opens.
+        users: file with the users' passwords, which Zenoh reads when the session opens.
     """
     return {
         **_common("router"),
         "listen": {"endpoints": list(listen)},
-        # Read by the court itself, to learn the port it got; the access rules deny it to others.
+        # The court reads this itself to learn its port; the access rules deny it to all others.
         "adminspace": {"enabled": True, "permissions": {"read": True, "write": False}},
         "access_control": access_control(protection),
         "low_pass_filter": [
@@ -57,7 +57,7 @@ def court_config(
         "transport": _transport(JOIN_MAX_BYTES + _HEADERS_BYTES, _court_tls(protection))
         | _court_users(users)
         | {
-            # Connections that never say anything must not keep others waiting.
+            # Connections that stay silent must not keep others waiting.
             "unicast": {
                 "max_sessions": MAX_SESSIONS,
                 "accept_pending": 1000,
@@ -70,19 +70,19 @@ def court_config(
 def client_config(
     connect: Sequence[str], timeout_s: float, credentials: Credentials | None = None
 ) -> Config:
-    """The configuration of everyone who is not a court.
+    """Make the configuration for everyone who is not a court.
 
     Args:
-        connect: complete addresses; the first that answers is taken.
-        timeout_s: how long the first connection may take; later ones are tried for ever.
-        credentials: for a court with keys.
+        connect: complete addresses; the first that answers is used.
+        timeout_s: time limit of the first connection; later ones are tried forever.
+        credentials: credentials for a court with keys; None for a court without.
     """
     return {
         **_common("client"),
         "connect": {
             "endpoints": list(connect),
             "timeout_ms": round(timeout_s * 1000),
-            # A court that comes back is found within half a second.
+            # A client finds a court that comes back within half a second.
             "retry": {"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 1.5},
         },
         "transport": _transport(_CLIENT_MAX_BYTES, _client_tls(credentials))
@@ -92,8 +92,8 @@ def client_config(
 
 def _common(mode: str) -> Config:
     return {
-        "mode": mode,  # a peer would not be brokered, or would go round the access rules
-        # Nobody is searched for, so there is nothing to wait half a second for either.
+        "mode": mode,  # a peer would not be brokered, or would bypass the access rules
+        # Nobody is searched for, so the delay of half a second for the search is not needed.
         "scouting": {"delay": 0, "multicast": {"enabled": False}, "gossip": {"enabled": False}},
     }
 
@@ -124,13 +124,13 @@ def _client_user(credentials: Credentials | None) -> Config:
 
 def _transport(max_message_bytes: int, tls: Config) -> Config:
     return {
-        # Shared memory ends at 351 clients and leaves litter behind killed ones.
+        # Shared memory fails at 351 clients, and killed clients leave files behind.
         "shared_memory": {"enabled": False},
         "link": {
             "tx": {
                 "lease": _LEASE_MS,
                 "keep_alive": 4,
-                # Replies always block: 0.2 s for a client that does not read, then it is cut off.
+                # Replies always block: a client that does not read is disconnected after 0.2 s.
                 "queue": {"congestion_control": {"block": {"wait_before_close": 200_000}}},
             },
             "rx": {"max_message_size": max_message_bytes},

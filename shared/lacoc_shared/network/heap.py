@@ -1,7 +1,7 @@
-"""Memory that the C library keeps (glibc; others have one heap and no such calls).
+"""Limits for the memory that glibc keeps (other C libraries have no such calls).
 
-It gives each of Zenoh's many threads a heap of its own, and each heap keeps the most that it
-ever held: without this a court whose visitors come and go grows for hours.
+glibc gives each of Zenoh's many threads its own heap, and each heap keeps its largest size
+ever. Without these limits a court grows for hours as visitors come and go.
 """
 
 import ctypes
@@ -11,18 +11,18 @@ from contextlib import suppress
 _M_MMAP_THRESHOLD, _M_ARENA_MAX = -3, -8  # in malloc.h
 _HEAPS = 2
 _BLOCK_BYTES = 1 << 20
-"""A larger block, such as a world of MuJoCo, is never part of a heap and goes back when it is free.
-Else the bound rises to the largest that was ever freed, and its place fills with small things."""
+"""Blocks above this size, such as a MuJoCo model, are allocated outside the heaps and returned when
+freed. By default the limit rises with each freed block, and small blocks then fill its place."""
 
 
 def share() -> None:
-    """Let the threads that will be started share few heaps."""
+    """Let the threads that start later share a few heaps."""
     _call("mallopt", _M_ARENA_MAX, _HEAPS)
     _call("mallopt", _M_MMAP_THRESHOLD, _BLOCK_BYTES)
 
 
 def give_back() -> None:
-    """Give what is free back to the system; takes some milliseconds."""
+    """Return free memory to the system; takes a few milliseconds."""
     _call("malloc_trim", 0)
 
 

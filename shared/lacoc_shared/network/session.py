@@ -1,9 +1,9 @@
-"""The one door to Zenoh: courts and clients talk in bytes here, with typed errors.
+"""The only access to Zenoh: courts and clients exchange bytes here, with typed errors.
 
-A court polls: its subscribers and queryables are rings that are emptied once a beat,
-so no thread but the court's own ever runs its code and the order is its own. A client
-may wait: its mailboxes are filled by Zenoh's receiving thread. Nothing else in the
-project imports zenoh.
+A court polls: its subscribers and queryables are ring buffers that it empties once a
+beat. So only the court's own thread runs its code, and the court decides the order. A
+client may wait: Zenoh's receiving thread fills its mailboxes. No other module imports
+zenoh.
 """
 
 import atexit
@@ -27,7 +27,7 @@ from lacoc_shared.network import config as network_config
 from lacoc_shared.network.access_rules import Credentials, Protection
 
 _OTHER_FILES = 200
-"""That a court's process opens besides one for each session: records, modules, Zenoh's own."""
+"""Files that a court's process opens besides one for each session: records, modules, Zenoh's."""
 
 
 class NotConnected(UserError):
@@ -35,15 +35,15 @@ class NotConnected(UserError):
 
 
 class NoReply(Exception):
-    """Nobody answered: no such court, not allowed to ask, or too late."""
+    """Nobody answered: there is no such court, asking is not allowed, or it took too long."""
 
 
 class TooLate(NoReply):
-    """Somebody was asked and did not answer in time: it may be done all the same."""
+    """The other end did not answer in time; it may still have done what was asked."""
 
 
 class Refused(Exception):
-    """The answer was an error; `payload` is what it says."""
+    """The answer was an error; `payload` holds its content."""
 
     def __init__(self, payload: bytes) -> None:
         super().__init__(f"refused with {len(payload)} bytes")
@@ -51,13 +51,13 @@ class Refused(Exception):
 
 
 class Publisher:
-    """Sends bytes under one key expression; a receiver too slow to take them misses some."""
+    """Sends bytes under one key expression; a receiver that is too slow misses some."""
 
     def __init__(self, publisher: zenoh.Publisher) -> None:
         self._publisher = publisher
 
     def put(self, payload: bytes) -> None:
-        """Send; never waits for a receiver."""
+        """Send a message; never waits for a receiver."""
         self._publisher.put(payload)
 
 
@@ -68,21 +68,21 @@ class Ring:
         self._subscriber = subscriber
 
     def take(self) -> bytes | None:
-        """The oldest message that waits, or None; never blocks."""
+        """Return the oldest message in the ring, or None; never blocks."""
         sample = self._subscriber.try_recv()
         return None if sample is None else sample.payload.to_bytes()
 
 
 class Mail(NamedTuple):
-    """A message and when it arrived on this machine."""
+    """A message and its time of arrival on this machine."""
 
     payload: bytes
     arrived_s: float
-    """`time.monotonic()`."""
+    """Time of arrival by `time.monotonic()`."""
 
 
 class Mailbox:
-    """The newest messages of a subscription, filled while its one reader does other things."""
+    """The newest messages of a subscription, stored while its only reader does other things."""
 
     def __init__(self, depth: int, notify: Callable[[], None] | None = None) -> None:
         self._mails: deque[Mail] = deque(maxlen=depth)
@@ -90,18 +90,18 @@ class Mailbox:
         self._notify = notify
 
     def deliver(self, sample: zenoh.Sample) -> None:
-        """Take a message in; runs on Zenoh's thread."""
+        """Store a message; runs on Zenoh's thread."""
         self._mails.append(Mail(sample.payload.to_bytes(), time.monotonic()))
         self._arrived.set()
         if self._notify is not None:
             self._notify()
 
     def take(self) -> Mail | None:
-        """The oldest message that waits, or None."""
+        """Return the oldest message in the mailbox, or None."""
         return self._mails.popleft() if self._mails else None
 
     def wait(self, timeout_s: float) -> bool:
-        """Wait until a message is there; False if none came in time."""
+        """Wait until there is a message; False if none came in time."""
         self._arrived.clear()
         return bool(self._mails) or self._arrived.wait(timeout_s)
 
@@ -114,7 +114,7 @@ class Question:
         self._replies = replies
 
     def take(self) -> bytes | None:
-        """The answer, or None while there is none; never blocks.
+        """Return the answer, or None if it has not come yet; never blocks.
 
         Raises:
             NoReply: see `Session.ask`.
@@ -122,12 +122,12 @@ class Question:
         """
         try:
             reply = self._replies.try_recv()
-        except zenoh.ZError:  # none will come
+        except zenoh.ZError:  # no answer will come
             raise NoReply(self._key) from None
         return None if reply is None else self._read(reply)
 
     def wait(self) -> bytes:
-        """Wait for the answer; raises as `take`."""
+        """Wait for the answer; raises the same errors as `take`."""
         for reply in self._replies:
             return self._read(reply)
         raise NoReply(self._key)
@@ -137,13 +137,13 @@ class Question:
             return reply.ok.payload.to_bytes()
         assert reply.err is not None
         error = reply.err.payload.to_bytes()
-        if error == b"Timeout":  # Zenoh's own word
+        if error == b"Timeout":  # the text that Zenoh sends
             raise TooLate(self._key)
         raise Refused(error)
 
 
 class Request:
-    """A request that waits for its answer; without one the asker sees `NoReply`."""
+    """A request that waits for its answer; if it gets none, the sender sees `NoReply`."""
 
     def __init__(self, query: zenoh.Query) -> None:
         self._query = query
@@ -152,7 +152,7 @@ class Request:
         self.payload = b"" if payload is None else payload.to_bytes()
 
     def reply(self, payload: bytes) -> None:
-        """Answer."""
+        """Answer the request."""
         with self._query as query:
             query.reply(self.key, payload)
 
@@ -163,16 +163,16 @@ class Request:
 
 
 class Desk:
-    """Where requests under one key expression wait, polled by its owner."""
+    """The waiting requests under one key expression, polled by their owner."""
 
     def __init__(self, queryable: "zenoh.Queryable[zenoh.Handler[zenoh.Query]]") -> None:
         self._queryable = queryable
 
     def take(self) -> Request | None:
-        """The oldest request that waits, or None; never blocks."""
+        """Return the oldest waiting request, or None; never blocks."""
         while (query := self._queryable.try_recv()) is not None:
             request = Request(query)
-            if "*" not in request.key:  # a request is for one seat, one decision
+            if "*" not in request.key:  # a request must name one seat or one decision
                 return request
         return None
 
@@ -183,10 +183,10 @@ class Session:
     def __init__(self, session: zenoh.Session, endpoints: Sequence[str]) -> None:
         self._session = session
         self.endpoints = tuple(endpoints)
-        """The complete addresses it was opened with."""
+        """The complete addresses that it was opened with."""
         self._announcements: list[zenoh.LivelinessToken] = []
-        # Zenoh's threads must be gone before the interpreter is: also when a program ends by an
-        # exception somewhere that no `with` surrounds.
+        # Zenoh's threads must end before the interpreter does, even if the program ends by an
+        # exception outside any `with`.
         atexit.register(self.close)
 
     def __enter__(self) -> Self:
@@ -196,13 +196,13 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Close the connection and all that was declared with it.
+        """Close the connection and everything that was declared on it.
 
-        Takes ten seconds where somebody's cable was pulled a moment ago.
+        This takes ten seconds if another machine's cable was pulled a moment ago.
         """
         atexit.unregister(self.close)
         if not self._session.is_closed():
-            with suppress(zenoh.ZError):  # it waits in vain to say goodbye on a dead link
+            with suppress(zenoh.ZError):  # on a dead link Zenoh's goodbye times out
                 self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str) -> Publisher:
@@ -210,16 +210,16 @@ class Session:
         return Publisher(self._session.declare_publisher(key))
 
     def ring(self, key: str, depth: int) -> Ring:
-        """Subscribe; the owner polls, and the newest `depth` messages wait for it."""
+        """Subscribe for polling; the newest `depth` messages are kept."""
         channel: RingChannel[zenoh.Sample] = RingChannel(depth)
         return Ring(self._session.declare_subscriber(key, channel))
 
     def mailbox(self, key: str, depth: int, notify: Callable[[], None] | None = None) -> Mailbox:
-        """Subscribe; the owner may wait, and the newest `depth` messages wait for it.
+        """Subscribe for waiting or polling; the newest `depth` messages are kept.
 
         Args:
             key: key expression.
-            depth: how many messages wait.
+            depth: number of messages to keep.
             notify: called on Zenoh's thread when a message has come; it must return at once.
         """
         mailbox = Mailbox(depth, notify)
@@ -227,7 +227,7 @@ class Session:
         return mailbox
 
     def desk(self, key: str, depth: int) -> Desk:
-        """Declare that this session answers requests; the newest `depth` wait to be polled."""
+        """Declare that this session answers requests; the newest `depth` are kept for polling."""
         channel: RingChannel[zenoh.Query] = RingChannel(depth)
         return Desk(self._session.declare_queryable(key, channel))
 
@@ -236,33 +236,33 @@ class Session:
 
         Raises:
             TooLate: if no answer came in time.
-            NoReply: if nobody was asked (or is allowed to answer), or the link broke.
+            NoReply: if there was nobody to ask (or nobody allowed to answer), or the link broke.
             Refused: if the answer is an error.
         """
         return self.question(key, payload, timeout_s).wait()
 
     def question(self, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> Question:
-        """Send a request; the asker looks for its answer, or waits, when it likes."""
+        """Send a request; the caller can poll for its answer or wait."""
         replies = self._session.get(
             key, payload=payload, timeout=timeout_s, consolidation=zenoh.ConsolidationMode.NONE
         )
         return Question(key, replies)
 
     def routers(self) -> tuple[str, ...]:
-        """Identities of the courts' sessions that this one is connected to now."""
+        """Return the identities of the courts' sessions that this session is connected to now."""
         return tuple(sorted(map(str, self._session.info.routers_zid())))
 
     def announce(self, key: str) -> None:
-        """Let others see that this session is alive, until it closes."""
+        """Show other sessions that this one is alive, until it closes."""
         self._announcements.append(self._session.liveliness().declare_token(key))
 
     def present(self, key: str, timeout_s: float = 1.0) -> tuple[str, ...]:
-        """Key expressions of all live announcements under a key expression, sorted."""
+        """Return the key expressions of all live announcements under a key expression, sorted."""
         replies = self._session.liveliness().get(key, timeout=timeout_s)
         return tuple(sorted(str(r.ok.key_expr) for r in replies if r.ok is not None))
 
     def locators(self) -> tuple[str, ...]:
-        """Addresses that a court's session listens on, with the ports it really got."""
+        """Return the addresses on which a court's session listens, with their actual ports."""
         zid = self._session.info.zid()
         found: list[str] = []
         for reply in self._session.get(f"@/{zid}/router"):
@@ -272,14 +272,14 @@ class Session:
 
 
 def open_court(listen: Sequence[str], protection: Protection | None = None) -> Session:
-    """Open a court's session: the router that everyone else connects to.
+    """Open a court's session: the router to which everyone else connects.
 
     Args:
         listen: addresses to listen on; port 0 takes a free one (see `Session.locators`).
         protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
 
     Raises:
-        UserError: if one of them can't be listened on; the message says why.
+        UserError: if it can't listen on one of them; the message says why.
     """
     os.environ.setdefault("ZENOH_RUNTIME", network_config.RUNTIME_POOLS)
     _allow_files(network_config.MAX_SESSIONS + _OTHER_FILES)
@@ -301,13 +301,13 @@ def open_client(
     It stays open when the court goes away, and connects again by itself.
 
     Args:
-        connect: addresses of a court; the first that answers is taken.
+        connect: addresses of a court; the first that answers is used.
         timeout_s: how long to try.
-        credentials: for a court with keys.
+        credentials: credentials for a court with keys; None for a court without.
 
     Raises:
         NotConnected: if there is no connection; the message says why.
-        UserError: if an address is none, or needs keys that are not there.
+        UserError: if an address is wrong, or needs keys that are missing.
     """
     endpoints = [address.endpoint(one, "tls" if credentials else "tcp") for one in connect]
     address.check_protocols(endpoints, keys=credentials is not None)
@@ -323,11 +323,11 @@ def open_client(
 
 @contextmanager
 def _user_file(protection: Protection | None) -> Iterator[Path | None]:
-    """The passwords as a file, for as long as Zenoh needs to read it."""
+    """Write the passwords to a file that exists only as long as Zenoh needs it."""
     if protection is None:
         yield None
         return
-    with tempfile.TemporaryDirectory(prefix="lacoc-") as folder:  # its owner's alone
+    with tempfile.TemporaryDirectory(prefix="lacoc-") as folder:  # readable only by its owner
         users = Path(folder, "users")
         lines = [f"{user}:{password}\n" for user, password in protection.passwords.items()]
         with open(users, "x", opener=lambda name, flags: os.open(name, flags, 0o600)) as file:
@@ -336,7 +336,7 @@ def _user_file(protection: Protection | None) -> Iterator[Path | None]:
 
 
 def _allow_files(count: int) -> None:
-    """Let this process open so many files, as far as it may: often the limit is 1024."""
+    """Let this process open this many files, or as many as allowed: often the limit is 1024."""
     try:
         import resource
     except ImportError:  # Windows has no such limit
@@ -348,7 +348,7 @@ def _allow_files(count: int) -> None:
 
 
 _WITHOUT_PASSWORDS = ",zenoh::api::session=info"
-"""At debug it writes down the whole configuration it was opened with."""
+"""Added to RUST_LOG: at debug, Zenoh logs its whole configuration, passwords too."""
 
 
 def _open(config: dict[str, Any]) -> zenoh.Session:
@@ -356,5 +356,5 @@ def _open(config: dict[str, Any]) -> zenoh.Session:
     words = os.environ.get("RUST_LOG", "")
     if words and not words.endswith(_WITHOUT_PASSWORDS):
         os.environ["RUST_LOG"] = words + _WITHOUT_PASSWORDS
-    zenoh.init_log_from_env_or("off")  # its words are for developers: RUST_LOG=warn shows them
+    zenoh.init_log_from_env_or("off")  # its log is for developers: RUST_LOG=warn shows it
     return zenoh.open(zenoh.Config.from_json5(json.dumps(config)))

@@ -99,17 +99,17 @@ def export(
 
 
 def _foxglove(record: Record) -> bytes:
-    from lacoc_shared.record.export.foxglove import foxglove  # 30 modules, for this alone
+    from lacoc_shared.record.export.foxglove import foxglove  # 30 modules, needed only here
 
     return foxglove(record)
 
 
 def _made(make: Callable[[Record], bytes], record: Record) -> bytes:
-    """Make a file of a record.
+    """Make a file from a record.
 
     Raises:
-        UserError: if it can't be made, also because the record's messages contradict each other:
-            it may come from anywhere.
+        UserError: if it can't be made, for example because messages of the record contradict
+            each other: the record may come from anywhere.
     """
     try:
         return make(record)
@@ -125,7 +125,7 @@ def _save(folder: Path, match_id: str, made: list[tuple[str, bytes]]) -> None:
         why = error.strerror or str(error)
         raise UserError(say("command.cannot-make-folder", folder=str(folder), why=why)) from None
     for name, data in made:
-        # The names of match and seats are the record's, and may be anything.
+        # The names of match and seats come from the record, and may be any text.
         path = folder / _NOT_IN_NAMES.sub("_", f"{match_id}-{name}")
         keep.save(path, data)
         screen.show(str(path))
@@ -159,7 +159,7 @@ def _summary(record: Record) -> dict[str, Any]:
 
 
 def _keys(record: Record, seat: int) -> dict[str, int]:
-    """How many keys of a seat came in, and what its link made of them."""
+    """Count a seat's keys, find the longest delay added to one, and count the late ones."""
     inputs = (item for items in record.inputs.values() for item in items)
     keys = [item for item in inputs if isinstance(item, KeySeat) and item.seat == seat]
     return {
@@ -170,7 +170,7 @@ def _keys(record: Record, seat: int) -> dict[str, int]:
 
 
 def _held(health: HealthVerdict | None) -> str:
-    """How well the match was held, in words."""
+    """Say in words how well the match ran."""
     if health is None:
         return "headless, or not played: nothing was measured"
     words = [

@@ -1,4 +1,4 @@
-"""Where the files of a record lie: segments while a match runs, one packed file after it."""
+"""Files of a record: several segments while a match runs, one packed file afterwards."""
 
 import os
 import re
@@ -9,28 +9,28 @@ from typing import BinaryIO
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
-_LOCKED_BYTE = 2**40  # beyond any record: Windows keeps readers out of a locked part
+_LOCKED_BYTE = 2**40  # beyond any record: Windows lets nobody read a locked part
 _SEGMENT = re.compile(r"(?P<match_id>.+)\.(?P<segment>\d{3,})\.live\.mcap")
 
 
 def segment_path(folder: Path, match_id: str, segment: int) -> Path:
-    """The file of one segment."""
+    """Return the path of a segment."""
     return folder / f"{match_id}.{segment:03d}.live.mcap"
 
 
 def packed_path(folder: Path, match_id: str) -> Path:
-    """The one file that the segments become."""
+    """Return the path of the one file into which the segments are packed."""
     return folder / f"{match_id}.mcap"
 
 
 def segment_name(path: Path) -> tuple[str, int] | None:
-    """The match of a segment, and its number in it; None if the file has no segment's name."""
+    """Return the match id and number of a segment; None if the file's name is not a segment's."""
     name = _SEGMENT.fullmatch(path.name)
     return name and (name["match_id"], int(name["segment"]))
 
 
 def segment_paths(folder: Path, match_id: str) -> list[Path]:
-    """The segments of a match that are there, in their order."""
+    """Return the existing segments of a match, in order."""
     found = [
         (name[1], path)
         for path in folder.glob("*.live.mcap")
@@ -40,7 +40,7 @@ def segment_paths(folder: Path, match_id: str) -> list[Path]:
 
 
 def record_paths(path: Path) -> list[Path]:
-    """All files of the record that a path belongs to.
+    """Return all files of the record that a path belongs to.
 
     Args:
         path: a packed file, or any one of the segments of a match.
@@ -55,26 +55,26 @@ def record_paths(path: Path) -> list[Path]:
 
 
 def hold(file: BinaryIO) -> bool:
-    """Mark an open segment as being written or packed, until it is closed or its process ends.
+    """Lock an open segment for writing or packing, until it is closed or its process ends.
 
     Returns:
-        False if another process holds it.
+        False if another process has locked it.
     """
     try:
         _lock(file)
     except (BlockingIOError, PermissionError):
         return False
-    except OSError:  # a file system without locks: nobody can be told
+    except OSError:  # a file system without locks: other processes can't be told
         return True
     return True
 
 
 def is_held(path: Path) -> bool:
-    """Whether a running process writes or packs a segment: it was not left behind."""
+    """Say whether a running process writes or packs a segment."""
     try:
         with path.open("rb+") as file:
             return not hold(file)
-    except FileNotFoundError:  # packed at this moment
+    except FileNotFoundError:  # it was packed just now
         return True
 
 
@@ -95,10 +95,10 @@ def _lock(file: BinaryIO) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Bring the names in a folder to the disk, so that a new file survives a power cut.
+    """Write the names in a folder to the disk, so that a new file survives a power cut.
 
     Raises:
-        OSError: if the disk refuses. Where folders can't be opened (Windows) nothing is done.
+        OSError: if the disk refuses. If folders can't be opened (Windows), nothing is done.
     """
     if os.name != "posix":
         return

@@ -1,4 +1,4 @@
-"""The matches of a court in a folder of records: their names, and which of them are over."""
+"""Matches of a court in a folder of records: their names, and which of them are over."""
 
 import os
 import re
@@ -16,15 +16,15 @@ _ID = re.compile(r"(?P<opened>[0-9]{8}-[0-9]{6})-(?P<court>.+)-(?P<number>[0-9]{
 
 @dataclass(frozen=True, order=True)
 class MatchName:
-    """What a court's match is called: its match id says when, where and the how manieth.
+    """A match id in parts: when the match was opened, at which court, and its number there.
 
-    Matches of one court are in the order in which they were opened.
+    Matches of one court sort in the order in which they were opened.
     """
 
     opened: str
     """Wall time, UTC, as in 20260501-100000."""
     number: int
-    """Of the match at its court, from 1."""
+    """Number of the match at its court, from 1."""
     court: str
 
     def __str__(self) -> str:
@@ -37,13 +37,13 @@ class MatchName:
 
     @classmethod
     def parse(cls, match_id: str) -> "MatchName | None":
-        """Take a match id apart; None if no court made it."""
+        """Parse a match id; None if no court made it."""
         found = _ID.fullmatch(match_id)
         return found and cls(found["opened"], int(found["number"]), found["court"])
 
 
 def court_matches(folder: Path, court: str) -> dict[MatchName, dict[int, Path]]:
-    """The matches of a court, the oldest first, each with its segments by number.
+    """Return the matches of a court, the oldest first, each with its segments by number.
 
     A match without segments is packed.
     """
@@ -60,7 +60,7 @@ def court_matches(folder: Path, court: str) -> dict[MatchName, dict[int, Path]]:
 
 
 def is_over(name: MatchName, segments: Mapping[int, Path]) -> bool:
-    """Whether a match was ended by its court: nobody goes on with it."""
+    """Say whether a match is over: its court ended it, so no court will continue it."""
     if not segments:
         return True
     newest = segments[max(segments)]
@@ -68,7 +68,7 @@ def is_over(name: MatchName, segments: Mapping[int, Path]) -> bool:
 
 
 def unpacked(folder: Path, court: str) -> list[str]:
-    """The ids of a court's matches that are over, and that nobody packs or has packed."""
+    """Return the ids of a court's matches that are over, not packed, and not being packed."""
     return [
         str(name)
         for name, segments in court_matches(folder, court).items()
@@ -77,7 +77,7 @@ def unpacked(folder: Path, court: str) -> list[str]:
 
 
 def _is_finished(segment: Path) -> bool:
-    """Whether a segment has its end, which a court that is killed or fails does not write."""
+    """Say whether a segment has an end; a court that is killed or fails does not write one."""
     try:
         with segment.open("rb") as file:
             if file.seek(0, os.SEEK_END) < 2 * len(MCAP0_MAGIC):

@@ -1,7 +1,7 @@
-"""Packs the segments of a match that is over into one compressed, indexed file.
+"""Pack the segments of a finished match into one compressed, indexed file.
 
-A court starts `python -m lacoc_shared.record.pack FOLDER MATCH_ID...` beside itself: packing
-takes longer than a beat.
+A court starts `python -m lacoc_shared.record.pack FOLDER MATCH_ID...` as another process,
+because packing takes longer than a beat.
 """
 
 import os
@@ -26,19 +26,19 @@ _Message = tuple[str, int, bytes]
 
 
 def pack(segments: Sequence[Path], out: Path) -> None:
-    """Make one file of the segments of a match, then remove them.
+    """Make one file from the segments of a match, then remove them.
 
-    The file appears under its name when it is whole and on the disk. If it is there already,
-    packing was interrupted after that, and only goes on. A segment is removed only when the file,
-    read again, has every message of it. Meanwhile all segments are held.
+    The file gets its name when it is complete and on the disk. If it exists already, packing
+    was interrupted after that, and only check and removal follow. The segments are removed only if
+    the file, read again, has every message in them. Meanwhile all segments are locked.
 
     Args:
         segments: the segments in their order.
         out: the packed file.
 
     Raises:
-        UserError: if a segment is held or can't be read to its end, if the file can't be written
-            or holds anything else; all segments stay.
+        UserError: if a segment is locked or can't be read to its end, or if the file can't be
+            written or differs from the segments; all segments stay.
     """
     unfinished = out.with_name(f"{out.name}.part")
     try:
@@ -54,7 +54,7 @@ def pack(segments: Sequence[Path], out: Path) -> None:
                 _compare(messages, None, unfinished)
                 unfinished.rename(out)
                 files.sync_folder(out.parent)
-        for segment in segments:  # no longer open: Windows removes no file that is
+        for segment in segments:  # closed by now: Windows removes no open file
             segment.unlink(missing_ok=True)
     except OSError as error:
         unfinished.unlink(missing_ok=True)
@@ -63,7 +63,7 @@ def pack(segments: Sequence[Path], out: Path) -> None:
 
 
 def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Popen[bytes]:
-    """Pack matches in a process of its own, which a Ctrl-C for this one does not stop.
+    """Pack matches in another process, which a Ctrl-C for this one does not stop.
 
     Raises:
         OSError: if the system has no room for another process.
@@ -79,8 +79,8 @@ def _whole_match(segments: Sequence[Path], out: Path) -> list[_Message]:
     """Read all messages of a match.
 
     Raises:
-        UserError: if the segments can't be read to their end: what can't be read now must not be
-            lost for ever.
+        UserError: if the segments can't be read to their end, because removing them would lose
+            what can't be read now.
     """
     messages: list[_Message] = []
     record = Record.read(segments, lambda *message: messages.append(message))
@@ -90,7 +90,7 @@ def _whole_match(segments: Sequence[Path], out: Path) -> list[_Message]:
 
 
 def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[bytes]:
-    """Pack a copy of what there is of a match, in a process of its own; the segments stay.
+    """Pack a copy of a match as far as it is recorded, in another process; the segments stay.
 
     Raises:
         OSError: if the system has no room for another process.
@@ -103,13 +103,14 @@ def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[
 
 
 def _compare(wanted: Sequence[_Message], wrong: Stop | None, packed: Path) -> None:
-    """See that nothing is lost with the segments.
+    """Check that removing the segments loses nothing.
 
-    They may be the last ones of a match only: the others went before packing was interrupted.
+    The segments may be only the last of a match: packing was interrupted after the others
+    were removed.
 
     Args:
         wanted: the messages of the segments.
-        wrong: what is wrong with the end of the last segment.
+        wrong: the fault at the end of the last segment, if any.
         packed: the packed file.
 
     Raises:
@@ -121,7 +122,7 @@ def _compare(wanted: Sequence[_Message], wrong: Stop | None, packed: Path) -> No
 
 
 def _messages(paths: Sequence[Path]) -> tuple[list[_Message], Stop | None]:
-    """Read the messages of some files, and what is wrong with the end of the last file."""
+    """Read the messages of some files, and the fault at the end of the last file, if any."""
     found: list[_Message] = []
     wrong: Stop | None = None
     for path in paths:
@@ -150,7 +151,7 @@ def _write(messages: Sequence[_Message], path: Path) -> None:
 def main(folder: str, *match_ids: str) -> int:
     """Pack matches of a folder; the exit code says whether it worked."""
     if hasattr(os, "nice"):
-        os.nice(10)  # the next match is running
+        os.nice(10)  # lower priority: the next match is running
     if folder == "--copy":
         return _copy(*map(Path, match_ids))
     code = 0

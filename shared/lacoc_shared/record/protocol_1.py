@@ -1,6 +1,6 @@
-"""Records of protocol 1, whose sentences are English texts: how they are read and compared.
+"""Read and compare records of protocol 1, whose sentences are English texts.
 
-Everything else knows only protocol 2 (docs/decisions/0016-words.md).
+All other modules know only protocol 2 (docs/decisions/0016-words.md).
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from lacoc_shared.record.schema import Header, Result
 from lacoc_shared.words import Phrase, say
 
 _WORDS = ("words", "changes", "vanished")
-"""Particulars of an event that are words, or that only protocol 2 has."""
+"""Event data that are words, or that only protocol 2 has."""
 
 
 class _OldEvent(msgspec.Struct, frozen=True, kw_only=True):
@@ -34,7 +34,7 @@ def read_event(data: bytes, max_bytes: int) -> Event:
     """Decode a recorded event.
 
     Raises:
-        BadMessage: if it is an event of neither protocol.
+        BadMessage: if it is not an event of either protocol.
     """
     try:
         return codec.decode(data, Event, max_bytes)
@@ -48,20 +48,20 @@ def read_event(data: bytes, max_bytes: int) -> Event:
 
 
 def fault_of(event: Event) -> Phrase:
-    """Return what a recorded event says of why physics stopped."""
+    """Return the reason why physics stopped, as a recorded event gives it."""
     why = event.said.values.get("why")
     return why if isinstance(why, Phrase) else say("plain.text", text=str(event.data.get("words")))
 
 
 def same_events(header: Header, recorded: Sequence[Event], again: Sequence[Event]) -> bool:
-    """Say whether a beat's events are the recorded ones; words of protocol 1 do not count."""
+    """Say whether a beat's events equal the recorded ones; for protocol 1, words are ignored."""
     if _is_old(header):
         return list(map(_bare, recorded)) == list(map(_bare, again))
     return codec.encode(tuple(recorded)) == codec.encode(tuple(again))
 
 
 def same_result(header: Header, recorded: Result, again: Result) -> bool:
-    """Say whether a result is the recorded one; words of protocol 1 do not count."""
+    """Say whether a result equals the recorded one; for protocol 1, words are ignored."""
     if _is_old(header):
         again = msgspec.structs.replace(again, reason=recorded.reason)
     return recorded == again

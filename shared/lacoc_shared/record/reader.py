@@ -1,4 +1,4 @@
-"""Reads a record: from its packed file or its segments, whole or cut anywhere."""
+"""Read a record from its packed file or its segments, even if it is cut off anywhere."""
 
 from bisect import bisect_right
 from collections.abc import Iterable
@@ -19,43 +19,43 @@ V = TypeVar("V")
 
 
 class NoMatch(UserError):
-    """Nothing of a match was written into these files."""
+    """No match was written into these files."""
 
 
 class _Gap(Exception):
-    """Beats are missing; the message says which."""
+    """Beats are missing between segments; the message says which."""
 
 
 @dataclass
 class Record:
-    """Everything that is known of a match, by beat."""
+    """Everything that is recorded of a match, by beat."""
 
     headers: list[Header] = field(default_factory=list)
-    """One for each segment, in order."""
+    """One header for each segment, in order."""
     inputs: dict[int, list[Input]] = field(default_factory=dict)
-    """What entered the match at a beat, in order."""
+    """Inputs of each beat, in order."""
     events: list[Event] = field(default_factory=list)
     frames: list[tuple[int, bytes]] = field(default_factory=list)
     """(beat, encoded `Frame`)."""
     touches: dict[int, Touch] = field(default_factory=dict)
     snapshots: list[tuple[int, bytes]] = field(default_factory=list)
-    """(beat, the court's state after it)."""
+    """(beat, state of the court after it)."""
     sheets: list[tuple[int, Sheet]] = field(default_factory=list)
     scenes: list[tuple[int, Scene]] = field(default_factory=list)
     result: Result | None = None
-    """The newest; None while the match has not ended."""
+    """The newest result; None if the match has not ended."""
     health: HealthVerdict | None = None
-    """The newest; None: it was not played in real time, or not yet."""
+    """The newest verdict; None: the match was not played in real time, or has none yet."""
     last_beat: int = -1
-    """The last beat of which anything is known; -1: none."""
+    """The last beat with any message; -1: none."""
     cut: str = ""
-    """Up to where the record could be had and why not further, in words; "" if it is whole."""
+    """How far the record could be read and why no further, in words; "" if it is whole."""
 
     gap: bool = False
-    """Whether it stops there because a later segment does not follow."""
+    """Whether it was cut because the next segment does not continue where the last one ends."""
     lost: bool = False
-    """Whether a part is lost: a segment is missing, a file is damaged or not whole. The end that a
-    killed court did not write is no loss."""
+    """Whether a part is lost: a segment is missing, or a file is damaged or incomplete. Nothing is
+    lost if a killed court did not write the end."""
 
     @property
     def header(self) -> Header:
@@ -63,30 +63,30 @@ class Record:
         return self.headers[0]
 
     def sheet_at(self, beat: int) -> Sheet | None:
-        """The sheet that was valid at a beat; None before the first."""
+        """Return the sheet that was valid at a beat; None before the first."""
         return _newest(beat, self.sheets)
 
     def scene_at(self, beat: int) -> Scene | None:
-        """The scene that was valid at a beat; None before the first."""
+        """Return the scene that was valid at a beat; None before the first."""
         return _newest(beat, self.scenes)
 
     @classmethod
     def read(cls, paths: Path | Iterable[Path], also: TakeBytes | None = None) -> "Record":
-        """Read a record, as far as it can be had.
+        """Read a record as far as possible.
 
-        A file that was never closed (a killed court, a copy that broke off) or is damaged gives
-        every whole message up to there; where beats are missing between two segments, those
-        before them are had. `cut` says so.
+        A file that was never closed (a killed court, an interrupted copy) or is damaged is read
+        up to the last whole message. If beats are missing between two segments, the segments
+        before the gap are read. `cut` then says where and why.
 
         Args:
-            paths: a packed file, or a segment, with which all segments of its match are read;
-                or several segments, in order.
-            also: gets the bytes of every message too, as the files hold them.
+            paths: a packed file; or one segment, which stands for all segments of its match; or
+                several segments, in order.
+            also: called with the bytes of every message too.
 
         Raises:
             NoMatch: if no file has a whole header.
-            UserError: if a file is not there, not a record, of another format or another match,
-                or if the beginning is missing.
+            UserError: if a file does not exist, is not a record, is of another format or another
+                match, or if the beginning is missing.
         """
         if isinstance(paths, Path):
             paths = files.record_paths(paths)
@@ -116,7 +116,7 @@ class Record:
         before = len(self.headers)
         stop = walk(path, take)
         if stop and len(self.headers) == before and before:
-            return  # of a court that was killed before it had opened: nothing of it counts
+            return  # the court was killed while it opened this segment: nothing in it counts
         self.lost = stop is not None and stop.damaged
         self.cut = ""
         if stop is not None:
@@ -206,7 +206,7 @@ class Record:
 
 
 def _drop(items: dict[int, V], beat: int) -> None:
-    """Drop the entries from a beat on: they are in the order of beats."""
+    """Drop the entries from a beat on; `items` is in the order of beats."""
     while items and next(reversed(items)) >= beat:
         items.popitem()
 

@@ -1,4 +1,4 @@
-"""What a record holds beside inputs, events and frames."""
+"""The contents of a record besides inputs, events and frames."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from lacoc_shared.words import Phrase
 
 
 class Setup(msgspec.Struct, frozen=True, kw_only=True):
-    """All that a match is made from; with the inputs it gives the same match again."""
+    """Everything that a match is made from; with the inputs it gives the same match again."""
 
     match_id: str = ""
     """Names the match's record."""
@@ -19,7 +19,7 @@ class Setup(msgspec.Struct, frozen=True, kw_only=True):
     """Number of the match at its court, from 1."""
     arena: str
     settings: dict[str, Any]
-    """The arena file as played, contest's overrides included."""
+    """The arena file as played, with the contest's overrides."""
     limits: dict[str, float]
     """Contest limits for robots (rules 1) that differ from the defaults."""
 
@@ -30,33 +30,33 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
     format: int
     """`FORMAT` of the software that wrote it."""
     match_id: str
-    """The same for all segments of a match; names its files."""
+    """Id of the match, equal in all its segments; names its files."""
     segment: int
-    """0, or how many segments came before."""
+    """Number of segments before this one; 0 for the first."""
     first_beat: int
-    """Beat the segment begins with. What earlier segments hold from it on was never answered: it
-    does not count (a court killed in the middle of a beat does that beat again)."""
+    """First beat of the segment. Anything that earlier segments hold from this beat on does not
+    count: no reply was sent yet (a court killed in the middle of a beat plays that beat again)."""
     started: str
-    """Wall time of the segment's begin, ISO 8601, UTC."""
+    """Wall time at which the segment began, ISO 8601, UTC."""
     versions: dict[str, str]
-    """lacoc, protocol, mujoco, machine: a replay is exact only where they agree."""
+    """lacoc, protocol, mujoco, machine: a replay is exact only if they are the same."""
     arithmetic: dict[str, str] = {}
-    """Fingerprint of the arithmetic that made it (`functions`, `model`, `path`: hashes) and where
-    it comes from (`processor`, `libc`, `python`, `system`). Empty in records from before it."""
+    """Fingerprint of the arithmetic of the machine (`functions`, `model`, `path`: hashes) and its
+    origin (`processor`, `libc`, `python`, `system`). Empty in older records."""
     setup: Setup
 
 
 class Touch(msgspec.Struct, frozen=True, array_like=True):
-    """What the rules saw in a tick beside the poses of its frame; only where there was any."""
+    """What the rules saw in a tick besides the poses of its frame; omitted if there was nothing."""
 
     touched: tuple[tuple[int, ...], ...]
-    """For each seat the markers it touched."""
+    """For each seat, the markers that it touched."""
     placed: tuple[tuple[float, float, float] | None, ...]
-    """For each seat the start place it was put on in this tick: x, y [m], heading [rad]."""
+    """For each seat, the start place where it was put in this tick: x, y [m], heading [rad]."""
 
 
 class Result(msgspec.Struct, frozen=True, kw_only=True):
-    """How a match ended. The computed result and the official one are both kept (rules 4)."""
+    """The end of a match. Both the computed and the official result are kept (rules 4)."""
 
     match_id: str
     court: str
@@ -64,26 +64,26 @@ class Result(msgspec.Struct, frozen=True, kw_only=True):
     arena: str
     teams: tuple[str, ...]
     scores: tuple[int, ...]
-    """With the referee's adjustments."""
+    """Points by seat, with the referee's adjustments."""
     computed: str
     """Seat id of the winner by the rules, "draw", or "" if play never ended."""
     official: str
-    """The same after the referee's word; "" until OFFICIAL, "void" for a void match."""
+    """Seat id of the official winner or "draw"; "" until OFFICIAL, "void" for a void match."""
     reason: Phrase | str
     """Why the match ended (`over.*`; a text in a record of protocol 1)."""
     clock_s: float
     beats: int
     digest: str
-    """Chained state hash at the last beat, hexadecimal."""
+    """Hash chain over the state up to the last beat, hexadecimal."""
     model: str
     """Hash of the compiled model, hexadecimal."""
 
 
 FORMAT = 1
-"""Version of the record's own layout."""
+"""Version of the layout of records."""
 
 PROFILE = "lacoc"
-"""MCAP profile of a record: tells it from the MCAP files of others."""
+"""MCAP profile of a record: distinguishes it from other MCAP files."""
 
 BEAT_NS = 20_000_000
 """A message's time in the file is its beat times this."""
@@ -100,5 +100,5 @@ KINDS: dict[str, Any] = {
     "/lacoc/result": Result,
     "/lacoc/health": HealthVerdict,
 }
-"""The channels of a record by topic, and the message of each in msgpack; None: bytes that only
-the court understands. A channel's number is its place here, from 1."""
+"""The channels of a record by topic, and the msgpack message of each; None: bytes that only the
+court understands. A channel's id is its position here, counted from 1."""

@@ -1,4 +1,4 @@
-"""Reads one file of a record, message by message, in the order they were written."""
+"""Read one file of a record, message by message, in the order in which they were written."""
 
 import struct
 from collections.abc import Callable, Iterator
@@ -32,47 +32,47 @@ DAMAGE = (
     MemoryError,
     OverflowError,
 )
-"""What bytes that are no record raise where they are read."""
+"""Errors that reading raises for bytes that are not a record."""
 
 
 _MAX_BYTES = 1 << 26
-"""A longer message or chunk is no record's: the longest message, a scene, has some 30 kB, and a
-chunk 1 MiB."""
+"""Largest message or chunk of a record. The largest that courts write are a scene of about 30 kB
+and a chunk of 1 MiB."""
 _RECORD_HEAD_BYTES = 9
-"""A record's opcode and length."""
+"""Size of an MCAP record's opcode and length."""
 _UNPACKED_BYTES, _UNPACKED_RATIO = 1 << 22, 50
-"""A file unpacks to no more than this and so many times its own size: a match, and also a court
-where nothing happens, packs to a third or a quarter."""
+"""A file may unpack to at most this many bytes plus this many times its own size. Real matches
+unpack to three or four times their size, even if nothing happens at the court."""
 
 _LONGEST_GAP_BEATS = 3600 * BEATS_PER_S
-"""A court records a frame every second; a gap longer than an hour is a damaged time, and whoever
-counts the beats up to it would not come back."""
+"""A court records a frame every second, so a gap of more than an hour means a damaged time. A
+program that counts all beats up to such a time would never end."""
 
 TakeBytes = Callable[[str, int, bytes], None]
 """Called with a message's topic, beat and bytes."""
 Take = Callable[[str, int, bytes, Any], None]
-"""The same, and what the bytes mean (a snapshot's: the bytes)."""
+"""Called with topic, beat, bytes and the decoded message (for a snapshot, the bytes again)."""
 
 
 class Stop(NamedTuple):
-    """Where a file can't be read any further, and why."""
+    """The reason why a file can't be read any further."""
 
     text: str
-    """What is wrong with it, as the end of a sentence."""
+    """The fault, as the end of a sentence."""
     damaged: bool
-    """Whether it is damaged or not whole; False: it was never closed, as by a killed court."""
+    """Whether the file is damaged or incomplete; False: never closed, as by a killed court."""
 
 
 class _Format(msgspec.Struct):
-    """The one entry that a header of any format has."""
+    """The one entry that headers of all formats have."""
 
     format: int
 
 
 def walk(path: Path, take: Take) -> Stop | None:
-    """Give every whole message of a file to `take`, up to where it stops or is damaged.
+    """Pass every whole message of a file to `take`, up to its end or the first fault.
 
-    See `walk_bytes`. Bytes that are not the message of their topic are damage too.
+    See `walk_bytes`. Bytes that can't be decoded as their topic's message are a fault too.
     """
     return walk_bytes(
         path, lambda topic, beat, data: take(topic, beat, data, _decode(path, topic, data))
@@ -80,18 +80,18 @@ def walk(path: Path, take: Take) -> Stop | None:
 
 
 def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
-    """Give the bytes of every whole message of a file to `take`, whatever they mean.
+    """Pass the bytes of every whole message of a file to `take`, without decoding them.
 
-    A packed file's messages are in chunks, each with a checksum: of a damaged chunk nothing is
-    given.
+    A packed file's messages are in chunks, each with a checksum: nothing in a damaged chunk
+    is passed on.
 
     Args:
         path: a segment, or a packed file.
-        take: gets the messages.
+        take: called with each message.
 
     Returns:
-        None if the file was closed and is whole; else what is wrong with it: it may have held
-        more.
+        None if the file was closed and is whole; else its fault: there may have been more
+        messages.
 
     Raises:
         UserError: if it can't be read, is not a record, or is of another format.
@@ -135,7 +135,7 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
 
 
 def _is_packed(data: bytes) -> bool:
-    """Whether a file's messages are in chunks."""
+    """Say whether a file's messages are in chunks."""
     at = len(MCAP0_MAGIC)
     while at < len(data) and data[at] not in (Opcode.MESSAGE, Opcode.CHUNK):
         at += _RECORD_HEAD_BYTES + int.from_bytes(data[at + 1 : at + 9], "little")
@@ -143,7 +143,7 @@ def _is_packed(data: bytes) -> bool:
 
 
 def _is_cut(data: bytes, at: int) -> bool:
-    """Whether a file ends in the middle of the record that begins at a byte."""
+    """Say whether a file ends in the middle of the MCAP record that begins at a byte."""
     if data.endswith(MCAP0_MAGIC) and len(data) > at + len(MCAP0_MAGIC):
         return False
     length = int.from_bytes(data[at + 1 : at + _RECORD_HEAD_BYTES], "little")
@@ -151,10 +151,10 @@ def _is_cut(data: bytes, at: int) -> bool:
 
 
 def _next_beat(before: int, beat: int, topic: str) -> int:
-    """The beat of a message.
+    """Return the beat of a message.
 
     Raises:
-        BadMessage: if it can't come after the one before it.
+        BadMessage: if this beat can't follow the one before.
     """
     if topic != "/lacoc/header" and beat > max(before, 0) + _LONGEST_GAP_BEATS:
         raise codec.BadMessage(f"beat {beat} after beat {before}")
@@ -162,11 +162,11 @@ def _next_beat(before: int, beat: int, topic: str) -> int:
 
 
 def _records(file: BytesIO, size: int) -> Iterator[McapRecord]:
-    """The records of a file, also those in its chunks; no more than a match may have.
+    """Yield the MCAP records of a file, also those in its chunks, up to the limit for a match.
 
     Raises:
-        McapError: if a chunk is larger than it may be, or packed in a way that records are not.
-            Much else, if the file is damaged.
+        McapError: if a chunk is too large, or compressed in a way that records are not. Other
+            errors of `DAMAGE` if the file is damaged.
     """
     left = _UNPACKED_BYTES + _UNPACKED_RATIO * size
     reader = StreamReader(file, validate_crcs=True, record_size_limit=size, emit_chunks=True)
@@ -181,7 +181,7 @@ def _records(file: BytesIO, size: int) -> Iterator[McapRecord]:
 
 
 def _unpacked_bytes(chunk: Chunk) -> int:
-    """What unpacking a chunk takes: whoever wrote it says so, and zstd believes its own word."""
+    """Return a chunk's unpacked size: the larger of those that its header and zstd's state."""
     size = len(chunk.data)
     if chunk.compression == "zstd":
         size = max(chunk.uncompressed_size, zstandard.frame_content_size(chunk.data))

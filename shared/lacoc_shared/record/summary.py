@@ -1,4 +1,4 @@
-"""What a recording is of, without reading all of it."""
+"""Summarise a record without reading all of it."""
 
 from pathlib import Path
 
@@ -15,28 +15,28 @@ _MAX_BYTES = 1 << 20
 
 
 class Summary(msgspec.Struct, frozen=True):
-    """A match in a list of matches."""
+    """One match in a list of matches."""
 
     title: str
-    """Of the game."""
+    """Title of the arena."""
     court: str
     number: int
-    """Of the match at its court."""
+    """Number of the match at its court."""
     started: str
     """Wall time, ISO 8601, UTC."""
     teams: tuple[str, ...]
     scores: tuple[int, ...]
-    """Empty while there is no result."""
+    """Empty if there is no result."""
     winner: str
-    """Seat id, "draw", "void", or "" while there is none."""
+    """Seat id, "draw", "void", or "" if there is none."""
     seats: tuple[str, ...]
-    """Their ids."""
+    """The ids of the seats."""
 
 
 def summary(path: Path) -> Summary | None:
-    """Read what a packed record is of; None if it does not say, or is no record.
+    """Read the summary of a packed record; None if the file is incomplete or not a record.
 
-    Only the parts of the file are read that hold its header, sheets and results.
+    Reads only the parts of the file that hold its header, sheets and results.
     """
     header: Header | None = None
     sheet: Sheet | None = None
@@ -51,7 +51,7 @@ def summary(path: Path) -> Summary | None:
                         sheet = codec.decode(message.data, Sheet, _MAX_BYTES)
                     case _:
                         result = codec.decode(message.data, Result, _MAX_BYTES)
-    except (OSError, AttributeError, *DAMAGE):  # the reader trusts a file that is no MCAP
+    except (OSError, AttributeError, *DAMAGE):  # AttributeError: the file is not MCAP
         return None
     if header is None or sheet is None:
         return None

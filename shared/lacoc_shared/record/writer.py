@@ -1,9 +1,9 @@
-"""Writes the record of a running match: a journal that a killed court loses nothing of.
+"""Write the record of a running match as a journal; a killed court loses nothing of it.
 
 The file is plain MCAP (https://mcap.dev/spec), unchunked and unbuffered: each message
-is one system call. `mcap.writer` puts a buffer before a raw file, which a kill would
-lose, and takes longer than the disk; so the one record that is written 50 times a
-second is packed here, and only the rest of the file is made of `mcap.records`.
+is one system call. `mcap.writer` puts a buffer before a raw file. A kill would lose that
+buffer, and it takes longer than the disk does. So this module packs the one MCAP record
+that is written 50 times a second, and takes only the others from `mcap.records`.
 """
 
 import os
@@ -26,28 +26,28 @@ from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header, Result, 
 from lacoc_shared.words import Phrase, say
 
 SYNC_S = 1.0
-"""A power cut loses at most what this long has written."""
+"""Time between writes to the disk (fsync): a power cut loses at most this much."""
 
 _HEADER, _INPUT, _EVENT, _FRAME, _TOUCH, _SNAPSHOT, _SHEET, _SCENE, _RESULT, _HEALTH = range(
     1, len(KINDS) + 1
 )
 _message_head = struct.Struct("<BQHIQQ").pack
-"""Opcode, length of what follows, channel, sequence, log time, publish time."""
+"""Opcode, length of the rest, channel, sequence, log time, publish time."""
 _HEAD_BYTES = 22
-"""What of a message's head its length counts."""
+"""Bytes of the header that the length field includes."""
 
 
 class RecordWriter:
     """One segment of a match's record, open for writing.
 
-    What a full disk does not take waits in memory, in order, until `flush` could write it.
+    If the disk is full, data wait in memory, in order, until `flush` can write them.
 
     Args:
-        folder: where records lie; made if it is not there.
+        folder: folder of the records; made if it does not exist.
         header: names the file and is its first message.
 
     Raises:
-        UserError: if the file can't be made, or is there already.
+        UserError: if the file can't be made, or exists already.
     """
 
     def __init__(self, folder: Path, header: Header) -> None:
@@ -75,7 +75,7 @@ class RecordWriter:
         ]
         self._counts[_HEADER] = 1
         first = Message(_HEADER, self._first_ns, codec.encode(header), self._first_ns, 0)
-        # One system call: a file that has anything of a record has its header.
+        # Written in one system call, so that a file with any message also has its header.
         self._put(
             MCAP0_MAGIC
             + _bytes(FileHeader(PROFILE, f"lacoc {__version__}"), *self._channels, first)
@@ -91,10 +91,10 @@ class RecordWriter:
         self._syncer.start()
 
     def flush(self) -> None:
-        """Write what waits in memory.
+        """Write the data that wait in memory.
 
         Raises:
-            UserError: if the disk does not take it.
+            UserError: if the disk does not take them.
         """
         if self._backlog:
             self._put(b"")
@@ -103,11 +103,11 @@ class RecordWriter:
 
     @property
     def sync_trouble(self) -> Phrase | None:
-        """What the disk said of what was written before; None while all is well."""
+        """Error that the disk reported about data already written; None if there was none."""
         return self._sync_error
 
     def input(self, beat: int, item: Input) -> None:
-        """Write what entered the match from outside."""
+        """Write an input of the match."""
         self._write(_INPUT, beat, codec.encode(item))
 
     def event(self, event: Event) -> None:
@@ -115,15 +115,15 @@ class RecordWriter:
         self._write(_EVENT, event.beat, codec.encode(event))
 
     def frame(self, beat: int, encoded: bytes) -> None:
-        """Write a frame, as it is published."""
+        """Write a frame, encoded as it is published."""
         self._write(_FRAME, beat, encoded)
 
     def touch(self, beat: int, touch: Touch) -> None:
-        """Write what the rules saw beside the frame."""
+        """Write what the rules saw besides the frame."""
         self._write(_TOUCH, beat, codec.encode(touch))
 
     def snapshot(self, beat: int, data: bytes) -> None:
-        """Write the whole state after a beat; `data` is the court's own."""
+        """Write the whole state after a beat; only the court understands `data`."""
         self._write(_SNAPSHOT, beat, data)
 
     def sheet(self, beat: int, sheet: Sheet) -> None:
@@ -139,24 +139,24 @@ class RecordWriter:
         self._write(_RESULT, result.beats, codec.encode(result))
 
     def health(self, beat: int, verdict: HealthVerdict) -> None:
-        """Write how well the match was held so far; a later one replaces it."""
+        """Write how well the match has run so far; a later one replaces it."""
         self._write(_HEALTH, beat, codec.encode(verdict))
 
     def end(self) -> None:
-        """Write the summary: the match is over. Ending twice is once."""
+        """Write the summary, because the match is over. A second call does nothing."""
         if not self._ended:
             self._ended = True
             self._put(self._ending())
             self._dirty = True
 
     def close(self) -> None:
-        """End, and wait until the disk has everything. Closing twice is once."""
+        """End the file, and wait until the disk has everything. A second call does nothing."""
         if not self._closing.is_set():
             self.end()
         self.leave()
 
     def leave(self) -> None:
-        """Wait until the disk has everything. A match without an end goes on in a new segment."""
+        """Wait until the disk has everything. A match without an end continues in a new segment."""
         if self._closing.is_set():
             return
         self._closing.set()
@@ -173,16 +173,16 @@ class RecordWriter:
         self._dirty = True
 
     def _put(self, data: bytes) -> None:
-        """Append to the file; what the disk does not take is kept for the next time."""
+        """Append to the file; the rest that the disk does not take is kept for the next call."""
         waiting = self._backlog
         written = 0 if waiting else self._append(data)
         if written < len(data):
             waiting += data[written:]
-        if waiting:  # after a part, the disk says why it was not more
+        if waiting:  # after a partial write, a second write raises the disk's reason
             del waiting[: self._append(waiting)]
 
     def _append(self, data: bytes | bytearray) -> int:
-        """Append what the disk takes; returns how many bytes that is."""
+        """Append as much as the disk takes; return the number of bytes written."""
         try:
             return self._file.write(data)
         except OSError as error:
@@ -190,7 +190,7 @@ class RecordWriter:
             return 0
 
     def _sync(self) -> None:
-        """Bring the file to the disk once a second, beside the beat."""
+        """Write the file to the disk (fsync) once a second, on a thread of its own."""
         try:
             files.sync_folder(self.path.parent)
         except OSError as error:
@@ -209,13 +209,13 @@ class RecordWriter:
             self._sync_failed(error)
 
     def _sync_failed(self, error: OSError) -> None:
-        # Stays: the system may have dropped what it could not write, and then says nothing more.
+        # The error stays: the system may have dropped the data, and then reports no further error.
         self._sync_error = say(
             "record.disk-trouble", file=self.path.name, why=error.strerror or str(error)
         )
 
     def _ending(self) -> bytes:
-        """What a finished file has after its last message (without chunks: no index)."""
+        """Return the bytes after the last message of a finished file (without chunks: no index)."""
         end = _bytes(DataEnd(data_section_crc=0))
         start = self._file.tell() + len(self._backlog) + len(end)
         statistics = Statistics(

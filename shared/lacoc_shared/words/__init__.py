@@ -1,8 +1,8 @@
-"""Everything that LACOC says to people: a code and its values, and one table of both languages.
+"""All sentences for people: a code with its values, and one table with both languages.
 
-A program says a `Phrase` (`say`); a page or a terminal renders it (`render`). Nobody reads a
-sentence back into meaning. The table is in `texts/*.toml`; docs/decisions/0016-words.md states
-the template language. Pure: the language of a process is set from outside (`use`).
+A program says a `Phrase` (`say`); a page or a terminal renders it (`render`). No program
+parses a sentence. The table is in `texts/*.toml`; docs/decisions/0016-words.md defines the
+template language. Pure: `use` sets the language of a process from outside.
 """
 
 from lacoc_shared.words.phrase import Phrase, Value, say

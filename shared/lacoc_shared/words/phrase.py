@@ -1,4 +1,4 @@
-"""A phrase: what is said, as a code and its values, in no language yet."""
+"""A phrase: a sentence as a code and its values, not yet in any language."""
 
 from collections.abc import Sequence
 from typing import Union
@@ -7,15 +7,15 @@ import msgspec
 
 
 class Phrase(msgspec.Struct, frozen=True, omit_defaults=True):
-    """Something said to a person; `render` puts it into words."""
+    """A sentence for a person; `render` puts it into words."""
 
     code: str
     """Names the sentence in the table: "decision.adjust"."""
     values: dict[str, "Value"] = {}
-    """What fills the holes of the sentence, by name."""
+    """Values for the holes of the sentence, by name."""
 
     def with_values(self, **values: "Value") -> "Phrase":
-        """Return the phrase with these values: for what only a later place knows."""
+        """Return the phrase with these values added; for values that only a later caller knows."""
         return Phrase(self.code, {**self.values, **values})
 
     def __hash__(self) -> int:
@@ -29,13 +29,13 @@ Value = Union[str, int, float, bool, None, Phrase, tuple[Scalar, ...]]  # noqa: 
 def say(code: str, /, **values: str | int | float | Phrase | Sequence[Scalar] | None) -> Phrase:
     """Make a phrase.
 
-    Nothing is checked here, so a wrong value never stops a match: tests/shared/test_words.py
-    reads every call of `say` in the source and holds its code and names against the table, and
-    `faults` checks the values that a test gets.
+    Nothing is checked here, so a wrong value never stops a match. Instead
+    tests/shared/test_words.py compares the code and the names of every call of `say` with the
+    table, and `faults` checks the values that occur in tests.
 
     Args:
-        code: of the table, written as a literal.
-        values: all values that the table declares for the code; None for one that is left out.
+        code: a code of the table, written as a literal.
+        values: all values that the table declares for the code; None omits a value.
     """
     return Phrase(code, {name: _value(value) for name, value in values.items()})
 

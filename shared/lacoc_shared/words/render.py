@@ -1,8 +1,8 @@
-"""Putting phrases into words, in English or Japanese.
+"""Put phrases into words, in English or Japanese.
 
-client/web/src/i18n/render.ts does the same; tests/shared/test_words.py holds the two together.
-Nothing that arrives raises here: an unknown code shows itself with its values, a missing value
-shows as "?", and what is nested too deep shows its code alone.
+client/web/src/i18n/render.ts does the same; tests/shared/test_words.py checks that both agree.
+No phrase raises an error here: an unknown code is shown with its values, a missing value as
+"?", and a phrase that is nested too deep as its code alone.
 """
 
 import math
@@ -18,14 +18,14 @@ Language = Literal["en", "ja"]
 LANGUAGES: tuple[Language, ...] = get_args(Language)
 
 DEEPEST = 5
-"""Phrases within phrases; a deeper one shows its code."""
+"""Deepest nesting of phrases; a deeper one is shown as its code."""
 LONGEST_LIST = 100
 LONGEST_TEXT = 2000
-"""Characters of a value."""
+"""Most characters of a value that are shown."""
 LARGEST = 1e15
-"""A number beyond it shows as "?"."""
+"""A number above this is shown as "?"."""
 DECIMALS = 6
-"""Of a number whose template does not say how many; zeros at the end are left out."""
+"""Decimals of a number if its template has no such format; trailing zeros are left out."""
 
 _CONTROLS = re.compile(
     "[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]"
@@ -35,13 +35,13 @@ _current: Language = "en"
 
 
 def use(language: Language) -> None:
-    """Set the language of this process, for errors that are shown in it."""
+    """Set the language of this process: the default of `render`."""
     global _current
     _current = language
 
 
 def current() -> Language:
-    """Return the language of this process; English if nobody has set it."""
+    """Return the language of this process; English if none was set."""
     return _current
 
 
@@ -49,8 +49,8 @@ def render(phrase: Phrase | str, language: Language | None = None) -> str:
     """Put a phrase into words.
 
     Args:
-        phrase: what is said; a plain text comes out as it is.
-        language: None takes that of the process.
+        phrase: the phrase; a plain text is returned unchanged.
+        language: None takes the language of the process.
     """
     if isinstance(phrase, str):
         return phrase
@@ -58,7 +58,7 @@ def render(phrase: Phrase | str, language: Language | None = None) -> str:
 
 
 def counted(name: str, language: Language | None = None) -> str:
-    """Name what was counted (`count.*`): refusals at a court's doors and by the rules."""
+    """Name a counter (`count.*`): refusals at a court's doors and by the rules."""
     return _plain(name, ("count.*",), language or _current, 0)
 
 
@@ -84,7 +84,7 @@ def _rendered(phrase: Phrase, language: Language, depth: int) -> str:
 
 
 def _unknown(phrase: Phrase, depth: int) -> str:
-    """Show a code that the table does not have, with its plain values."""
+    """Show a code that is not in the table, with its plain values."""
     names = sorted(phrase.values, key=lambda name: name.encode("utf-16-be", "surrogatepass"))
     plain = (
         f"{_text(name)}: {_filled(phrase.values[name], (), 'en', DEEPEST)}"
@@ -134,7 +134,7 @@ def _word(code: str, language: Language) -> str:
 
 
 def _text(text: str) -> str:
-    """Show somebody else's text: short enough, with nothing that moves what stands around it."""
+    """Shorten a foreign text, and replace characters that would move the text around it."""
     short = text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
     return _CONTROLS.sub("\N{REPLACEMENT CHARACTER}", short)
 

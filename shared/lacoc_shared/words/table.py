@@ -1,4 +1,4 @@
-"""The table of everything that is said: for each code its values and both templates."""
+"""The table of all sentences: for each code its values and the templates in both languages."""
 
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -21,11 +21,11 @@ FILES = (
     "commands",
 )
 ON_PAGES = FILES[:-1]
-"""Pages never show what only commands say in a terminal."""
+"""Pages leave out what only commands say in a terminal."""
 
 
 class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the table has for a code."""
+    """The entry of a code in the table."""
 
     en: str
     ja: str
@@ -50,7 +50,7 @@ def table(files: tuple[str, ...] = FILES) -> Mapping[str, Entry]:
 
 
 def faults(phrase: Phrase) -> list[str]:
-    """List what is wrong with a phrase by the table; for tests of what programs say."""
+    """List where a phrase differs from the table; for tests of what programs say."""
     return list(_faults(phrase))
 
 
@@ -78,7 +78,7 @@ def _is(value: Value, kind: str) -> bool:
             return isinstance(value, str)
         case "number":
             return isinstance(value, int | float) and not isinstance(value, bool)
-        case "phrase":  # a plain text while the senders move to phrases, and what a disk says
+        case "phrase":  # or a text: not all senders use phrases, and an error of a disk is a text
             return isinstance(value, Phrase | str)
         case "list":
             return isinstance(value, tuple)

@@ -1,14 +1,14 @@
 """The template language of the table, parsed: text, holes and clauses.
 
     {team}               the value as it is
-    {seconds:.1}         a number with so many decimals
+    {seconds:.1}         a number with this many decimals
     {points:+}           a number with its sign
     {left_s:clock}       seconds as minutes and seconds: 0:38
-    {n:plural disc|discs}  the first word for 1 or -1, else the second; the number is not shown
-    {names:or}           a list joined with "or"; `and` likewise; without either with commas
+    {n:plural disc|discs}  the first word for 1 or -1, else the second; without the number
+    {names:or}           a list joined with "or" (or `and`); without a format, with commas
     {name:quoted}        in the quotation marks of the language
-    {seat:seat.*}        a word of a program, said as the code "seat." and the word has it
-    <because of {why}>   a clause: only there when all its values are there
+    {seat:seat.*}        a program's word, shown as the sentence of code "seat." plus the word
+    <because of {why}>   a clause: shown only if all its values are there
 
 Several formats of one hole are separated by commas: `{phases:phase.*,or}`.
 """
@@ -22,12 +22,12 @@ _FORMAT = re.compile(r"\.\d|\+|clock|or|and|quoted|plural [^|,]*\|[^|,]*|[a-z][a
 
 
 class BadTemplate(ValueError):
-    """A template of the table is written wrong."""
+    """A template in the table is not valid."""
 
 
 @dataclass(frozen=True)
 class Hole:
-    """A place in a template that a value fills."""
+    """A place in a template for a value."""
 
     name: str
     formats: tuple[str, ...]
@@ -35,7 +35,7 @@ class Hole:
 
 @dataclass(frozen=True)
 class Clause:
-    """A part of a template that is left out when a value of it is missing."""
+    """A part of a template that is left out if one of its values is missing."""
 
     parts: tuple[str | Hole, ...]
 
@@ -48,7 +48,7 @@ def parse(text: str) -> tuple[Part, ...]:
     """Parse a template.
 
     Raises:
-        BadTemplate: it does not follow the language; the table is read by a test.
+        BadTemplate: if it does not follow the language; a test parses the whole table.
     """
     parts: list[Part] = []
     clause: list[str | Hole] | None = None

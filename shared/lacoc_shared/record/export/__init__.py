@@ -1,1 +1,1 @@
-"""What a record gives to other programs."""
+"""Exports of a record for other programs."""

@@ -1,9 +1,9 @@
-"""A record as an MCAP that Foxglove, Lichtblick and Rerun draw by themselves, 25 pictures a second.
+"""Export a record as an MCAP that Foxglove, Lichtblick and Rerun draw, 25 frames a second.
 
-Topics: /tf (where the robots' parts are), /scene (shapes; again when the scene changes),
-/board (all markers as they look now; at each change), /events. /scene and /board are
-complete in each message, so a viewer may jump to any time. The messages are Foxglove's own
-schemas in protobuf: Rerun takes its transforms from no other encoding.
+Topics: /tf (poses of the robots' parts), /scene (shapes; again when the scene changes),
+/board (all markers as they look now; at each change), /events. Each message of /scene and
+/board is complete, so a viewer may jump to any time. The messages are Foxglove's own
+schemas in protobuf, because Rerun reads transforms in no other encoding.
 """
 
 from collections.abc import Iterator, Sequence
@@ -52,10 +52,10 @@ _TOPICS: dict[str, type[Message]] = {
     "/events": Log,
 }
 _EVERY = 2
-"""Of the frames every second one."""
+"""Step between exported frames: every second frame is used."""
 _WORLD = "world"
 _PLANE_M = 10.0
-"""Edge of a plane without end."""
+"""Edge of the square that is drawn for an infinite plane."""
 _THIN_M = 0.001
 
 
@@ -84,7 +84,7 @@ def foxglove(record: Record) -> bytes:
 
 
 def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, Message]]:
-    """Everything to be written: (beat, topic, message)."""
+    """Yield everything to be written: (beat, topic, message)."""
     for event in record.events:
         time = _time(started_ns + event.beat * BEAT_NS)
         yield event.beat, "/events", _log(event, time)
@@ -116,7 +116,7 @@ def _log(event: Event, time: Timestamp) -> Log:
 
 
 class _Picture:
-    """A scene with the colours of a sheet."""
+    """A scene drawn with the colours of a sheet."""
 
     def __init__(self, scene: Scene, sheet: Sheet) -> None:
         self._scene = scene
@@ -127,7 +127,7 @@ class _Picture:
     def transforms(
         self, frames: Sequence[tuple[int, Frame]], started_ns: int
     ) -> Iterator[FrameTransforms]:
-        """Where each moving body is in the world, frame by frame."""
+        """Yield the world poses of all moving bodies, frame by frame."""
         if not frames:
             return
         numbers = np.array([np.frombuffer(frame.poses, "<f4") for _, frame in frames])
@@ -149,7 +149,7 @@ class _Picture:
             )
 
     def shapes(self, time: Timestamp) -> SceneUpdate:
-        """Everything but the markers, in place of all that was drawn before."""
+        """Return all shapes but the markers; they replace everything drawn before."""
         geoms: dict[int, list[SceneGeom]] = {}
         for geom in self._scene.geoms:
             if geom.marker < 0:
@@ -163,7 +163,7 @@ class _Picture:
         )
 
     def board(self, packed: bytes, time: Timestamp) -> SceneUpdate:
-        """All markers in their present states."""
+        """Return all markers in their current states."""
         markers = self._sheet.markers
         states = unpack_states(packed, len(markers))
         geoms: list[list[SceneGeom]] = [[] for _ in markers]
@@ -180,7 +180,7 @@ class _Picture:
         )
 
     def _entity(self, name: str, geoms: Sequence[SceneGeom], time: Timestamp) -> SceneEntity:
-        """Shapes that lie on one body, or that all stand still."""
+        """Make one entity from shapes on one body, or from shapes that all stand still."""
         moves = any(geom.body in self._kinematics.moving for geom in geoms)
         primitives: list[Any] = [
             primitive for geom in geoms for primitive in self._primitives(geom, moves)
@@ -196,7 +196,7 @@ class _Picture:
         )
 
     def _primitives(self, geom: SceneGeom, moves: bool) -> Iterator[Any]:
-        """A shape as primitives, in its body's frame, or in the world's if it stands still."""
+        """Yield a shape's primitives, in its body's frame, or in the world's if it stands still."""
         pos, quat = np.array(geom.pos), np.array(geom.quat)
         if not moves:
             pos_w, quat_w = (array[geom.body] for array in self._rest)

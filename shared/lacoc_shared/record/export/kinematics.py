@@ -1,7 +1,7 @@
-"""Forward kinematics: where every body is, from a scene and the poses of a frame.
+"""Forward kinematics: compute every body's pose from a scene and the poses of a frame.
 
-The same computation that a page does to draw a frame; here for exports and for programs
-that look at a match. Quaternions are w, x, y, z.
+A page does the same computation to draw a frame; this one is for exports and for programs
+that analyse a match. Quaternions are w, x, y, z.
 """
 
 from collections.abc import Sequence
@@ -17,22 +17,22 @@ _AT_ORIGIN = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 def joints_per_seat(sheet: Sheet) -> tuple[int, ...]:
-    """Number of joints of each seat's robot; 0 while a seat has none."""
+    """Return the number of joints of each seat's robot; 0 for a seat without a robot."""
     return tuple(3 * len(seat.legs) for seat in sheet.seats)
 
 
 def split_poses(poses: bytes, joints: Sequence[int]) -> tuple[Array, ...]:
-    """Take `Frame.poses` apart.
+    """Split `Frame.poses` by seat.
 
     Args:
-        poses: as in the frame; not empty.
+        poses: as in a frame; not empty.
         joints: number of joints of each seat's robot.
 
     Returns:
         For each seat an array (7 + joints,): position [m], quaternion, joint angles [rad].
 
     Raises:
-        ValueError: if that is not what `poses` holds.
+        ValueError: if `poses` has another length.
     """
     floats = np.frombuffer(poses, "<f4").astype(np.float64)
     ends = np.cumsum([ROOT_FLOATS + count for count in joints])
@@ -44,11 +44,11 @@ def split_poses(poses: bytes, joints: Sequence[int]) -> tuple[Array, ...]:
 
 
 class ForwardKinematics:
-    """Finds the bodies of a scene.
+    """Computes the poses of the bodies of a scene.
 
     Args:
         scene: as the court sent it; every body comes after its parent.
-        joints: number of joints of each seat's robot, as in the frames to come.
+        joints: number of joints of each seat's robot, as in the frames.
     """
 
     def __init__(self, scene: Scene, joints: Sequence[int]) -> None:
@@ -61,7 +61,7 @@ class ForwardKinematics:
         self.rest = np.concatenate(
             [np.zeros(0), *([*_AT_ORIGIN, *([0.0] * count)] for count in joints)]
         )
-        """Poses of robots at the origin with every angle 0: enough for bodies that don't move."""
+        """Poses of robots at the origin with every angle 0; enough for bodies that don't move."""
         seats: list[int] = []
         for index, body in enumerate(scene.bodies):
             seats.append(body.seat if body.seat >= 0 or body.parent < 0 else seats[body.parent])
@@ -73,11 +73,11 @@ class ForwardKinematics:
                 self._angles[index] = int(starts[seats[index]]) + ROOT_FLOATS + body.joint
 
     def poses(self, poses: Any) -> tuple[Array, Array]:
-        """Find every body's pose in the world.
+        """Compute every body's pose in the world.
 
         Args:
-            poses: `Frame.poses` (not empty), or an array (..., numbers) of such: many frames
-                at once take little longer than one.
+            poses: `Frame.poses` (not empty), or an array (..., numbers) of such poses: many
+                frames together take little longer than one.
 
         Returns:
             Positions [m] (..., bodies, 3) and quaternions (..., bodies, 4), body to world.
@@ -105,7 +105,7 @@ class ForwardKinematics:
 
 
 def multiply(first: Array, second: Array) -> Array:
-    """Product of quaternions (..., 4): turn by `second`, then by `first`."""
+    """Multiply quaternions (..., 4): the product turns by `second`, then by `first`."""
     w, v = first[..., :1], first[..., 1:]
     w2, v2 = second[..., :1], second[..., 1:]
     real = w * w2 - np.sum(v * v2, axis=-1, keepdims=True)
@@ -121,10 +121,10 @@ def rotate(quat: Array, vector: Array) -> Array:
 
 
 def euler_zyx(quat: Array) -> Array:
-    """Roll, pitch and yaw [rad] (..., 3) of unit quaternions (..., 4).
+    """Convert unit quaternions (..., 4) to roll, pitch and yaw [rad] (..., 3).
 
     Euler ZYX: the body is turned by roll about x, then by pitch about y, then by yaw about
-    z, all of the world. So yaw is 0 where the body's +y points along the world's +y (rules 2).
+    z, all axes of the world. So yaw is 0 if the body's +y points along the world's +y (rules 2).
     """
     w, x, y, z = np.moveaxis(np.asarray(quat, dtype=np.float64), -1, 0)
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
@@ -134,12 +134,12 @@ def euler_zyx(quat: Array) -> Array:
 
 
 def _turn(axis: Sequence[float], angle_rad: Array) -> Array:
-    """Quaternions (..., 4) of turns about an axis of unit length."""
+    """Return the quaternions (..., 4) of turns about an axis of unit length."""
     half = np.asarray(angle_rad)[..., None] / 2
     return np.concatenate([np.cos(half), np.sin(half) * np.array(axis)], axis=-1)
 
 
 def _unit(quat: Array) -> Array:
-    """A frame's quaternion is rounded to float32: make its length 1 again."""
+    """Normalise a frame's quaternion, whose length is not quite 1 after rounding to float32."""
     unit: Array = quat / np.linalg.norm(quat, axis=-1, keepdims=True)
     return unit

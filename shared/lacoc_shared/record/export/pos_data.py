@@ -1,4 +1,4 @@
-"""Pos-data.txt: the way of one robot through a match, for a spreadsheet (rules 2, workshop 4-4)."""
+"""Pos-data.txt: one robot's path through a match, for a spreadsheet (rules 2, workshop 4-4)."""
 
 import numpy as np
 
@@ -10,11 +10,11 @@ _PHYSICS = (Phase.READY, Phase.PLAYING)
 
 
 class PosData:
-    """Collects the ticks of one seat's robot, from a record or live.
+    """Collects the poses of one seat's robot at each tick, from a record or live.
 
     Args:
         seat: index of the seat.
-        joints: number of joints of each seat's robot, as in the frames to come.
+        joints: number of joints of each seat's robot, as in the frames.
     """
 
     def __init__(self, seat: int, joints: tuple[int, ...]) -> None:
@@ -25,10 +25,10 @@ class PosData:
         self._tick = 0
 
     def add(self, frame: Frame) -> None:
-        """Add a frame: a row if physics ran in its beat. One that comes too late is left out.
+        """Add a frame: it becomes a row if physics ran in its beat. A late frame is ignored.
 
         Raises:
-            ValueError: if the frame's robots have other joints.
+            ValueError: if the frame's robots have other numbers of joints.
         """
         last = self._last
         if last is not None and frame.beat <= last.beat:
@@ -38,12 +38,12 @@ class PosData:
             return
         pose = split_poses(frame.poses, self.joints)[self._seat]
         if self._rows and last is not None:
-            # Frames may be lost on the way; while physics runs every beat is a tick.
+            # Frames may be lost in transit, but while physics runs every beat is a tick.
             self._tick += frame.beat - last.beat if last.phase in _PHYSICS else 1
         self._rows.append((self._tick, pose))
 
     def text(self) -> str:
-        """The file: tab-separated, one header row, one row for each tick."""
+        """Return the file: tab-separated, one header row, one row for each tick."""
         names = [f"j{joint}_deg" for joint in range(self.joints[self._seat])]
         header = ["time_s", "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg", *names]
         lines = ["\t".join(header)]

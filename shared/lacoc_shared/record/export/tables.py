@@ -1,4 +1,4 @@
-"""What a record gives to other programs: tables and JSON. `foxglove` gives the 3D view."""
+"""Export tables and JSON from a record; `foxglove` exports the 3D view."""
 
 import csv
 import io
@@ -16,7 +16,7 @@ from lacoc_shared.words import render, say
 
 
 def pos_data(record: Record, seat: str) -> bytes:
-    """The Pos-data.txt of a seat (rules 2).
+    """Make the Pos-data.txt of a seat (rules 2).
 
     Raises:
         UserError: if there is no such seat, or no robot ever moved in it.
@@ -61,10 +61,10 @@ def events_csv(record: Record) -> bytes:
 
 
 def result_json(record: Record) -> bytes:
-    """The result as JSON, with how well the match was held as `health`; null: headless.
+    """Return the result as JSON; `health` says how well the match ran, and is null if headless.
 
     Raises:
-        UserError: if the match has none.
+        UserError: if the match has no result.
     """
     if record.result is None:
         raise UserError(say("export.no-result", match=record.header.match_id))
@@ -73,10 +73,10 @@ def result_json(record: Record) -> bytes:
 
 
 def seat_index(record: Record, seat: str) -> int:
-    """Index of a seat.
+    """Return the index of a seat.
 
     Raises:
-        UserError: if the match has no such seat; the message lists those it has.
+        UserError: if the match has no such seat; the message lists the seats it has.
     """
     seats = seat_ids(record)
     if seat not in seats:
@@ -85,5 +85,5 @@ def seat_index(record: Record, seat: str) -> int:
 
 
 def seat_ids(record: Record) -> list[str]:
-    """The seats of a match, in their order."""
+    """Return the ids of a match's seats, in the arena's order."""
     return [seat.id for seat in record.sheets[-1][1].seats] if record.sheets else []
