@@ -179,9 +179,7 @@ class Links:
         return _Frame(sent_s, self._delay_beats * BEAT_S)
 
     def _seen(self, command: Command) -> _Frame | None:
-        """Find the frame that a command names, else the oldest known; None if it is of another
-        match.
-        """
+        """Find the frame that a command names, else the oldest known; None for another match."""
         if command.match != self._match or not self._frames:
             return None
         return self._frames[-min(self._beat - command.seen, len(self._frames))]

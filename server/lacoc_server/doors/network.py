@@ -170,8 +170,7 @@ class CourtNetwork:
         self._outbox.send(self._sheet, self._sheet_bytes)
 
     def publish_scene(self, scene: Scene) -> None:
-        """Keep a changed scene for clients that ask; frames carry its hash, which shows the change.
-        """
+        """Keep a changed scene for clients that ask; the hash in the frames shows the change."""
         self._scene_bytes = encode(scene)
 
     def publish_health(self, health: Health) -> None:

@@ -118,9 +118,7 @@ def conclude(
 
 
 def may_differ(headers: Sequence[Header], finding: Finding) -> bool:
-    """Return whether a section may have other bits: not all of it was recorded with this
-    arithmetic.
-    """
+    """Return whether a section may have other bits: another arithmetic recorded some of it."""
     here = arithmetic.here()
     ends = [header.first_beat for header in headers[1:]] + [finding.last_beat + 1]
     return not all(

@@ -104,7 +104,7 @@ def _with_entry(file: Path) -> tuple[bytes, Contest]:
 
 
 def _insert_entry(data: bytes, file: Path, *, must_have_table: bool) -> bytes:
-    folder = json.dumps(_free_folder(file), ensure_ascii=False)  # a JSON string is a TOML string too
+    folder = json.dumps(_free_folder(file), ensure_ascii=False)  # JSON strings are TOML's too
     entry = f"keys = {folder}  # folder, beside this file, of what 'lacoc contest keys' made"
     lines = data.decode("utf-8-sig").splitlines(keepends=True)
     heads = [row for row, line in enumerate(lines) if "".join(line.split()).startswith(_TABLE)]
