@@ -129,7 +129,7 @@ def may_differ(headers: Sequence[Header], finding: Finding) -> bool:
 
 
 def other_arithmetic(record: Mapping[str, str], here: Mapping[str, str]) -> str:
-    """Describe how two arithmetics differ; "" if they do not."""
+    """Describe how the arithmetic of two machines differs; "" if it does not."""
     if not record:
         return "The record does not say with which arithmetic it was made."
     if arithmetic.same(record, here):

@@ -167,8 +167,7 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Put back robots that left their start place before play; one that keeps leaving is not
-        ready.
+        """Put back robots that left their start place before play; a third time takes back ready.
         """
         for seat in self.seats:
             gone_m = self.staging.from_start_m(seat.index)

@@ -19,7 +19,7 @@ import numpy as np
 from lacoc_robots.model import set_options
 
 BITS = ("functions", "model", "path")
-"""Entries that decide whether two arithmetics are the same; the others explain them to a person."""
+"""Entries that decide whether two fingerprints match; the others explain them to a person."""
 
 _ROWS = 512
 """Number of arguments tried for each function."""
