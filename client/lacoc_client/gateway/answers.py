@@ -38,7 +38,7 @@ class Answers:
     def refuse(self, to: int, error: UserError | FileRefused) -> None:
         """Answer that a request was not done, and why."""
         self._viewer.send(wire.refusal(to, error))
-        # The sentences contain no token. The log takes at most one refusal a second from a page.
+        # The sentences contain no token. A page gets one refusal a second into the log, on average.
         if self._logged.take(1, time.monotonic()):
             self._log(f"Refused: {error}", "refused")
 

@@ -38,8 +38,7 @@ class Courts:
         """Number of pages that were refused because there were too many."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
-        """Return a court's feed and referees, and start the feed; without a name, the first
-        court's.
+        """Return a court's feed, started, and its referees; without a name, the first court's.
 
         Raises:
             UserError: if this gateway has no such court.

@@ -104,9 +104,7 @@ class PageSeat:
         self._joins += 1
 
     def _entry(self, asked: wire.JoinAsk, watching: Access) -> tuple[Access, str, SeatFiles]:
-        """Return the way to the seat, the team's name and its files; prefill what the page left
-        out.
-        """
+        """Return the way to the seat, the team's name and its files; fill in what is missing."""
         token, name = asked.token, asked.name
         files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
         prefill = self._prefill

@@ -167,7 +167,7 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Put back robots that left their start place before play; a third time takes back ready.
+        """Put back robots that leave their start place before play; at the third time ready ends.
         """
         for seat in self.seats:
             gone_m = self.staging.from_start_m(seat.index)
