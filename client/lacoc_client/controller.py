@@ -44,7 +44,7 @@ class Hold(Enum):
     asked again.
     """
     REPLACED = "replaced"
-    """The same token joined again elsewhere."""
+    """A newer session with the same token took the seat."""
     REFUSED = "refused"
     """The court was restarted and does not accept the controller again."""
     LEFT = "left"

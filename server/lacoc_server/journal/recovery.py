@@ -27,7 +27,7 @@ _OPENING_BYTES = 1 << 14
 
 @dataclass(frozen=True)
 class Unfinished:
-    """A match as it was when its court died."""
+    """A match as it was when its court was killed."""
 
     match: Match
     segment: int

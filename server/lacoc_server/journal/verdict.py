@@ -47,7 +47,7 @@ class Verdict:
     sections: int
     """Number of sections simulated again."""
     text: str
-    """The verdict in words."""
+    """The verdict as a sentence."""
     differs_at: int | None = None
     """First beat that differs; None: no beat does."""
     distance: float = 0.0

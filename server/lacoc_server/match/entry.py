@@ -115,7 +115,10 @@ class Admission:
     """Levels of control that the arena opens."""
 
     def __call__(self, join: Join) -> Join:
-        """Complete a join.
+        """Weigh in a join's files, after filling in those that are missing.
+
+        Returns:
+            The join with a robot file.
 
         Raises:
             FileRefused: with every mistake of every file.

@@ -67,11 +67,18 @@ class Match(MatchState):
         """The last game state that was packed, its board as in frames, and each seat's points."""
 
     def legality(self) -> dict[str, Phrase | None]:
-        """List every decision: None if it is legal now, else the reason why not."""
+        """List every decision by name: None if it is legal now, else why not."""
         return referee.legality(self)
 
     def beat(self, inputs: Sequence[Input] = ()) -> Beat:
-        """Let one beat pass."""
+        """Let one beat pass.
+
+        Args:
+            inputs: inputs of the beat, in any order; each has a rank.
+
+        Returns:
+            The results of the beat, with an outcome for each input.
+        """
         self.beats += 1
         self._events = []
         self._touch = None
@@ -167,8 +174,7 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Put back robots that leave their start place before play; at the third time ready ends.
-        """
+        """Put back robots that leave their start place before play; the third time ends READY."""
         for seat in self.seats:
             gone_m = self.staging.from_start_m(seat.index)
             if gone_m <= FARTHEST_M:

@@ -33,7 +33,7 @@ class Staging:
         self.clear()
 
     def clear(self) -> None:
-        """Leave the field empty."""
+        """Empty the field."""
         self.physics: Physics = self.make_physics(self._arena, ())
         self.poses = b""
         """Poses in the form of `Frame.poses`: exactly the numbers that everybody sees."""

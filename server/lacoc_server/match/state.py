@@ -32,7 +32,7 @@ TRANSITIONS: dict[Phase, frozenset[Phase]] = {
     Phase.OFFICIAL: frozenset(),
     Phase.VOID: frozenset(),
 }
-"""The phases that may follow each phase; `next` opens a new match instead."""
+"""Phases that may follow each phase; `next` opens a new match instead."""
 
 _ENTERED = {
     Phase.LOBBY: say("event.lobby"),
@@ -71,7 +71,7 @@ class MatchState:
         """Length of the match [ticks]; 0: it has no end."""
         self.phase = Phase.CREATED
         self.beats = -1
-        """Number of the beat; the first is 0."""
+        """Number of the present beat; the first is 0."""
         self.entered_beat = 0
         """Beat in which this phase began."""
         self.countdown_beats = 0
@@ -92,7 +92,7 @@ class MatchState:
         self.declared: str | None = None
         """The winner that a referee declared: a seat's id or "draw"."""
         self.ended: Phrase | None = None
-        """Why play ended; None while it has not."""
+        """Why play ended; None: it has not."""
         self.advice: tuple[Phrase | str, ...] = ()
         """Reasons why the court advises a replay."""
         self.next_wanted = False
@@ -253,7 +253,7 @@ class MatchState:
         """End play.
 
         Args:
-            why: `over.*`.
+            why: phrase of `over.*`.
         """
         self.ended = why
         self.enter(Phase.FINISHED)
@@ -321,9 +321,9 @@ class MatchState:
         self.tell("result", said, winner=winner, scores=scores)
 
     def result_changed(self) -> None:
-        """Let this beat carry the result, if the match has one."""
+        """Put the result into this beat, if the match has one."""
         self._result_changed = self.phase in _ENDED
 
     def sheet_changed(self) -> None:
-        """Let this beat carry the sheet."""
+        """Put the sheet into this beat."""
         self._sheet_changed = True
