@@ -70,9 +70,9 @@ def play_command(
     A page opens in your browser; only this machine can open it. What you give here is filled in
     there already, and you can give the rest there.
 
-    With --terminal 0-9 move the robot, the arrows up, left, right and down are the keys 2, 1, 3 and
-    0 of level B, Tab changes the level, x restarts, r says ready, z leaves and writes Pos-data.txt,
-    q leaves.
+    With --terminal the keys are: 0-9 move the robot. The arrows up, left, right and down are 2, 1,
+    3 and 0 of level B. Tab changes the level. x restarts, r says ready, q leaves, z leaves and
+    writes Pos-data.txt.
 
     With --terminal keys can also come from a pipe. A line holds keys, which are pressed one after
     another: '2', 'tab 1', or '1 2 3 4'. A number with a point at the start of a line is a time:

@@ -168,7 +168,7 @@ def _why_taken(host: str, port: int) -> str:
 
 
 def graphics() -> Finding:
-    """Report the graphics that a browser may use; only the browser knows what it does use."""
+    """Report the graphics that a browser may use; only the browser knows which it uses."""
     look = (
         "In the browser: chrome://gpu or about:support says what it draws with. If a page is slow, "
         "choose the quality 'low' in its settings."

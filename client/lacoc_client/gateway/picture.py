@@ -66,15 +66,15 @@ class CourtPicture:
         return wire.message(Kind.EVENT, payload) if is_new else None
 
     def take_scene(self, payload: bytes) -> bytes | None:
-        """Take a scene in; pages get none that does not belong to the newest frame."""
+        """Take a scene in; it goes to pages if it belongs to the newest frame."""
         return _scene(payload) if self.view.take_scene(payload) else None
 
     def take_sheet(self, payload: bytes) -> bytes | None:
-        """Take a sheet in; pages get none of another version."""
+        """Take a sheet in; it goes to pages if it has this version of the protocol."""
         return wire.message(Kind.SHEET, payload) if self.view.take_sheet(payload) else None
 
     def take_health(self, payload: bytes) -> bytes | None:
-        """Take health in; pages get none of another version."""
+        """Take health in; it goes to pages if the court has this version of the protocol."""
         self.view.see_health(decode(payload, Told, MAX_BYTES))
         if self.view.other_version is not None:
             return None

@@ -1,10 +1,12 @@
 """The links of a court's seats: their round trips, and the delay that makes them equal.
 
 Pure: the court's clock comes in as arguments. A command names the newest frame that its sender had,
-and the court knows when it sent that frame. So no round trip needs a client's clock. Where a
-contest makes its links equal, an answer to a frame takes effect a fixed delay after the frame was
-sent, the same for every seat. Commands that arrive earlier are held until then; commands that
-arrive later take effect at once and are counted (docs/decisions/0010-equal-links.md).
+and the court knows when it sent that frame. So no round trip needs a client's clock.
+
+A contest may make its links equal: then an answer to a frame takes effect a fixed delay after the
+frame was sent. The delay is the same for every seat. Commands that arrive earlier are held until
+then; commands that arrive later take effect at once and are counted
+(docs/decisions/0010-equal-links.md).
 """
 
 import math
@@ -25,7 +27,7 @@ CHANGE_BEATS = 3 * BEATS_PER_S
 LOWER_BEATS = 2
 """Smallest step down of the common delay [beats]: a delay that wavers is worse than a long one."""
 FRESH_BEATS = 2 * BEATS_PER_S
-"""Oldest frame that a repeat may name as a sign of life; with an older one its sender has gone."""
+"""Oldest frame [beats] that a repeat may name as a sign of life; else its sender has gone."""
 TRUST_S = 2 * BEAT_S
 """Added to a seat's p95: no command is believed to have been under way for longer than the sum."""
 

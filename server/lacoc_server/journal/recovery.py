@@ -61,8 +61,8 @@ class Unfinished:
 def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
     """Find the newest match of a court, if it was left unfinished; else None.
 
-    It passes over a match that a running court of this name holds, and one without a header, whose
-    court was killed while it opened.
+    It skips a match that a running court of this name holds. It also skips a match without a
+    header: its court was killed while it opened.
 
     Args:
         folder: folder of the records.

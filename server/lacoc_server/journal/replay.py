@@ -95,9 +95,8 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
         The match after its last recorded beat, with its physics ready to go on.
 
     Raises:
-        UserError: if the arena is not installed, another version of MuJoCo made the record, or the
-        match that results differs from the record, because the record is damaged or other software
-        wrote it.
+        UserError: if the arena is not installed or another version of MuJoCo made the record. Also
+        if the resulting match differs from the record: it is damaged, or other software wrote it.
     """
     _same_physics(record)
     judge = Judge(

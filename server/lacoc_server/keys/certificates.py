@@ -58,7 +58,7 @@ class Authority(NamedTuple):
         """Read an authority from its files.
 
         Raises:
-            ValueError: if the pair is no authority.
+            ValueError: if they are not the files of an authority.
         """
         key = load_pem_private_key(pair.private_key, None)
         certificate = x509.load_pem_x509_certificate(pair.certificate)

@@ -117,7 +117,7 @@ def _insert_entry(data: bytes, file: Path, *, must_have_table: bool) -> bytes:
 
 
 def _free_folder(file: Path) -> str:
-    """Choose a new folder for keys beside a contest file; one that exists is another contest's.
+    """Choose a new folder for keys beside a contest file; existing ones belong to other contests.
 
     Raises:
         UserError: if both possible names are taken.

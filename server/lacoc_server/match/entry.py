@@ -40,8 +40,8 @@ def weigh_in(
 ) -> Entry:
     """Read and check a contestant's files.
 
-    The result is cached: a court weighs the same files in at its door, and again when the match
-    takes in the join, which the record has with its files.
+    The result is cached, because a court weighs the same files in twice: at its door, and when the
+    match takes in the join. The record has the join with its files.
 
     Args:
         robot: the robot file.

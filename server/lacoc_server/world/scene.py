@@ -30,8 +30,8 @@ def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
         seats: ids of the seats.
 
     Raises:
-        UserError: if a body has a joint that pages can't draw (they know free roots and one hinge
-        through a body's origin), a geom has another type, or a geom's marker does not exist.
+        UserError: if pages can't draw the model. They know free roots, one hinge through a body's
+        origin, and the geom types above. Also if a geom's marker does not exist.
     """
     bodies = tuple(_body(model, index, seats) for index in range(model.nbody))
     geoms = []
