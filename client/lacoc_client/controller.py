@@ -95,7 +95,7 @@ class Controller:
         robot: a robot file; None: the contest's robot.
         postures: a Loco-data file.
         locomotion: a LocoTra-data file; without either gait file: the sample gait of the contest's
-        robot.
+            robot.
         notify: called on Zenoh's thread when a frame has come; it must return at once.
 
     Raises:

@@ -34,7 +34,7 @@ class EventLog(Generic[T]):
             match: number of the open match, from the court's health.
             beat: beat of that health.
             number: number of the newest event then, counted from 1 without a gap; 0: it does not
-            say.
+                say.
         """
         newest = self._known[max(self._known)][0] if self._known else None
         if newest is not None and len(self._known) <= newest.number - self._first:

@@ -40,7 +40,7 @@ class RefereeClient:
 
         Raises:
             NoAnswer: if it is unknown here whether the decision was made; the log of events shows
-            it.
+                it.
             UserError: if the court refuses; the message is its reason.
         """
         name = str(type(decision).__struct_config__.tag)

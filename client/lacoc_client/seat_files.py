@@ -36,7 +36,7 @@ def gather(robot: str | None, gaits: Sequence[Path], notes: list[str] | None = N
         robot: an installed robot, a folder or a robot file; None: the contest's robot.
         gaits: gait files, at most one for each level; none: those beside the robot file.
         notes: receives sentences about things in a workbook that are legal, but probably not meant.
-        For a text file the court sends them.
+            For a text file the court sends them.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -80,9 +80,9 @@ def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = N
 
     Args:
         files: files as text; a posture file with mistakes is left to the court, which knows the
-        robot.
+            robot.
         sequences: for each digit key from 0 on, the digits of its postures in order; None: as in
-        the sample gait, if the file has all those postures.
+            the sample gait, if the file has all those postures.
 
     Raises:
         UserError: if a sequence is empty, or uses a posture that does not exist.

@@ -62,7 +62,7 @@ def player(
         arena: the arena.
         seat: index of the seat.
         bot: name as in `brains.find`. With "@FOLDER" after it, the bot steers the files in that
-        folder: gait files, and `robot.toml` if there is one.
+            folder: gait files, and `robot.toml` if there is one.
         robot: an installed robot, or a robot file with its gait beside it; a ghost has its own.
         team: name of the team; None: the folder's name, or the bot's.
         late_ticks: see `Player`.

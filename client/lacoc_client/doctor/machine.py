@@ -108,7 +108,7 @@ def court_port(
         host: address of this machine to listen at.
         port: the port.
         court: the court that should listen there, by the contest file; None: any court, and a taken
-        port is only a note.
+            port is only a note.
         credentials: credentials to ask a court that has keys.
     """
     about = f"port {port}"

@@ -26,10 +26,10 @@ _LEADS_ON = (
 def unseen(address: str) -> Iterator[str]:
     """Give an address that leads to another one without showing it; valid until the block ends.
 
-    If no file can be written, it is the address itself.
+    If no file can be written, it is the other address itself.
 
     Args:
-        address: an address with a key in its fragment.
+        address: the other address, with a key in its fragment.
     """
     with ExitStack() as stack:
         try:

@@ -18,8 +18,8 @@ KEPT_BYTES = 1 << 20
 _UNSENT_BYTES = 4096
 """Bytes that the system may hold back before a page counts as slow: a dozen frames."""
 _UNANSWERED_S = 1.0
-"""Longest time to answer a ping. A later page gets no frames until it answers, so that buffers on
-the way, however large, never fill with old frames.
+"""Longest time to answer a ping. A page that takes longer gets no frames until it answers, so that
+buffers on the way, however large, never fill with old frames.
 """
 _WATCHED_PING_S = 0.3
 

@@ -39,7 +39,7 @@ class SeatThread:
         access: the way to the seat.
         team: the team's name.
         files: returns the team's files as text, and adds notes about them; called on the thread,
-        because a workbook takes a while.
+            because a workbook takes a while.
         unheard_s: returns how long the page has been silent [s].
         tell: receives the state of the seat (see docs/gateway.md, "seat"), on the thread.
         joined: receives the result of the join, on the thread.

@@ -24,7 +24,7 @@ def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
     Args:
         match: a match that begins when its seats are ready.
         held: returns for each seat whether a session holds it. After a restart of the court this is
-        False until the controller has joined again, though the seat is not silent yet.
+            False until the controller has joined again, though the seat is not silent yet.
     """
     if match.phase is Phase.FINISHED:
         return [_decide(Official())]

@@ -45,7 +45,7 @@ class Weighing:
 
         Raises:
             FileRefused: with every mistake of every file, or with what the robot did when it should
-            stand.
+                stand.
         """
         admission = self._admission
         whole = admission(join)

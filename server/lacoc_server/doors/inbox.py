@@ -110,14 +110,14 @@ class Inbox:
         keys: key expressions of the court; seals cover them.
         seats: the seats' names, in the arena's order.
         token_hashes: hash of each seat's token, by the seat's name; a seat without one can't be
-        joined.
+            joined.
         check_files: weighs a join's files in. It returns the join with the robot file filled in, or
-        None while it needs more time; it raises `FileRefused` for bad files.
+            None while it needs more time; it raises `FileRefused` for bad files.
         random_bytes: returns that many random bytes, for numbers and secrets of sessions.
         last_seqs: for a restarted court, the newest sequence numbers in its record, by seat.
         joined: for a restarted court, the seats that are held.
         former: hashes of older tokens that open the seats too, by seat: those with which seats were
-        taken before a restart of the court made new ones.
+            taken before a restart of the court made new ones.
         most_delay_ms: longest delay that makes the links equal; 0: links are not made equal.
     """
 

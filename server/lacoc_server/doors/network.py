@@ -58,7 +58,7 @@ class CourtNetwork:
         inbox: checks what comes for the seats.
         decision_desk: checks what comes from referees.
         protection: the court's certificate and users; None: anybody may connect, and nothing is
-        encrypted.
+            encrypted.
 
     Raises:
         UserError: if the court can't listen on an address.

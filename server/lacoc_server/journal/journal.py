@@ -38,7 +38,7 @@ class Journal:
         folder: folder of the record; None: no record.
         segment: number of earlier segments of this match's record.
         measure: measures how well the match is held; None for a headless match, in which no beat
-        can be late.
+            can be late.
 
     Raises:
         UserError: if the record can't be created.

@@ -40,7 +40,7 @@ def verify(
         record: what to verify.
         folder: folder of its arena, if the arena is not installed.
         bound: largest distance from the record that another arithmetic may reach in a section [m,
-        rad].
+            rad].
         processes: number of processes that simulate; 1: only this one; None: one for each core.
 
     Yields:
@@ -48,7 +48,7 @@ def verify(
 
     Raises:
         UserError: if the arena is not installed, another version of MuJoCo made the record, or it
-        is too damaged to describe a match.
+            is too damaged to describe a match.
     """
     _same_physics(record)
     judge = Judge(record, folder, dict(record.snapshots))
@@ -96,7 +96,8 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
 
     Raises:
         UserError: if the arena is not installed or another version of MuJoCo made the record. Also
-        if the resulting match differs from the record: it is damaged, or other software wrote it.
+            if the resulting match differs from the record: it is damaged, or other software wrote
+            it.
     """
     _same_physics(record)
     judge = Judge(

@@ -47,7 +47,7 @@ def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
     Args:
         file: the contest file.
         hosts: names and IP addresses of the courts' machine; invitations use the first one for a
-        court without an address in the file.
+            court without an address in the file.
         renew: replace all keys, and keep the old ones under another name.
 
     Raises:

@@ -31,7 +31,7 @@ def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
 
     Raises:
         UserError: if pages can't draw the model. They know free roots, one hinge through a body's
-        origin, and the geom types above. Also if a geom's marker does not exist.
+            origin, and the geom types above. Also if a geom's marker does not exist.
     """
     bodies = tuple(_body(model, index, seats) for index in range(model.nbody))
     geoms = []
