@@ -22,6 +22,7 @@ from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import Colour, Pattern
+from lacoc_shared.words import say
 
 _GROUP = "lacoc.arenas"
 _FILE = "arena.toml"
@@ -91,17 +92,15 @@ class Arena:
         try:
             file = msgspec.convert(settings, _File)
         except msgspec.ValidationError as error:
-            raise UserError(f"The file of arena {name!r} is wrong: {error}.") from None
+            raise UserError(say("arena.wrong", name=name, error=str(error))) from None
         try:
             self.game: AnyGame = self._make(file.game)
         except ValueError as error:  # msgspec.ValidationError is one
-            raise UserError(f"The table [game] of arena {name!r} is wrong: {error}.") from None
+            raise UserError(say("arena.wrong-game", name=name, error=str(error))) from None
         ids = [seat.id for seat in file.seat]
         if len(ids) != len(self.game.starts) or len(set(ids)) != len(ids):
-            raise UserError(
-                f"The file of arena {name!r} is wrong: its game needs {len(self.game.starts)} "
-                f"[[seat]] tables, each with its own id; found {', '.join(ids) or 'none'}."
-            )
+            needed = len(self.game.starts)
+            raise UserError(say("arena.wrong-seats", name=name, needed=needed, found=ids))
         self.title = file.title
         self.match = file.match
         self.seats = file.seat
@@ -170,9 +169,10 @@ def load(
     try:
         settings = read_toml(path.read_bytes())
     except OSError as error:
-        raise UserError(f"The arena file {path} can't be read: {error.strerror}.") from None
+        why = error.strerror or str(error)
+        raise UserError(say("arena.unreadable", path=str(path), why=why)) from None
     except BadToml as error:
-        raise UserError(f"The arena file {path} can't be read: {error}.") from None
+        raise UserError(say("arena.unreadable", path=str(path), why=error.phrase)) from None
     folder = None if name in plugins.installed(_GROUP) else Path(name).expanduser().resolve()
     settings = merge(settings, overrides or {})
     if looks:
@@ -199,10 +199,7 @@ def from_settings(name: str, settings: dict[str, Any], folder: Path | None = Non
     try:
         module = plugins.installed_package(_GROUP, "arena", name)
     except UserError as error:
-        raise UserError(
-            f"{error} The code of an arena in a folder runs only if you name the folder yourself: "
-            "--arena FOLDER, if you trust it."
-        ) from None
+        raise UserError(say("arena.untrusted", why=error.phrase)) from None
     return Arena(name, settings, module, None)
 
 
@@ -220,12 +217,15 @@ def _require_whole(module: ModuleType) -> None:
         if importlib.util.find_spec(f"{module.__name__}.{part}") is None
     ]
     if missing:
-        needed = ", ".join(f"{part}.py" for part in _PARTS)
         raise UserError(
-            f"The folder {folder} is no whole arena: it lacks {', '.join(missing)}. An arena needs "
-            f"{_FILE}, {needed}; begin with a copy of {Path(__file__).parent / 'othello'}. To "
-            "change numbers alone no folder is needed: write them into the contest file, below "
-            "[court.NAME.settings]."
+            say(
+                "arena.not-whole",
+                folder=str(folder),
+                missing=missing,
+                file=_FILE,
+                parts=[f"{part}.py" for part in _PARTS],
+                example=str(Path(__file__).parent / "othello"),
+            )
         )
 
 

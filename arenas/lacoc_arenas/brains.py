@@ -16,6 +16,7 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
 
 GROUP = "lacoc.bots"
 GHOST = "ghost:"
@@ -54,8 +55,7 @@ def _find(arena: Arena, name: str) -> BotFactory:
     if name.endswith(".py"):
         return _from_file(Path(name).expanduser())
     raise UserError(
-        f"There is no bot {name!r} for {arena.name}. Its own: {', '.join(arena.bots)}. "
-        f"Installed: {', '.join(installed) or 'none'}. A file works too: my_bot.py."
+        say("bot.none", name=name, arena=arena.name, own=[*arena.bots], installed=[*installed])
     )
 
 
@@ -74,7 +74,7 @@ def open_ghost(name: str) -> tuple[Record, int]:
     if not seat and len(seats) == 1:
         return record, 0
     if seat not in seats:
-        raise UserError(f"{name}: whose ghost? Add :SEAT with one of {', '.join(seats)}.")
+        raise UserError(say("bot.whose-ghost", name=name, seats=seats))
     return record, seats.index(seat)
 
 
@@ -91,7 +91,7 @@ def ghost_join(record: Record, seat: int) -> JoinSeat:
         if isinstance(item, JoinSeat) and item.seat == seat
     ]
     if not joins:
-        raise UserError(f"Nobody sat in seat {seat} of that record.")
+        raise UserError(say("bot.nobody", seat=seat))
     return joins[-1]
 
 
@@ -117,13 +117,13 @@ def ghost(record: Record, seat: int) -> Brain:
 def _from_file(path: Path) -> BotFactory:
     spec = importlib.util.spec_from_file_location(f"lacoc_bot_{path.stem}", path)
     if spec is None or spec.loader is None or not path.exists():
-        raise UserError(f"There is no bot file {path}.")
+        raise UserError(say("bot.no-file", path=str(path)))
     module: Any = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
     except Exception as error:  # whatever a person's code may raise
         raise broken(str(path), error, spec.origin) from error
     if not callable(getattr(module, "bot", None)):
-        raise UserError(f"{path} has no function bot(sheet, seat).")
+        raise UserError(say("bot.no-function", path=str(path)))
     factory: BotFactory = module.bot
     return factory

@@ -12,6 +12,7 @@ from lacoc_arenas.bot import BotFactory, Brain, Key
 from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import RESTART_KEY
+from lacoc_shared.words import say
 
 _A_BRAIN = "a function that takes a frame and returns a Key or None"
 _A_KEY = (
@@ -56,8 +57,9 @@ def broken(name: str, error: Exception, file: str | None) -> UserError:
     lines = [call.lineno for call in calls if call.filename == file]
     line = lines[-1] if lines else getattr(error, "lineno", None)  # a SyntaxError has its own
     reason = error.msg if isinstance(error, SyntaxError) else error
-    place = "" if file is None or line is None else f" ({file}, line {line})"
-    return UserError(f"The bot {name} ended{place}: {type(error).__name__}: {reason}")
+    place = None if file is None or line is None else f"{file}:{line}"
+    what = f"{type(error).__name__}: {reason}"
+    return UserError(say("bot.ended", bot=name, place=place, error=what))
 
 
 def _call(name: str, function: Callable[..., Any], *arguments: object) -> Any:
@@ -66,9 +68,9 @@ def _call(name: str, function: Callable[..., Any], *arguments: object) -> Any:
     except Exception as error:  # whatever a person's code may raise
         called = error.__traceback__ and error.__traceback__.tb_next
         if called is None:  # it does not take these arguments
+            place = _place(function)
             raise UserError(
-                f"The bot {name}{_place(function)} can't be called: {error}. Expected bot(sheet, "
-                "seat), which returns brain(frame)."
+                say("bot.can-not-call", bot=name, place=place, error=str(error))
             ) from error
         raise broken(name, error, called.tb_frame.f_code.co_filename) from error
 
@@ -84,10 +86,11 @@ def _is_key(found: object) -> bool:
 
 def _gave_back(name: str, function: object, found: object, expected: str) -> UserError:
     shown = printable(repr(found), 80)
-    return UserError(f"The bot {name}{_place(function)} returned {shown}. Expected {expected}.")
+    place = _place(function)
+    return UserError(say("bot.returned", bot=name, place=place, found=shown, expected=expected))
 
 
-def _place(function: object) -> str:
-    """Where a function begins; nothing for another object that can be called."""
+def _place(function: object) -> str | None:
+    """Say where a function begins; None for another object that can be called."""
     code = getattr(function, "__code__", None)
-    return "" if code is None else f" ({code.co_filename}, line {code.co_firstlineno})"
+    return None if code is None else f"{code.co_filename}:{code.co_firstlineno}"

@@ -30,7 +30,7 @@ class Source(NamedTuple):
 
     def wrong(self, what: str) -> UserError:
         """Make the error that says what is wrong with the arena's code."""
-        return UserError(f"The code of arena {self.arena!r} is wrong: {what}")
+        return UserError(say("arena.wrong-code", name=self.arena, error=what))
 
     def call(
         self, what: str, function: Callable[..., Any], *arguments: object, refuses: bool = False

@@ -14,7 +14,7 @@ from lacoc_shared.keyspace import EVERY_COURT, Keys
 from lacoc_shared.messages import PROTOCOL, Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.session import NoReply, NotConnected, Refused, Session, TooLate
-from lacoc_shared.words import Phrase, say
+from lacoc_shared.words import Phrase, render, say
 
 T = TypeVar("T")
 
@@ -73,7 +73,8 @@ class Patience:
     def _tell(self, error: UserError) -> None:
         if str(error) != self._told:
             self._told = str(error)
-            screen.note(f"{error} This waits for it, up to {self.wait_s:g} s.")
+            said = say("asking.waits", why=error.phrase, wait_s=self.wait_s)
+            screen.note(render(said))
 
 
 def ask(

@@ -6,6 +6,7 @@ from pathlib import Path
 from lacoc_client.seat_files import SeatFiles, gaits_in, gather
 from lacoc_robots.library import GAIT_NAMES
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import Phrase
 
 _Saved = tuple[tuple[Path, int, int], ...]
 """Each file with its modification time [ns] and size [bytes]."""
@@ -31,8 +32,8 @@ class OwnFiles:
         self._gaits = tuple(gaits)
         self._folder = folder
         self._read_as = self._seen = self._saved()
-        self.notes: list[str] = []
-        """Sentences about things in the files that are legal, but probably not meant."""
+        self.notes: list[Phrase] = []
+        """Remarks on things in the files that are legal, but probably not meant."""
         self.files = self._read()
         self.version = 1
         """Number of the version; it grows with each change of the files."""

@@ -12,6 +12,7 @@ from lacoc_shared.gait.text import read_gait, write_gait
 from lacoc_shared.gait.workbook import read_gait_file, read_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError, text_of
+from lacoc_shared.words import Phrase, say
 
 _POSTURES = ("Loco-data.txt", "Loco-data.xlsx", "Loco-data-6legs.txt")
 _LOCOMOTION = ("LocoTra-data.txt", "LocoTra-data*.txt")
@@ -29,7 +30,9 @@ class SeatFiles(NamedTuple):
     locomotion: SentFile | None = None
 
 
-def gather(robot: str | None, gaits: Sequence[Path], notes: list[str] | None = None) -> SeatFiles:
+def gather(
+    robot: str | None, gaits: Sequence[Path], notes: list[Phrase] | None = None
+) -> SeatFiles:
     """Read a contestant's files.
 
     Args:
@@ -48,7 +51,7 @@ def gather(robot: str | None, gaits: Sequence[Path], notes: list[str] | None = N
     return SeatFiles(robot_file, *(sample_gait_files(robot) if robot else (None, None)))
 
 
-def as_text(files: SeatFiles, notes: list[str] | None = None) -> SeatFiles:
+def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
     """Turn workbooks into text, which is what a court reads.
 
     Each keeps its file name, so that mistakes name the contestant's own file.
@@ -114,41 +117,35 @@ def gaits_in(folder: Path) -> list[Path]:
     return [max(paths, key=lambda path: path.stat().st_mtime) for paths in found if paths]
 
 
-def remarks(folder: Path, taken: Sequence[Path]) -> list[str]:
-    """Return warnings about the gait files taken from a folder, as sentences."""
+def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
+    """Return warnings about the gait files taken from a folder."""
     said = [
-        f"{path.name} is not taken: a workbook has postures alone (level A, Loco-data.xlsx), and "
-        "sequences are text. Save its table as text with tabs: LocoTra-data.txt."
-        for path in sorted(folder.glob("LocoTra*.xlsx"))
+        say("play.no-workbook", file=path.name) for path in sorted(folder.glob("LocoTra*.xlsx"))
     ]
     match taken:
         case [postures, sequences] if sequences.stat().st_mtime < postures.stat().st_mtime:
             said.append(
-                f"{sequences.name} is older than {postures.name}: the keys of level B have none of "
-                "what was changed there since. Convert again: "
-                f"lacoc gait convert {postures.name} {sequences.name}"
+                say("play.older-sequences", postures=postures.name, sequences=sequences.name)
             )
     return said
 
 
 def _read(
-    paths: Iterable[Path], notes: list[str] | None
+    paths: Iterable[Path], notes: list[Phrase] | None
 ) -> tuple[SentFile | None, SentFile | None]:
     """Return the posture file and the locomotion file, with workbooks turned into text."""
     files: dict[type[_Table], SentFile] = {}
     mistakes: list[Mistake] = []
     for path in paths:
         try:
-            noted: list[str] = []
+            noted: list[Phrase] = []
             table = read_gait_file(path, notes=noted)
         except FileRefused as refused:
             mistakes += refused.mistakes
             continue
         if type(table) in files:
-            raise UserError(
-                f"{files[type(table)].name} and {path.name} are for the same keys: choose one. "
-                "A robot has one Loco-data file (level A) and one LocoTra-data file (level B)."
-            )
+            one = files[type(table)].name
+            raise UserError(say("play.same-keys", one=one, other=path.name))
         data = path.read_bytes()
         name = text_of(path.name)
         if data.startswith(_ZIP):

@@ -263,7 +263,4 @@ class _Lacking:
         return answer
 
 
-_OTHER_SCENE = (
-    "The court's frames show another scene than its sheet describes. Start this program again; "
-    "if that does not help, tell the organiser."
-)
+_OTHER_SCENE = say("spectator.other-scene")

@@ -10,25 +10,37 @@ A test says when a file is behind.
 import json
 import types
 import typing
+from collections.abc import Mapping
 from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
+from lacoc_client.gateway.page import TRY_LATER
+from lacoc_client.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
+from lacoc_client.gateway.wire import Kind
+from lacoc_server.doors.inbox import NAME_MAX
+from lacoc_server.match.referee import MAX_CLOCK_S, MAX_FREEZE_S, MAX_POINTS
 from lacoc_shared import decisions, messages, mistakes
+from lacoc_shared.codec import message_hash
+from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
 from lacoc_shared.gait.tables import Level
+from lacoc_shared.keyspace import JOIN_MAX_BYTES
 from lacoc_shared.record import schema
 from lacoc_shared.seat import (
+    BEAT_S,
     BEATS_PER_S,
     REPEATS_HZ,
     RESTART_KEY,
     SILENT_AFTER_S,
+    WHY_NO,
     No,
     Phase,
     SeatFlag,
 )
 from lacoc_shared.words.phrase import Phrase
+from lacoc_shared.words.render import DECIMALS, DEEPEST, LARGEST, LONGEST_LIST, LONGEST_TEXT
 from lacoc_shared.words.table import ON_PAGES, table
 
 _SOURCE = Path(__file__).parent / "src"
@@ -54,14 +66,38 @@ STRUCTS = (
     schema.Result,
 )
 ENUMS: tuple[type[IntEnum] | type[SeatFlag], ...] = (Phase, SeatFlag, No, Level)
-CONSTANTS: dict[str, float] = {
+CONSTANTS: dict[str, float | str] = {
     "PROTOCOL": messages.PROTOCOL,
+    "RECORD_FORMAT": schema.FORMAT,
+    "RECORD_PROFILE": schema.PROFILE,
+    "BEAT_S": BEAT_S,
+    "BEAT_NS": schema.BEAT_NS,
     "BEATS_PER_S": BEATS_PER_S,
     "REPEATS_HZ": REPEATS_HZ,
     "SILENT_AFTER_S": SILENT_AFTER_S,
     "RESTART_KEY": RESTART_KEY,
     "ROOT_FLOATS": messages.ROOT_FLOATS,
+    "HASH_BYTES": len(message_hash(b"")),
+    "JOIN_MAX_BYTES": JOIN_MAX_BYTES,
+    "NAME_MAX": NAME_MAX,
+    "MAX_KEYS": MAX_KEYS,
+    "MAX_POSTURES_PER_KEY": MAX_POSTURES_PER_KEY,
+    "MAX_FREEZE_S": MAX_FREEZE_S,
+    "MAX_CLOCK_S": MAX_CLOCK_S,
+    "MAX_POINTS": MAX_POINTS,
+    "LEAST_HZ": LEAST_HZ,
+    "USUAL_HZ": USUAL_HZ,
+    "MOST_HZ": MOST_HZ,
+    "TRY_LATER": TRY_LATER,
 }
+LIMITS: dict[str, float] = {
+    "DEEPEST": DEEPEST,
+    "LONGEST_LIST": LONGEST_LIST,
+    "LONGEST_TEXT": LONGEST_TEXT,
+    "LARGEST": LARGEST,
+    "DECIMALS": DECIMALS,
+}
+"""Of phrases that are put into words."""
 _IMPORTS = {Phrase: "./phrase"}
 """Types that pages write themselves, with the module that has them."""
 _SIMPLE = {int: "number", float: "number", str: "string", bool: "boolean", bytes: "Uint8Array"}
@@ -71,14 +107,37 @@ def wire_types() -> str:
     """The whole file."""
     parts = ["// Made by client/web/make_wire.py from the Python structs; not edited by hand."]
     parts += [f'import type {{ {k.__name__} }} from "{m}";' for k, m in _IMPORTS.items()]
-    parts += ["\n".join(f"export const {k} = {n:g};" for k, n in CONSTANTS.items())]
+    parts += [_constants(CONSTANTS)]
     parts += [_enum(kind) for kind in ENUMS]
     names = ", ".join(f'"{name}"' for name in messages.MARKER_STATES)
-    parts += [f"export const MARKER_STATES = [{names}] as const;"]
+    parts += [f"export const MARKER_STATES = [{names}] as const;", _kinds(), _why_no()]
     parts += [_interface(kind) for kind in STRUCTS]
     parts += [_field_names(kind) for kind in STRUCTS if kind.__struct_config__.array_like]
     parts += [_decisions(), _need_a_reason()]
     return "\n\n".join(parts) + "\n"
+
+
+def _constants(constants: Mapping[str, float | str]) -> str:
+    return "\n".join(
+        f"export const {name} = {json.dumps(value) if isinstance(value, str) else f'{value:.15g}'};"
+        for name, value in constants.items()
+    )
+
+
+def _kinds() -> str:
+    names = "".join(f'  "{kind.name.lower()}",\n' for kind in Kind)
+    return (
+        "/** What a message of the gateway is, by its first byte; 0 is none. */\n"
+        f'export const MESSAGE_KINDS = [\n  "",\n{names}] as const;'
+    )
+
+
+def _why_no() -> str:
+    codes = "".join(f'  {int(no)}: "{why.code}",\n' for no, why in WHY_NO.items())
+    return (
+        "/** Why a key was refused, by its `No`: codes of the table. */\n"
+        f"export const WHY_NO: Readonly<Record<number, string>> = {{\n{codes}}};"
+    )
 
 
 def _enum(kind: type[Any]) -> str:
@@ -157,6 +216,7 @@ def words() -> str:
     )
     return (
         "// Made by client/web/make_wire.py from lacoc_shared/words/texts; not edited by hand.\n\n"
+        f"{_constants(LIMITS)}\n\n"
         "/** Each code with its templates: English, Japanese. */\n"
         f"export const WORDS: Record<string, readonly [string, string]> = {{\n{lines}}};\n"
     )

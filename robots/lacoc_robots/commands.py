@@ -19,6 +19,7 @@ from lacoc_shared.contest import file as contests
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer(
     help="Check a robot file, export it as MJCF, list the robots there are.",
@@ -41,7 +42,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
     files beside it, or in its start posture. With --contest the contest's limits count, else
     those of the rules. With --json the mistakes are a list, empty for a robot that is right.
     """
-    notes: list[str] = []
+    notes: list[Phrase] = []
     try:
         spec = _stands(robot, contest, notes)
     except FileRefused as refused:
@@ -56,16 +57,21 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
         screen.print_json({**facts, "mistakes": []})
         return
     width_m, length_m, height_m = facts["footprint_m"]
-    table = Table(title=Text(f"{spec.name} is right"), title_justify="left", show_header=False)
+    table = Table(
+        title=Text(render(say("robot-command.right", name=spec.name))),
+        title_justify="left",
+        show_header=False,
+    )
+    size = say("robot-command.size", width_m=width_m, length_m=length_m, height_m=height_m)
     for what, value in (
-        ("legs", f"{facts['legs']} ({'  '.join(facts['labels'])})"),
-        ("joints", f"{facts['joints']}"),
-        ("mass", f"{facts['mass_kg']:.3f} kg"),
-        ("footprint", f"{width_m:.3f} x {length_m:.3f} x {height_m:.3f} m with every angle 0"),
-        ("AngMin", f"{facts['ang_min_deg_s']:g} degrees/s"),
-        ("next posture", _advance(spec)),
+        (say("fact.legs"), f"{facts['legs']} ({'  '.join(facts['labels'])})"),
+        (say("fact.joints"), f"{facts['joints']}"),
+        (say("fact.mass"), f"{facts['mass_kg']:.3f} kg"),
+        (say("fact.footprint"), size),
+        ("AngMin", say("robot-command.ang-min", deg_s=facts["ang_min_deg_s"])),
+        (say("fact.next-posture"), _advance(spec)),
     ):
-        table.add_row(what, Text(value))
+        table.add_row(render(what), Text(render(value)))
     screen.show(table)
 
 
@@ -84,8 +90,8 @@ def export(
 
     kept = save(out, export_mjcf(spec).encode())
     if kept is not None:
-        screen.note(f"{out} was there: it is {kept} now.")
-    screen.note(f'{out} written. Look at it with: python -m mujoco.viewer --mjcf="{out}"')
+        screen.note(say("command.kept", path=str(out), kept=str(kept)))
+    screen.note(say("robot-command.written", path=str(out)))
 
 
 @app.command("list")
@@ -95,7 +101,9 @@ def list_robots(json: options.Json = False) -> None:
     if json:
         screen.print_json(robots)
         return
-    table = Table("robot", "legs", "mass in kg", "AngMin in degrees/s")
+    table = screen.table(
+        say("fact.robot"), say("fact.legs"), say("fact.mass-kg"), say("fact.ang-min")
+    )
     for name, facts in robots.items():
         table.add_row(
             name, f"{facts['legs']}", f"{facts['mass_kg']:.3f}", f"{facts['ang_min_deg_s']:g}"
@@ -103,7 +111,7 @@ def list_robots(json: options.Json = False) -> None:
     screen.show(table)
 
 
-def _stands(robot: str, contest: Path | None, notes: list[str]) -> RobotSpec:
+def _stands(robot: str, contest: Path | None, notes: list[Phrase]) -> RobotSpec:
     """Read a robot that can stand.
 
     Raises:
@@ -125,7 +133,7 @@ def _spec(name: str, data: bytes, contest: Path | None) -> RobotSpec:
     return read_robot(data, name, limits)
 
 
-def _gait_beside(robot: str, spec: RobotSpec, notes: list[str]) -> Gait:
+def _gait_beside(robot: str, spec: RobotSpec, notes: list[Phrase]) -> Gait:
     """Read the gait files beside a robot's file; one with mistakes is noted and left out."""
     tables: list[PostureTable | LocomotionTable] = []
     for file in sample_gait_files(robot):
@@ -134,7 +142,7 @@ def _gait_beside(robot: str, spec: RobotSpec, notes: list[str]) -> Gait:
         try:
             table = read_gait(file.data, file.name, legs=spec.labels, range_deg=spec.ranges_deg)
         except FileRefused:
-            notes.append(f"{file.name} beside it has mistakes: see 'lacoc gait check'.")
+            notes.append(say("robot-command.gait-mistakes", file=file.name))
         else:
             tables.append(table)
     return Gait(
@@ -158,8 +166,8 @@ def _facts(spec: RobotSpec) -> dict[str, Any]:
     }
 
 
-def _advance(spec: RobotSpec) -> str:
+def _advance(spec: RobotSpec) -> Phrase:
     hold_s = spec.hold_us / 1e6
     if spec.advance == "time":
-        return f"every {hold_s:g} s"
-    return "when the last one is reached" + (f" and held for {hold_s:g} s" if hold_s else "")
+        return say("robot-command.every", seconds=hold_s)
+    return say("robot-command.when-reached", held_s=hold_s or None)

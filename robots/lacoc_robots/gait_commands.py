@@ -33,6 +33,7 @@ from lacoc_shared.gait.tables import (
 from lacoc_shared.gait.text import write_gait
 from lacoc_shared.gait.workbook import read_gait_file, write_workbook
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
+from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer(
     help="Check gait files (Loco-data.txt, LocoTra-data.txt, Loco-data.xlsx) and convert them.",
@@ -41,7 +42,6 @@ app = typer.Typer(
 
 _SAMPLE_KEYS_TEXT = ";".join(",".join(map(str, sequence)) for sequence in SAMPLE_KEYS)
 _KEYS = re.compile(r"\d(,\d)*(;\d(,\d)*)*", re.ASCII)
-_NAME_OF_A_FILE = "the name of a gait file (a pattern that fits none stays as it is typed)"
 _LIFTED = 0.1  # of a link's length above the lowest foot: 7 mm on the workshop's robot
 
 
@@ -83,7 +83,7 @@ def check(
 ) -> None:
     """Say what the keys of a gait do, or list every mistake in the file."""
     if robot is not None and legs is not None:
-        raise UserError("--robot says how many legs there are: leave out --legs.")
+        raise UserError(say("gait-command.legs-of-robot"))
     fits: dict[str, Any] = {"legs": legs}
     spec, robot_file = None, ""
     if robot is not None:
@@ -92,27 +92,31 @@ def check(
         fits = {"legs": spec.labels, "range_deg": spec.ranges_deg}
     tables: list[tuple[Path, PostureTable | LocomotionTable]] = []
     mistakes: list[Mistake] = []
-    notes: list[str] = []
+    notes: list[Phrase] = []
     for file in files:
         try:
             tables.append((file, read_gait_file(file, **fits, notes=notes)))
         except FileRefused as error:
             mistakes += error.mistakes
         except UserError as error:  # one file that can't be opened hides none of the others
-            mistakes.append(Mistake(file=str(file), found=str(error), expected=_NAME_OF_A_FILE))
+            expected = say("gait-command.name-of-file")
+            mistakes.append(Mistake(file=str(file), found=error.phrase, expected=expected))
     if spec is not None:
         mistakes += _tried(spec, robot_file, [table for _, table in tables], notes)
     if json:
         checked = [_checked(file, table) for file, table in tables]
         in_words = [mistake.in_words() for mistake in mistakes]
-        screen.print_json({"files": checked, "mistakes": in_words, "notes": notes})
+        screen.print_json({"files": checked, "mistakes": in_words, "notes": [*map(render, notes)]})
         if mistakes:
             raise typer.Exit(2)
         return
     for file, table in tables:
-        level = "A, postures" if isinstance(table, PostureTable) else "B, locomotion"
-        robot = f"{table.joints // JOINTS_PER_LEG} legs"
-        screen.show(Text(f"{file.name}: right. Level {level}, {robot}.", style="bold"))
+        table_legs = table.joints // JOINTS_PER_LEG
+        if isinstance(table, PostureTable):
+            right = say("gait-command.right-a", file=file.name, legs=table_legs)
+        else:
+            right = say("gait-command.right-b", file=file.name, legs=table_legs)
+        screen.show(Text(render(right), style="bold"))
         screen.show(_summary(table))
     for note in notes:
         screen.warn(note)
@@ -144,17 +148,14 @@ def convert(
     locomotion = _is_locomotion(target)
     table = read_gait_file(source)
     if keys is not None and not (locomotion and isinstance(table, PostureTable)):
-        raise UserError(
-            "--keys is for making locomotion from postures: A must be Loco-data, "
-            "and the name of B must begin with LocoTra."
-        )
+        raise UserError(say("convert.keys-use"))
     if locomotion and isinstance(table, PostureTable):
         table = _joined(table, source, _SAMPLE_KEYS_TEXT if keys is None else keys)
     elif not locomotion and isinstance(table, LocomotionTable):
         try:
             table = to_postures(table)
         except ValueError as error:
-            raise UserError(f"{source.name} has {error}.") from error
+            raise UserError(say("convert.file-has", file=source.name, error=str(error))) from error
     labels = leg_labels(table.joints // JOINTS_PER_LEG)
     if isinstance(table, PostureTable) and target.suffix.lower() == ".xlsx":
         data = write_workbook(table, labels)
@@ -162,8 +163,8 @@ def convert(
         data = write_gait(table, labels)
     kept = save(target, data)
     if kept is not None:
-        screen.note(f"{target} was there: it is {kept} now.")
-    screen.note(f"{target} written.")
+        screen.note(say("command.kept", path=str(target), kept=str(kept)))
+    screen.note(say("command.written", path=str(target)))
 
 
 def _is_locomotion(target: Path) -> bool:
@@ -173,7 +174,7 @@ def _is_locomotion(target: Path) -> bool:
         UserError: if it is a kind of file that is not written here.
     """
     if target.suffix.lower() not in (".txt", ".xlsx"):
-        raise UserError(f"Cannot write {target}: the name of B must end with .txt or .xlsx.")
+        raise UserError(say("convert.target", path=str(target)))
     return target.suffix.lower() == ".txt" and target.name.lower().startswith("locotra")
 
 
@@ -185,10 +186,7 @@ def _joined(table: PostureTable, source: Path, keys: str) -> LocomotionTable:
     """
     compact = keys.replace(" ", "")
     if not _KEYS.fullmatch(compact):
-        raise UserError(
-            f"--keys {keys!r} is no list of postures. Write the digits of each key's postures "
-            f"with commas, and semicolons between the keys: '{_SAMPLE_KEYS_TEXT}'."
-        )
+        raise UserError(say("convert.bad-keys", keys=keys, example=_SAMPLE_KEYS_TEXT))
     return join_postures(
         table, source.name, [[*map(int, part.split(","))] for part in compact.split(";")]
     )
@@ -198,7 +196,7 @@ def _tried(
     robot: RobotSpec,
     file: str,
     tables: Sequence[PostureTable | LocomotionTable],
-    notes: list[str],
+    notes: list[Phrase],
 ) -> list[Mistake]:
     """Try whether a robot stands with the key 0 of each table."""
     book: list[Mistake] = []
@@ -223,7 +221,7 @@ def _checked(file: Path, table: PostureTable | LocomotionTable) -> CheckedFile:
 def _summary(table: PostureTable | LocomotionTable) -> Table:
     """What each key does."""
     labels = leg_labels(table.joints // JOINTS_PER_LEG)
-    summary = Table("key", "postures", "feet lifted")
+    summary = screen.table(say("fact.key"), say("fact.postures"), say("fact.feet-lifted"))
     for digit, sequence in sorted(_sequences(table).items()):
         summary.add_row(str(digit), str(len(sequence)), Text(_lifts(sequence, labels)))
     return summary
@@ -238,9 +236,9 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
     """The feet lifted in each posture of a sequence; postures with the same feet count once."""
     steps = [step for step, _ in itertools.groupby(_lifted(p, labels) for p in sequence)]
-    return ", then ".join(" ".join(step) or "none" for step in steps[:6]) + (
-        " …" if len(steps) > 6 else ""
-    )
+    none, then = render(say("gait-command.no-feet")), render(say("gait-command.then"))
+    shown = then.join(" ".join(step) or none for step in steps[:6])
+    return shown + (" …" if len(steps) > 6 else "")
 
 
 def _lifted(posture: Posture, labels: Sequence[str]) -> tuple[str, ...]:

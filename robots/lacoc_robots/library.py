@@ -11,6 +11,7 @@ from typing import NamedTuple
 from lacoc_shared.command import plugins
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.words import say
 
 GROUP = "lacoc.robots"
 
@@ -90,4 +91,5 @@ def _content(file: Path) -> bytes:
     try:
         return file.read_bytes()
     except OSError as error:
-        raise UserError(f"{file} can't be read: {error.strerror}.") from None
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-read", path=str(file), why=why)) from None

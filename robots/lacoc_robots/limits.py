@@ -6,6 +6,7 @@ from typing import Any
 import msgspec
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 
 class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -58,6 +59,5 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             return msgspec.convert(overrides, cls)
         except msgspec.ValidationError as error:
             raise UserError(
-                f"The limits for robots are wrong: {error}. "
-                f"There are: {', '.join(cls.__struct_fields__)}."
+                say("limits.wrong", error=str(error), known=cls.__struct_fields__)
             ) from None

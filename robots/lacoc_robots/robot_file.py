@@ -16,6 +16,7 @@ from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, LEVEL_NAMES, Posture, leg_and_level
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.seat import BEAT_S
+from lacoc_shared.words import say
 
 __all__ = ["Capsule", "LegSpec", "Limits", "Point", "RobotSpec", "read_robot"]
 
@@ -58,9 +59,7 @@ def _parse(text: str | bytes, file: str) -> dict[str, object]:
     try:
         return read_toml(text, LARGEST_FILE, any_integers=True)
     except BadToml as error:
-        expected = (
-            error.remedy or f"TOML of at most {LARGEST_FILE} bytes: lines such as  name = value"
-        )
+        expected = error.remedy or say("robot.toml", most=LARGEST_FILE)
         mistake = Mistake(file=file, found=error.reason, expected=expected, row=error.row)
         raise FileRefused([mistake]) from None
 
@@ -78,7 +77,7 @@ def _robot(root: Entries, limits: Limits) -> RobotSpec:
     legs = _legs(root, limits)
     advance = drive.choice("advance", ("reached", "time"))
     hold_s = (
-        drive.number("hold_s", BEAT_S, limits.hold_s, 's with advance = "time"')
+        drive.number("hold_s", BEAT_S, limits.hold_s, "s", with_time=True)
         if advance == "time"
         else drive.number("hold_s", 0.0, limits.hold_s, "s", default=0.0)
     )
@@ -90,7 +89,9 @@ def _robot(root: Entries, limits: Limits) -> RobotSpec:
         start_height_m=start.number("height_m", 0.0, 2 * limits.height_m, "m"),
         start_posture=_posture(start, legs, limits),
         ang_min_rad_s=math.radians(
-            drive.number("ang_min_deg_s", 1.0, limits.ang_min_deg_s, "degrees/s", default=120.0)
+            drive.number(
+                "ang_min_deg_s", 1.0, limits.ang_min_deg_s, "degrees-per-second", default=120.0
+            )
         ),
         advance="time" if advance == "time" else "reached",
         hold_us=0 if math.isnan(hold_s) else round(hold_s * 1e6),
@@ -116,16 +117,17 @@ def _legs(root: Entries, limits: Limits) -> tuple[LegSpec, ...]:
     default = _link(link_table, None, limits)
     link_table.finish()
     low, high = int(limits.legs_min), int(limits.legs_max)
-    expected = f"an even number of legs from {low} to {high}, each begun by the line [[leg]]"
+    expected = say("robot.legs", low=low, high=high)
     tables = root.tables("leg", expected)
     if tables and (len(tables) % 2 or not low <= len(tables) <= high):
-        root.note("leg", f"{len(tables)} of them", expected)
+        root.note("leg", say("robot.count", count=len(tables)), expected)
     legs: list[LegSpec] = []
     for table in tables[:high]:
         leg = _leg(table, default, limits)
         table.finish()
         if leg.label and leg.label in (other.label for other in legs):
-            table.note("label", f'"{leg.label}" for a second time', "another label for every leg")
+            again = say("robot.label-again", label=leg.label)
+            table.note("label", again, say("robot.other-label"))
         legs.append(leg)
     return tuple(legs)
 
@@ -138,8 +140,8 @@ def _leg(table: Entries, default: _Link, limits: Limits) -> LegSpec:
     if abs(math.cos(math.radians(outward_deg))) < 0.01:
         table.note(
             "outward_deg",
-            f"{outward_deg:g} degrees, straight forward or back",
-            "a leg that points to the right (near 0) or to the left (near 180)",
+            say("robot.forward-leg", degrees=outward_deg),
+            say("robot.sideways-leg"),
         )
     link = _link(table, default, limits)
     return LegSpec(
@@ -177,7 +179,8 @@ def _link(table: Entries, default: _Link | None, limits: Limits) -> _Link:
         widest_deg = (-limits.range_deg, limits.range_deg)
         low, high = table.numbers("range_deg", [widest_deg] * 2, "degrees")
         if low >= high:
-            table.note("range_deg", f"{low:g} to {high:g}", "the smaller angle first")
+            backwards = say("robot.range", low=low, high=high)
+            table.note("range_deg", backwards, say("robot.smaller-first"))
         link = link._replace(range_deg=(low, high))
     if own("lengths_m") or own("radius_m"):
         shortest = (link.radius_m, 2 * link.radius_m, 2 * link.radius_m)
@@ -185,9 +188,8 @@ def _link(table: Entries, default: _Link | None, limits: Limits) -> _Link:
             if length < least or (level > 0 and length == least):
                 table.note(
                     "lengths_m",
-                    f"{LEVEL_NAMES[level]} link {length:g} m long",
-                    "a root link at least its radius long, and the others longer than two radii "
-                    f"(radius_m is {link.radius_m:g})",
+                    say("robot.link", level=LEVEL_NAMES[level], length_m=length),
+                    say("robot.link-lengths", radius_m=link.radius_m),
                 )
     return link
 
@@ -214,8 +216,8 @@ def _check_order(root: Entries, robot: RobotSpec) -> None:
         if other <= one:
             root.note(
                 f"leg {i}, position_m",
-                f'"{robot.labels[i]}" not clockwise of "{robot.labels[i - 1]}"',
-                "the legs clockwise, seen from above, beginning at the right front",
+                say("robot.not-clockwise", one=robot.labels[i], other=robot.labels[i - 1]),
+                say("robot.clockwise"),
             )
 
 
@@ -224,30 +226,33 @@ def _check_mass(root: Entries, robot: RobotSpec, limits: Limits) -> None:
     if robot.mass_kg < low_kg - _ROUNDING_KG or robot.mass_kg > high_kg + _ROUNDING_KG:
         root.note(
             "mass_kg and masses_kg",
-            f"{robot.mass_kg:.3f} kg together",
-            f"a robot of {low_kg:g} to {high_kg:g} kg",
+            say("robot.together", kg=robot.mass_kg),
+            say("robot.mass", low_kg=low_kg, high_kg=high_kg),
         )
 
 
 def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits) -> None:
     """The robot at angle 0 fits in its box, and it starts on the floor, or a little above."""
     low, high = _bounds(robot, (0.0,) * robot.joints)
-    most = (limits.width_m, limits.length_m, limits.height_m)
-    for name, a, b, most_m in zip(("wide", "long", "high"), low, high, most, strict=True):
-        if b - a > most_m + _ROUNDING_M:
-            root.note(
-                "",
-                f"a robot {b - a:.3f} m {name} with every angle 0",
-                f"at most {most_m:g} m, with legs and their radius",
-            )
+    width_m, length_m, height_m = (b - a for a, b in zip(low, high, strict=True))
+    for extent_m, most_m, found in (
+        (width_m, limits.width_m, say("robot.wide", metres=width_m)),
+        (length_m, limits.length_m, say("robot.long", metres=length_m)),
+        (height_m, limits.height_m, say("robot.high", metres=height_m)),
+    ):
+        if extent_m > most_m + _ROUNDING_M:
+            root.note("", found, say("robot.size", most_m=most_m))
     lowest = _bounds(robot, robot.start_posture)[0].z + robot.start_z_m
     if lowest < -_ROUNDING_M or lowest > limits.drop_m + _ROUNDING_M:
         least_m = robot.start_height_m - lowest
         start.note(
             "height_m",
-            f"{robot.start_height_m:g}, with the lowest part {lowest:.3f} m above the floor",
-            f"{math.ceil(least_m * 1e3) / 1e3:g} to {least_m + limits.drop_m:.3f} m "
-            "for this start posture",
+            say("robot.lowest-part", height_m=robot.start_height_m, lowest_m=lowest),
+            say(
+                "robot.start-height",
+                low_m=math.ceil(least_m * 1e3) / 1e3,
+                high_m=least_m + limits.drop_m,
+            ),
         )
 
 

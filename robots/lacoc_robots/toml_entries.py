@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from lacoc_shared.mistakes import Mistake, printable
+from lacoc_shared.words import Phrase, say
 
 _HUGE = sys.float_info.max
 
@@ -35,7 +36,7 @@ class Entries:
     def __contains__(self, name: str) -> bool:
         return name in self._table
 
-    def note(self, name: str, found: str, expected: str, **where: Any) -> None:
+    def note(self, name: str, found: Phrase | str, expected: Phrase, **where: Any) -> None:
         """Note a mistake of an entry."""
         self._book.append(
             Mistake(
@@ -48,10 +49,29 @@ class Entries:
         )
 
     def number(
-        self, name: str, low: float, high: float, unit: str = "", default: float | None = None
+        self,
+        name: str,
+        low: float,
+        high: float,
+        unit: str = "",
+        default: float | None = None,
+        *,
+        with_time: bool = False,
     ) -> float:
-        """Take a number between two bounds; NaN if it is wrong or missing."""
-        expected = f"a number {_bounds(low, high, unit)}"
+        """Take a number between two bounds; NaN if it is wrong or missing.
+
+        Args:
+            name: the entry.
+            low: lowest value.
+            high: highest value.
+            unit: as the table has it below `unit.`, or as everybody writes it.
+            default: where it is missing; None: it may not be.
+            with_time: the bounds count because of  advance = "time".
+        """
+        if with_time:
+            expected = say("robot.number-with-time", low=low, high=high, unit=unit)
+        else:
+            expected = say("robot.number-from", low=low, high=high, unit=unit)
         value = self._take(name, expected, default)
         return math.nan if value is None else self._check(name, value, low, high, expected)
 
@@ -70,7 +90,7 @@ class Entries:
             unit: of all of them.
             where: the place of each within the entry, as fields of `Mistake`.
         """
-        expected = f"{len(bounds)} numbers in [ ]"
+        expected = say("robot.numbers", count=len(bounds))
         values = self._take(name, expected)
         if values is None:
             return (math.nan,) * len(bounds)
@@ -79,19 +99,26 @@ class Entries:
             return (math.nan,) * len(bounds)
         if len(values) != len(bounds):
             # Which number belongs where is unknown, but each must be one.
-            self.note(name, f"{len(values)} entries", expected)
+            self.note(name, say("robot.entries", count=len(values)), expected)
             for i, value in enumerate(values):
-                self._check(name, value, -_HUGE, _HUGE, "a number", column=i + 1)
+                self._check(name, value, -_HUGE, _HUGE, say("robot.number"), column=i + 1)
             return (math.nan,) * len(bounds)
         places = where or [{"column": i + 1} for i in range(len(bounds))]
         return tuple(
-            self._check(name, value, low, high, f"a number {_bounds(low, high, unit)}", **place)
+            self._check(
+                name,
+                value,
+                low,
+                high,
+                say("robot.number-from", low=low, high=high, unit=unit),
+                **place,
+            )
             for value, (low, high), place in zip(values, bounds, places, strict=True)
         )
 
     def text(self, name: str, longest: int) -> str:
         """Take a word or a short text; "" if it is wrong or missing."""
-        expected = f"a text of 1 to {longest} characters"
+        expected = say("robot.text", longest=longest)
         value = self._take(name, expected)
         if isinstance(value, str) and value.isprintable() and 1 <= len(value.strip()) <= longest:
             return value.strip()
@@ -101,7 +128,7 @@ class Entries:
 
     def flag(self, name: str) -> bool:
         """Take a switch that is off where it is missing."""
-        expected = "true or false"
+        expected = say("robot.flag")
         value = self._take(name, expected, False)
         if not isinstance(value, bool):
             self.note(name, _shown(value), expected)
@@ -110,7 +137,7 @@ class Entries:
 
     def choice(self, name: str, options: tuple[str, ...]) -> str:
         """Take one of some words; the first where it is missing or wrong."""
-        expected = " or ".join(f'"{option}"' for option in options)
+        expected = say("robot.either", options=options)
         value = self._take(name, expected, options[0])
         if value in options:
             return str(value)
@@ -119,13 +146,13 @@ class Entries:
 
     def table(self, name: str, *, optional: bool = False) -> "Entries":
         """Take a table; an empty one where it is missing or wrong."""
-        expected = f"a table that begins with the line [{name}]"
+        expected = say("robot.table", line=f"[{name}]")
         value = self._take(name, expected, {} if optional else None)
         if value is not None and not isinstance(value, dict):
             self.note(name, _shown(value), expected)
         return Entries(value if isinstance(value, dict) else {}, f"{name}.", self._file, self._book)
 
-    def tables(self, name: str, expected: str) -> list["Entries"]:
+    def tables(self, name: str, expected: Phrase) -> list["Entries"]:
         """Take tables, numbered from 0; none where they are missing or wrong."""
         value = self._take(name, expected)
         if value is None:
@@ -144,20 +171,20 @@ class Entries:
 
     def finish(self) -> None:
         """Note the entries that nobody has asked for."""
-        known = ", ".join(sorted(self._taken))
+        known = say("robot.one-of", names=sorted(self._taken))
         for name in self._table:
             if name not in self._taken:
-                self.note(name, "an unknown entry", f"one of {known}")
+                self.note(name, say("robot.unknown-entry"), known)
 
-    def _take(self, name: str, expected: str, default: Any = None) -> Any:
+    def _take(self, name: str, expected: Phrase, default: Any = None) -> Any:
         self._taken.add(name)
         value = self._table.get(name, default)
         if value is None:
-            self.note(name, "nothing", expected)
+            self.note(name, say("gait.nothing"), expected)
         return value
 
     def _check(
-        self, name: str, value: Any, low: float, high: float, expected: str, **where: Any
+        self, name: str, value: Any, low: float, high: float, expected: Phrase, **where: Any
     ) -> float:
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if number and low <= value <= high:  # before float(): a long int has none
@@ -166,20 +193,16 @@ class Entries:
         return math.nan
 
 
-def _bounds(low: float, high: float, unit: str) -> str:
-    return f"from {low:g} to {high:g}" + (f" {unit}" if unit else "")
-
-
-def _shown(value: Any) -> str:
+def _shown(value: Any) -> Phrase | str:
     """Show a TOML value as it may stand in the file, cut short."""
     if isinstance(value, dict):
-        return "a table"
+        return say("robot.a-table")
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, int) and abs(value) > 10**15:
-        return "a number of very many digits"
+        return say("robot.many-digits")
     try:
         text = f'"{value}"' if isinstance(value, str) else str(value)
     except ValueError:  # such a number in a list
-        return "a number of very many digits"
+        return say("robot.many-digits")
     return printable(text if len(text) <= 40 else text[:37] + "...")

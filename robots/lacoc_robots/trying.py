@@ -5,10 +5,11 @@ from collections.abc import Collection
 from lacoc_robots.robot import RobotSpec
 from lacoc_shared.gait.tables import Gait, Level
 from lacoc_shared.mistakes import Mistake
+from lacoc_shared.words import Phrase, say
 
 
 def tried(
-    robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str, notes: list[str]
+    robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str, notes: list[Phrase]
 ) -> list[Mistake]:
     """Try whether a robot stands, as `trial.try_standing` does; a note says where it can't."""
     try:
@@ -16,6 +17,6 @@ def tried(
     except ModuleNotFoundError as error:
         if error.name != "mujoco":
             raise
-        notes.append('Not tried whether it stands: physics needs the extra "server".')
+        notes.append(say("robot.not-tried"))
         return []
     return try_standing(robot, gait, levels, file)

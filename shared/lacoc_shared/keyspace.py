@@ -4,6 +4,7 @@ import re
 from dataclasses import dataclass
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 EVERY_COURT = "lacoc/*/live/court"
 """Liveliness: the announcements of all courts that can be reached."""
@@ -34,9 +35,7 @@ class Keys:
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.court):
-            raise UserError(
-                f"A court's name has 1-32 letters a-z, digits and hyphens; found {self.court!r}."
-            )
+            raise UserError(say("address.court-name", name=self.court))
 
     @property
     def root(self) -> str:

@@ -259,7 +259,7 @@ def test_wrong_game_setting(name: str, game: dict[str, Any], says: str) -> None:
     """Rules 5 and 6: a wrong arena file is refused; the message names the setting or the flag."""
     with pytest.raises(UserError) as refused:
         arena.load(name, {"game": game})
-    assert f"The table [game] of arena {name!r} is wrong: " in str(refused.value)
+    assert f'The table [game] of arena "{name}" is wrong: ' in str(refused.value)
     assert says in str(refused.value)
 
 
@@ -273,7 +273,7 @@ def test_wrong_game_setting(name: str, game: dict[str, Any], says: str) -> None:
         ({"match": {"minutes": 3}}, "unknown field `minutes`"),
         ({"seat": [{"id": "left", "colour": "blue"}]}, "`$.seat[0].colour`"),
         ({"seat": [{"id": "left", "colour": "#0072b2"}]}, "needs 2 [[seat]] tables"),
-        ({"seat": [{"id": "a", "colour": "#0072b2"}] * 2}, "each with its own id; found a, a"),
+        ({"seat": [{"id": "a", "colour": "#0072b2"}] * 2}, "each with its own id; found a and a"),
         ({"titel": "x"}, "unknown field `titel`"),
     ],
 )
@@ -281,13 +281,13 @@ def test_wrong_common_setting(overrides: dict[str, Any], says: str) -> None:
     """Rules 4: what every game shares is checked the same way."""
     with pytest.raises(UserError) as refused:
         arena.load("othello", overrides)
-    assert "The file of arena 'othello' is wrong: " in str(refused.value)
+    assert 'The file of arena "othello" is wrong: ' in str(refused.value)
     assert says in str(refused.value)
 
 
 def test_unknown_arena() -> None:
     """An arena that is not there: the message lists the ones that are."""
-    with pytest.raises(UserError, match=r"no arena 'chess'\. Installed: .*othello.*practice"):
+    with pytest.raises(UserError, match=r"no arena .chess.\. Installed: .*othello.*practice"):
         arena.load("chess")
 
 
@@ -302,11 +302,13 @@ def test_unreadable_file(tmp_path: Path) -> None:
 
 def test_a_folder_that_is_no_whole_arena(tmp_path: Path) -> None:
     """One sentence: what the folder lacks, what it needs, and where numbers alone are changed."""
-    with pytest.raises(UserError, match=r"lacks arena\.toml, rules\.py, field\.py, bots\.py\. "):
+    with pytest.raises(UserError, match=r"lacks arena\.toml, rules\.py, field\.py and bots\.py\. "):
         arena.load(str(tmp_path))
     (tmp_path / "arena.toml").write_text("title = ''")
     (tmp_path / "bots.py").touch()
-    with pytest.raises(UserError, match=r"lacks rules\.py, field\.py\. .*\[court\.NAME\.settings"):
+    with pytest.raises(
+        UserError, match=r"lacks rules\.py and field\.py\. .*\[court\.NAME\.settings"
+    ):
         arena.load(str(tmp_path))
     with pytest.raises(UserError, match=r"lacks rules\.py"):
         arena.from_settings(str(tmp_path), {}, tmp_path)

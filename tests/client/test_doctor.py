@@ -19,6 +19,7 @@ from lacoc_client.doctor.link import link
 from lacoc_client.doctor.machine import Status
 from lacoc_shared.command import cli
 from lacoc_shared.contest.invitation import Access
+from lacoc_shared.words import render
 
 
 @pytest.fixture
@@ -86,7 +87,8 @@ def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
     code = (
         "from lacoc_client.doctor import machine as doctor; import json; "
-        "print(json.dumps([[f.about, f.status, f.found, f.todo] for f in doctor.packages()]))"
+        "found = [one.in_words() for one in doctor.packages()]; "
+        "print(json.dumps([[f.about, f.status, f.found, f.todo] for f in found]))"
     )
     path = os.pathsep.join([str(folder), *sys.path])
     done = subprocess.run(
@@ -179,11 +181,11 @@ def test_a_court_that_stands_still() -> None:
     with CourtStub() as court:
         court.trouble = "The record m-1 can't be written: No space left on device."
         access = Access(court="main", connect=court.address)
-        found = {finding.about: finding for finding in link(access, 0.5)}
+        found = {one.about: one for one in (each.in_words() for each in link(access, 0.5))}
     assert found["frames of main"].status is Status.PROBLEM
-    assert "stands still in PLAYING" in found["frames of main"].found
+    assert "stands still: the match is being played" in found["frames of main"].found
     assert found["record of main"].status is Status.PROBLEM
-    assert found["record of main"].found == court.trouble
+    assert found["record of main"].found == render(court.trouble)
 
 
 def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -220,11 +222,11 @@ def test_the_link_to_a_court(
     found = look(capsys, tmp_path, "--connect", court.address, "--seconds", "1")
     assert found["court main"]["status"] == "ok"
     assert found["round trip to main"]["found"].startswith("50 requests, ")
-    assert " a second in LOBBY, " in found["frames of main"]["found"]
+    assert " a second while the match is in the lobby, " in found["frames of main"]["found"]
     assert found["frames of main"]["status"] != "problem"
     port = int(court.address.rpartition(":")[2])
     here = doctor.court_port("127.0.0.1", port, "main")
-    assert (here.status, here.found) == (Status.OK, "court main runs here")
+    assert (here.status, render(here.found)) == (Status.OK, "court main runs here")
     other = look(capsys, tmp_path, "--connect", court.address, "--court", "other")
     assert "there is main" in other["court other"]["found"]
 
@@ -235,6 +237,6 @@ def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> Non
         port = int(court.address.rpartition(":")[2])
         credentials = court.people["spectators"].credentials
         found = doctor.court_port("127.0.0.1", port, "main", credentials)
-        assert (found.status, found.found) == (Status.OK, "court main runs here")
+        assert (found.status, render(found.found)) == (Status.OK, "court main runs here")
         findings = list(link(court.people["left"].watching(), 0.5))
-    assert "Test at tls/" in findings[0].found
+    assert "Test at tls/" in render(findings[0].found)

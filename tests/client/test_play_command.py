@@ -247,7 +247,7 @@ def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
         ({"seat": "middle"}, 'has no seat "middle". It has left and right.'),
         ({"court": "centre"}, "There is no court 'centre' at"),
         ({"connect": "tcp/127.0.0.1:1"}, "Nobody listens at tcp/127.0.0.1:1."),
-        ({"connect": "my court"}, "'my court' is not an address."),
+        ({"connect": "my court"}, '"my court" is not an address.'),
         ({"name": "x" * 25}, "1-24"),
         ({"robot": "centipede"}, "centipede"),
         ({"contest": "missing.toml"}, "missing.toml"),

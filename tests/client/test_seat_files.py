@@ -14,6 +14,7 @@ from lacoc_shared.gait.text import read_gait, write_gait
 from lacoc_shared.gait.workbook import write_workbook
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import render
 
 SAMPLE = sample_gait_files("hexapod")
 assert SAMPLE.postures is not None
@@ -72,7 +73,7 @@ def test_sequences_that_are_older_than_their_postures_are_told(tmp_path: Path) -
     assert remarks(tmp_path, [table, sequences]) == []
 
     write(table, b"", 1001)
-    (remark,) = remarks(tmp_path, [table, sequences])
+    (remark,) = map(render, remarks(tmp_path, [table, sequences]))
     assert remark.endswith("lacoc gait convert Loco-data.xlsx LocoTra-data.txt")
     assert remarks(tmp_path, [table]) == remarks(tmp_path, [sequences]) == []
 
@@ -80,7 +81,7 @@ def test_sequences_that_are_older_than_their_postures_are_told(tmp_path: Path) -
 def test_a_workbook_of_sequences_is_named(tmp_path: Path) -> None:
     """Rules 2: a workbook is Loco-data; another one is left out, and that is said."""
     write(tmp_path / "LocoTra-data.xlsx", workbook())
-    (remark,) = remarks(tmp_path, gaits_in(tmp_path))
+    (remark,) = map(render, remarks(tmp_path, gaits_in(tmp_path)))
     assert "LocoTra-data.xlsx is not taken" in remark
 
 

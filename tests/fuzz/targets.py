@@ -100,7 +100,7 @@ def _message(kind: type) -> Target:
     return Target(f"client: {name}", "packets", "msgpack", f"message-{name}", 2, eat)
 
 
-@_accepts(codec.BadMessage)
+@_accepts(wire.Unreadable)
 def _page(data: bytes) -> None:
     wire.read_id(data)
     wire.read(data)

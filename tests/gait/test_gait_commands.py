@@ -204,9 +204,9 @@ def test_convert_never_overwrites(lacoc, folder, workshop):
     ("source", "target", "keys", "message"),
     [
         ("Loco-data.txt", "LocoTra.txt", "0;9", "uses posture 9, but Loco-data.txt has only 0, 1,"),
-        ("Loco-data.txt", "LocoTra.txt", "", "is no list of postures"),
-        ("Loco-data.txt", "LocoTra.txt", "0;;1", "is no list of postures"),
-        ("Loco-data.txt", "LocoTra.txt", "0;12", "is no list of postures"),
+        ("Loco-data.txt", "LocoTra.txt", "", "is not a list of postures"),
+        ("Loco-data.txt", "LocoTra.txt", "0;;1", "is not a list of postures"),
+        ("Loco-data.txt", "LocoTra.txt", "0;12", "is not a list of postures"),
         ("Loco-data.txt", "LocoTra.txt", "0" + ";0" * 10, "11 keys, the longest of 1"),
         ("Loco-data.txt", "LocoTra.txt", "0" + ",0" * 100, "the longest of 101 postures"),
         ("Loco-data.txt", "Loco-data.xlsx", "0", "--keys is for making locomotion from postures"),

@@ -12,7 +12,7 @@ NO_HEADER = (
 
 CSV = (
     "commas or semicolons between the cells (CSV)",
-    "tabs: save it as text with tabs, or as .xlsx",
+    "tabs between the cells. Save the table as text with tabs, or as .xlsx",
 )
 
 
@@ -21,7 +21,7 @@ def refused(data: bytes | str, **robot) -> list[Mistake]:
     with pytest.raises(FileRefused) as refusal:
         read_gait(data.encode() if isinstance(data, str) else data, "gait.txt", **robot)
     assert all(mistake.file == "gait.txt" for mistake in refusal.value.mistakes)
-    return refusal.value.mistakes
+    return [mistake.in_words() for mistake in refusal.value.mistakes]
 
 
 def places(mistakes: list[Mistake]) -> list[tuple[object, ...]]:
@@ -61,7 +61,7 @@ def test_three_planted_mistakes_at_the_locomotion_level():
             None,
             None,
             "3, but 2 rows of angles below",
-            "as many rows as announced for key [1]",
+            "as many rows as the file says for key [1]",
         ),
         (7, 1, 0, "R,F", '"x"', ANGLE),
         (7, 7, 6, "R,F", "nothing", ANGLE),
@@ -146,12 +146,12 @@ def test_what_is_no_number(cell):
         ),
         pytest.param(
             loco([posture()], announced=3),
-            [(1, 2, "3, but 1 posture below", "as many rows as announced")],
+            [(1, 2, "3, but 1 posture below", "as many rows as the file says above")],
             id="fewer rows",
         ),
         pytest.param(
             loco([posture(), posture("1 Key"), "Position\tR,F"], announced=1),
-            [(1, 2, "1, but 2 postures below", "as many rows as announced")],
+            [(1, 2, "1, but 2 postures below", "as many rows as the file says above")],
             id="more rows",
         ),
         pytest.param(
@@ -204,7 +204,7 @@ def test_what_is_no_number(cell):
         pytest.param(
             loco([posture()]) + "\nPosition\tR,F\n" + posture("1 Key"),
             [
-                (1, 2, "1, but 3 postures below", "as many rows as announced"),
+                (1, 2, "1, but 3 postures below", "as many rows as the file says above"),
                 (3, None, "1 angle", "18 angles (3 for each of 6 legs)"),
                 (3, 1, '"Position"', 'a key from "0 Key" to "9 Key"'),
                 (3, 2, '"R,F"', ANGLE),
@@ -234,7 +234,7 @@ def test_what_is_no_number(cell):
         pytest.param(
             loco([posture(), posture("", j0="\t1").strip("\n")], announced=1),
             [
-                (1, 2, "1, but 2 postures below", "as many rows as announced"),
+                (1, 2, "1, but 2 postures below", "as many rows as the file says above"),
                 (3, 1, "1", 'a key from "0 Key" to "9 Key"'),
                 (3, None, "17 angles", "18 angles (3 for each of 6 legs)"),
             ],
@@ -253,17 +253,17 @@ def test_mistakes_of_loco_data(text, expected):
     [
         pytest.param(
             f"2\n1\n{posture('')}",
-            [(1, 1, "2, but 1 key below", "as many keys as announced")],
+            [(1, 1, "2, but 1 key below", "as many keys as the file says above")],
             id="fewer keys",
         ),
         pytest.param(
             f"1\n1\n{posture('')}\n1\n{posture('')}",
-            [(1, 1, "1, but 2 keys below", "as many keys as announced")],
+            [(1, 1, "1, but 2 keys below", "as many keys as the file says above")],
             id="more keys",
         ),
         pytest.param(
             f"1\n2\n{posture('')}",
-            [(2, 1, "2, but 1 row of angles below", "as many rows as announced for key [0]")],
+            [(2, 1, "2, but 1 row of angles below", "as many rows as the file says for key [0]")],
             id="fewer rows",
         ),
         pytest.param(
@@ -301,12 +301,14 @@ def test_mistakes_of_loco_data(text, expected):
             id="a word for a number",
         ),
         pytest.param(
-            "3", [(1, 1, "3, but 0 keys below", "as many keys as announced")], id="nothing else"
+            "3",
+            [(1, 1, "3, but 0 keys below", "as many keys as the file says above")],
+            id="nothing else",
         ),
     ],
 )
 def test_mistakes_of_locotra_data(text, expected):
-    """Fig. 4-2, rules 2: 1-10 keys, 1-100 postures, as many rows as announced."""
+    """Fig. 4-2, rules 2: 1-10 keys, 1-100 postures, as many rows as the file says above."""
     assert [(m.row, m.column, m.found, m.expected) for m in refused(text)] == expected
 
 
@@ -320,8 +322,8 @@ def test_a_gait_for_another_robot_is_called_so(legs):
             None,
             None,
             None,
-            "12 angles a row: a gait for a robot with 4 legs",
-            "18 angles a row: this robot has 6 legs",
+            "12 angles in a row: a gait for a robot with 4 legs",
+            "18 angles in a row: this robot has 6 legs",
         ),
         (3, 9, 7, "L,F", '"x"', ANGLE),
     ]
@@ -340,5 +342,5 @@ def test_a_gait_for_another_robot_is_called_so(legs):
 def test_bytes_that_are_no_text(data):
     """Rules 2: no encoding fits, so the first byte that does not is named."""
     (mistake,) = refused(data)
-    assert mistake.found.startswith("bytes that are no text (byte ")
+    assert mistake.found.startswith("bytes that are not text (byte ")
     assert mistake.expected == "text in UTF-8, UTF-16 or Shift-JIS"

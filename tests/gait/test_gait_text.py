@@ -7,6 +7,7 @@ import pytest
 from lacoc_shared.gait.tables import SAMPLE_KEYS, LocomotionTable, PostureTable, to_locomotion
 from lacoc_shared.gait.text import MAX_BYTES, read_gait, write_gait
 from lacoc_shared.mistakes import FileRefused
+from lacoc_shared.words import Phrase, render
 
 FIGURE_4_1 = """\
 Num of Posture	9
@@ -227,7 +228,7 @@ def test_a_range_for_each_joint():
     limits[6] = (0.0, 19.5)
     with pytest.raises(FileRefused) as refusal:
         read_gait(data, "x", legs=6, range_deg=limits)
-    assert {(m.column, m.joint, m.expected) for m in refusal.value.mistakes} == {
+    assert {(m.column, m.joint, render(m.expected)) for m in refusal.value.mistakes} == {
         (7, 6, "an angle from 0 to 19.5 degrees")
     }
     assert len(refusal.value.mistakes) == 13
@@ -261,11 +262,13 @@ def test_a_mirrored_sheet_shows_empty_cells_as_0():
 
 def test_what_stands_below_the_legend_is_said():
     """It is not read, and a row of zeros says nothing: a sheet shows empty cells so."""
-    notes: list[str] = []
+    notes: list[Phrase] = []
     text = f"{FIGURE_4_1.rstrip()}\nmade by Anna\t2026\n" + "\t".join("0" * 19)
     read_gait(text.encode(), "x", notes=notes)
     row = len(FIGURE_4_1.rstrip().splitlines()) + 1
-    assert notes == [f'x, row {row}: "made by Anna" stands below the legend and is not read.']
+    assert [*map(render, notes)] == [
+        f'x, row {row}: "made by Anna" stands below the legend and is not read.'
+    ]
 
 
 @pytest.mark.parametrize(
@@ -278,10 +281,10 @@ def test_what_stands_below_the_legend_is_said():
 )
 def test_a_legend_that_contradicts_the_columns_is_said(was, now, said):
     """The columns count; a contestant who thinks otherwise finds out before the match."""
-    notes: list[str] = []
+    notes: list[Phrase] = []
     assert was in FIGURE_4_1
     text = FIGURE_4_1.replace(was, now)
     assert read_gait(text.encode(), "x", notes=notes) == read_gait(FIGURE_4_1.encode(), "x")
-    (note,) = notes
+    (note,) = map(render, notes)
     assert said in note
     assert note.endswith("The order of the columns counts, not the legend.")

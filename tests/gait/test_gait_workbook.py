@@ -48,7 +48,7 @@ def refused(data: bytes, **robot: object) -> list[tuple[object, ...]]:
     assert {m.file for m in refusal.value.mistakes} == {"x.xlsx"}
     return [
         (m.row, m.column, m.joint, m.leg, m.field, m.found, m.expected)
-        for m in refusal.value.mistakes
+        for m in (mistake.in_words() for mistake in refusal.value.mistakes)
     ]
 
 
@@ -152,8 +152,8 @@ def test_a_workbook_for_another_robot_is_called_so(sample):
     """Rules 2: a gait for another robot says so clearly."""
     ((row, column, *_, found, expected),) = refused(sample, legs=8)
     assert (row, column) == (2, None)
-    assert found == "18 angles a row: a gait for a robot with 6 legs"
-    assert expected == "24 angles a row: this robot has 8 legs"
+    assert found == "18 angles in a row: a gait for a robot with 6 legs"
+    assert expected == "24 angles in a row: this robot has 8 legs"
 
 
 def test_sequences_are_not_for_workbooks():
@@ -164,7 +164,8 @@ def test_sequences_are_not_for_workbooks():
         book.active.append(row)
     assert refused(saved(book))[0][5:] == (
         "sequences of postures",
-        '"Num of Posture" in cell A1 (Loco-data); sequences are a text file (LocoTra-data.txt)',
+        '"Num of Posture" in cell A1 (Loco-data). Sequences belong in a text file '
+        "(LocoTra-data.txt)",
     )
 
 
@@ -179,7 +180,7 @@ def test_other_sheets_are_named():
     book = openpyxl.Workbook()
     book.create_sheet(MIRROR_SHEET)
     assert refused(saved(book))[0][5:] == (
-        'the sheets "Sheet", "Loco-data"',
+        'the sheets "Sheet" and "Loco-data"',
         'a sheet "EX (input)", or "Loco-data" alone',
     )
 
@@ -210,9 +211,9 @@ WANTED = "an .xlsx workbook without a password, as spreadsheet programs save it"
 @pytest.mark.parametrize(
     ("data", "found", "expected"),
     [
-        (b"", "a damaged file, or no workbook", WANTED),
-        (b"Num of Posture\t1\n", "a damaged file, or no workbook", WANTED),
-        (b"PK\x03\x04 and no more", "a damaged file, or no workbook", WANTED),
+        (b"", "a damaged file, or not a workbook", WANTED),
+        (b"Num of Posture\t1\n", "a damaged file, or not a workbook", WANTED),
+        (b"PK\x03\x04 and no more", "a damaged file, or not a workbook", WANTED),
         (
             b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600),
             "an old .xls workbook, or one with a password",

@@ -12,6 +12,7 @@ from urllib.parse import urlsplit
 
 import msgpack
 import msgspec
+import pytest
 from websockets.client import ClientProtocol
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import Opcode
@@ -37,6 +38,11 @@ class Refused(Exception):
         self.is_the_token: bool = reply["token_refused"]
         self.again: bool = reply["again"]
         self.unanswered: bool = reply["unanswered"]
+
+
+def refusal(code: str) -> pytest.RaisesExc[Refused]:
+    """Expect that something is refused with this code."""
+    return pytest.raises(Refused, check=lambda error: error.why.code == code)
 
 
 class PageClient:
@@ -72,6 +78,11 @@ class PageClient:
         threading.Thread(target=self._listen, daemon=True).start()
         if watch:
             self.ask("watch", key=key, **fields)
+
+    @property
+    def waits_why(self) -> str:
+        """The code by which the gateway says why there is no court; "" while there is."""
+        return (self.link.get("why") or {"code": ""})["code"]
 
     def ask(self, do: str, **fields: Any) -> Any:
         """Ask and wait for the value of the reply."""

@@ -16,10 +16,11 @@ from page_client import PageClient
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(not PageFiles().built, reason=NOT_BUILT),
+    pytest.mark.skipif(not PageFiles().built, reason=render(NOT_BUILT)),
 ]
 
 
@@ -155,7 +156,7 @@ def test_play_needs_no_seat_to_open(tmp_path: Path, stack: ExitStack) -> None:
     with PageClient(play.url, play.key) as page:
         expected = {"seat": "", "name": "", "has_token": False}
         assert page.welcome["prefill"] == expected
-        page.wait(lambda: "Nobody listens" in str(page.link["why"]))
+        page.wait(lambda: page.waits_why == "connect.nobody")
     assert play.ended() == 0
 
 
@@ -193,7 +194,7 @@ def test_demo_says_where_its_page_is_early(tmp_path: Path) -> None:
     done = run_lacoc(*words, cwd=tmp_path, env=no_screen, timeout_s=90)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("Watch at http://127.0.0.1:")
-    assert "OFFICIAL." in done.stdout
+    assert "The result is official." in done.stdout
 
 
 def test_demo_without_a_head_opens_nothing(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 from court_process import environment
 from lacoc_process import Lacoc
 from mcap.reader import make_reader
-from page_client import PageClient, Refused
+from page_client import PageClient, refusal
 from venue import REFEREE, TOKENS, Venue
 
 from lacoc_client.controller import Controller
@@ -133,7 +133,7 @@ def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
     refused = keyed.start("referee", "start", f"--invitation={wrong}")
     page = keyed.page(keyed.key)
     for ask in ({"do": "join", "seat": "right", "name": "x"}, {"do": "enter", "by": "x"}):
-        with pytest.raises(Refused, match="does not take this token"):
+        with refusal("connect.token"):
             page.ask(**ask, token=f"no{TOKENS['right']}")
     contestant = keyed.contestant("right", "Right")
     referee = keyed.referee()

@@ -63,7 +63,7 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
     page.page.click("button[type=submit]")
     page.sees("#join-name-error", "1 to 24 characters")
     page.join("not-the-token")
-    page.sees("#join-token-error", "This token does not open seat left.")
+    page.sees("#join-token-error", "This token is not valid for the left seat.")
     assert page.find("#join-token").get_attribute("aria-invalid") == "true"
 
     angles = ["45"] * 16
@@ -289,7 +289,7 @@ def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: S
     page = sit(url)
     page.open(key=key)
     page.sees(".seat.on", "right")
-    page.sees(".files", "from the command line: LocoTra-data.txt")
+    page.sees(".files", "LocoTra-data.txt (from this computer's folder)")
     assert page.find("#join-name").input_value() == "Bees"
     page.misses(".safety")
     page.page.click("button[type=submit]")
@@ -357,7 +357,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.key_stands(0)
     page.sees(".restart", "in ")
     page.press("2")
-    page.is_toasted("[2] Restarted a moment ago")
+    page.is_toasted("[2] Your robot was restarted a moment ago")
 
     page.press("z")  # it lies beside x: the match goes on, with all keys
     page.sees(".leaving", "Hold z to leave the match")
@@ -478,7 +478,7 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
     page = seated(venue, sit)
     elsewhere = venue.contestant("left", "Ants")
     page.stands("lost")
-    page.sees(".entrance", "was joined again from another window or machine")
+    page.sees(".entrance", "oined from another window or computer")
     assert elsewhere.seat["hold"] == "held"
     page.page.click("text=Join again")
     page.stands("seated")

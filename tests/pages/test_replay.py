@@ -25,6 +25,7 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.record.writer import RecordWriter
+from lacoc_shared.words import render
 
 pytestmark = pytest.mark.slow
 
@@ -255,12 +256,12 @@ def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> N
     show.sees(".third .gain", f"+{game[1].data['points']}")
     now = show.find(".replay-log [aria-current]")
     expect(now).to_have_count(1)
-    expect(now).to_contain_text(game[1].text)
+    expect(now).to_contain_text(render(game[1].said))
     expect(now).to_be_in_viewport()
     show.press("p")
     assert show.beat == game[0].beat - RUN_UP
 
-    show.find(".replay-log button", has_text=game[2].text).click()
+    show.find(".replay-log button", has_text=render(game[2].said)).click()
     assert show.beat == game[2].beat - RUN_UP
     show.press("End")
     show.sees(".result .kicker", "Official")

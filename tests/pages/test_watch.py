@@ -50,10 +50,10 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
 
     reply = decide(referee, "flag out of place", type="adjust", seat="right", points=4)
     show.has_scores(19, 21)
-    show.sees(".third.neutral .what", "Referee Kim: +4 for Bees")
+    show.sees(".third.neutral .what", "Referee Kim: +4 points for Bees")
     show.sees(".third.neutral .gain", "+4")
     show.sees(".hint", "Bees leads by 2")
-    expect(show.find(".panel .log li").first).to_contain_text("+4 for Bees")
+    expect(show.find(".panel .log li").first).to_contain_text("+4 points for Bees")
     show.until(lambda: show.view("drawnBeat") > reply["beat"] + 230, "time stands still")
     show.misses(".third")
     show.page.close()
@@ -82,7 +82,7 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     show.sees(".result .kicker", "By the rules")
     show.sees(".result h1", "A draw")
     show.sees(".result", "time is up · 0:02 played")
-    show.sees(".panel .log li[data-kind=phase]", "Play is over: time is up.")
+    show.sees(".panel .log li[data-kind=phase]", "The match is finished: time is up.")
     show.sees(".result .next", "the referee confirms")
     decide(referee, "the better walk", type="declare", winner="right")
     decide(referee, type="official")
@@ -354,9 +354,9 @@ def test_news_are_read_aloud_once(venue: Venue, open_page: OpenPage) -> None:
     show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
     show.sees(".panel .log")
     decide(referee, "a foul", type="adjust", seat="left", points=2)
-    show.sees(".third .what", "+2 for Ants")
-    show.sees(".panel .log", "+2 for Ants")
-    assert show.find("[aria-live]:not([aria-live=off])", has_text="+2 for Ants").count() == 1
+    show.sees(".third .what", "+2 points for Ants")
+    show.sees(".panel .log", "+2 points for Ants")
+    assert show.find("[aria-live]:not([aria-live=off])", has_text="+2 points for Ants").count() == 1
 
 
 @pytest.mark.long

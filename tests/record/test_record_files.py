@@ -313,7 +313,7 @@ def test_files_that_are_no_record_of_one_match_are_refused(
     mine = write_match(tmp_path)
     for paths, sentence in (
         (tmp_path / "none.mcap", "There is no record"),
-        (table, "it is no MCAP file"),
+        (table, "it is not an MCAP file"),
         (foreign, "but not a LACOC record"),
         (newer.path, "has format 7, and this software reads format 1"),
         (late.path, "the segments before it are missing"),

@@ -72,7 +72,7 @@ def test_a_robot_file_that_is_not_utf_8(
     assert lacoc("robot", "check", "--json", str(file)) == 2
     (mistake,) = json.loads(capsys.readouterr().out)["mistakes"]
     assert (mistake["found"], mistake["expected"]) == (
-        "text that is not in UTF-8",
+        "bytes that are not text in UTF-8",
         "save it as UTF-8",
     )
 
@@ -83,7 +83,7 @@ def test_an_integer_of_many_digits(tmp_path: Path, capsys: pytest.CaptureFixture
     file.write_text(HEXAPOD.replace("kp = 20.0", "kp = 2" + "0" * 6000))
     assert lacoc("robot", "check", "--json", str(file)) == 2
     (mistake,) = json.loads(capsys.readouterr().out)["mistakes"]
-    assert mistake["found"] == "a number of very many digits"
+    assert mistake["found"] == "a number with too many digits"
     assert mistake["expected"] == "write it with at most 15 digits"
     assert HEXAPOD.splitlines()[mistake["row"] - 1].startswith("kp = ")
 

@@ -18,7 +18,7 @@ def mistakes_of(text: str | bytes, limits: Limits | None = None) -> list[Mistake
     with pytest.raises(FileRefused) as refused:
         read_robot(text, "mine.toml", limits)
     assert all(mistake.file == "mine.toml" for mistake in refused.value.mistakes)
-    return refused.value.mistakes
+    return [mistake.in_words() for mistake in refused.value.mistakes]
 
 
 def changed(old: str, new: str, count: int = 1) -> str:

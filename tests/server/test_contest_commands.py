@@ -85,11 +85,11 @@ def test_show_as_json(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ('arena = "othello"', 'arena = "chess"', "no arena 'chess'"),
+        ('arena = "othello"', 'arena = "chess"', "no arena .chess."),
         ("# duration_s = 120.0", 'duration_s = "long"', "duration_s"),
         ("# duration_s = 120.0", "duratoin_s = 1.0", "duratoin_s"),
         ("# legs_max = 8", "legs_maxx = 8", "legs_maxx"),
-        ("[court.main.seat.left]", "[court.main.seat.middle]", "left, right.*middle, right"),
+        ("[court.main.seat.left]", "[court.main.seat.middle]", "left and right.*middle and right"),
     ],
 )
 def test_check_looks_into_arena_and_limits(tmp_path: Path, old: str, new: str, said: str) -> None:

@@ -166,7 +166,7 @@ def test_the_entry_goes_into_any_contest_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ('"0.0.0.0:7447"', '"tcp/0.0.0.0:7447"', r"write tls/0.0.0.0:7447"),
+        ('"0.0.0.0:7447"', '"tcp/0.0.0.0:7447"', r"Write tls/0.0.0.0:7447"),
         ("arena =", "aren =", "There can be: arena"),
         ("[contest]", "[contest", "can't be read"),
     ],
@@ -210,7 +210,9 @@ def test_what_is_no_certificate_of_a_court_is_said(file: Path, what: str) -> Non
     }
     invitation = keys.invitation("main.left").read_bytes()
     keys.certificate.write_bytes(mixed_up[what])
-    with pytest.raises(UserError, match=r"court\.pem is no certificate.*--host.*--renew"):
+    with pytest.raises(
+        UserError, match=r"court\.pem is not a court's certificate.*--host.*--renew"
+    ):
         run("keys", str(file), "--host", "x.example")
     assert keys.certificate.read_bytes() == mixed_up[what]
     keys.certificate.unlink()

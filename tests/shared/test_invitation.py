@@ -44,8 +44,8 @@ def test_an_address_in_an_invitation_may_be_short(tmp_path: Path) -> None:
     [
         ("court = 3", "court"),
         ('court = "main"', "connect"),
-        ('court = "Main"\nconnect = "x"', "'Main'"),
-        ('court = "main"\nconnect = "http://x"', "'http://x' is not an address"),
+        ('court = "Main"\nconnect = "x"', '"Main"'),
+        ('court = "main"\nconnect = "http://x"', '"http://x" is not an address'),
         ('court = "main"\nconnect = "x"\nrole = "king"', "role"),
         ("x" * 70_000, "bytes"),
         ("court = \n", "line 1"),
@@ -73,7 +73,7 @@ def test_an_invitation_is_for_one_role(tmp_path: Path) -> None:
     assert entrance.gateway(gateway, *nothing) == GATEWAY
     assert entrance.gateway(left, *nothing) == WATCH
     assert entrance.spectator(left, *nothing) == WATCH
-    with pytest.raises(UserError, match="an invitation for the referee, not for a seat"):
+    with pytest.raises(UserError, match="an invitation for the referee, not for a contestant"):
         entrance.seat(referee, *nothing, None, None)
     with pytest.raises(UserError, match="for the seat, not for a referee"):
         entrance.referee(left, *nothing, None)

@@ -19,7 +19,7 @@ from lacoc_client.stopping import stop_signals
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.network.session import open_client
-from lacoc_shared.words import render, say
+from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer()
 
@@ -74,7 +74,7 @@ def bot_command(
     function from a frame to a key.
     """
     access = entrance.seat(invitation, contest, court, connect, seat, token)
-    notes: list[str] = []
+    notes: list[Phrase] = []
     files, own_team = _brings(name, robot, gait or [], notes)
     for note in notes:
         screen.show(note)
@@ -108,7 +108,7 @@ def bot_command(
 
 
 def _brings(
-    name: str, robot: str | None, gaits: list[Path], notes: list[str]
+    name: str, robot: str | None, gaits: list[Path], notes: list[Phrase]
 ) -> tuple[SeatFiles, str]:
     """Return a bot's files and its team name; a ghost has the files of its match."""
     if not name.startswith(brains.GHOST):

@@ -18,6 +18,7 @@ from lacoc_shared.contest import entrances
 from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
@@ -75,7 +76,7 @@ def doctor_command(
     for way in ways:
         findings += link(way, seconds)
     if json:
-        screen.print_json(findings)
+        screen.print_json([finding.in_words() for finding in findings])
     else:
         screen.show(_table(findings))
     if any(finding.status is Status.PROBLEM for finding in findings):
@@ -105,15 +106,23 @@ def _look(
 def _host_port(address: str) -> tuple[str, int]:
     match = _HOST_PORT.match(address)
     if match is None or int(match["port"]) > 65_535:
-        raise UserError(f"{address!r} is no place to listen at. It looks like 0.0.0.0:8080.")
+        raise UserError(say("command.bad-listen", where=address))
     return match["host"].strip("[]"), int(match["port"])
 
 
+_STATUS_WORDS = {
+    Status.OK: say("status.ok"),
+    Status.NOTE: say("status.note"),
+    Status.PROBLEM: say("status.problem"),
+}
+
+
 def _table(findings: list[Finding]) -> Table:
-    table = Table("", "what", "found, and what to do")
-    for finding in findings:
-        what = Text(finding.found)
+    table = Table("", render(say("fact.what")), render(say("fact.found-and-todo")))
+    for finding in (one.in_words() for one in findings):
+        what = Text(str(finding.found))
         if finding.todo:
             what.append(f"\n{finding.todo}", "dim" if finding.status is Status.OK else "bold")
-        table.add_row(Text(finding.status, _STYLES[finding.status]), finding.about, what)
+        status = render(_STATUS_WORDS[finding.status])
+        table.add_row(Text(status, _STYLES[finding.status]), Text(str(finding.about)), what)
     return table

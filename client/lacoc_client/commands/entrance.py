@@ -7,6 +7,7 @@ from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access, Role, read_invitation
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 
 def seat(
@@ -98,13 +99,12 @@ def gateway(
 
 def _invited(path: Path, role: Role | None, *others: object) -> Access:
     if any(other is not None for other in others):
-        raise UserError(
-            "An invitation says court, address, seat and token: leave --contest, --court, "
-            "--connect, --seat and --token out, and their LACOC_ variables."
-        )
+        raise UserError(say("contest.invitation-alone"))
     access = read_invitation(path)
     if role is not None and access.role != role:
-        raise UserError(f"{path} is an invitation for the {access.role}, not for a {role}.")
+        raise UserError(
+            say("contest.invitation-for", path=str(path), wanted=role, role=access.role)
+        )
     return access
 
 

@@ -11,6 +11,7 @@ from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import Home
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 Browser = Annotated[
     bool,
@@ -29,7 +30,7 @@ def check_pages() -> None:
         UserError: if they are not built.
     """
     if not PageFiles().built:
-        raise UserError(f"{NOT_BUILT} --terminal does without them.")
+        raise UserError(say("pages.not-built-for-play", why=NOT_BUILT))
 
 
 def show_page(home: Home, path: str, browser: bool) -> None:

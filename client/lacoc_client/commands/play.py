@@ -20,6 +20,7 @@ from lacoc_shared.command import options, screen
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.network.session import open_client
+from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
@@ -82,7 +83,7 @@ def play_command(
     if terminal:
         access = entrance.seat(invitation, contest, court, connect, seat, token)
         files = own_files(robot, gait or []).files
-        play(access, name or f"Team {access.seat}", files, ready=ready)
+        play(access, name or render(say("page.team", seat=access.seat)), files, ready=ready)
         return
     access = entrance.perhaps_seat(invitation, contest, court, connect, seat, token)
     prefill = Prefill(access.seat, access.token, name, own_files(robot, gait or []))

@@ -21,6 +21,7 @@ from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.command import screen
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
@@ -126,9 +127,14 @@ def _opened(court: subprocess.Popen[bytes], said: Path, complained: Path) -> dic
             return opened
         if ended:
             reason = _text(complained).strip() or f"its process ended with {court.returncode}."
-            raise UserError(f"The practice court does not open. {reason.removeprefix('Error: ')}")
+            raise UserError(say("practice.closed", why=_without_heading(reason)))
         time.sleep(_LOOK_S)
-    raise UserError(f"The practice court does not open within {_OPEN_S:.0f} s.")
+    raise UserError(say("practice.slow", seconds=_OPEN_S))
+
+
+def _without_heading(error: str) -> str:
+    """Take away the word with which a command begins an error, in its language."""
+    return error.removeprefix(render(say("command.error"))).strip()
 
 
 def _text(path: Path) -> str:

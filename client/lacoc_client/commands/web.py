@@ -17,6 +17,7 @@ from lacoc_shared.contest import file as contests
 from lacoc_shared.contest.file import Contest
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
@@ -105,7 +106,7 @@ def web_command(
             if exporter is not None:
                 screen.note(f"Metrics at {exporter.url}")
         if not built:
-            screen.warn(NOT_BUILT)
+            screen.warn(render(NOT_BUILT))
         log.start(json)
 
     with exporter or nullcontext():
@@ -125,7 +126,7 @@ def _courts(
 def _key(plan: Contest | None, key: str | None) -> str:
     if key is not None:
         if len(key) < _KEY_LEAST:
-            raise UserError(f"A key has at least {_KEY_LEAST} characters.")
+            raise UserError(say("web.short-key", least=_KEY_LEAST))
         return key
     return new_key() if plan is None else lasting_key(plan)
 

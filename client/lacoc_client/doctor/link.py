@@ -11,7 +11,7 @@ from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
-from lacoc_shared.words import render
+from lacoc_shared.words import Phrase, say
 
 _REQUESTS = 50
 _LONG_TRIP_S = 0.15
@@ -27,7 +27,7 @@ def link(access: Access, seconds: float) -> Iterator[Finding]:
         access: the way to the court.
         seconds: how long its frames are counted.
     """
-    about = f"court {access.court}"
+    about = say("doctor.court", court=access.court)
     try:
         with open_client([access.connect], credentials=access.credentials) as session:
             view = Spectator(session, access.court)
@@ -36,21 +36,25 @@ def link(access: Access, seconds: float) -> Iterator[Finding]:
             yield _frames(view, seconds)
             yield from _record(view)
     except UserError as error:
-        todo = "Check the address with the organiser, the network and firewalls."
-        yield Finding(about, Status.PROBLEM, str(error), todo)
+        yield Finding(about, Status.PROBLEM, error.phrase, say("doctor.court-todo"))
 
 
-def _version(about: str, access: Access, view: Spectator) -> Finding:
+def _version(about: Phrase, access: Access, view: Spectator) -> Finding:
     sheet = view.sheet
-    found = f"{sheet.title} at {access.connect}, match {sheet.match}, version {sheet.version}"
+    found = say(
+        "doctor.court-found",
+        title=sheet.title,
+        address=access.connect,
+        match=sheet.match,
+        version=sheet.version,
+    )
     if sheet.version == __version__:
         return Finding(about, Status.OK, found)
-    todo = f"This machine has {__version__}: install the version that the organiser uses."
-    return Finding(about, Status.NOTE, found, todo)
+    return Finding(about, Status.NOTE, found, say("doctor.version-todo", version=__version__))
 
 
 def _round_trip(session: Session, view: Spectator) -> Finding:
-    about = f"round trip to {view.keys.court}"
+    about = say("doctor.round-trip", court=view.keys.court)
     times_s = []
     for _ in range(_REQUESTS):
         began_s = time.perf_counter()
@@ -58,13 +62,12 @@ def _round_trip(session: Session, view: Spectator) -> Finding:
         times_s.append(time.perf_counter() - began_s)
     times_s.sort()
     p50_s, p95_s = times_s[_REQUESTS // 2], times_s[_REQUESTS * 95 // 100]
-    found = (
-        f"{_REQUESTS} requests, one after another: {p50_s * 1000:.0f} ms (p50), "
-        f"{p95_s * 1000:.0f} ms (p95); a court answers once in 20 ms"
+    found = say(
+        "doctor.round-trip-found", requests=_REQUESTS, p50_ms=1000 * p50_s, p95_ms=1000 * p95_s
     )
     if p95_s <= _LONG_TRIP_S:
         return Finding(about, Status.OK, found)
-    return Finding(about, Status.NOTE, found, "Keys come late: use a cable, or be nearer.")
+    return Finding(about, Status.NOTE, found, say("doctor.round-trip-todo"))
 
 
 def _frames(view: Spectator, seconds: float) -> Finding:
@@ -72,11 +75,11 @@ def _frames(view: Spectator, seconds: float) -> Finding:
 
     A repeated frame does not count: a court that can't go on sends its last one again.
     """
-    about = f"frames of {view.keys.court}"
+    about = say("doctor.frames", court=view.keys.court)
     first = view.wait_frame(_FIRST_S)
     if first is None:
-        todo = "Is the court overloaded, or does something hold its frames back?"
-        return Finding(about, Status.PROBLEM, "none came within a second", todo)
+        todo = say("doctor.frames-none-todo")
+        return Finding(about, Status.PROBLEM, say("doctor.frames-none"), todo)
     count, last, last_s, gap_s = 1, first, view.frame_s, 0.0
     began_s = last_s
     while (now_s := time.monotonic()) - began_s < seconds:
@@ -91,24 +94,18 @@ def _frames(view: Spectator, seconds: float) -> Finding:
     took_s = time.monotonic() - began_s
     hz = (count - 1) / took_s
     made = last.beat - first.beat if last.match == first.match else count - 1
+    phase = Phase(last.phase).name.lower()
     if count == 1 and view.frame is not first:
-        found = (
-            f"the court stands still in {Phase(last.phase).name}: it sends beat {last.beat} again"
-        )
-        return Finding(about, Status.PROBLEM, found, "Tell the organiser: no match goes on there.")
+        still = say("doctor.frames-still", phase=phase, beat=last.beat)
+        return Finding(about, Status.PROBLEM, still, say("doctor.frames-still-todo"))
     missed = max(0, made - (count - 1))
-    found = (
-        f"{hz:.1f} a second in {Phase(last.phase).name}, {missed} of {made} missed, "
-        f"the longest gap {gap_s * 1000:.0f} ms"
+    found = say(
+        "doctor.frames-found", hz=hz, phase=phase, missed=missed, made=made, gap_ms=1000 * gap_s
     )
     if hz >= _LEAST_HZ and gap_s <= _LONG_GAP_S:
         return Finding(about, Status.OK, found)
     slow = made * BEAT_S < took_s * _LEAST_HZ / BEATS_PER_S
-    todo = (
-        "The court itself is slow: tell the organiser."
-        if slow
-        else "The network loses or holds frames: use a cable, and end what else uses it."
-    )
+    todo = say("doctor.frames-slow-court") if slow else say("doctor.frames-slow-network")
     return Finding(about, Status.NOTE, found, todo)
 
 
@@ -118,6 +115,5 @@ def _record(view: Spectator) -> Iterator[Finding]:
     while view.health is None and time.monotonic() < end_s:
         view.wait_frame(_FIRST_S)
     if view.health is not None and view.health.record_trouble:
-        about, trouble = f"record of {view.keys.court}", view.health.record_trouble
-        todo = "Tell the organiser: nothing goes on that is not recorded."
-        yield Finding(about, Status.PROBLEM, render(trouble), todo)
+        about = say("doctor.record", court=view.keys.court)
+        yield Finding(about, Status.PROBLEM, view.health.record_trouble, say("doctor.record-todo"))

@@ -29,6 +29,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.access_rules import Credentials
 from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import BEAT_S
+from lacoc_shared.words import Phrase, render, say
 
 _MIB = 1 << 20
 _LEAST_FREE_BYTES, _GOOD_FREE_BYTES = 100 * _MIB, 1024 * _MIB
@@ -52,11 +53,15 @@ class Status(StrEnum):
 class Finding(msgspec.Struct, frozen=True):
     """A finding about one thing."""
 
-    about: str
+    about: Phrase | str
     status: Status
-    found: str
-    todo: str = ""
+    found: Phrase | str
+    todo: Phrase | str = ""
     """What to do about it; "": nothing."""
+
+    def in_words(self) -> "Finding":
+        """Return the finding in the language of the process."""
+        return Finding(render(self.about), self.status, render(self.found), render(self.todo))
 
 
 def packages() -> Iterator[Finding]:
@@ -66,11 +71,20 @@ def packages() -> Iterator[Finding]:
     python = platform.python_version()
     fits = Requirement(f"python{wanted}").specifier.contains(python, prereleases=True)
     yield (
-        Finding("python", Status.OK, f"{python} on {platform.platform()}")
+        Finding(
+            "python",
+            Status.OK,
+            say("doctor.python-ok", python=python, system=platform.platform()),
+        )
         if fits
-        else Finding("python", Status.PROBLEM, f"{python}, wanted {wanted}", "Install a newer one.")
+        else Finding(
+            "python",
+            Status.PROBLEM,
+            say("doctor.python-old", python=python, wanted=wanted),
+            say("doctor.python-todo"),
+        )
     )
-    yield Finding("lacoc", Status.OK, f"{__version__}, version {PROTOCOL} of the protocol")
+    yield Finding("lacoc", Status.OK, say("doctor.lacoc", version=__version__, protocol=PROTOCOL))
     fine = []
     for text in lacoc.requires or ():
         needed = Requirement(text)
@@ -78,10 +92,10 @@ def packages() -> Iterator[Finding]:
         if here or (needed.marker is not None and needed.marker.evaluate({"extra": "server"})):
             finding = _package(needed, optional=not here)
             if finding.status is Status.OK:
-                fine.append(f"{finding.about} {finding.found}")
+                fine.append(f"{needed.name} {version(needed.name)}")
             else:
                 yield finding
-    yield Finding("packages", Status.OK, ", ".join(fine))
+    yield Finding(say("doctor.packages"), Status.OK, ", ".join(fine))
 
 
 def _package(needed: Requirement, *, optional: bool) -> Finding:
@@ -90,13 +104,14 @@ def _package(needed: Requirement, *, optional: bool) -> Finding:
         found = version(needed.name)
     except PackageNotFoundError:
         if optional:
-            what = "not installed: this machine can play and show, but hold no match"
-            return Finding(about, Status.NOTE, what, 'For a court: pip install "lacoc[server]"')
-        return Finding(about, Status.PROBLEM, "not installed", f'pip install "{wanted}"')
+            todo = say("doctor.no-mujoco-todo")
+            return Finding(about, Status.NOTE, say("doctor.no-mujoco"), todo)
+        todo = say("doctor.install", package=wanted)
+        return Finding(about, Status.PROBLEM, say("doctor.not-installed"), todo)
     if needed.specifier.contains(found, prereleases=True):
         return Finding(about, Status.OK, found)
-    what = f"{found} is installed, wanted is {needed.specifier}"
-    return Finding(about, Status.PROBLEM, what, f'pip install "{wanted}"')
+    what = say("doctor.other-package", found=found, wanted=str(needed.specifier))
+    return Finding(about, Status.PROBLEM, what, say("doctor.install", package=wanted))
 
 
 def court_port(
@@ -111,22 +126,22 @@ def court_port(
             port is only a note.
         credentials: credentials to ask a court that has keys.
     """
-    about = f"port {port}"
-    why = _why_taken(host, port)
+    about = say("doctor.port", port=port)
+    why: Phrase | str = _why_taken(host, port)
     if not why:
-        return Finding(about, Status.OK, f"free at {host}, for a court")
+        return Finding(about, Status.OK, say("doctor.port-free-court", host=host))
     try:
         with open_client([f"127.0.0.1:{port}"], _ASK_S, credentials) as session:
             courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     except UserError:
         courts = []
     if court in courts or (courts and court is None):
-        return Finding(about, Status.OK, f"court {', '.join(courts)} runs here")
+        return Finding(about, Status.OK, say("doctor.court-runs", courts=courts))
     if courts:
-        why = f"court {', '.join(courts)} runs here, and the contest file has court {court} here"
+        why = say("doctor.court-other", courts=courts, court=court or "")
     status = Status.NOTE if court is None else Status.PROBLEM
-    todo = "End the program that has it, or give the court another address (--listen)."
-    return Finding(about, status, f"a court can't listen at {host}: {why}", todo)
+    todo = say("doctor.court-port-todo")
+    return Finding(about, status, say("doctor.court-port", host=host, why=why), todo)
 
 
 def web_port(host: str, port: int, *, needed: bool) -> Finding:
@@ -137,20 +152,20 @@ def web_port(host: str, port: int, *, needed: bool) -> Finding:
         port: the port.
         needed: whether it was asked for; otherwise a taken port is only a note.
     """
-    about = f"port {port}"
-    why = _why_taken(host, port)
+    about = say("doctor.port", port=port)
+    why: Phrase | str = _why_taken(host, port)
     if not why:
-        return Finding(about, Status.OK, f"free at {host}, for the pages")
+        return Finding(about, Status.OK, say("doctor.port-free-pages", host=host))
     try:
         with urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=_ASK_S) as reply:
             ours = b"LACOC" in reply.read(_MIB)
     except (OSError, ValueError, urllib.error.URLError):
         ours = False
     if ours:
-        return Finding(about, Status.OK, "pages are served here")
+        return Finding(about, Status.OK, say("doctor.pages-run"))
     status = Status.PROBLEM if needed else Status.NOTE
-    todo = "End the program that has it, or give 'lacoc web' another port (--listen)."
-    return Finding(about, status, f"the pages can't be served at {host}: {why}", todo)
+    todo = say("doctor.pages-port-todo")
+    return Finding(about, status, say("doctor.pages-port", host=host, why=why), todo)
 
 
 def _why_taken(host: str, port: int) -> str:
@@ -169,25 +184,22 @@ def _why_taken(host: str, port: int) -> str:
 
 def graphics() -> Finding:
     """Report the graphics that a browser may use; only the browser knows which it uses."""
-    look = (
-        "In the browser: chrome://gpu or about:support says what it draws with. If a page is slow, "
-        "choose the quality 'low' in its settings."
-    )
+    about, look = say("doctor.graphics"), say("doctor.graphics-look")
     if sys.platform != "linux":
-        found = f"{platform.system()}'s own: not looked at from here"
-        return Finding("graphics", Status.OK, found, look)
+        found = say("doctor.graphics-own", system=platform.system())
+        return Finding(about, Status.OK, found, look)
     devices = sorted(map(str, Path("/dev/dri").glob("renderD*")))
     usable = [device for device in devices if os.access(device, os.R_OK | os.W_OK)]
     libraries = [name for name in ("EGL", "GL", "GLX") if ctypes.util.find_library(name)]
-    drawn = f"libraries {', '.join(libraries) or 'none'}"
     if usable:
-        return Finding("graphics", Status.OK, f"GPU {', '.join(usable)}; {drawn}")
+        found = say("doctor.graphics-gpu", devices=usable, libraries=libraries)
+        return Finding(about, Status.OK, found)
     if devices:
-        todo = f"Let this user in: add it to the group of the device. {look}"
-        found = f"GPU {', '.join(devices)}, which this user may not use; {drawn}"
-        return Finding("graphics", Status.NOTE, found, todo)
-    found = f"no GPU found: a browser here draws by software; {drawn}"
-    return Finding("graphics", Status.NOTE, found, look)
+        todo = say("doctor.graphics-forbidden-todo")
+        found = say("doctor.graphics-forbidden", devices=devices, libraries=libraries)
+        return Finding(about, Status.NOTE, found, todo)
+    found = say("doctor.graphics-none", libraries=libraries)
+    return Finding(about, Status.NOTE, found, look)
 
 
 def clock(seconds: float) -> Finding:
@@ -201,44 +213,47 @@ def clock(seconds: float) -> Finding:
         due_s = max(due_s, time.monotonic() - BEAT_S)  # a stall counts as one late beat, not many
     slow_percent = 100 * sum(one > BEAT_S for one in late_s) / len(late_s)
     resolution_ns = time.get_clock_info("monotonic").resolution * 1e9
-    found = (
-        f"{len(late_s)} beats of 20 ms: late by {_ms(statistics.median(late_s))} (median), "
-        f"{_ms(max(late_s))} (worst), {slow_percent:.1f} % by more than 20 ms; resolution "
-        f"{resolution_ns:.0f} ns"
+    about = say("doctor.clock-name")
+    found = say(
+        "doctor.clock",
+        beats=len(late_s),
+        median_ms=1000 * statistics.median(late_s),
+        worst_ms=1000 * max(late_s),
+        slow_percent=slow_percent,
+        resolution_ns=resolution_ns,
     )
     if slow_percent <= _SLOW_PERCENT:
-        return Finding("clock", Status.OK, found)
-    todo = (
-        "Something else keeps this machine busy: end it, switch off power saving, and hold no "
-        "match here until this is ok."
-    )
+        return Finding(about, Status.OK, found)
     status = Status.NOTE if slow_percent <= _TOO_SLOW_PERCENT else Status.PROBLEM
-    return Finding("clock", status, found, todo)
+    return Finding(about, status, found, say("doctor.clock-todo"))
 
 
 def disk(folder: Path) -> Finding:
     """Check that records can be written to a folder, its free space, and how long a sync takes."""
+    about = say("doctor.disk-name")
     above = (folder.absolute(), *folder.absolute().parents)
     there = next(one for one in above if os.path.lexists(one))
     try:
         free_bytes = shutil.disk_usage(there).free
         syncs_s = _syncs_s(there)
     except OSError as error:
-        found = f"records can't be written to {folder}: {error.strerror}"
-        todo = "Name another folder: --recordings, or 'recordings' in the contest file."
-        return Finding("disk", Status.PROBLEM, found, todo)
-    found = (
-        f"{folder}: {free_bytes / _MIB:,.0f} MiB free, a match has about 4; a sync takes "
-        f"{_ms(statistics.median(syncs_s))} (median), {_ms(max(syncs_s))} (worst)"
+        why = error.strerror or str(error)
+        found = say("doctor.disk-fail", folder=str(folder), why=why)
+        return Finding(about, Status.PROBLEM, found, say("doctor.disk-fail-todo"))
+    found = say(
+        "doctor.disk",
+        folder=str(folder),
+        free_mib=free_bytes / _MIB,
+        median_ms=1000 * statistics.median(syncs_s),
+        worst_ms=1000 * max(syncs_s),
     )
     if free_bytes < _LEAST_FREE_BYTES:
-        return Finding("disk", Status.PROBLEM, found, "Make room.")
+        return Finding(about, Status.PROBLEM, found, say("doctor.disk-full"))
     if free_bytes < _GOOD_FREE_BYTES:
-        return Finding("disk", Status.NOTE, found, "Make room before a long day.")
+        return Finding(about, Status.NOTE, found, say("doctor.disk-low"))
     if max(syncs_s) > _SLOW_FSYNC_S:
-        todo = "A power cut may cost more than a second of a match: take a faster disk."
-        return Finding("disk", Status.NOTE, found, todo)
-    return Finding("disk", Status.OK, found)
+        return Finding(about, Status.NOTE, found, say("doctor.disk-slow"))
+    return Finding(about, Status.OK, found)
 
 
 def _syncs_s(folder: Path) -> Sequence[float]:
@@ -254,7 +269,3 @@ def _syncs_s(folder: Path) -> Sequence[float]:
     finally:
         path.unlink(missing_ok=True)
     return times_s
-
-
-def _ms(seconds: float) -> str:
-    return f"{seconds * 1000:.1f} ms"

@@ -5,11 +5,10 @@ import mimetypes
 from pathlib import Path
 from typing import NamedTuple
 
+from lacoc_shared.words import say
+
 PAGES = Path(__file__).parents[1] / "pages"
-NOT_BUILT = (
-    "The pages are not built: run 'npm ci && npm run build' in client/web, "
-    "or install lacoc from its wheel."
-)
+NOT_BUILT = say("gateway.not-built")
 
 _PACKED_FROM_BYTES = 1024
 _PACKED = ("text/", "application/json", "image/svg+xml")

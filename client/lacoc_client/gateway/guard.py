@@ -10,9 +10,11 @@ import socket
 from collections.abc import Iterable
 from urllib.parse import urlsplit
 
-from starlette.datastructures import MutableHeaders
+from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from lacoc_shared.words import LANGUAGES, Phrase, render, say
 
 _POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
@@ -54,26 +56,32 @@ class Guard:
                 _add_headers(MutableHeaders(scope=message), scope["path"])
             await send(message)
 
-        if refusal:
-            await PlainTextResponse(refusal, status_code=403)(scope, receive, send_safely)
+        if refusal is not None:
+            await answer(scope, refusal, 403)(scope, receive, send_safely)
         else:
             await self._app(scope, receive, send_safely)
 
-    def _why_not(self, scope: Scope) -> str:
+    def _why_not(self, scope: Scope) -> Phrase | None:
         hosts = _all(scope, b"host")
         name = _name_of(hosts[0]) if len(hosts) == 1 else ""
         if not (_is_number(name) or name in self._names):
-            return (
-                f"This machine is not known as {name!r:.80}. Open its page by its number or its "
-                f"own name, or start the gateway with --host {name or 'NAME':.80}.\n"
-            )
+            return say("gateway.unknown-name", name=name[:80], host=name[:80] or "NAME")
         origins = _all(scope, b"origin")
         if scope["type"] == "websocket" and origins:
             origin = urlsplit(origins[0])
             same = origin.scheme in ("http", "https") and origin.netloc.lower() == hosts[0].lower()
             if len(origins) > 1 or not same:
-                return "A page of another site may not connect here.\n"
-        return ""
+                return say("gateway.other-site")
+        return None
+
+
+def answer(scope: Scope, said: Phrase, status: int) -> PlainTextResponse:
+    """Answer a browser with a sentence in its person's language, in the place of a page."""
+    wanted = Headers(scope=scope).get("accept-language", "").lower()
+    # Browsers name the language that is wanted most first.
+    found = ((wanted.find(language), language) for language in LANGUAGES if language in wanted)
+    chosen = min(found, default=(0, LANGUAGES[0]))[1]
+    return PlainTextResponse(f"{render(said, chosen)}\n", status_code=status)
 
 
 def _add_headers(headers: MutableHeaders, path: str) -> None:

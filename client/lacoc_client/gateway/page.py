@@ -18,7 +18,6 @@ from lacoc_client.gateway.viewer import USUAL_HZ, Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_client.referee import RefereeClient
 from lacoc_shared import __version__
-from lacoc_shared.codec import BadMessage
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import FileRefused, UserError
@@ -80,12 +79,12 @@ class Page:
         """Answer one message; return False if the page is to be closed."""
         try:
             asked = wire.read(data)
-        except BadMessage as error:
+        except wire.Unreadable as error:
             to = wire.read_id(data)
             if to is None:
                 await self._websocket.close(GARBAGE, "not a message")
                 return False
-            self._answers.refuse(to, UserError(say("gateway.bad-message", error=str(error))))
+            self._answers.refuse(to, error)
             return True
         try:
             return await self._answer(asked)

@@ -115,7 +115,11 @@ class PageSeat:
             token, name = token or prefill.token, name or prefill.name
         if not token:
             raise UserError(say("gateway.no-token"))
-        return watching.of_seat(asked.seat, token), name or f"Team {asked.seat}", files
+        return (
+            watching.of_seat(asked.seat, token),
+            name or render(say("page.team", seat=asked.seat)),
+            files,
+        )
 
     def _tell(self, seat: dict[str, Any], joins: int) -> None:
         if joins != self._joins:

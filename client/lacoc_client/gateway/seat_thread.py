@@ -17,7 +17,7 @@ from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.session import open_client
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 LOST_AFTER_S = 1.0
 """Silence after which a page counts as gone, though nobody closed its connection."""
@@ -49,7 +49,7 @@ class SeatThread:
         self,
         access: Access,
         team: str,
-        files: Callable[[list[str]], SeatFiles],
+        files: Callable[[list[Phrase]], SeatFiles],
         unheard_s: Callable[[], float],
         tell: Callable[[dict[str, Any]], None],
         joined: Answer,
@@ -86,7 +86,7 @@ class SeatThread:
     def _run(self, joined: Answer) -> None:
         access = self._access
         try:
-            noted: list[str] = []
+            noted: list[Phrase] = []
             files = self._files(noted)
             with open_client([access.connect], credentials=access.credentials) as session:
                 controller = Controller(

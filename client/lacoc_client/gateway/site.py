@@ -7,18 +7,19 @@ from contextlib import asynccontextmanager
 import msgspec
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import FileResponse, PlainTextResponse, Response
+from starlette.responses import FileResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.files import NOT_BUILT, PageFile, PageFiles
-from lacoc_client.gateway.guard import Guard
+from lacoc_client.gateway.guard import Guard, answer
 from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.metrics import GatewayMetrics
 from lacoc_client.gateway.page import Page
 from lacoc_client.gateway.recordings import Recordings
+from lacoc_shared.words import say
 
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay")
 """Paths that serve the same file, which looks at its own path."""
@@ -51,18 +52,18 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
     async def index(request: Request) -> Response:
         file = await asyncio.to_thread(files.find, "index.html")
         if file is None:
-            return PlainTextResponse(f"{NOT_BUILT}\n", status_code=503)
+            return answer(request.scope, NOT_BUILT, 503)
         return _response(request, file, "no-store")
 
     async def asset(request: Request) -> Response:
         name = request.path_params["name"]
         file = await asyncio.to_thread(files.find, f"assets/{name}")
-        return _not_found() if file is None else _response(request, file, _FOR_EVER)
+        return _not_found(request) if file is None else _response(request, file, _FOR_EVER)
 
     async def top_file(request: Request) -> Response:
         """Serve a file beside index.html: the icon."""
         file = await asyncio.to_thread(files.find, request.path_params["name"])
-        return _not_found() if file is None else _response(request, file, "max-age=3600")
+        return _not_found(request) if file is None else _response(request, file, "max-age=3600")
 
     async def recordings(_: Request) -> Response:
         found = await asyncio.to_thread(shelf.listed)
@@ -71,7 +72,7 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
     async def one_recording(request: Request) -> Response:
         name = request.path_params["name"]
         path = await asyncio.to_thread(shelf.find, name)
-        return _not_found() if path is None else FileResponse(path, media_type=_MCAP)
+        return _not_found(request) if path is None else FileResponse(path, media_type=_MCAP)
 
     async def page(websocket: WebSocket) -> None:
         await Page(websocket, courts).serve()
@@ -96,5 +97,5 @@ def _response(request: Request, file: PageFile, cache: str) -> Response:
     return Response(data, headers=headers, media_type=file.media_type)
 
 
-def _not_found() -> Response:
-    return PlainTextResponse("There is no such page here.\n", status_code=404)
+def _not_found(request: Request) -> Response:
+    return answer(request.scope, say("gateway.no-page"), 404)

@@ -11,7 +11,7 @@ import msgspec
 
 from lacoc_client.asking import NoAnswer, NotNow
 from lacoc_client.own_files import OwnFiles
-from lacoc_shared.codec import BadMessage, encode
+from lacoc_shared.codec import encode
 from lacoc_shared.decisions import Decision
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
 from lacoc_shared.messages import SentFile
@@ -25,6 +25,10 @@ REQUEST_BYTES = 4096
 
 
 FAULT = say("gateway.fault")
+
+
+class Unreadable(UserError):
+    """What a page sent is nothing that can be asked."""
 
 
 class TokenRefused(UserError):
@@ -150,14 +154,15 @@ def read(data: bytes) -> Asked:
     """Decode a request of a page.
 
     Raises:
-        BadMessage: if it is no known request, or too long for its kind.
+        Unreadable: if it is no known request, or too long for its kind.
     """
     try:
         if len(data) > REQUEST_BYTES and _any_do.decode(data).do != "join":
-            raise BadMessage(f"{len(data)} bytes, at most {REQUEST_BYTES} are read")
+            too_long = say("gateway.too-long", bytes=len(data), most=REQUEST_BYTES)
+            raise Unreadable(say("gateway.bad-message", error=too_long))
         return _asked.decode(data)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise BadMessage(str(error)) from None
+        raise Unreadable(say("gateway.bad-message", error=str(error))) from None
 
 
 def read_id(data: bytes) -> int | None:

@@ -17,6 +17,7 @@ from lacoc_shared.contest.file import Court
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 app = typer.Typer(
     help="Write, check and show the contest file: courts, addresses, tokens, limits.",
@@ -196,6 +197,11 @@ def _check_court(name: str, court: Court) -> None:
     there = {seat.id for seat in arena.seats}
     if there != set(court.seat):
         raise UserError(
-            f"Court {name!r}: arena {court.arena!r} has the seats {', '.join(sorted(there))}; "
-            f"the contest file has {', '.join(sorted(court.seat)) or 'none'}."
+            say(
+                "contest.arena-seats",
+                court=name,
+                arena=court.arena,
+                there=sorted(there),
+                seats=sorted(court.seat),
+            )
         )

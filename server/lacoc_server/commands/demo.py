@@ -18,6 +18,7 @@ from lacoc_shared.command import screen
 from lacoc_shared.command.log import log_clock
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
+from lacoc_shared.words import say
 
 app = typer.Typer()
 
@@ -79,7 +80,7 @@ def demo_command(
         record = court.record(recordings)
         screen.show(f"Record: {record}")
         if _lacoc("replay", "verify", str(record)).wait() != 0:
-            raise UserError("The record does not give the same match again: please report this.")
+            raise UserError(say("demo.not-same"))
         if in_browser and sys.stdout.isatty():
             screen.note("The page shows the result and the way to its replay; Ctrl-C ends it.")
             with suppress(KeyboardInterrupt):
@@ -93,7 +94,7 @@ def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> 
     assert gateway.stdout is not None
     line = gateway.stdout.readline()
     if not line:
-        raise UserError("The pages did not open; what is wrong is said above.")
+        raise UserError(say("demo.no-pages"))
     opened = json.loads(line)
     if opened["built"]:
         screen.show(f"Watch at {opened['url']}/watch")
@@ -108,7 +109,7 @@ class _Court:
         threading.Thread(target=self._listen, args=(process.stdout,), daemon=True).start()
         opened = self._said.get()
         if opened is None:
-            raise UserError("The court did not open; what it says is above.")
+            raise UserError(say("demo.no-court"))
         self.name: str = opened["court"]
         self._match_id: str = opened["match_id"]
         self.address: str = opened["locators"][0]
@@ -126,7 +127,7 @@ class _Court:
         except Empty:
             return None
         if event is None:
-            raise UserError("The court ended before the match did; what it says is above.")
+            raise UserError(say("demo.court-ended"))
         return event
 
     def record(self, folder: Path) -> Path:
@@ -150,7 +151,7 @@ def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bo
         event = court.hear(_LOOK_S)
         if event is None:
             if any(process.poll() for process in needed):
-                raise UserError("A bot or the referee gave up; what it says is above.")
+                raise UserError(say("demo.gave-up"))
             continue
         if "number" not in event:  # an event of the court, not of the match
             continue

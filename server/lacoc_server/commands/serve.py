@@ -30,6 +30,7 @@ from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint
+from lacoc_shared.words import say
 
 app = typer.Typer()
 
@@ -151,7 +152,7 @@ def _contest(
     """Load the contest, or make one for this run; also return whether it was made here."""
     if path is not None:
         if arena is not None:
-            raise UserError("Give --contest or --arena, not both: the contest names its arenas.")
+            raise UserError(say("serve.contest-or-arena"))
         return contests.load(path), False
     name = arena or "othello"
     seats = [seat.id for seat in arenas.load(name).seats]
@@ -169,8 +170,13 @@ def _check_seats(name: str, entry: contests.Court, arena: Arena) -> None:
     there, wanted = set(entry.seat), {seat.id for seat in arena.seats}
     if there != wanted:
         raise UserError(
-            f"Court {name!r} has tokens for {_names(there)}, but {arena.name} has the seats "
-            f"{_names(wanted)}: mend [court.{name}.seat] in the contest file."
+            say(
+                "serve.other-seats",
+                court=name,
+                tokens=sorted(there),
+                arena=arena.name,
+                seats=sorted(wanted),
+            )
         )
 
 

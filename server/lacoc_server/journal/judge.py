@@ -27,6 +27,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.protocol_1 import fault_of, same_events, same_result
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header, Result
+from lacoc_shared.words import say
 
 _FRAME = (
     "match",
@@ -322,10 +323,8 @@ def fits_together(record: Record) -> Iterator[None]:
     try:
         yield
     except (ValueError, ArithmeticError, LookupError, TypeError, AssertionError) as error:
-        raise UserError(
-            f"The messages of the record of match {record.header.match_id!r:.80} do not fit "
-            f"together ({type(error).__name__}: {error!s:.80}): it is damaged."
-        ) from None
+        match, what = record.header.match_id[:80], f"{type(error).__name__}: {error!s:.80}"
+        raise UserError(say("replay.damaged", match=match, error=what)) from None
 
 
 def last_beat(record: Record) -> int:

@@ -105,30 +105,20 @@ def _check_origin(record: Record, name: MatchName, arena: Arena) -> None:
     setup = record.header.setup
     if (setup.match_id, setup.court) != (str(name), name.court):
         raise UserError(
-            f"It is of match {setup.match_id!r:.80} of court {setup.court!r:.40}: give its files "
-            "their own names again."
+            say("resume.other-match", match=setup.match_id[:80], court=setup.court[:40])
         )
     if not arena.plays(setup.arena):
-        raise UserError(
-            f"It was played in arena {setup.arena!r:.80}, and this court is to play "
-            f"{arena.name!r:.80}: start the court with that arena to go on."
-        )
+        raise UserError(say("resume.other-arena", played=setup.arena[:80], arena=arena.name[:80]))
 
 
 def _check_seats(match: Match, arena: Arena) -> None:
     seats, wanted = ([seat.id for seat in of] for of in (match.arena.seats, arena.seats))
     if seats != wanted:
-        raise UserError(
-            f"It has the seats {', '.join(seats)}, and this court is to have "
-            f"{', '.join(wanted)}: start the court with those seats to go on."
-        )
+        raise UserError(say("resume.other-seats", seats=seats, wanted=wanted))
 
 
 def _can_not_go_on(path: Path, error: UserError) -> UserError:
-    return UserError(
-        f"The match of {path} was not finished, and can't go on here. {error} "
-        "Its record stays as it is; 'lacoc serve --fresh' opens a new match."
-    )
+    return UserError(say("resume.cannot", file=str(path), why=error.phrase))
 
 
 def _as_left(record: Record, resumed: Resumed, segment: int) -> Unfinished:

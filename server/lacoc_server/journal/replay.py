@@ -170,10 +170,7 @@ def _simulate(section: Section, bound: float) -> Finding:
 def _same_physics(record: Record) -> None:
     here, there = MUJOCO_VERSION, record.header.versions.get("mujoco", "?")
     if here != there:
-        raise UserError(
-            f"This record was made with MuJoCo {there}, and here is {here}: a replay is exact only "
-            f"with the same. Install it: pip install mujoco=={there}"
-        )
+        raise UserError(say("replay.other-mujoco", there=there, here=here))
     model = record.header.versions.get("model", "1")  # older software did not write it
     if model != str(MODEL_VERSION):
         raise UserError(

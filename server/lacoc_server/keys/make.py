@@ -17,6 +17,7 @@ from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.contest.toml_text import BadToml, read_toml
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import address
+from lacoc_shared.words import say
 
 _ALWAYS = ("localhost", "127.0.0.1", "::1")
 _TABLE = "[contest]"
@@ -59,10 +60,7 @@ def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
     assert folder is not None
     for name, court in contest.courts.items():
         if not hosts and not court.host:
-            raise UserError(
-                f"Where do others reach court {name!r}? Give its machine's name or number, such as "
-                f"--host 192.168.1.20, or write 'connect' under [court.{name}]."
-            )
+            raise UserError(say("contest.where-is-court", court=name))
     try:
         kept = _set_aside(folder.path) if renew else None
         there = folder.ca.exists()
@@ -85,7 +83,8 @@ def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
         if data != file.read_bytes():
             _write(file, data)
     except OSError as error:
-        raise UserError(f"Cannot write {error.filename}: {error.strerror}.") from None
+        path, why = str(error.filename), error.strerror or str(error)
+        raise UserError(say("command.cannot-write", path=path, why=why)) from None
     ends = authority.ends.date().isoformat()
     return Made(folder, invitations, names, ends, there, kept)
 
@@ -109,7 +108,8 @@ def _insert_entry(data: bytes, file: Path, *, must_have_table: bool) -> bytes:
     lines = data.decode("utf-8-sig").splitlines(keepends=True)
     heads = [row for row, line in enumerate(lines) if "".join(line.split()).startswith(_TABLE)]
     if must_have_table and not heads:
-        raise UserError(f"Write  {_TABLE[1:-1]}.keys = {folder}  into {file}, and try again.")
+        wanted = f"{_TABLE[1:-1]}.keys = {folder}"
+        raise UserError(say("contest.keys-write", entry=wanted, file=str(file)))
     # Without the table, append it: lines before it would belong to other tables.
     where = heads[0] + 1 if heads else len(lines)
     lines[where:where] = [f"{entry}\n"] if heads else [f"\n{_TABLE}\n{entry}\n"]
@@ -125,11 +125,7 @@ def _free_folder(file: Path) -> str:
     names = (_FOLDER, f"{_FOLDER}-{file.stem}")
     free = [name for name in names if not (file.resolve().parent / name).exists()]
     if not free:
-        raise UserError(
-            f"{' and '.join(names)} beside {file} hold the keys of other contests, or of an older "
-            f'one: rename them; or, to go on with the keys of one, write  keys = "{names[0]}"  '
-            f"below [contest] in {file}."
-        )
+        raise UserError(say("contest.keys-taken", folders=names, file=str(file), first=names[0]))
     return free[0]
 
 
@@ -150,14 +146,16 @@ def _authority(folder: KeyFolder) -> Authority:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise UserError(
-            f"{folder.ca} and {folder.ca_key} can't be used ({reason}). Put them back, or make "
-            "all anew with --renew: then everybody needs a new invitation."
+            say(
+                "contest.keys-unusable",
+                certificate=str(folder.ca),
+                key=str(folder.ca_key),
+                why=str(reason),
+            )
         ) from None
     if authority.ends < utc_now():
-        raise UserError(
-            f"The keys in {folder.path} were valid until {authority.ends.date()}. Make new ones "
-            "with --renew: then everybody needs a new invitation."
-        )
+        day = authority.ends.date().isoformat()
+        raise UserError(say("contest.keys-ended", folder=str(folder.path), day=day))
     return authority
 
 
@@ -172,10 +170,9 @@ def _before(folder: KeyFolder) -> list[str]:
     try:
         return hosts_of(folder.certificate.read_bytes())
     except ValueError as error:
+        why = str(error).partition(". ")[0]
         raise UserError(
-            f"{folder.certificate} is no certificate of a court ({str(error).partition('. ')[0]}). "
-            "Remove it, and give each --host again: invitations stay valid. Or make all anew with "
-            "--renew: then everybody needs a new invitation."
+            say("contest.no-certificate", path=str(folder.certificate), why=why)
         ) from None
 
 

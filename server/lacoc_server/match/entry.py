@@ -27,8 +27,8 @@ class Entry:
 
     robot: RobotSpec
     gait: Gait
-    notes: tuple[str, ...] = ()
-    """Sentences about things in the files that are legal, but probably not meant."""
+    notes: tuple[Phrase, ...] = ()
+    """Remarks on things in the files that are legal, but probably not meant."""
 
 
 def weigh_in(
@@ -71,7 +71,7 @@ def _weigh_in(
     except FileRefused as refused:
         mistakes += refused.mistakes
     tables: list[PostureTable | LocomotionTable] = []
-    notes: list[str] = []
+    notes: list[Phrase] = []
     for file, (kind, what) in zip((postures, locomotion), _TABLES.values(), strict=True):
         if file is None:
             continue
@@ -133,7 +133,7 @@ class Admission:
 
 
 def _read_gait(
-    file: SentFile, robot: RobotSpec | None, notes: list[str]
+    file: SentFile, robot: RobotSpec | None, notes: list[Phrase]
 ) -> PostureTable | LocomotionTable:
     """Read a gait for a robot; None: for any robot, because the robot file was refused."""
     if robot is None:

@@ -10,6 +10,7 @@ from lacoc_arenas.checked_game import marker_of_geom
 from lacoc_arenas.game import AnyGame
 from lacoc_shared.messages import Scene, SceneBody, SceneGeom
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 _TYPES = {
     mujoco.mjtGeom.mjGEOM_PLANE: "plane",
@@ -42,7 +43,7 @@ def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
         marker, state = marker_of_geom(game, geom.name)
         kind = _TYPES.get(mujoco.mjtGeom(int(geom.type[0])))
         if kind is None:
-            raise UserError(f"Geom {geom.name!r} has a type that pages can't draw.")
+            raise UserError(say("scene.geom", name=geom.name))
         body = int(geom.bodyid[0])
         geoms.append(
             SceneGeom(
@@ -72,7 +73,7 @@ def _body(model: Any, index: int, seats: Sequence[str]) -> SceneBody:
             joint = int(described.name.rsplit("/j", 1)[1])
             axis = _floats(described.axis)
         else:
-            raise UserError(f"Joint {described.name!r} is of a kind that pages can't draw.")
+            raise UserError(say("scene.joint", name=described.name))
     return SceneBody(
         name=body.name,
         parent=int(body.parentid[0]) if index else -1,

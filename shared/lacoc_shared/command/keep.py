@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 
 def save(path: Path, data: bytes) -> Path | None:
@@ -39,7 +40,7 @@ def make_room(path: Path) -> Path | None:
         UserError: if it can't be renamed, or is a folder.
     """
     if path.is_dir():
-        raise UserError(f"Cannot write {path}: a folder has this name.")
+        raise UserError(say("command.folder-has-name", path=str(path)))
     if not os.path.lexists(path):
         return None
     try:
@@ -69,4 +70,4 @@ def _claimed(path: Path) -> Path:
 
 
 def _cannot_write(path: Path, error: OSError) -> UserError:
-    return UserError(f"Cannot write {path}: {error.strerror or error}.")
+    return UserError(say("command.cannot-write", path=str(path), why=error.strerror or str(error)))

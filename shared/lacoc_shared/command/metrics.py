@@ -10,6 +10,7 @@ from typing import Self
 from prometheus_client import CollectorRegistry, start_http_server
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 _WHERE = re.compile(r"(?P<host>\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9_.-]+):(?P<port>[0-9]{1,5})")
 
@@ -27,17 +28,15 @@ class Exporter:
     def __init__(self, where: str) -> None:
         match = _WHERE.fullmatch(where)
         if match is None or int(match["port"]) > 65_535:
-            raise UserError(f"{where!r} is no place for metrics. It looks like 127.0.0.1:9100.")
+            raise UserError(say("command.bad-metrics", where=where))
         self.registry = CollectorRegistry()
         """Takes the collectors of what is to be seen."""
         host = match["host"].strip("[]")
         try:
             self._server, self._thread = start_http_server(int(match["port"]), host, self.registry)
         except OSError as error:
-            raise UserError(
-                f"Metrics can't be served at {where}: {error.strerror or error}. "
-                "Choose another port; 0 takes a free one."
-            ) from None
+            why = error.strerror or str(error)
+            raise UserError(say("command.metrics-fail", where=where, why=why)) from None
         self.url = f"http://{match['host']}:{self._server.server_port}/metrics"
         """Where a scraper finds them."""
 

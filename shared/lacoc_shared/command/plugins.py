@@ -10,6 +10,7 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 
 def installed(group: str) -> Mapping[str, EntryPoint]:
@@ -36,10 +37,13 @@ def package(group: str, what: str, name: str) -> ModuleType:
     """
     if name not in installed(group) and (folder := Path(name).expanduser()).is_dir():
         return package_of_folder(folder)
-    try:
-        return installed_package(group, what, name)
-    except UserError as error:
-        raise UserError(f"{error} A folder works too: give its path.") from None
+    module = _loaded(group, name)
+    if module is None:
+        known = [*installed(group)]
+        raise UserError(
+            say("command.not-installed-folder", what=what, name=name[:200], installed=known)
+        )
+    return module
 
 
 def installed_package(group: str, what: str, name: str) -> ModuleType:
@@ -50,11 +54,16 @@ def installed_package(group: str, what: str, name: str) -> ModuleType:
     Raises:
         UserError: if no package of that name is installed; the message lists the ones there are.
     """
-    entries = installed(group)
-    if name not in entries:
-        raise UserError(f"There is no {what} {name!r:.200}. Installed: {', '.join(entries)}.")
-    module: ModuleType = entries[name].load()
+    module = _loaded(group, name)
+    if module is None:
+        known = [*installed(group)]
+        raise UserError(say("command.not-installed", what=what, name=name[:200], installed=known))
     return module
+
+
+def _loaded(group: str, name: str) -> ModuleType | None:
+    entry = installed(group).get(name)
+    return None if entry is None else entry.load()
 
 
 def package_of_folder(folder: Path) -> ModuleType:

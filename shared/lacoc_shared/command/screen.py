@@ -20,7 +20,7 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_shared.mistakes import ESCAPED, Mistake, text_of
-from lacoc_shared.words import Phrase, render
+from lacoc_shared.words import Phrase, render, say
 
 _UNLIMITED = 10_000  # characters in a line that no eye must follow
 
@@ -72,39 +72,43 @@ def note(what: Phrase | str) -> None:
 
 def warn(what: Phrase | str) -> None:
     """Say that something may not be as the person expects."""
-    show(Text.assemble(("Note: ", "bold yellow"), render(what)), stderr)
+    show(Text.assemble((render(say("command.note")), "bold yellow"), render(what)), stderr)
 
 
-def error(text: str) -> None:
+def error(what: Phrase | str) -> None:
     """Say in one line why the command stops."""
-    show(Text.assemble(("Error: ", "bold red"), (text, "red")), stderr)
+    show(Text.assemble((render(say("command.error")), "bold red"), (render(what), "red")), stderr)
 
 
 def refused(mistakes: Sequence[Mistake]) -> None:
     """List everything that is wrong with a file (rules 2)."""
-    count = "1 mistake" if len(mistakes) == 1 else f"{len(mistakes)} mistakes"
-    error(f"{count}. Nothing of the file is used until it is right.")
+    error(say("command.mistakes", count=len(mistakes)))
     show(mistakes_table(mistakes), stderr)
 
 
 def mistakes_table(mistakes: Sequence[Mistake]) -> Table:
     """Make a table of mistakes; a column that no mistake fills is left out."""
-    columns: tuple[tuple[str, Callable[[Mistake], Any]], ...] = (
-        ("file", lambda m: m.file),
-        ("row", lambda m: m.row),
-        ("column", lambda m: m.column),
-        ("joint", lambda m: m.joint),
-        ("leg", lambda m: m.leg),
-        ("entry", lambda m: m.field),
-        ("found", lambda m: render(m.found)),
-        ("expected", lambda m: render(m.expected)),
+    columns: tuple[tuple[Phrase, Callable[[Mistake], Any]], ...] = (
+        (say("fact.file"), lambda m: m.file),
+        (say("fact.row"), lambda m: m.row),
+        (say("fact.column"), lambda m: m.column),
+        (say("fact.joint"), lambda m: m.joint),
+        (say("fact.leg"), lambda m: m.leg),
+        (say("fact.entry"), lambda m: m.field),
+        (say("fact.found"), lambda m: render(m.found)),
+        (say("fact.expected"), lambda m: render(m.expected)),
     )
     used = [(title, get) for title, get in columns if any(get(m) is not None for m in mistakes)]
-    table = Table(*(title for title, _ in used))
+    listed = table(*(title for title, _ in used))
     for mistake in mistakes:
         cells = (get(mistake) for _, get in used)
-        table.add_row(*(Text("" if cell is None else str(cell)) for cell in cells))
-    return table
+        listed.add_row(*(Text("" if cell is None else str(cell)) for cell in cells))
+    return listed
+
+
+def table(*titles: Phrase) -> Table:
+    """Begin a table with the titles of its columns."""
+    return Table(*map(render, titles))
 
 
 def print_json(value: Any) -> None:

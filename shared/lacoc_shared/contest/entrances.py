@@ -7,6 +7,7 @@ from lacoc_shared.contest.file import LOOPBACK, MAIN, OTHERS, Contest, Court
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint
+from lacoc_shared.words import say
 
 
 def spectator_access(contest: Contest | None, court: str | None, connect: str | None) -> Access:
@@ -53,10 +54,10 @@ def seat_access(
         seat = next(iter(seats))
     if seat is None:
         names = ", ".join(seats) or "left, right"
-        raise UserError(f"Which seat? Give --seat with the name of one: {names}.")
+        raise UserError(say("contest.which-seat", seats=names))
     token = token or (seats[seat].token if seat in seats else None)
     if token is None:
-        raise UserError(_no_token(f"seat {seat!r}"))
+        raise UserError(say("contest.no-token-seat", seat=seat))
     return access.of_seat(seat, token)
 
 
@@ -72,7 +73,7 @@ def referee_access(
     _, entry = _court_of(contest, court)
     token = token or (entry.referee.token if entry else None)
     if token is None:
-        raise UserError(_no_token("the referee"))
+        raise UserError(say("contest.no-token-referee"))
     return access.of_referee(token)
 
 
@@ -138,10 +139,3 @@ def invitation_lines(everybody: dict[str, Access]) -> dict[str, str]:
 
 def _court_of(contest: Contest | None, court: str | None) -> tuple[str, Court | None]:
     return (court or MAIN, None) if contest is None else contest.court(court)
-
-
-def _no_token(whose: str) -> str:
-    return (
-        f"The token of {whose} is missing. Give --invitation, --token or set LACOC_TOKEN; "
-        "the organiser has it ('lacoc contest show' prints it)."
-    )

@@ -29,6 +29,7 @@ from lacoc_shared.network.address import (
 )
 from lacoc_shared.network.address import host as address_host
 from lacoc_shared.seat import Colour, Pattern
+from lacoc_shared.words import Phrase, say
 
 T = TypeVar("T")
 
@@ -147,10 +148,10 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
         if name is None and len(self.courts) == 1:
             return next(iter(self.courts.items()))
         if name not in self.courts:
-            found = "there is more than one court" if name is None else f"no court {name!r}"
-            raise UserError(
-                f"Contest {self.name!r}: {found}. Name one with --court: {', '.join(self.courts)}."
-            )
+            courts = [*self.courts]
+            if name is None:
+                raise UserError(say("contest.which-court", contest=self.name, courts=courts))
+            raise UserError(say("contest.no-court", contest=self.name, court=name, courts=courts))
         return name, self.courts[name]
 
 
@@ -163,7 +164,7 @@ def load(path: Path) -> Contest:
     try:
         return loads(path.read_bytes(), path)
     except OSError as error:
-        raise _cannot_read(path, error.strerror) from None
+        raise _cannot_read(path, error.strerror or str(error)) from None
 
 
 def loads(data: bytes, path: Path) -> Contest:
@@ -179,11 +180,11 @@ def loads(data: bytes, path: Path) -> Contest:
     try:
         table = read_toml(data)
     except BadToml as error:
-        raise _cannot_read(path, error) from None
+        raise _cannot_read(path, error.phrase) from None
     try:
         return _contest(table, path.resolve().parent)
     except _Wrong as wrong:
-        raise UserError(f"Contest file {path}, {wrong}") from None
+        raise UserError(say("contest.wrong", file=str(path), wrong=wrong.said)) from None
 
 
 def throwaway(
@@ -202,14 +203,16 @@ def throwaway(
     return Contest(name="throw-away", courts={name: court})
 
 
-def _cannot_read(path: Path, reason: object) -> UserError:
-    return UserError(
-        f"The contest file {path} can't be read: {reason}. 'lacoc contest init' writes one."
-    )
+def _cannot_read(path: Path, why: Phrase | str) -> UserError:
+    return UserError(say("contest.unreadable", file=str(path), why=why))
 
 
 class _Wrong(Exception):
     """What is wrong with a contest file, and where in it."""
+
+    def __init__(self, said: Phrase) -> None:
+        super().__init__(said)
+        self.said = said
 
 
 _PathText = Annotated[str, msgspec.Meta(pattern="^[^\\x00]*$")]
@@ -256,9 +259,9 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
     holders = {seat: _convert(seats[seat], SeatHolder, f"{where}.seat.{seat}") for seat in seats}
     tokens = [court.referee.token, *(holder.token for holder in holders.values())]
     if len(set(tokens)) < len(tokens):
-        raise _Wrong(f"[{where}]: two places have the same token; each needs its own.")
+        raise _Wrong(say("contest.same-tokens", where=where))
     if taken := set(holders) & set(OTHERS):
-        raise _Wrong(f"[{where}.seat]: a seat can't be called {taken.pop()!r}.")
+        raise _Wrong(say("contest.seat-name", where=f"{where}.seat", name=taken.pop()))
     protocol = "tls" if keys else "tcp"
     try:
         Keys(name)
@@ -273,7 +276,7 @@ def _court(name: str, table: Any, folder: Path, keys: bool) -> Court:
             seat=holders,
         )
     except UserError as error:
-        raise _Wrong(f"[{where}]: {error}") from None
+        raise _Wrong(say("contest.in", where=where, wrong=error.phrase)) from None
 
 
 def _check_ports(courts: dict[str, Court]) -> None:
@@ -282,17 +285,14 @@ def _check_ports(courts: dict[str, Court]) -> None:
     for (first, one), (second, other) in itertools.combinations(courts.items(), 2):
         apart = one.connect and other.connect and one.host != other.host
         for at in () if apart else collisions(other.listen, one.listen):
-            raise _Wrong(
-                f"[court.{second}]: court {first!r} listens at {at} too, and only one of them can "
-                f'start. Write another port, such as  listen = ["{free_beside(at, taken)}"]; or, '
-                "where each court has a machine of its own, 'connect' in both."
-            )
+            free = free_beside(at, taken)
+            raise _Wrong(say("contest.same-port", court=second, other=first, at=at, free=free))
 
 
 def _limit(name: str, value: Any) -> float:
     number = _convert(value, float, f"limits.{name}")
     if not math.isfinite(number):
-        raise _Wrong(f"[limits.{name}]: expected a finite number, found {number}.")
+        raise _Wrong(say("contest.not-finite", where=f"limits.{name}", number=str(number)))
     return number
 
 
@@ -303,8 +303,8 @@ def _convert(value: Any, kind: type[T], where: str) -> T:
         what, _, place = str(error).partition(" - at `$")
         at = f"{where}{place.rstrip('`')}".lstrip(".")
         fields = getattr(kind, "__struct_fields__", ())
-        known = f" There can be: {', '.join(fields)}." if "field" in what else ""
-        raise _Wrong(f"{f'[{at}]: ' if at else ''}{what}.{known}") from None
+        known = fields if "field" in what else None
+        raise _Wrong(say("contest.bad-entry", where=at or None, error=what, known=known)) from None
 
 
 def _beside(folder: Path, name: str) -> str:
@@ -313,4 +313,4 @@ def _beside(folder: Path, name: str) -> str:
     try:
         return str((folder / Path(name).expanduser()).resolve()) if is_path else name
     except (ValueError, RuntimeError, OSError):  # a NUL, a user who is not known, a loop of links
-        raise _Wrong(f"{name!r:.80} is no path.") from None
+        raise _Wrong(say("contest.no-path", path=name[:80])) from None

@@ -17,6 +17,7 @@ from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.access_rules import Credentials
 from lacoc_shared.network.address import endpoint
+from lacoc_shared.words import Phrase, say
 
 Role = Literal["seat", "referee", "gateway", "spectators"]
 
@@ -81,11 +82,15 @@ def read_invitation(path: Path) -> Access:
         connect = endpoint(access.connect, "tls" if access.ca else "tcp")
         return msgspec.structs.replace(access, connect=connect)
     except (OSError, BadToml, msgspec.ValidationError, UserError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise UserError(
-            f"The invitation {path} can't be read: {reason}. It is the file that the organiser "
-            "gave you, unchanged."
-        ) from None
+        if isinstance(error, UserError):
+            wrong = say("contest.invitation-wrong", path=str(path), why=error.phrase)
+            raise UserError(wrong) from None
+        why: Phrase | str = str(error)
+        if isinstance(error, BadToml):
+            why = error.phrase
+        elif isinstance(error, OSError):
+            why = error.strerror or str(error)
+        raise UserError(say("contest.invitation-unreadable", path=str(path), why=why)) from None
 
 
 def invitation_text(access: Access, contest: str) -> str:

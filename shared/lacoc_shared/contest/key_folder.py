@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 
 @dataclass(frozen=True)
@@ -55,8 +56,5 @@ class KeyFolder:
         try:
             return path.read_text(encoding="ascii")
         except (OSError, UnicodeDecodeError) as error:
-            reason = error.strerror if isinstance(error, OSError) else "it is no text"
-            raise UserError(
-                f"The contest's key {path} can't be read: {reason}. 'lacoc contest keys' makes "
-                "the folder; it belongs beside the contest file."
-            ) from None
+            reason = error.strerror or str(error) if isinstance(error, OSError) else "not text"
+            raise UserError(say("contest.key-unreadable", path=str(path), why=reason)) from None

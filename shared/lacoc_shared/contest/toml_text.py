@@ -9,13 +9,14 @@ import re
 import tomllib
 from typing import Any
 
+from lacoc_shared.words import Phrase, render, say
+
 MAX_BYTES = 1 << 20
 """For files that an organiser writes; a contestant's may have less."""
 
 _DOTS = 100  # a line with more: a key of so many parts costs its square in time and memory
 _DEEPEST = 32
 _INTEGERS = range(-(2**63), 2**64)  # what a message can carry
-_LONG_NUMBER = "a number of very many digits"
 _TOO_LONG = re.compile(r"[0-9][0-9_]{4000,}")
 _PLACE = re.compile(r" \(at line (\d+), column \d+\)")
 
@@ -23,15 +24,25 @@ _PLACE = re.compile(r" \(at line (\d+), column \d+\)")
 class BadToml(ValueError):
     """It can't be read as TOML; `row` is the line, counted from 1, where that is known.
 
-    `remedy` says what to do, where that is more than to write TOML.
+    `remedy` says what should stand there, where that is more than TOML. A reason that is a text
+    comes from Python's own reader.
     """
 
-    def __init__(self, reason: str, row: int | None = None, remedy: str = "") -> None:
-        where = "" if row is None else f" (line {row})"
-        super().__init__(f"{reason}{where}" + (f": {remedy}" if remedy else ""))
+    def __init__(
+        self, reason: Phrase | str, row: int | None = None, remedy: Phrase | None = None
+    ) -> None:
+        super().__init__(reason, row, remedy)
         self.reason = reason
         self.row = row
         self.remedy = remedy
+
+    @property
+    def phrase(self) -> Phrase:
+        """Say the reason, the line and the remedy as one phrase, for a sentence."""
+        return say("toml.bad", reason=self.reason, row=self.row, remedy=self.remedy)
+
+    def __str__(self) -> str:
+        return render(self.phrase)
 
 
 def read_toml(
@@ -48,7 +59,7 @@ def read_toml(
         BadToml: if it is too long, no TOML, too deep, or has an integer beyond 64 bits.
     """
     if len(text) > max_bytes:
-        raise BadToml(f"{len(text)} bytes, and at most {max_bytes} are read")
+        raise BadToml(say("toml.too-long", bytes=len(text), most=max_bytes))
     try:
         text = text if isinstance(text, str) else text.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -57,7 +68,7 @@ def read_toml(
         raise _not_utf_8()
     for row, line in enumerate(text.split("\n"), start=1):
         if line.count(".") > _DOTS:
-            raise BadToml(f"more than {_DOTS} dots in a line", row)
+            raise BadToml(say("toml.many-dots", most=_DOTS), row)
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -66,15 +77,15 @@ def read_toml(
         raise BadToml(reason[:80], int(place[1]) if place else None) from None
     except ValueError:  # Python reads integers of at most 4,300 digits
         long_row = _row_of_long_number(text)
-        raise BadToml(_LONG_NUMBER, long_row, "write it with at most 15 digits") from None
+        raise BadToml(say("robot.many-digits"), long_row, say("toml.short-number")) from None
     except RecursionError:
-        raise BadToml("brackets in brackets, too deep") from None
+        raise BadToml(say("toml.too-deep")) from None
     _check_values(table, any_integers)
     return table
 
 
 def _not_utf_8() -> BadToml:
-    return BadToml("text that is not in UTF-8", remedy="save it as UTF-8")
+    return BadToml(say("toml.not-utf-8"), remedy=say("robot.toml-utf-8"))
 
 
 def _row_of_long_number(text: str) -> int | None:
@@ -97,8 +108,8 @@ def _check_values(table: dict[str, Any], any_integers: bool) -> None:
             elif isinstance(value, list):
                 inner += value
             elif isinstance(value, int) and not any_integers and value not in _INTEGERS:
-                raise BadToml(_LONG_NUMBER)
+                raise BadToml(say("robot.many-digits"), remedy=say("toml.short-number"))
         if not inner:
             return
         level = inner
-    raise BadToml("tables in tables, too deep")
+    raise BadToml(say("toml.tables-too-deep"))

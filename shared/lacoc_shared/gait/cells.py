@@ -17,6 +17,7 @@ from lacoc_shared.gait.tables import (
     leg_and_level,
 )
 from lacoc_shared.mistakes import printable
+from lacoc_shared.words import Phrase, say
 
 RANGE_DEG = 150.0
 """The movable range is -150 to +150 degrees (workshop 3-1)."""
@@ -116,10 +117,15 @@ def number_of(cell: str) -> float | None:
     return float(cell.replace(",", ".")) if _NUMBER.fullmatch(cell) else None
 
 
-def shown(cell: str) -> str:
-    """A cell as a mistake quotes it: short, and safe to print."""
+def shown(cell: str) -> Phrase | str:
+    """Quote a cell for a mistake: short, and safe to print."""
     if not cell:
-        return "nothing"
+        return say("gait.nothing")
+    return quoted(cell)
+
+
+def quoted(cell: str) -> str:
+    """Quote a cell that is not empty."""
     text = printable(cell)
     return text if number_of(cell) is not None else f'"{text}"'
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from lacoc_shared.gait.cells import Row, number_of
 from lacoc_shared.gait.tables import LEVEL_NAMES, leg_and_level
+from lacoc_shared.words import Phrase, say
 
 KEY = re.compile(r"(\d)\s*key", re.IGNORECASE | re.ASCII)
 """The label of a posture's row."""
@@ -33,17 +34,18 @@ def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
     return list(rows[:start]), legend, below
 
 
-def contradiction(row: Row, labels: Sequence[str]) -> str:
+def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
     """Say which label of a legend stands over another joint's column.
 
     The columns count, whatever the legend says.
 
     Args:
+        file: the file's name.
         row: a row of the legend.
         labels: labels of the robot's legs, in order.
 
     Returns:
-        The first such place and label: exchanged labels come in dozens. "" if there is none.
+        The first such place and label: exchanged labels come in dozens. None if there is none.
     """
     known = {_plain(label): label for label in labels}
     levels = {_plain(name): name for name in LEVEL_NAMES}
@@ -53,19 +55,23 @@ def contradiction(row: Row, labels: Sequence[str]) -> str:
         if ids:
             number = number_of(cell)
             wrong = number is not None and number != joint
-            is_what = f"this is the column of joint {joint}"
+            is_what = say("gait.column-of-joint", joint=joint)
         elif _plain(cell) in levels:
             wrong = levels[_plain(cell)] != LEVEL_NAMES[level]
-            is_what = f"joint {joint} is a joint of level {LEVEL_NAMES[level]}"
+            is_what = say("gait.joint-of-level", joint=joint, level=LEVEL_NAMES[level])
         else:
             wrong = known.get(_plain(cell), labels[leg]) != labels[leg]
-            is_what = f"joint {joint} is a joint of leg {labels[leg]}"
+            is_what = say("gait.joint-of-leg", joint=joint, leg=labels[leg])
         if wrong:
-            return (
-                f"row {row.number}, column {joint + 2}: the legend says {cell}, and {is_what}. "
-                "The order of the columns counts, not the legend."
+            return say(
+                "gait.legend",
+                file=file,
+                row=row.number,
+                column=joint + 2,
+                cell=cell,
+                what=is_what,
             )
-    return ""
+    return None
 
 
 def without_zeros(cells: Sequence[str]) -> list[str]:

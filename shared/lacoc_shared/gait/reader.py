@@ -14,7 +14,7 @@ from lacoc_shared.gait.cells import (
     angle_of,
     leg_labels,
     number_of,
-    number_text,
+    quoted,
     shown,
 )
 from lacoc_shared.gait.legend import KEY, contradiction, find_legend, trimmed, without_zeros
@@ -26,6 +26,7 @@ from lacoc_shared.gait.tables import (
     leg_and_level,
 )
 from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.words import Phrase, say
 
 Legs = Sequence[str] | int | None
 """The robot's legs: their labels, their number, or None for any robot."""
@@ -38,10 +39,8 @@ MAX_MISTAKES = 1000
 
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
 
-POSTURES_HEADER = '"Num of Posture" and their number (Loco-data)'
-ANY_HEADER = (
-    '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)'
-)
+POSTURES_HEADER = say("gait.posture-header")
+ANY_HEADER = say("gait.header")
 
 
 def read_cells(
@@ -50,8 +49,8 @@ def read_cells(
     *,
     legs: Legs = None,
     range_deg: Range = RANGE_DEG,
-    headers: str = ANY_HEADER,
-    notes: list[str] | None = None,
+    headers: Phrase = ANY_HEADER,
+    notes: list[Phrase] | None = None,
 ) -> PostureTable | LocomotionTable:
     """Read a gait; which kind it is shows in the first row.
 
@@ -76,21 +75,21 @@ def read_cells(
 class _Reader:
     """One reading of one file; collects its mistakes."""
 
-    def __init__(self, file: str, legs: Legs, range_deg: Range, headers: str) -> None:
+    def __init__(self, file: str, legs: Legs, range_deg: Range, headers: Phrase) -> None:
         self._file = file
         self._mistakes: list[Mistake] = []
         self._labels = None if legs is None or isinstance(legs, int) else tuple(legs)
         self._legs = legs if legs is None or isinstance(legs, int) else len(legs)
         self._range_deg = range_deg
         self._headers = headers
-        self.notes: list[str] = []
+        self.notes: list[Phrase] = []
 
     def read(self, rows: Iterable[Row]) -> PostureTable | LocomotionTable:
         filled = [Row(row.number, trimmed(row.cells)) for row in rows]
         filled = [row for row in filled if row.cells]
         table: PostureTable | LocomotionTable | None = None
         if not filled:
-            self._add(found="an empty file", expected="a table of angles")
+            self._add(found=say("gait.empty"), expected=say("gait.table"))
         elif len(filled[0].cells) == 1 and number_of(filled[0].cells[0]) is not None:
             table = self._locomotion(filled)
         elif _POSTURES_HEADER.fullmatch(filled[0].cells[0]) or any(
@@ -108,8 +107,8 @@ class _Reader:
 
     def _add(
         self,
-        found: str,
-        expected: str,
+        found: Phrase | str,
+        expected: Phrase,
         row: Row | None = None,
         column: int | None = None,
         joint: int | None = None,
@@ -143,7 +142,7 @@ class _Reader:
         announced = None
         if _POSTURES_HEADER.fullmatch(rows[0].cells[0]):
             header = body.pop(0)
-            announced = self._count(header, 2, MAX_KEYS, "the number of postures")
+            announced = self._count(header, 2, MAX_KEYS, say("gait.number-of-postures"))
         else:
             self._missing_header(rows[0])
             if not KEY.fullmatch(rows[0].cells[0]):
@@ -156,18 +155,16 @@ class _Reader:
             self._add(
                 row=rows[0],
                 column=2,
-                found=f"{announced}, but {_counted(len(body), 'posture')} below",
-                expected="as many rows as announced",
+                found=say("gait.fewer-postures", said=announced, found=len(body)),
+                expected=say("gait.rows-announced"),
             )
         joints = self._joints(body, first=1)
         labels = self._labels_of(joints // JOINTS_PER_LEG)
-        contradictions = (contradiction(row, labels) for row in legend)
-        self.notes += [f"{self._file}, {note}" for note in contradictions if note]
+        contradictions = (contradiction(self._file, row, labels) for row in legend)
+        self.notes += [note for note in contradictions if note]
         for row in below:
-            self.notes.append(
-                f"{self._file}, row {row.number}: {shown(row.cells[0])} stands below the legend "
-                "and is not read."
-            )
+            cell = shown(row.cells[0])
+            self.notes.append(say("gait.below-legend", file=self._file, row=row.number, cell=cell))
         postures: dict[int, Posture] = {}
         row_of: dict[int, int] = {}
         for row in body:
@@ -178,14 +175,14 @@ class _Reader:
                     row=row,
                     column=1,
                     found=shown(row.cells[0]),
-                    expected='a key from "0 Key" to "9 Key"',
+                    expected=say("gait.key-name"),
                 )
             elif (digit := int(key[1])) in postures:
                 self._add(
                     row=row,
                     column=1,
-                    found=f"{shown(row.cells[0])} again (first in row {row_of[digit]})",
-                    expected="each key once",
+                    found=say("gait.key-again", cell=quoted(row.cells[0]), row=row_of[digit]),
+                    expected=say("gait.key-once"),
                 )
             else:
                 postures[digit] = posture
@@ -195,7 +192,7 @@ class _Reader:
     def _locomotion(self, rows: list[Row]) -> LocomotionTable:
         """LocoTra-data: the number of keys; for each the number of postures, and a row for each."""
         header, *body = rows
-        keys = self._count(header, 1, MAX_KEYS, "the number of keys")
+        keys = self._count(header, 1, MAX_KEYS, say("gait.number-of-keys"))
         groups: list[tuple[Row | None, list[Row]]] = []
         for row in body:
             if len(row.cells) == 1:
@@ -205,46 +202,46 @@ class _Reader:
             else:
                 self._add(
                     row=row,
-                    found=_counted(len(row.cells), "cell"),
-                    expected="the number of postures of key [0] alone, before its postures",
+                    found=say("gait.cells", count=len(row.cells)),
+                    expected=say("gait.count-of-key-0"),
                 )
                 groups.append((None, [row]))
         if keys is not None and keys != len(groups):
             self._add(
                 row=header,
                 column=1,
-                found=f"{keys}, but {_counted(len(groups), 'key')} below",
-                expected="as many keys as announced",
+                found=say("gait.fewer-keys", said=keys, found=len(groups)),
+                expected=say("gait.keys-announced"),
             )
         joints = self._joints([row for _, postures in groups for row in postures], first=0)
         sequences = []
         for digit, (count, postures) in enumerate(groups):
             if count is not None:
-                what = f"the number of postures of key [{digit}]"
+                what = say("gait.postures-of-key", key=digit)
                 announced = self._count(count, 1, MAX_POSTURES_PER_KEY, what)
                 if announced is not None and announced != len(postures):
                     self._add(
                         row=count,
                         column=1,
-                        found=f"{announced}, but {_counted(len(postures), 'row')} of angles below",
-                        expected=f"as many rows as announced for key [{digit}]",
+                        found=say("gait.fewer-rows", said=announced, found=len(postures)),
+                        expected=say("gait.rows-of-key", key=digit),
                     )
             sequences.append(tuple(self._angles(row, 0, joints) for row in postures))
         return LocomotionTable(tuple(sequences))
 
-    def _count(self, row: Row, column: int, highest: int, what: str) -> int | None:
-        """The whole number that ends a row, from 1 to `highest`; None after a mistake."""
+    def _count(self, row: Row, column: int, highest: int, what: Phrase) -> int | None:
+        """Take the whole number that ends a row, from 1 to `highest`; None after a mistake."""
         cell = row.cells[column - 1] if len(row.cells) >= column else ""
         if without_zeros(row.cells[column:]):
             self._add(
                 row=row,
                 column=column + 1,
                 found=shown(row.cells[column]),
-                expected=f"nothing after {what}",
+                expected=say("gait.nothing-after", what=what),
             )
         value = number_of(cell)
         if value is None or not 1 <= value <= highest or not value.is_integer():
-            expected = f"{what}, a whole number from 1 to {highest}"
+            expected = say("gait.whole-number", what=what, most=highest)
             self._add(row=row, column=column, found=shown(cell), expected=expected)
             return None
         return int(value)
@@ -261,9 +258,8 @@ class _Reader:
             return needed
         self._add(
             row=rows[0],
-            found=f"{usual[0]} angles a row: a gait for a robot with "
-            f"{usual[0] // JOINTS_PER_LEG} legs",
-            expected=f"{needed} angles a row: this robot has {self._legs} legs",
+            found=say("gait.for-legs", count=usual[0], legs=usual[0] // JOINTS_PER_LEG),
+            expected=say("gait.angles-a-row", count=needed, legs=self._legs),
         )
         return usual[0]
 
@@ -271,17 +267,17 @@ class _Reader:
         """The angles [rad] of a row from the cell with index `first` on; 0 in place of mistakes."""
         cells = row.cells[first:]
         legs = joints // JOINTS_PER_LEG
-        angles = f"{joints} angles ({JOINTS_PER_LEG} for each of {legs} legs)"
+        angles = say("gait.angles-of-legs", count=joints, each=JOINTS_PER_LEG, legs=legs)
         beside = [i for i in range(joints, len(cells)) if cells[i] and number_of(cells[i]) is None]
         if beside:
             self._add(
                 row=row,
                 column=first + beside[0] + 1,
                 found=shown(cells[beside[0]]),
-                expected=f"nothing after the {angles}",
+                expected=say("gait.nothing-after", what=angles),
             )
         elif len(cells) != joints:
-            self._add(row=row, found=_counted(len(cells), "angle"), expected=angles)
+            self._add(row=row, found=say("gait.angles", count=len(cells)), expected=angles)
         return tuple(
             self._angle(row, first + joint + 1, joint, joints)
             for joint in range(min(joints, len(cells)))
@@ -301,7 +297,7 @@ class _Reader:
             joint=joint,
             leg=labels[leg_and_level(joint, legs)[0]],
             found=shown(cell),
-            expected=f"an angle from {number_text(low)} to {number_text(high)} degrees",
+            expected=say("gait.angle", low=low, high=high),
         )
         return 0.0
 
@@ -314,7 +310,3 @@ class _Reader:
         if len(self._range_deg) == joints:
             return self._range_deg[joint]
         return -RANGE_DEG, RANGE_DEG  # another robot's gait, which is a mistake already
-
-
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

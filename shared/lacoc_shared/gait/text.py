@@ -15,6 +15,7 @@ from lacoc_shared.gait.cells import (
 from lacoc_shared.gait.reader import Legs, Range, read_cells
 from lacoc_shared.gait.tables import LocomotionTable, PostureTable
 from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.words import Phrase, say
 
 MAX_BYTES = 32 * 1024
 _MAX_ROWS = 1200  # a gait has 1011, and lines of remarks
@@ -26,7 +27,6 @@ _BOMS = (
 )
 _PATH_BEGIN = b"time_s"
 """How the header row of Pos-data.txt begins (rules 2)."""
-_CSV = "commas or semicolons between the cells (CSV)"
 _LINE_END = re.compile(r"\r\n|\r|\n")
 # A row without a tab: labels that hold spaces, quoted cells, and then what spaces part.
 _SPACED_CELL = re.compile(
@@ -40,7 +40,7 @@ def read_gait(
     *,
     legs: Legs = None,
     range_deg: Range = RANGE_DEG,
-    notes: list[str] | None = None,
+    notes: list[Phrase] | None = None,
 ) -> PostureTable | LocomotionTable:
     """Read Loco-data or LocoTra-data text; which of the two shows in its first cell.
 
@@ -57,17 +57,18 @@ def read_gait(
     """
     # First of all: it lies beside the gaits, and is soon longer than any of them.
     if data.startswith(_PATH_BEGIN):
-        raise _refused(name, "the path of a robot (Pos-data)", "a gait (Loco-data or LocoTra-data)")
+        raise _refused(name, say("gait.path"), say("gait.gait"))
     lines = _LINE_END.split(narrow(_text(data, name)))
     filled = [(number, line) for number, line in enumerate(lines, start=1) if line.strip()]
     if len(filled) > _MAX_ROWS:
-        raise _refused(name, f"{len(filled)} rows", f"a gait of at most {_MAX_ROWS} rows")
+        found = say("gait.rows", count=len(filled))
+        raise _refused(name, found, say("gait.most-rows", most=_MAX_ROWS))
     rows = [Row(number, _cells(line)) for number, line in filled]
     try:
         return read_cells(rows, name, legs=legs, range_deg=range_deg, notes=notes)
     except FileRefused:
         if _is_csv(line for _, line in filled):
-            raise _refused(name, _CSV, "tabs: save it as text with tabs, or as .xlsx") from None
+            raise _refused(name, say("gait.csv"), say("gait.tabs")) from None
         raise
 
 
@@ -96,7 +97,8 @@ def write_gait(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> by
 def _text(data: bytes, name: str) -> str:
     """Decode a file: by its BOM, else UTF-16 by its NULs, else strict UTF-8, else cp932."""
     if len(data) > MAX_BYTES:
-        raise _refused(name, f"{len(data)} bytes", "a gait file of at most 32 KiB")
+        most_kib = say("gait.most-kib", most=MAX_BYTES // 1024)
+        raise _refused(name, say("gait.bytes", count=len(data)), most_kib)
     for bom, encoding in _BOMS:
         if data.startswith(bom):
             return _decoded(data[len(bom) :], encoding, name)
@@ -114,8 +116,9 @@ def _decoded(data: bytes, encoding: str, name: str) -> str:
     try:
         return data.decode(encoding)
     except UnicodeDecodeError as error:
-        found = f"bytes that are no text (byte {error.start + 1} is 0x{data[error.start]:02x})"
-        raise _refused(name, found, "text in UTF-8, UTF-16 or Shift-JIS") from None
+        byte = f"0x{data[error.start]:02x}"
+        found = say("gait.no-text-byte", number=error.start + 1, byte=byte)
+        raise _refused(name, found, say("gait.encodings")) from None
 
 
 def _cells(line: str) -> list[str]:
@@ -137,5 +140,5 @@ def _unquoted(cell: str) -> str:
     return cell
 
 
-def _refused(name: str, found: str, expected: str) -> FileRefused:
+def _refused(name: str, found: Phrase, expected: Phrase) -> FileRefused:
     return FileRefused([Mistake(file=name, found=found, expected=expected)])

@@ -24,6 +24,7 @@ from lacoc_shared.gait.sheets import INPUT_SHEET, MIRROR_SHEET, add_sheets
 from lacoc_shared.gait.tables import LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError, printable
+from lacoc_shared.words import Phrase, say
 
 MAX_BYTES = 1024 * 1024
 
@@ -34,13 +35,13 @@ _MAX_ROWS, _MAX_COLUMNS = 1000, 100  # what is looked at; a table has 14 rows, 2
 _ZIP = b"PK\x03\x04"
 _COMPOUND_FILE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"  # .xls, or a workbook with a password
 _OTHERS = {
-    "content.xml": "an OpenDocument file, such as .ods",
-    "word/document.xml": "a Word document (.docx)",
-    "ppt/presentation.xml": "a presentation (.pptx)",
-    "xl/workbook.bin": "a binary workbook (.xlsb)",
+    "content.xml": say("gait.opendocument"),
+    "word/document.xml": say("gait.word-document"),
+    "ppt/presentation.xml": say("gait.presentation"),
+    "xl/workbook.bin": say("gait.binary-workbook"),
 }
 """The part by which another kind of document is known -> what that is."""
-_WANTED = "an .xlsx workbook without a password, as spreadsheet programs save it"
+_WANTED = say("gait.workbook")
 
 
 def read_gait_file(
@@ -48,7 +49,7 @@ def read_gait_file(
     *,
     legs: Legs = None,
     range_deg: Range = RANGE_DEG,
-    notes: list[str] | None = None,
+    notes: list[Phrase] | None = None,
 ) -> PostureTable | LocomotionTable:
     """Read any gait file: text or workbook, told apart by what is in it, not by its name.
 
@@ -66,7 +67,9 @@ def read_gait_file(
         with path.open("rb") as file:
             data = file.read(MAX_BYTES + 1)
     except OSError as error:
-        raise UserError(f"Cannot read {path}: {error.strerror or error}.") from error
+        raise UserError(
+            say("command.cannot-read", path=str(path), why=error.strerror or str(error))
+        ) from error
     read = read_workbook if data.startswith((_ZIP, _COMPOUND_FILE)) else read_gait
     return read(data, path.name, legs=legs, range_deg=range_deg, notes=notes)
 
@@ -77,7 +80,7 @@ def read_workbook(
     *,
     legs: Legs = None,
     range_deg: Range = RANGE_DEG,
-    notes: list[str] | None = None,
+    notes: list[Phrase] | None = None,
 ) -> PostureTable:
     """Read a Loco-data workbook: the values of its sheet "EX (input)".
 
@@ -98,7 +101,7 @@ def read_workbook(
     except FileRefused:
         raise
     except Exception:  # openpyxl meets a broken workbook with any error at all
-        raise _refused(name, "a workbook that can't be read", _WANTED) from None
+        raise _refused(name, say("gait.unreadable-workbook"), _WANTED) from None
     try:
         table = read_cells(
             rows, name, legs=legs, range_deg=range_deg, headers=POSTURES_HEADER, notes=notes
@@ -106,11 +109,7 @@ def read_workbook(
     except FileRefused as error:
         raise FileRefused([_at_cell(mistake, sheet) for mistake in error.mistakes]) from None
     if isinstance(table, LocomotionTable):
-        raise _refused(
-            name,
-            "sequences of postures",
-            '"Num of Posture" in cell A1 (Loco-data); sequences are a text file (LocoTra-data.txt)',
-        )
+        raise _refused(name, say("gait.sequences"), say("gait.workbook-header"))
     return table
 
 
@@ -140,36 +139,42 @@ def _require_harmless(data: bytes, name: str) -> None:
         FileRefused: if it is no zip, has a password, or would fill the memory or take long.
     """
     if len(data) > MAX_BYTES:
-        raise _refused(name, f"more than {MAX_BYTES} bytes", "a workbook of at most 1 MiB")
+        found = say("gait.more-bytes", most=MAX_BYTES)
+        raise _refused(name, found, say("gait.workbook-mib", most=MAX_BYTES // 1024**2))
     if data.startswith(_COMPOUND_FILE):
-        raise _refused(name, "an old .xls workbook, or one with a password", _WANTED)
+        raise _refused(name, say("gait.xls"), _WANTED)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             parts = archive.infolist()
             if sum(part.file_size for part in parts) > _MAX_UNPACKED_BYTES:
-                found = "a workbook that unpacks to more than 8 MiB"
-                raise _refused(name, found, "a table of angles")
+                most_mib = _MAX_UNPACKED_BYTES // 1024**2
+                found = say("gait.unpacks-large", most=most_mib)
+                raise _refused(name, found, say("gait.table"))
             if any(part.flag_bits & 1 for part in parts):
-                raise _refused(name, "a file with a password", _WANTED)
+                raise _refused(name, say("gait.password"), _WANTED)
             packed = {part.compress_type for part in parts}
             for part in parts:
                 if (other := _OTHERS.get(part.filename)) is not None:
-                    raise _refused(name, other, "the table saved as .xlsx, or as text with tabs")
+                    raise _refused(name, other, say("gait.as-workbook"))
             if len(parts) > _MAX_PARTS or packed - {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
-                raise _refused(name, "a zip that is no workbook", _WANTED)
+                raise _refused(name, say("gait.zip"), _WANTED)
             counter = _ElementCounter()
             for part in parts:
                 counter.look_at(archive.read(part))
     except FileRefused:
         raise
     except _TooMuchXmlError as error:
-        raise _refused(name, str(error), "a table of angles") from None
+        raise _refused(name, error.found, say("gait.table")) from None
     except Exception:  # a damaged list of contents raises more than BadZipFile
-        raise _refused(name, "a damaged file, or no workbook", _WANTED) from None
+        raise _refused(name, say("gait.damaged"), _WANTED) from None
 
 
 class _TooMuchXmlError(Exception):
-    """XML that no spreadsheet program writes; the message says what is in it."""
+    """XML that no spreadsheet program writes."""
+
+    def __init__(self, found: Phrase) -> None:
+        super().__init__()
+        self.found = found
 
 
 class _ElementCounter:
@@ -195,10 +200,10 @@ class _ElementCounter:
     def _element(self, name: str, attributes: dict[str, str]) -> None:
         self._left -= 1 + len(attributes) // 8
         if self._left < 0:
-            raise _TooMuchXmlError(f"a workbook of more than {_MAX_ELEMENTS} elements")
+            raise _TooMuchXmlError(say("gait.many-elements", most=_MAX_ELEMENTS))
 
     def _doctype(self, *_: Any) -> None:
-        raise _TooMuchXmlError("a workbook that defines XML entities")
+        raise _TooMuchXmlError(say("gait.entities"))
 
 
 def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
@@ -212,8 +217,8 @@ def _sheet(data: bytes, name: str) -> tuple[str, list[Row]]:
     names = books[0].sheetnames
     sheet = MIRROR_SHEET if names == [MIRROR_SHEET] else INPUT_SHEET
     if sheet not in names:
-        found = "the sheets " + ", ".join(f'"{printable(title)}"' for title in names[:10])
-        raise _refused(name, found, f'a sheet "{INPUT_SHEET}", or "{MIRROR_SHEET}" alone')
+        found = say("gait.sheets", sheets=[printable(title) for title in names[:10]])
+        raise _refused(name, found, say("gait.sheet", sheet=INPUT_SHEET, other=MIRROR_SHEET))
     values, formulas = (
         book[sheet].iter_rows(max_row=_MAX_ROWS, max_col=_MAX_COLUMNS, values_only=True)
         for book in books
@@ -249,5 +254,5 @@ def _at_cell(mistake: Mistake, sheet: str) -> Mistake:
     return msgspec.structs.replace(mistake, field=cell)
 
 
-def _refused(name: str, found: str, expected: str) -> FileRefused:
+def _refused(name: str, found: Phrase, expected: Phrase) -> FileRefused:
     return FileRefused([Mistake(file=name, found=found, expected=expected)])

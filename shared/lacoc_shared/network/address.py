@@ -12,6 +12,7 @@ import ssl
 from collections.abc import Sequence
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, say
 
 DEFAULT_PORT = 7447
 
@@ -41,10 +42,7 @@ def endpoint(text: str, protocol: str = "tcp") -> str:
     protocol = match["protocol"] or protocol if match else ""
     port = int(match["port"] or DEFAULT_PORT) if match else 0
     if match is None or protocol not in _PROTOCOLS or port > 65_535:
-        raise UserError(
-            f"{text!r} is not an address. It looks like 192.168.1.5, court.example.org:7447 "
-            "or tcp/127.0.0.1:7447."
-        )
+        raise UserError(say("address.none", text=text))
     return f"{protocol}/{match['host']}:{port}"
 
 
@@ -74,47 +72,41 @@ def check_protocols(endpoints: Sequence[str], *, keys: bool) -> None:
     for one in endpoints:
         protocol, _, place = one.partition("/")
         if keys and protocol != "tls":
-            raise UserError(
-                f"The contest has keys, and {one} is a plain address: write tls/{place}, or "
-                "leave the protocol out."
-            )
+            raise UserError(say("address.plain-with-keys", at=one, place=place))
         if protocol == "tls" and not keys:
-            raise UserError(
-                f"{one} needs keys. An organiser makes them with 'lacoc contest keys' and names "
-                "the contest file; everybody else gets an invitation: --invitation FILE."
-            )
+            raise UserError(say("address.needs-keys", at=one))
 
 
-def why_not_known(endpoints: Sequence[str]) -> str | None:
+def why_not_known(endpoints: Sequence[str]) -> Phrase | None:
     """Look up the names in complete addresses; say so if no address has a name that is known."""
     unknown = [host for host, port in map(_split, endpoints) if not _resolves(host, port)]
     if unknown and len(unknown) == len(endpoints):
-        return (
-            f"The name {unknown[0]!r} is not known on this network. "
-            "Check its spelling, or use the number (such as 192.168.1.5) instead."
-        )
+        return say("connect.name-unknown", name=unknown[0])
     return None
 
 
-def why_not_connected(endpoints: Sequence[str], ca: str = "") -> str:
+def why_not_connected(endpoints: Sequence[str], ca: str = "") -> Phrase:
     """Say why none of these addresses could be connected, one sentence each.
 
     Args:
         endpoints: complete addresses.
         ca: certificate of the authority that vouches for the court (PEM); "" without keys.
     """
-    return "\n".join(_why_not_connected(one, ca) for one in endpoints)
+    reasons = [_why_not_connected(one, ca) for one in endpoints]
+    return reasons[0] if len(reasons) == 1 else say("plain.sentences", sentences=reasons)
 
 
-def why_not_listening(endpoints: Sequence[str], error: Exception) -> str:
+def why_not_listening(endpoints: Sequence[str], error: Exception) -> Phrase:
     """Say why it was not possible to listen on these addresses.
 
     Args:
         endpoints: complete addresses.
         error: the failure, for the case that a plain socket can listen on all of them.
     """
-    reasons = filter(None, map(_why_not_listening, endpoints))
-    return next(reasons, f"It is not possible to listen on {', '.join(endpoints)}: {error}")
+    for one in endpoints:
+        if (why := _why_not_listening(one)) is not None:
+            return why
+    return say("listen.impossible", at=", ".join(endpoints), why=str(error))
 
 
 def _split(one: str) -> tuple[str, int]:
@@ -134,20 +126,21 @@ def _resolves(host: str, port: int) -> bool:
         return False
 
 
-def _why_not_connected(one: str, ca: str) -> str:
+def _why_not_connected(one: str, ca: str) -> Phrase:
     try:
         with socket.create_connection(_split(one), timeout=_PROBE_S) as probe:
             return _why_not_let_in(one, probe, ca)
     except ConnectionRefusedError:
-        return f"Nobody listens at {one}. Is the court running, and is this its port?"
+        return say("connect.nobody", at=one)
     except socket.gaierror:
-        return f"The name in {one} is not known on this network."
+        return say("connect.unknown-name", at=one)
     except OSError as error:
-        reason = "no answer" if isinstance(error, TimeoutError) else error.strerror or str(error)
-        return f"{one} can't be reached ({reason}). Check the address, the network and firewalls."
+        if isinstance(error, TimeoutError):
+            return say("connect.unreachable", at=one, why=say("connect.no-answer"))
+        return say("connect.unreachable", at=one, why=error.strerror or str(error))
 
 
-def _why_not_let_in(one: str, probe: socket.socket, ca: str) -> str:
+def _why_not_let_in(one: str, probe: socket.socket, ca: str) -> Phrase:
     """Say why a court that answers did not take a client in.
 
     Args:
@@ -159,25 +152,26 @@ def _why_not_let_in(one: str, probe: socket.socket, ca: str) -> str:
     try:
         context = ssl.create_default_context(cadata=ca) if ca else _trusting_all()
     except (ssl.SSLError, TypeError):  # TypeError: a character that is not ASCII
-        return "The certificate in the invitation is damaged: ask the organiser for it again."
+        return say("connect.damaged-certificate")
     try:
         with context.wrap_socket(probe, server_hostname=host):
             pass
     except ssl.SSLCertVerificationError as error:
-        sentence = _CERTIFICATE_SENTENCES.get(error.verify_code, _OTHER_CERTIFICATE)
-        return sentence.format(at=one, host=host, reason=error.verify_message)
+        return _why_not_trusted(one, host, error)
     except OSError:  # it speaks no TLS
-        return (_NO_KEYS if ca else _NO_COURT).format(at=one)
-    if not ca:
-        return (
-            f"The court at {one} has keys: enter with the invitation that the organiser has for "
-            "you (--invitation FILE), or with the contest file."
-        )
-    return (
-        f"The court at {one} is the right one, but it does not take this token. Ask the organiser "
-        "for the invitation that is valid now; a court that is full or of another version refuses "
-        "in the same way."
-    )
+        return say("connect.no-keys", at=one) if ca else say("connect.not-let-in", at=one)
+    return say("connect.token", at=one) if ca else say("connect.needs-keys", at=one)
+
+
+def _why_not_trusted(one: str, host: str, error: ssl.SSLCertVerificationError) -> Phrase:
+    match error.verify_code:  # OpenSSL's X509_V_ERR_..., which Python has no names for
+        case 9:
+            return say("connect.not-valid-yet", at=one)
+        case 10:
+            return say("connect.expired", at=one)
+        case 62 | 64:
+            return say("connect.wrong-name", at=one, host=host)
+    return say("connect.not-proven", at=one, reason=error.verify_message)
 
 
 def _trusting_all() -> ssl.SSLContext:
@@ -187,32 +181,7 @@ def _trusting_all() -> ssl.SSLContext:
     return context
 
 
-_NO_COURT = (
-    "Something answers at {at}, but it does not let this program in. Is it a court, and of the "
-    "same version?"
-)
-_NO_KEYS = (
-    "What answers at {at} has no keys, and your invitation is for a court that has. Is it the "
-    "right port, and was the court started with its contest file?"
-)
-_OTHER_CERTIFICATE = (
-    "What answers at {at} can't prove that it is the court of your invitation ({reason}). Do not "
-    "go on; ask the organiser whether the address is right and the invitation the newest."
-)
-_WRONG_NAME = (
-    "The certificate of the court at {at} is not made for the name {host}. Use the name in your "
-    "invitation; an organiser adds one with 'lacoc contest keys --host {host}'."
-)
-_CERTIFICATE_SENTENCES = {  # OpenSSL's X509_V_ERR_..., which Python has no names for
-    9: "The certificate of the court at {at} is not valid yet: is this machine's clock right?",
-    10: "The certificate of the court at {at} has expired, or this machine's clock is wrong. "
-    "An organiser makes new keys with 'lacoc contest keys --renew'.",
-    62: _WRONG_NAME,
-    64: _WRONG_NAME,
-}
-
-
-def _why_not_listening(one: str) -> str:
+def _why_not_listening(one: str) -> Phrase | None:
     host, port = _split(one)
     try:
         family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
@@ -221,16 +190,13 @@ def _why_not_listening(one: str) -> str:
             probe.bind(address)
             probe.listen()
     except socket.gaierror:
-        return f"The name {host!r} is not known on this machine; listen on 0.0.0.0 or a number."
+        return say("listen.unknown-name", name=host)
     except OSError as error:
         if error.errno == errno.EADDRINUSE:
-            return (
-                f"Port {port} is in use: another program listens at {one}. "
-                "Stop it, or choose another port (0 takes a free one)."
-            )
+            return say("listen.port-used", port=str(port), at=one)
         if error.errno == errno.EADDRNOTAVAIL:
-            return f"This machine has no address {host}. Listen on 0.0.0.0 to use all it has."
+            return say("listen.not-this-machine", host=host)
         if error.errno == errno.EACCES:
-            return f"Port {port} needs the administrator's rights; take one above 1023."
-        return f"It is not possible to listen at {one}: {error.strerror or error}."
-    return ""
+            return say("listen.rights", port=str(port))
+        return say("listen.impossible", at=one, why=error.strerror or str(error))
+    return None

@@ -20,7 +20,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export import tables as exports
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEAT_S
-from lacoc_shared.words import counted, render
+from lacoc_shared.words import counted, render, say
 
 _NOT_IN_NAMES = re.compile(r"[^\w.-]")
 
@@ -114,17 +114,16 @@ def _made(make: Callable[[Record], bytes], record: Record) -> bytes:
     try:
         return make(record)
     except (ValueError, ArithmeticError, LookupError, TypeError, struct.error) as error:
-        raise UserError(
-            f"The messages of the record of match {record.header.match_id!r:.80} do not fit "
-            f"together ({error!s:.80}). Copy it again from where it was made."
-        ) from None
+        match = record.header.match_id[:80]
+        raise UserError(say("replay.damaged-copy", match=match, error=str(error)[:80])) from None
 
 
 def _save(folder: Path, match_id: str, made: list[tuple[str, bytes]]) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UserError(f"Cannot make the folder {folder}: {error.strerror}.") from None
+        why = error.strerror or str(error)
+        raise UserError(say("command.cannot-make-folder", folder=str(folder), why=why)) from None
     for name, data in made:
         # The names of match and seats are the record's, and may be anything.
         path = folder / _NOT_IN_NAMES.sub("_", f"{match_id}-{name}")

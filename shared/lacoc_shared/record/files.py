@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
 
 _LOCKED_BYTE = 2**40  # beyond any record: Windows keeps readers out of a locked part
 _SEGMENT = re.compile(r"(?P<match_id>.+)\.(?P<segment>\d{3,})\.live\.mcap")
@@ -48,7 +49,7 @@ def record_paths(path: Path) -> list[Path]:
         UserError: if there is no such file.
     """
     if not path.is_file():
-        raise UserError(f"There is no record {path}. Give the path of a .mcap file.")
+        raise UserError(say("recording.none", file=str(path)))
     name = segment_name(path)
     return segment_paths(path.parent, name[0]) if name else [path]
 

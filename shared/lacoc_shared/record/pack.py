@@ -19,6 +19,7 @@ from lacoc_shared.record import files
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE
 from lacoc_shared.record.stream import Stop, walk_bytes
+from lacoc_shared.words import say
 
 _Message = tuple[str, int, bytes]
 """Topic, beat and bytes."""
@@ -44,10 +45,7 @@ def pack(segments: Sequence[Path], out: Path) -> None:
         with ExitStack() as held:
             for segment in segments:
                 if not files.hold(held.enter_context(segment.open("rb+"))):
-                    raise UserError(
-                        f"{segment} is being written or packed by another process: it was left "
-                        "alone."
-                    )
+                    raise UserError(say("pack.busy", file=str(segment)))
             if out.exists():
                 _compare(*_messages(segments), out)
             else:
@@ -60,10 +58,8 @@ def pack(segments: Sequence[Path], out: Path) -> None:
             segment.unlink(missing_ok=True)
     except OSError as error:
         unfinished.unlink(missing_ok=True)
-        raise UserError(
-            f"The record {out} can't be packed: {error.strerror}. Its segments are kept: make "
-            "room on the disk and pack them again."
-        ) from None
+        why = error.strerror or str(error)
+        raise UserError(say("pack.no-room", file=str(out), why=why)) from None
 
 
 def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Popen[bytes]:
@@ -89,7 +85,7 @@ def _whole_match(segments: Sequence[Path], out: Path) -> list[_Message]:
     messages: list[_Message] = []
     record = Record.read(segments, lambda *message: messages.append(message))
     if record.cut:
-        raise UserError(f"{out} was not packed, and its segments are kept. {record.cut}")
+        raise UserError(say("pack.not-packed", file=str(out), cut=record.cut))
     return messages
 
 
@@ -121,10 +117,7 @@ def _compare(wanted: Sequence[_Message], wrong: Stop | None, packed: Path) -> No
     """
     found, found_wrong = _messages([packed])
     if found_wrong or wrong or found[max(0, len(found) - len(wanted)) :] != wanted:
-        raise UserError(
-            f"{packed} does not hold what the segments of its match hold, so all are kept. "
-            "Look at both with 'lacoc replay info', and move the one that you do not want."
-        )
+        raise UserError(say("pack.differs", file=str(packed)))
 
 
 def _messages(paths: Sequence[Path]) -> tuple[list[_Message], Stop | None]:
@@ -165,7 +158,7 @@ def main(folder: str, *match_ids: str) -> int:
         segments = files.segment_paths(Path(folder), match_id)
         try:
             if not segments:
-                raise UserError(f"There are no segments of match {match_id} in {folder}.")
+                raise UserError(say("pack.no-segments", match=match_id, folder=str(folder)))
             pack(segments, files.packed_path(Path(folder), match_id))
         except UserError as error:
             print(error, file=sys.stderr)

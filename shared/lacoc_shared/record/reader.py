@@ -13,6 +13,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.schema import Header, Result, Touch
 from lacoc_shared.record.stream import TakeBytes, walk
+from lacoc_shared.words import say
 
 V = TypeVar("V")
 
@@ -153,18 +154,31 @@ class Record:
     def _begin_segment(self, path: Path, header: Header) -> None:
         if self.headers and header.match_id != self.header.match_id:
             raise UserError(
-                f"{path} belongs to match {header.match_id}, the files before it to "
-                f"{self.header.match_id}. Give the files of one match."
+                say(
+                    "recording.other-match",
+                    file=str(path),
+                    match=header.match_id,
+                    first=self.header.match_id,
+                )
             )
         if not self.headers and header.first_beat > 0:
             raise UserError(
-                f"{path} begins with beat {header.first_beat} of match {header.match_id}: the "
-                "segments before it are missing. Put all its segments into one folder."
+                say(
+                    "recording.no-begin",
+                    file=str(path),
+                    beat=header.first_beat,
+                    match=header.match_id,
+                )
             )
         if self.headers and header.segment <= self.headers[-1].segment:
             raise UserError(
-                f"{path} is segment {header.segment} of match {header.match_id}, and comes after "
-                f"segment {self.headers[-1].segment}. Give the segments in their order."
+                say(
+                    "recording.order",
+                    file=str(path),
+                    segment=header.segment,
+                    match=header.match_id,
+                    before=self.headers[-1].segment,
+                )
             )
         if header.first_beat > self.last_beat + 1:
             raise _Gap(

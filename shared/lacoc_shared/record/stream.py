@@ -20,6 +20,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.protocol_1 import read_event
 from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE
 from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import say
 
 DAMAGE = (
     McapError,
@@ -98,11 +99,10 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise UserError(f"The record {path} can't be read: {error.strerror}.") from None
+        why = error.strerror or str(error)
+        raise UserError(say("recording.unreadable", file=str(path), why=why)) from None
     if data[: len(MCAP0_MAGIC)] != MCAP0_MAGIC[: len(data)]:
-        raise UserError(
-            f"{path} is not a LACOC record: it is no MCAP file. Give the .mcap of a match."
-        )
+        raise UserError(say("recording.not-mcap", file=str(path)))
     beat, whole = -1, len(MCAP0_MAGIC)
     topics: dict[int, str] = {}
     file = BytesIO(data)
@@ -117,10 +117,7 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
             elif isinstance(record, DataEnd):
                 return None
             elif isinstance(record, FileHeader) and record.profile != PROFILE:
-                raise UserError(
-                    f"{path} is an MCAP file, but not a LACOC record. Give the .mcap of a match "
-                    "(one that was exported for Foxglove can't be read back)."
-                )
+                raise UserError(say("recording.other-mcap", file=str(path)))
             whole = file.tell()
     except DAMAGE as error:
         if not _is_cut(data, whole):
@@ -200,8 +197,7 @@ def _decode(path: Path, topic: str, data: bytes) -> Any:
         found = codec.decode(data, _Format, _MAX_BYTES).format
         if found != FORMAT:
             raise UserError(
-                f"The record {path} has format {found}, and this software reads format {FORMAT}. "
-                "Install the version of lacoc that wrote it."
+                say("recording.other-format", file=str(path), found=str(found), reads=FORMAT)
             )
     if topic == "/lacoc/event":
         return read_event(data, _MAX_BYTES)

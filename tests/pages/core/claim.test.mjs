@@ -14,7 +14,7 @@ import {
 const wish = { court: "main", seat: "left", token: "abc", name: "Ants" };
 const other = { ...wish, seat: "right" };
 const busy = { why: { code: "refused.match-on" }, mistakes: [], again: true };
-const no = { why: "the court does not answer", mistakes: [], again: false };
+const no = { why: { code: "court.nobody" }, mistakes: [], again: false };
 const wrongToken = { why: { code: "refused.wrong-token" }, mistakes: [], again: false };
 const badFile = { why: { code: "refused.mistakes" }, mistakes: [{}], again: false };
 
@@ -28,7 +28,7 @@ const granted = { is: "granted", wish, index: 0 };
 const broke = { is: "failed", refusal: no, broke: true };
 const failed = (refusal) => ({ is: "failed", refusal, broke: false });
 const rested = { is: "rested" };
-const taken = { is: "taken", why: "another page has it" };
+const taken = { is: "taken", why: { code: "hold.replaced" } };
 const released = { is: "released" };
 const kept = { is: "kept" };
 
@@ -84,7 +84,7 @@ test("whatever happens, the claim makes sense", () => {
 function checkStep({ claim, event, next, effects }) {
   const wants = ["joining", "holding", "changing", "leaving"].includes(next.state);
   assert.equal(next.wish !== null, wants);
-  assert.equal(next.why !== "", next.state === "lost");
+  assert.equal(next.why !== null, next.state === "lost");
   if (keptWish(next)) assert.ok(["holding", "changing"].includes(next.state));
   if (effects.includes("ask")) {
     assert.equal(claim.request, "none"); // never two joins at once
@@ -203,7 +203,7 @@ test("a lost seat is told, and nothing fights for it", () => {
   assert.deepEqual(after(lost, open).effects, []);
   // Told twice, as with a newer round trip.
   assert.equal(after(lost, taken).lastWish, wish);
-  assert.deepEqual([after(lost, forget).state, after(lost, forget).why], ["none", ""]);
+  assert.deepEqual([after(lost, forget).state, after(lost, forget).why], ["none", null]);
   assert.deepEqual(after(lost, join, open).effects, ["ask"]);
   assert.equal(after(seated, leave, taken, released).state, "lost");
 });

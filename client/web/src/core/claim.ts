@@ -44,7 +44,7 @@ export type ClaimEvent =
   /** The pause after a failed request is over. */
   | { is: "rested" }
   /** The court tells that the seat is not this page's any more. */
-  | { is: "taken"; why: Phrase | string }
+  | { is: "taken"; why: Phrase }
   /** The court took the seat back. */
   | { is: "released" }
   /** The court did not take the seat back, and the page holds it still. */
@@ -75,8 +75,8 @@ export interface Claim {
   readonly tries: number;
   /** Why the last join was refused; null once a person asks again. */
   readonly refusal: Refused | null;
-  /** Why the seat was lost; "" in every other state. */
-  readonly why: Phrase | string;
+  /** Why the seat was lost; null in every other state. */
+  readonly why: Phrase | null;
 }
 
 const MOST_TRIES = 8;
@@ -163,7 +163,7 @@ export function claimOf(wish: Wish | null): Claim {
     lastWish: null,
     tries: 0,
     refusal: null,
-    why: "",
+    why: null,
   };
 }
 
@@ -185,17 +185,13 @@ export function keptWish({ state, wish }: Claim): Wish | null {
 }
 
 /** Whether the same request would be refused again. */
-export function isFinal(refusal: Pick<Refused, "mistakes" | "why">): boolean {
-  return refusal.mistakes.length > 0 || FINAL.has(codeOf(refusal));
+export function isFinal({ mistakes, why }: Pick<Refused, "mistakes" | "why">): boolean {
+  return mistakes.length > 0 || FINAL.has(why.code);
 }
 
 /** Whether a refusal is about the token. */
-export function isAboutToken(refusal: Pick<Refused, "why">): boolean {
-  return ABOUT_TOKEN.has(codeOf(refusal));
-}
-
-function codeOf({ why }: Pick<Refused, "why">): string {
-  return typeof why === "string" ? "" : why.code;
+export function isAboutToken({ why }: Pick<Refused, "why">): boolean {
+  return ABOUT_TOKEN.has(why.code);
 }
 
 /** Note an answer: the join is not under way any more. */
@@ -234,13 +230,13 @@ function triggerOf(claim: Claim, event: ClaimEvent): Trigger | null {
 
 /** What the claim remembers after an event that leads to `state`. */
 function remembered(claim: Claim, event: ClaimEvent, state: ClaimState): Partial<Claim> {
-  if (event.is === "join") return { wish: event.wish, tries: 0, refusal: null, why: "" };
-  if (WANTS.has(state)) return event.is === "granted" ? { wish: event.wish, why: "" } : {};
+  if (event.is === "join") return { wish: event.wish, tries: 0, refusal: null, why: null };
+  if (WANTS.has(state)) return event.is === "granted" ? { wish: event.wish, why: null } : {};
   const ended = claim.wish;
   return {
     wish: null,
     lastWish: ended ?? claim.lastWish,
     refusal: ended && event.is === "failed" ? event.refusal : claim.refusal,
-    why: event.is === "taken" ? event.why : state === "lost" ? claim.why : "",
+    why: event.is === "taken" ? event.why : state === "lost" ? claim.why : null,
   };
 }

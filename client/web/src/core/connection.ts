@@ -8,6 +8,7 @@ import {
   type Mistake,
   type Request,
   readMessage,
+  TRY_LATER,
   writeRequest,
 } from "./wire";
 
@@ -25,10 +26,10 @@ export class Refused extends Error {
    * @param reply The gateway's, where it is one.
    */
   constructor(
-    readonly why: Phrase | string,
+    readonly why: Phrase,
     reply: Partial<BadReply> = {},
   ) {
-    super(typeof why === "string" ? why : why.code);
+    super(why.code);
     this.mistakes = reply.mistakes ?? [];
     this.tokenRefused = reply.token_refused ?? false;
     this.again = reply.again ?? false;
@@ -43,8 +44,8 @@ export interface SocketState {
   open: boolean;
   /** Counts those since the page was greeted last: a gateway may open and send it away. */
   attempt: number;
-  /** Why the gateway did not greet the page; "" if it did. Holds until it does. */
-  refused: Phrase | string;
+  /** Why the gateway did not greet the page; null if it did. Holds until it does. */
+  refused: Phrase | null;
 }
 
 interface Waiting {
@@ -54,15 +55,14 @@ interface Waiting {
 
 const RETRY_FIRST_MS = 250;
 const RETRY_MOST_MS = 3000;
-/** The gateway's code for "come again later" (docs/gateway.md), and how much later. */
-const TRY_LATER = 1013;
+/** How much later a page comes again that was sent away with `TRY_LATER`. */
 const LATER_MS = 10_000;
 /** A gateway sends frames or at least a link message every second: so long a silence is a break. */
 const SILENCE_MS = 5000;
 const LOOK_MS = 1000;
 
 export class Connection {
-  readonly state = signal<SocketState>({ open: false, attempt: 0, refused: "" });
+  readonly state = signal<SocketState>({ open: false, attempt: 0, refused: null });
   private socket: WebSocket | null = null;
   private lastId = 0;
   private heardMs = 0;
@@ -122,7 +122,7 @@ export class Connection {
 
   private async begin(socket: WebSocket): Promise<void> {
     let { attempt } = this.state.value;
-    let refused: Phrase | string = "";
+    let refused: Phrase | null = null;
     try {
       await this.greet();
       attempt = 0;

@@ -19,12 +19,13 @@ import {
   type Request,
   type Scene,
   type Sheet,
+  SILENT_AFTER_S,
   sameBytes,
   type Welcome,
 } from "./wire";
 
 /** A frame older than this is not shown as live. */
-const STALE_MS = 1000;
+const STALE_MS = 1000 * SILENT_AFTER_S;
 const LOOK_MS = 200;
 const PLAYOUT_MS = 20;
 /** All that tells how the match stands is shown with the delay, and in its order. */

@@ -4,17 +4,14 @@ import { computed } from "@preact/signals";
 import { Refused } from "./connection";
 import { remembered } from "./settings";
 import { tab } from "./storage";
-import type { SentFile } from "./wire";
+import { JOIN_MAX_BYTES, MAX_POSTURES_PER_KEY, type SentFile } from "./wire";
 
 /** What a file is for; the names of the join's fields. */
 export const SLOTS = ["robot", "postures", "locomotion"] as const;
 export type Slot = (typeof SLOTS)[number];
 
-/** Of all files together: a join is one message, and those are at most 64 KiB long. */
-export const MOST_BYTES = 62 * 1024;
-
-/** A key of level B has no more postures (docs/rules.md 2). */
-const MOST_POSTURES = 100;
+/** Of all files together: a join is one message, with a name and a token besides. */
+export const MOST_BYTES = JOIN_MAX_BYTES - 2 * 1024;
 
 interface Kept {
   name: string;
@@ -30,7 +27,6 @@ const kept = remembered<Partial<Record<Slot, Kept>>>("files", {}, tab);
 
 /** The sample's keys (Fig. 4-2): stand, turn left, forward, turn right. */
 export const SAMPLE_SEQUENCES: readonly string[] = ["0", "8765", "1234", "5678"];
-export const MOST_KEYS = 10;
 
 /** Level B of postures that come alone: for each key from 0 on the digits of its postures. */
 export const sequences = remembered<readonly string[]>("sequences", SAMPLE_SEQUENCES, tab);
@@ -44,7 +40,7 @@ export function chosenSequences(): number[][] | null {
 
 /** The digits of what was typed, in whatever way they are parted and written. */
 export function digitsOf(typed: string): string {
-  return typed.normalize("NFKC").replace(/\D/g, "").slice(0, MOST_POSTURES);
+  return typed.normalize("NFKC").replace(/\D/g, "").slice(0, MAX_POSTURES_PER_KEY);
 }
 
 /** The names of the chosen files. */
@@ -67,11 +63,8 @@ export function chosenFiles(): Record<Slot, SentFile | null> {
 export function checkSizes(files: readonly (SentFile | null)[]): void {
   const bytes = files.reduce((sum, file) => sum + (file?.data.length ?? 0), 0);
   if (bytes <= MOST_BYTES) return;
-  const [size, most] = [bytes, MOST_BYTES].map((count) => Math.ceil(count / 1024));
-  throw new Refused(
-    `Your files are too large together: ${size} KiB, at most ${most} KiB travel. ` +
-      "Shorten the gait files.",
-  );
+  const values = { size_kib: Math.ceil(bytes / 1024), most_kib: MOST_BYTES / 1024 };
+  throw new Refused({ code: "refused.files-too-large", values });
 }
 
 /** Keep a file in the slot that its content asks for; returns the slot. */

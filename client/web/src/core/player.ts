@@ -23,8 +23,8 @@ import { type Frame, type HeldSeat, Phase, SeatFlag, type SeatFrame } from "./wi
 /** What the page shows of its claim to a seat. */
 export type Standing = "watching" | "outside" | "joining" | "seated" | "lost" | "left";
 
-/** What the player has to say: a sentence of the court, or a key that it refused. */
-export type Word = { text: Phrase | string; tone: "plain" | "yes" | "no" } | RefusedKey;
+/** What the player has to say: words of the court, or a key that it refused. */
+export type Word = { said: Phrase; tone: "plain" | "yes" | "no" } | RefusedKey;
 
 const KEPT_AS = "lacoc.wish";
 const HELD = "held";
@@ -146,7 +146,7 @@ export class Player {
     try {
       await this.court.ask("ready", { ready });
     } catch (error) {
-      this.say({ text: (error as Refused).why, tone: "no" });
+      this.say({ said: (error as Refused).why, tone: "no" });
     }
   }
 
@@ -173,7 +173,7 @@ export class Player {
       const seat = this.seatNow();
       if (seat) this.hearRefusal(seat);
     } catch (error) {
-      this.say({ text: (error as Refused).why, tone: "no" });
+      this.say({ said: (error as Refused).why, tone: "no" });
     }
   }
 
@@ -277,7 +277,7 @@ export class Player {
       const fields = { seat, token, name, ...files, sequences: chosenSequences() };
       const joined = await this.court.ask<{ notes: Phrase[]; index: number }>("join", fields);
       this.tell({ is: "granted", wish, index: joined.index });
-      for (const note of this.alone ? [] : joined.notes) this.say({ text: note, tone: "plain" });
+      for (const note of this.alone ? [] : joined.notes) this.say({ said: note, tone: "plain" });
     } catch (error) {
       const broke = !this.court.connection.state.peek().open;
       this.tell({ is: "failed", refusal: error as Refused, broke });
@@ -293,11 +293,11 @@ export class Player {
 
   private async release(): Promise<void> {
     try {
-      const { text } = await this.court.ask<{ text: Phrase | null }>("leave");
+      const { said } = await this.court.ask<{ said: Phrase | null }>("leave");
       // Practice and a lobby free the seat: that it stays one's own is news in a match only.
-      if (!this.alone && text) this.say({ text, tone: "plain" });
+      if (!this.alone && said) this.say({ said, tone: "plain" });
     } catch (error) {
-      this.say({ text: (error as Refused).why, tone: "no" });
+      this.say({ said: (error as Refused).why, tone: "no" });
       if (this.isHeld()) return this.tell({ is: "kept" });
     }
     this.tell({ is: "released" });

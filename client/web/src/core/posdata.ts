@@ -6,10 +6,9 @@
  */
 
 import { floats } from "./poses";
-import { type Frame, Phase, ROOT_FLOATS, type Sheet, sameBytes } from "./wire";
+import { BEAT_S, type Frame, Phase, ROOT_FLOATS, type Sheet, sameBytes } from "./wire";
 
 const FLOAT_BYTES = 4;
-const BEAT_S = 0.02;
 const DEGREES = 180 / Math.PI;
 
 /** What one page keeps: of longer practice the newest hour. */

@@ -7,7 +7,17 @@
 import { McapStreamReader } from "@mcap/core";
 import { decode } from "@msgpack/msgpack";
 import { decompress } from "fzstd";
-import { type Event, type Header, type Result, readFrame, type Scene, type Sheet } from "./wire";
+import {
+  BEAT_NS,
+  type Event,
+  type Header,
+  RECORD_FORMAT,
+  RECORD_PROFILE,
+  type Result,
+  readFrame,
+  type Scene,
+  type Sheet,
+} from "./wire";
 
 /** A file as it was dropped or fetched. */
 export interface RecordFile {
@@ -67,9 +77,6 @@ export class Unplayable extends Error {
   }
 }
 
-const FORMAT = 1;
-const PROFILE = "lacoc";
-const BEAT_NS = 20_000_000n;
 const MAGIC = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a];
 /** A larger chunk is no record's: a damaged size must not take all memory. */
 const CHUNK_MOST_BYTES = 1 << 28;
@@ -143,13 +150,13 @@ function readFile({ name, data }: RecordFile): Segment[] {
     reader.append(data);
     for (let record = reader.nextRecord(); record && !closed; record = reader.nextRecord()) {
       if (record.type === "Message") {
-        const beat = Number(record.logTime / BEAT_NS);
+        const beat = Number(record.logTime / BigInt(BEAT_NS));
         const topic = topics.get(record.channelId);
         if (topic === "/lacoc/header") segments.push(begin(name, record.data));
         else if (topic && segments.length) take(segments.at(-1)!, topic, beat, record.data);
       } else if (record.type === "Channel") topics.set(record.id, record.topic);
       else if (record.type === "DataEnd") closed = true;
-      else if (record.type === "Header" && record.profile !== PROFILE) {
+      else if (record.type === "Header" && record.profile !== RECORD_PROFILE) {
         throw new Unplayable("notLacoc", { name });
       }
     }
@@ -167,11 +174,11 @@ function readFile({ name, data }: RecordFile): Segment[] {
 
 function begin(file: string, data: Uint8Array): Segment {
   const header = decode(data) as Header;
-  if (header.format !== FORMAT) {
+  if (header.format !== RECORD_FORMAT) {
     throw new Unplayable("format", {
       name: file,
       format: header.format,
-      ours: FORMAT,
+      ours: RECORD_FORMAT,
       version: header.versions?.lacoc ?? "?",
     });
   }
@@ -213,9 +220,8 @@ function take(segment: Segment, topic: string, beat: number, data: Uint8Array): 
 
 /** An event; one of protocol 1 has its sentence in English alone. */
 function readEvent(data: Uint8Array): Event {
-  const event = decode(data) as Event & { text?: string };
-  if (event.text === undefined) return event;
-  return { ...event, said: { code: "plain.text", values: { text: event.text } } };
+  const { text, ...event } = decode(data) as Event & { text?: string };
+  return text === undefined ? event : { ...event, said: { code: "plain.text", values: { text } } };
 }
 
 /** By number; of one that is there twice (a packed file beside its segments) the fuller one. */

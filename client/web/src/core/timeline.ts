@@ -6,7 +6,8 @@
  * Beats say when a frame was; a beat takes 20 ms where the court keeps up, else it is estimated.
  */
 
-import type { Frame } from "./wire";
+import type { Frame } from "./wire.gen.ts";
+import { BEATS_PER_S } from "./wire.gen.ts";
 
 /** Between two frames; `part` 0 is `before`, 1 is `after`. */
 export interface Moment {
@@ -17,7 +18,7 @@ export interface Moment {
   beat: number;
 }
 
-const NOMINAL_BEATS_PER_MS = 0.05;
+const NOMINAL_BEATS_PER_MS = BEATS_PER_S / 1000;
 /** A court can run slower than this or faster, but then nobody follows it by eye. */
 const SLOWEST = 0.1;
 const FASTEST = 40;
@@ -53,7 +54,7 @@ export class Timeline {
   private arrivals: Arrival[] = [];
   private latenesses: number[] = [];
   private lastArrivalMs = Number.NEGATIVE_INFINITY;
-  private intervalMs = 20;
+  private intervalMs = 1 / NOMINAL_BEATS_PER_MS;
   private rate = NOMINAL_BEATS_PER_MS;
   private adaptiveMs = LEAST_DELAY_MS + SPARE_MS;
   private shown = Number.NaN;

@@ -3,11 +3,27 @@
 import type { Phrase } from "./phrase";
 
 export const PROTOCOL = 2;
+export const RECORD_FORMAT = 1;
+export const RECORD_PROFILE = "lacoc";
+export const BEAT_S = 0.02;
+export const BEAT_NS = 20000000;
 export const BEATS_PER_S = 50;
 export const REPEATS_HZ = 10;
 export const SILENT_AFTER_S = 1;
 export const RESTART_KEY = 10;
 export const ROOT_FLOATS = 7;
+export const HASH_BYTES = 8;
+export const JOIN_MAX_BYTES = 65536;
+export const NAME_MAX = 24;
+export const MAX_KEYS = 10;
+export const MAX_POSTURES_PER_KEY = 100;
+export const MAX_FREEZE_S = 600;
+export const MAX_CLOCK_S = 3600;
+export const MAX_POINTS = 1000;
+export const LEAST_HZ = 1;
+export const USUAL_HZ = 25;
+export const MOST_HZ = 50;
+export const TRY_LATER = 1013;
 
 export const Phase = {
   CREATED: 0,
@@ -43,6 +59,31 @@ export const Level = {
 } as const;
 
 export const MARKER_STATES = ["neutral", "left", "right", "down"] as const;
+
+/** What a message of the gateway is, by its first byte; 0 is none. */
+export const MESSAGE_KINDS = [
+  "",
+  "welcome",
+  "frame",
+  "event",
+  "sheet",
+  "scene",
+  "health",
+  "link",
+  "seat",
+  "reply",
+  "referee",
+  "files",
+] as const;
+
+/** Why a key was refused, by its `No`: codes of the table. */
+export const WHY_NO: Readonly<Record<number, string>> = {
+  1: "key.not-playing",
+  2: "key.level-closed",
+  3: "key.no-such-key",
+  4: "key.restarted",
+  5: "key.frozen",
+};
 
 export interface SeatFrame {
   flags: number;

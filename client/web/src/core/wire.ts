@@ -3,11 +3,12 @@
 import { decode, encode } from "@msgpack/msgpack";
 import type { Phrase } from "./phrase";
 import {
-  type DecisionName,
   type Event,
   FRAME_FIELDS,
   type Frame,
+  HASH_BYTES,
   type Health,
+  MESSAGE_KINDS,
   type Mistake,
   type Scene,
   SEATFRAME_FIELDS,
@@ -114,24 +115,6 @@ export type Message =
   | { kind: "referee"; body: RefereeState }
   | { kind: "files"; body: OwnFiles };
 
-/** The kinds by their byte; 0 is none. */
-const KINDS = [
-  "",
-  "welcome",
-  "frame",
-  "event",
-  "sheet",
-  "scene",
-  "health",
-  "link",
-  "seat",
-  "reply",
-  "referee",
-  "files",
-] as const;
-
-const SCENE_HASH_BYTES = 8;
-
 /** What a page asks for; each request is answered by a reply with its id. */
 export type Request =
   | "watch"
@@ -151,17 +134,14 @@ export interface SentFile {
   data: Uint8Array;
 }
 
-/** Why a decision is not legal now, by its name; "" if it is. */
-export type Legality = Partial<Record<DecisionName, string>>;
-
 /** Read a message; null for a kind of a newer gateway. */
 export function readMessage(bytes: Uint8Array): Message | null {
-  const kind = KINDS[bytes[0] ?? 0];
+  const kind = MESSAGE_KINDS[bytes[0] ?? 0];
   if (!kind) return null;
   let rest = bytes.subarray(1);
   if (kind === "scene") {
-    const hash = rest.slice(0, SCENE_HASH_BYTES);
-    rest = rest.subarray(SCENE_HASH_BYTES);
+    const hash = rest.slice(0, HASH_BYTES);
+    rest = rest.subarray(HASH_BYTES);
     return { kind, hash, body: decode(rest) as Scene };
   }
   const body = kind === "frame" ? readFrame(rest) : decode(rest);

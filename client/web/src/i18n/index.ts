@@ -1,6 +1,6 @@
 /** Messages in the reader's language; every message stands in all languages, side by side. */
 
-import { computed, effect, signal } from "@preact/signals";
+import { computed } from "@preact/signals";
 import { setting } from "../core/address";
 import type { Phrase } from "../core/phrase";
 import { remembered } from "../core/settings";
@@ -35,18 +35,15 @@ export function t(name: MessageName, holes: Record<string, string | number> = {}
   return text.replace(/\{(\w+)\}/g, (hole, key: string) => String(holes[key] ?? hole));
 }
 
-/** Turns the court's sentences into Japanese; only who reads Japanese loads it. */
-const translate = signal<(text: string) => string>((text) => text);
-
-effect(() => {
-  if (language.value !== "ja") return;
-  void import("./court").then(({ toJapanese }) => {
-    translate.value = toJapanese;
-  });
-});
-
-/** What a court or a gateway says: a phrase, or a sentence in English from before phrases. */
+/** What a court or a gateway says, in words; a text of an old record stays as it is. */
 export function said(what: Phrase | string): string {
-  if (typeof what !== "string") return render(what, language.value);
-  return language.value === "ja" ? translate.value(what) : what;
+  return render(what, language.value);
+}
+
+/** The same as a sentence that stands alone: reasons begin small and have no full stop. */
+export function sentence(what: Phrase | string): string {
+  const text = said(what);
+  const begun = text.charAt(0).toUpperCase() + text.slice(1);
+  if (/[.。!?…]$/.test(begun)) return begun;
+  return begun + (language.value === "ja" ? "。" : ".");
 }

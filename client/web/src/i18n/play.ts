@@ -8,10 +8,10 @@ export const play = {
   "join.free": ["free", "空き"],
   "join.takenBy": ["{team} sits here", "{team} が参加中"],
   "join.name": ["Team name", "チーム名"],
-  "join.nameHint": ["1 to 24 characters", "1～24 文字"],
+  "join.nameHint": ["1 to {most} characters", "1～{most} 文字"],
   "join.nameMissing": [
-    "Give your team a name of 1 to 24 characters.",
-    "チーム名を 1～24 文字で入力してください。",
+    "Give your team a name of 1 to {most} characters.",
+    "チーム名を 1～{most} 文字で入力してください。",
   ],
   "join.token": ["Token of the seat", "席のトークン"],
   "join.tokenHint": ["from the organiser", "主催者から受け取ったもの"],
@@ -236,18 +236,6 @@ export const play = {
 
   // Toasts
   "toast.refused": ["[{key}] {why}", "[{key}] {why}"],
-  "no.1": ["Keys work only while the match is being played", "キーは試合中だけ使えます"],
-  "no.2": [
-    "This arena does not open that level of control",
-    "この競技ではその操作レベルは使えません",
-  ],
-  "no.3": ["Your gait file has no such key", "歩容ファイルにそのキーはありません"],
-  "no.4": [
-    "Restarted a moment ago: wait until the pause is over",
-    "再スタート直後です。待ち時間が終わるまでお待ちください",
-  ],
-  "no.5": ["The referee has frozen your robot", "審判がロボットを停止させています"],
-  "no.other": ["The court refused it", "コートに拒否されました"],
   "toast.arrows": [
     "Arrows are for level B; Tab changes the level",
     "矢印キーはレベル B 用です。Tab で切り替えます",

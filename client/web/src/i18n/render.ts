@@ -7,18 +7,13 @@
  */
 
 import type { Phrase, Value } from "../core/phrase.ts";
-import { WORDS } from "./words.gen.ts";
+import { DECIMALS, DEEPEST, LARGEST, LONGEST_LIST, LONGEST_TEXT, WORDS } from "./words.gen.ts";
 
 export type Language = "en" | "ja";
 
 type Hole = { name: string; formats: string[] };
 type Part = string | Hole | (string | Hole)[];
 
-const DEEPEST = 5;
-const LONGEST_LIST = 100;
-const LONGEST_TEXT = 2000;
-const LARGEST = 1e15;
-const DECIMALS = 6;
 const CONTROLS =
   // biome-ignore lint/suspicious/noControlCharactersInRegex: these are what is taken out
   /[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]/gu;

@@ -1,5 +1,11 @@
 // Made by client/web/make_wire.py from lacoc_shared/words/texts; not edited by hand.
 
+export const DEEPEST = 5;
+export const LONGEST_LIST = 100;
+export const LONGEST_TEXT = 2000;
+export const LARGEST = 1e+15;
+export const DECIMALS = 6;
+
 /** Each code with its templates: English, Japanese. */
 export const WORDS: Record<string, readonly [string, string]> = {
   "join.comma": [", ", "、"],
@@ -214,6 +220,8 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "court.no-court": ["There is no court {court:quoted} at {address}. There is {courts:and}.", "{address} にコート{court:quoted}はありません（{courts:and}があります）。"],
   "court.nobody": ["No court answers at {address}. Is it running?", "{address} のコートが応答しません。起動していますか。"],
   "court.bad-answer": ["The court's answer can't be read ({error}). This program uses version {version} of the protocol. Install the version of lacoc that the organiser uses.", "コートの応答を読み取れません（{error}）。このプログラムの通信方式は第 {version} 版です。主催者と同じ版の lacoc を入れてください。"],
+  "spectator.other-version": ["The court uses version {court} of the protocol, and this program version {program}. Install the version of lacoc that the organiser uses.", "コートの通信方式は第 {court} 版、このプログラムは第 {program} 版です。主催者と同じ版の lacoc を入れてください。"],
+  "spectator.other-scene": ["The court's frames show another scene than its sheet describes. Start this program again. If that does not help, tell the organiser.", "コートの映像と競技の説明が一致しません。プログラムを起動し直してください。直らない場合は主催者に知らせてください。"],
   "health.real-time": ["the match ran at {factor:.3} of real time (at least {least} is required)", "試合が実時間の {factor:.3} 倍で進みました（{least} 倍以上が必要です）"],
   "health.slow-beats": ["{percent:.1} % of the beats were slow (at most {most} % are allowed)", "ビートの {percent:.1} % が遅れました（許容は {most} % までです）"],
   "health.late-beat": ["a beat began {late_ms:.0} ms late (at most {most_ms} ms is allowed)", "ビートの開始が最大 {late_ms:.0} ミリ秒遅れました（許容は {most_ms} ミリ秒までです）"],
@@ -293,7 +301,14 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "gait.uncalculated": ["the formula {formula}, which has not been calculated", "計算されていない式 {formula}"],
   "gait.other-kind": ["the other kind of table", "もう一方の種類の表"],
   "gait.none-for-arena": ["none for this arena", "この競技で使えるものがない状態"],
-  "gait.legend": ["{file}, row {row}, column {column}: the legend says {cell}, and joint {joint} is a joint of leg {leg}. The order of the columns counts, not the legend.", "{file}、{row} 行目、{column} 列目：見出しは {cell} ですが、関節 {joint} は脚 {leg} のものです。見出しではなく列の順番が使われます。"],
+  "gait.legend": ["{file}, row {row}, column {column}: the legend says {cell}, and {what}. The order of the columns counts, not the legend.", "{file}、{row} 行目、{column} 列目：説明の行には {cell} とありますが、{what}。説明ではなく列の順番が使われます。"],
+  "gait.column-of-joint": ["this is the column of joint {joint}", "ここは関節 {joint} の列です"],
+  "gait.joint-of-level": ["joint {joint} is a joint of level {level}", "関節 {joint} は {level} の関節です"],
+  "gait.joint-of-leg": ["joint {joint} is a joint of leg {leg}", "関節 {joint} は脚 {leg} のものです"],
+  "gait.below-legend": ["{file}, row {row}: {cell} stands below the legend and is not read.", "{file}、{row} 行目：説明の行より下にある {cell} は読み込みません。"],
+  "gait.join-too-many": ["{keys} {keys:plural key|keys}, the longest of {longest} {longest:plural posture|postures}, do not fit in a file: it has 1 to {most_keys} keys of at most {most_postures} postures.", "キー {keys} 個（最も長いものは {longest} 姿勢）は 1 つのファイルに入りません。入るのは 1～{most_keys} キー、各 {most_postures} 姿勢までです。"],
+  "gait.join-empty": ["Key {key} of level B has no posture: give it one, such as 0.", "レベル B のキー {key} に姿勢がありません。0 などの姿勢を 1 つ以上入れてください。"],
+  "gait.join-no-posture": ["Key {key} of level B uses posture {posture}, but {file} has only {postures}. Say which postures to join.", "レベル B のキー {key} は姿勢 {posture} を使いますが、{file} には {postures} しかありません。使う姿勢を指定してください。"],
   "robot.one-of": ["one of {names:or}", "{names:or}のいずれか"],
   "robot.either": ["{options:quoted,or}", "{options:quoted,or}"],
   "robot.any-of": ["{options:or}", "{options:or}"],
@@ -340,6 +355,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "robot.high": ["a robot {metres:.3} m high with every angle 0", "全角度 0 で高さ {metres:.3} m のロボット"],
   "robot.lowest-part": ["{height_m}, with the lowest part {lowest_m:.3} m above the floor", "{height_m}（最も低い部分が床から {lowest_m:.3} m）"],
   "robot.range": ["{low} to {high}", "{low}～{high}"],
+  "robot.not-tried": ["Not tried whether it stands: physics needs the extra \"server\".", "立てるかどうかは試していません（物理計算には追加パッケージ server が必要です）。"],
   "unit.degrees": ["degrees", "度"],
   "unit.degrees-per-second": ["degrees/s", "度/秒"],
   "toml.too-deep": ["brackets in brackets, too deep", "深すぎる括弧の入れ子"],
@@ -347,10 +363,12 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "toml.many-dots": ["more than {most} dots in a line", "1 行に {most} 個を超えるピリオド"],
   "toml.not-utf-8": ["bytes that are not text in UTF-8", "UTF-8 のテキストではないデータ"],
   "toml.too-long": ["{bytes} bytes, and at most {most} are read", "{bytes} バイト（上限 {most} バイト）"],
+  "toml.bad": ["{reason}< (line {row})><: expected {remedy}>", "{reason}<（{row} 行目）><。正しくは{remedy}>"],
+  "toml.short-number": ["a number of at most 15 digits", "15 桁以下の数"],
   "sequences.too-many": ["{keys} {keys:plural key|keys}, the longest of {longest} {longest:plural posture|postures}, do not fit in a file. It has 1 to {most_keys} keys of at most {most_postures} postures.", "キー {keys} 個（最長 {longest} 姿勢）はファイルに入りません。1 つのファイルは 1～{most_keys} キー、各 {most_postures} 姿勢までです。"],
   "sequences.empty": ["Key {key} of level B has no posture. Give it one, such as 0.", "レベル B のキー {key} に姿勢がありません。0 などを入れてください。"],
   "sequences.no-posture": ["Key {key} of level B uses posture {posture}, but {file} has only {postures}. Say which postures to join.", "レベル B のキー {key} は姿勢 {posture} を使いますが、{file} には {postures} しかありません。使う姿勢を指定してください。"],
-  "connect.nobody": ["Nobody answers at {at}. Is the court running, and is this its port?", "{at} では何も応答しません。コートが起動しているか、ポートが正しいか確かめてください。"],
+  "connect.nobody": ["Nobody listens at {at}. Is the court running, and is this its port?", "{at} では何も応答しません。コートが起動しているか、ポートが正しいか確かめてください。"],
   "connect.unknown-name": ["The name in {at} is not known on this network.", "{at} の名前がこのネットワークで見つかりません。"],
   "connect.unreachable": ["{at} can't be reached ({why}). Check the address, the network and the firewalls.", "{at} に接続できません（{why}）。アドレス、ネットワーク、ファイアウォールを確かめてください。"],
   "connect.not-let-in": ["A program answers at {at}, but it does not let this program in. Is it a court of the same version?", "{at} は応答しますが接続できません。コートかどうか、同じ版かどうかを確かめてください。"],
@@ -363,6 +381,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "connect.not-valid-yet": ["The certificate of the court at {at} is not valid yet. Is this computer's clock right?", "{at} のコートの証明書はまだ有効期間前です。このパソコンの時計が正しいか確かめてください。"],
   "connect.expired": ["The certificate of the court at {at} has expired, or this computer's clock is wrong. (An organiser makes new keys with 'lacoc contest keys --renew'.)", "{at} のコートの証明書は期限切れか、このパソコンの時計が違っています（主催者は 'lacoc contest keys --renew' で鍵を作り直せます）。"],
   "connect.damaged-certificate": ["The certificate in the invitation is damaged. Ask the organiser for the invitation again.", "招待の証明書が壊れています。招待を主催者から受け取り直してください。"],
+  "connect.no-answer": ["no answer", "応答なし"],
   "listen.unknown-name": ["The name {name:quoted} is not known on this computer. Listen on 0.0.0.0 or a number.", "{name:quoted}という名前はこのパソコンでは使えません。0.0.0.0 か番号を指定してください。"],
   "listen.port-used": ["Port {port} is in use: another program listens at {at}. Stop it, or choose another port (0 takes a free one).", "ポート {port} は使用中です（{at} でほかのプログラムが待ち受けています）。それを止めるか、別のポートを選んでください（0 なら空きポートを使います）。"],
   "listen.not-this-machine": ["This computer has no address {host}. Listen on 0.0.0.0 to use all its addresses.", "このパソコンに {host} というアドレスはありません。すべてのアドレスを使うには 0.0.0.0 を指定してください。"],

@@ -6,6 +6,7 @@ import { amount, flag } from "../core/address";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
 import { reloadWhenServed } from "../core/reload";
+import { USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
 import { team } from "../i18n/words";
 import { View } from "../scene/View";
@@ -18,12 +19,11 @@ import { Thirds } from "../ui/thirds";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import "./overlay.css";
 
-const HZ = 25;
 /** What is drawn has this size; on another screen it is scaled. */
 const WIDTH_PX = 1920;
 const HEIGHT_PX = 1080;
 
-const court = new Court(HZ, 1000 * amount("delay", 0, 0, DELAY_MOST_S));
+const court = new Court(USUAL_HZ, 1000 * amount("delay", 0, 0, DELAY_MOST_S));
 const camera = cameraOfAddress();
 const quality = qualityOfAddress() ?? "auto";
 const transparent = flag("transparent", false);

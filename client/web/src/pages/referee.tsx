@@ -5,6 +5,7 @@ import { useEffect, useMemo } from "preact/hooks";
 import { followColours } from "../core/colours";
 import { Court } from "../core/court";
 import { part } from "../core/match";
+import { USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
 import { LinkBanner } from "../ui/banner";
 import { Dialog } from "../ui/dialog";
@@ -24,9 +25,7 @@ import { MatchCard, takeNext } from "./referee/matchcard";
 import type { Picked } from "./referee/pick";
 import { Seats } from "./referee/seats";
 
-const HZ = 25;
-
-const court = new Court(HZ);
+const court = new Court(USUAL_HZ);
 const desk = new Desk(court);
 followColours(court);
 

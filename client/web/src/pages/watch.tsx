@@ -6,6 +6,7 @@ import { followColours } from "../core/colours";
 import { Court } from "../core/court";
 import { part } from "../core/match";
 import { quality, remembered } from "../core/settings";
+import { LEAST_HZ, MOST_HZ, USUAL_HZ } from "../core/wire";
 import { t } from "../i18n";
 import { team } from "../i18n/words";
 import { View } from "../scene/View";
@@ -23,10 +24,12 @@ import { Corner, CornerSettings, cornerKeys } from "./watch/corner";
 import { cameraOfAddress, DELAY_MOST_S, qualityOfAddress } from "./watch/flags";
 import "./watch/frame.css";
 
-const HZ = 25;
 const WIDE_PX = 1280;
 
-const court = new Court(amount("hz", HZ, 1, 50), 1000 * amount("delay", 0, 0, DELAY_MOST_S));
+const court = new Court(
+  amount("hz", USUAL_HZ, LEAST_HZ, MOST_HZ),
+  1000 * amount("delay", 0, 0, DELAY_MOST_S),
+);
 const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("watch.panel", innerWidth >= WIDE_PX);

@@ -23,7 +23,7 @@ export function Mistakes({ mistakes }: { mistakes: readonly Mistake[] }) {
             <td>{one.row ?? one.field ?? ""}</td>
             <td>{one.column ?? ""}</td>
             <td>{one.joint == null ? "" : `${one.joint}${one.leg ? ` (${one.leg})` : ""}`}</td>
-            <td>{typeof one.found === "string" ? one.found : said(one.found)}</td>
+            <td>{said(one.found)}</td>
             <td>{said(one.expected)}</td>
           </tr>
         ))}

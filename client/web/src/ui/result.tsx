@@ -140,7 +140,7 @@ function isDeclared(match: Match): boolean {
 
 /** The reason of a decision, to stand behind it; "" if it has none. */
 function reasonOf({ data }: Event): string {
-  const reason = String(data.reason ?? "").trim();
+  const reason = said((data.reason ?? "") as Phrase | string).trim();
   return reason && t("result.because", { reason });
 }
 

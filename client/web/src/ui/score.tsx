@@ -3,11 +3,11 @@
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { type Match, part, phaseOf } from "../core/match";
-import { type Frame, Phase, SeatFlag, type Sheet } from "../core/wire";
+import { BEATS_PER_S, type Frame, Phase, SeatFlag, type Sheet } from "../core/wire";
 import { t } from "../i18n";
 import { clock, clockTicks, hint, seatState, team } from "../i18n/words";
 
-const LAST_TICKS = 10 * 50;
+const LAST_TICKS = 10 * BEATS_PER_S;
 
 /** A seat's letter on its colour and pattern. */
 export function SeatMark({ sheet, index }: { sheet: Sheet; index: number }) {

@@ -43,7 +43,7 @@ from lacoc_shared.record.export.kinematics import (
 )
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import BEAT_NS
-from lacoc_shared.words import render
+from lacoc_shared.words import render, say
 
 _TOPICS: dict[str, type[Message]] = {
     "/tf": FrameTransforms,
@@ -66,7 +66,7 @@ def foxglove(record: Record) -> bytes:
         UserError: if the record has no scene.
     """
     if not record.scenes:
-        raise UserError(f"Match {record.header.match_id} has no scene: there is nothing to draw.")
+        raise UserError(say("export.no-scene", match=record.header.match_id))
     file = BytesIO()
     writer = Writer(file)
     writer.start(library=f"lacoc {__version__}")

@@ -3,16 +3,13 @@
 import { useComputed, useSignal } from "@preact/signals";
 import { isAboutToken } from "../../core/claim";
 import type { Court } from "../../core/court";
-import type { Phrase } from "../../core/phrase";
 import type { Player } from "../../core/player";
 import { remembered } from "../../core/settings";
-import { SeatFlag, type Sheet } from "../../core/wire";
-import { said, t } from "../../i18n";
+import { NAME_MAX, SeatFlag, type Sheet } from "../../core/wire";
+import { said, sentence, t } from "../../i18n";
 import { seatName, team } from "../../i18n/words";
 import { Mistakes } from "../../ui/mistakes";
 import { FilePicker } from "./files";
-
-const NAME_MOST = 24;
 
 const nameKept = remembered("team", "");
 const seatKept = remembered("seat", "");
@@ -58,7 +55,7 @@ function Gone({ player, alone, isLost }: Props & { isLost?: boolean }) {
   return (
     <section class="card entrance" aria-labelledby="entrance-title">
       <h1 id="entrance-title">{t(isLost ? "lost.title" : "left.title")}</h1>
-      <p role={isLost ? "alert" : undefined}>{isLost ? sentence(why) : text}</p>
+      <p role={isLost ? "alert" : undefined}>{why ? sentence(why) : text}</p>
       <div class="row">
         {wish && (
           <button class="button strong large" type="button" onClick={() => player.join(wish)}>
@@ -101,7 +98,7 @@ function JoinCard({ court, player, alone }: Props) {
     const clean = name.value.trim();
     const length = [...clean].length;
     const missing = !token.value.trim() && !hasToken;
-    complaint.value = !length || length > NAME_MOST ? "name" : missing ? "token" : "";
+    complaint.value = !length || length > NAME_MAX ? "name" : missing ? "token" : "";
     if (complaint.value) {
       document.getElementById(`join-${complaint.value}`)?.focus();
       return;
@@ -163,7 +160,7 @@ function JoinCard({ court, player, alone }: Props) {
           <input
             id="join-name"
             value={name.value}
-            placeholder={t("join.nameHint")}
+            placeholder={t("join.nameHint", { most: NAME_MAX })}
             autocomplete="organization"
             aria-invalid={complaint.value === "name"}
             aria-describedby="join-name-error"
@@ -172,7 +169,7 @@ function JoinCard({ court, player, alone }: Props) {
             }}
           />
           <p class="error" id="join-name-error" role="alert">
-            {complaint.value === "name" && t("join.nameMissing")}
+            {complaint.value === "name" && t("join.nameMissing", { most: NAME_MAX })}
           </p>
         </label>
         <div class="field">
@@ -247,11 +244,4 @@ function go(court: string): void {
   const query = new URLSearchParams(location.search);
   query.set("court", court);
   location.search = query.toString();
-}
-
-/** A reason of the controller's, which begins small and has no full stop, as a sentence. */
-function sentence(why: Phrase | string): string {
-  const text = said(why);
-  const begun = text.slice(0, 1).toUpperCase() + text.slice(1);
-  return /[.。!?]$/.test(begun) ? begun : `${begun}${/[^ -~]$/.test(begun) ? "。" : "."}`;
 }

@@ -9,8 +9,17 @@ import type { Pressed } from "../../core/keys";
 import { phaseOf } from "../../core/match";
 import { Player, type Word } from "../../core/player";
 import { PosData } from "../../core/posdata";
-import { Level, Phase, RESTART_KEY, readFrame, SeatFlag, type Sheet } from "../../core/wire";
-import { type MessageName, said, t } from "../../i18n";
+import {
+  Level,
+  MOST_HZ,
+  Phase,
+  RESTART_KEY,
+  readFrame,
+  SeatFlag,
+  type Sheet,
+  WHY_NO,
+} from "../../core/wire";
+import { said, sentence, t } from "../../i18n";
 import { clockTicks, logClock } from "../../i18n/words";
 import { LinkBanner } from "../../ui/banner";
 import { Dialog } from "../../ui/dialog";
@@ -28,7 +37,6 @@ import { LEVEL_LETTERS } from "./pad";
 import { Rail } from "./rail";
 import "./player.css";
 
-const FRAMES_HZ = 50;
 const POS_DATA = "Pos-data.txt";
 
 type Open = "" | "leave" | "files" | "settings";
@@ -190,7 +198,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
 }
 
 function begin(alone: boolean): { court: Court; player: Player } {
-  const court = new Court(FRAMES_HZ);
+  const court = new Court(MOST_HZ);
   followColours(court);
   const player = new Player(court, speak, alone);
   window.__lacoc = Object.assign(window.__lacoc ?? {}, { posData });
@@ -205,14 +213,11 @@ function posData(seat: number, joints: number[], frames: Uint8Array[], most: num
 }
 
 function speak(word: Word): void {
-  if ("text" in word) {
-    if (word.text) toast(said(word.text), word.tone);
+  if ("said" in word) {
+    toast(said(word.said), word.tone);
     return;
   }
-  const name = `no.${word.refused}`;
-  const why = t(
-    ["no.1", "no.2", "no.3", "no.4", "no.5"].includes(name) ? (name as MessageName) : "no.other",
-  );
+  const why = sentence({ code: WHY_NO[word.refused] ?? "key.refused" });
   const key = word.key === RESTART_KEY ? "x" : String(word.key);
   toast(t("toast.refused", { key, why }), "no");
 }

@@ -9,14 +9,13 @@ import {
   digitsOf,
   forget,
   MOST_BYTES,
-  MOST_KEYS,
   SAMPLE_SEQUENCES,
   SLOTS,
   type Slot,
   sequences,
 } from "../../core/files";
 import type { Player } from "../../core/player";
-import { Level, Phase } from "../../core/wire";
+import { Level, MAX_KEYS, Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
 import { ARROW_OF } from "./pad";
@@ -146,7 +145,7 @@ function Sequences() {
     sequences.value = changed;
   };
   // One more than there are, to add a key.
-  const shown = keys.length < MOST_KEYS ? [...keys, ""] : keys;
+  const shown = keys.length < MAX_KEYS ? [...keys, ""] : keys;
   return (
     <fieldset class="sequences">
       <legend>{t("files.sequences")}</legend>
@@ -210,7 +209,7 @@ export function FilesChanged({ court, player, alone }: ChangedProps) {
                 file: one.file,
                 row: one.row ?? one.field ?? "–",
                 column: one.column ?? "–",
-                found: typeof one.found === "string" ? one.found : said(one.found),
+                found: said(one.found),
                 expected: said(one.expected),
               })}
             </li>

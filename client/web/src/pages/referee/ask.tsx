@@ -2,14 +2,22 @@
 
 import { type Signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import type { Phrase } from "../../core/phrase";
 import { type DecisionReply, NEED_A_REASON } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { type Desk, reasonOf } from "./desk";
 import type { Draft } from "./drafts";
 
-/** What the record says: English, as all that the court writes; pages translate it. */
-const REASONS = ["fell over", "stuck", "network", "rule", "other"] as const;
+const OTHER = "other";
+/** Codes of the table; with "other" the words alone are the reason. */
+const REASONS = [
+  "reason.fell-over",
+  "reason.stuck",
+  "reason.network",
+  "reason.rule",
+  OTHER,
+] as const;
 type Reason = (typeof REASONS)[number];
 
 const WORDS_MOST = 200;
@@ -31,7 +39,7 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
     desk.draft.value = null;
   };
   const needsReason = NEED_A_REASON.has(draft.name);
-  const reason = needsReason ? reasonText(chip.value, words.value) : "";
+  const reason = needsReason ? reasonOfBoth(chip.value, words.value) : "";
   const why =
     desk.whyNot(draft.name) ||
     (draft.amount && wrongAmount(draft.amount, amount)) ||
@@ -69,7 +77,7 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
                       chip.value = one;
                     }}
                   />
-                  {t(`reason.${one}`)}
+                  {one === OTHER ? t("reason.other") : said({ code: one })}
                 </label>
               ))}
             </div>
@@ -199,11 +207,11 @@ function Preview({ desk, event }: { desk: Desk; event: number }) {
   );
 }
 
-function reasonText(chip: Reason | null, words: string): string {
-  const more = words.trim();
-  if (chip === null) return more;
-  if (chip === "other") return more;
-  return more ? `${chip}: ${more}` : chip;
+/** The reason for the record; "" while something is missing. */
+function reasonOfBoth(chip: Reason | null, words: string): Phrase | string {
+  const note = words.trim();
+  if (!chip || chip === OTHER) return note;
+  return { code: chip, values: { note: note || null } };
 }
 
 function wrongAmount(amount: NonNullable<Draft["amount"]>, value: number): string {

@@ -14,7 +14,7 @@ import {
   Phase,
   SeatFlag,
 } from "../../core/wire";
-import { said, t } from "../../i18n";
+import { said, sentence, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
 import type { Draft } from "./drafts";
 
@@ -132,7 +132,7 @@ export class Desk {
       await this.court.ask("take_over");
       this.say("yes", t("referee.youAct"));
     } catch (error) {
-      this.say("no", said(reasonOf(error)));
+      this.say("no", reasonOf(error));
     }
   }
 
@@ -142,19 +142,17 @@ export class Desk {
    * @returns Why it can be changed and asked again, in the reader's language; "" once it is done,
    *   and where the answer was lost: to ask again could do it twice.
    */
-  async decide(decision: Decision, reason: string): Promise<string> {
+  async decide(decision: Decision, reason: Phrase | string): Promise<string> {
     try {
       const reply = await this.court.ask<DecisionReply>("decide", { decision, reason });
-      this.say("yes", said(reply.said));
+      this.say("yes", reply.said);
       return "";
     } catch (error) {
       if (error instanceof Unanswered) {
         this.say("plain", t("referee.unanswered"));
         return "";
       }
-      const why = said(reasonOf(error));
-      this.say("no", why);
-      return why;
+      return this.say("no", reasonOf(error));
     }
   }
 
@@ -225,11 +223,11 @@ export class Desk {
     }, RETRY_MS);
   }
 
-  private say(tone: Answer["tone"], text: string): void {
-    // The court's words stand within sentences elsewhere; here they begin one.
-    const sentence = text.charAt(0).toUpperCase() + text.slice(1);
-    this.answer.value = { tone, text: sentence, atMs: performance.now() };
-    toast(sentence, tone);
+  private say(tone: Answer["tone"], what: Phrase | string): string {
+    const text = sentence(what);
+    this.answer.value = { tone, text, atMs: performance.now() };
+    toast(text, tone);
+    return text;
   }
 }
 

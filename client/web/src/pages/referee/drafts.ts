@@ -1,17 +1,16 @@
 /** Decisions that are asked about before they are taken: what the dialog says and collects. */
 
 import type { Court } from "../../core/court";
-import type { Decision, DecisionName } from "../../core/wire";
-import { t } from "../../i18n";
 import {
   BEATS_PER_S,
-  clock,
-  clockTicks,
-  markerName,
-  outcome,
-  seatName,
-  team,
-} from "../../i18n/words";
+  type Decision,
+  type DecisionName,
+  MAX_CLOCK_S,
+  MAX_FREEZE_S,
+  MAX_POINTS,
+} from "../../core/wire";
+import { t } from "../../i18n";
+import { clock, clockTicks, markerName, outcome, seatName, team } from "../../i18n/words";
 
 /** A number that a decision needs. */
 interface Amount {
@@ -117,7 +116,7 @@ export function freeze(court: Court, seat: number): Draft {
       label: t("ask.seconds"),
       value: 10,
       least: 0.1,
-      most: 600,
+      most: MAX_FREEZE_S,
       whole: false,
       usual: [5, 10, 30],
       shows: () => "",
@@ -136,8 +135,8 @@ export function adjust(court: Court, seat: number, points: number): Draft {
     amount: {
       label: t("ask.points"),
       value: points,
-      least: -1000,
-      most: 1000,
+      least: -MAX_POINTS,
+      most: MAX_POINTS,
       whole: true,
       usual: [-5, -1, 1, 5],
       shows: (value) => {
@@ -159,8 +158,8 @@ export function moveClock(court: Court, given: number): Draft {
     amount: {
       label: t("ask.seconds"),
       value: given,
-      least: -3600,
-      most: 3600,
+      least: -MAX_CLOCK_S,
+      most: MAX_CLOCK_S,
       whole: false,
       usual: [-30, -10, 10, 30],
       shows: (value) => {

@@ -2,7 +2,7 @@
 
 import { useMemo } from "preact/hooks";
 import { part } from "../../core/match";
-import { type Frame, SeatFlag, type SeatHealth, type Sheet } from "../../core/wire";
+import { type Frame, SeatFlag, type SeatHealth, type Sheet, SILENT_AFTER_S } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { seatName, seatState, team } from "../../i18n/words";
 import { SeatMark } from "../../ui/score";
@@ -13,7 +13,7 @@ import { Verdict, type VerdictName } from "./health";
 
 const GOOD_MS = 350;
 /** From here on the court lets the robot stand. */
-const SILENT_MS = 1000;
+const SILENT_MS = 1000 * SILENT_AFTER_S;
 
 export function Seats({ desk }: { desk: Desk }) {
   const sheet = desk.court.sheet.value;
