@@ -38,7 +38,7 @@ def gather(
     Args:
         robot: an installed robot, a folder or a robot file; None: the contest's robot.
         gaits: gait files, at most one for each level; none: those beside the robot file.
-        notes: receives sentences about things in a workbook that are legal, but probably not meant.
+        notes: receives phrases about things in a workbook that are legal, but probably not meant.
             For a text file the court sends them.
 
     Raises:
@@ -58,7 +58,7 @@ def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
 
     Args:
         files: the files of a join.
-        notes: receives sentences about things in a workbook that are legal, but probably not meant.
+        notes: receives phrases about things in a workbook that are legal, but probably not meant.
 
     Raises:
         FileRefused: with every mistake of every workbook.

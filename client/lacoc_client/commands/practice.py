@@ -133,7 +133,7 @@ def _opened(court: subprocess.Popen[bytes], said: Path, complained: Path) -> dic
 
 
 def _without_heading(error: str) -> str:
-    """Take away the word with which a command begins an error, in its language."""
+    """Remove the word that a command puts before an error, in its language."""
     return error.removeprefix(render(say("command.error"))).strip()
 
 

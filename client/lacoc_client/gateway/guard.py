@@ -76,9 +76,9 @@ class Guard:
 
 
 def answer(scope: Scope, said: Phrase, status: int) -> PlainTextResponse:
-    """Answer a browser with a sentence in its person's language, in the place of a page."""
+    """Answer a browser with a sentence in its language, instead of a page."""
     wanted = Headers(scope=scope).get("accept-language", "").lower()
-    # Browsers name the language that is wanted most first.
+    # Browsers list the preferred language first.
     found = ((wanted.find(language), language) for language in LANGUAGES if language in wanted)
     chosen = min(found, default=(0, LANGUAGES[0]))[1]
     return PlainTextResponse(f"{render(said, chosen)}\n", status_code=status)

@@ -1,7 +1,7 @@
 """A seat held for a page: a controller on a thread of its own.
 
-The thread repeats the command 10 times a second, whatever the browser does: browsers slow the
-timers of hidden tabs. It stops when the page goes. Then the robot stands after a second (rules 3),
+The thread repeats the command 10 times a second. A page could not: browsers slow the timers of
+hidden tabs. The thread stops when the page goes. Then the robot stands after a second (rules 3),
 and a page that comes back joins again.
 """
 

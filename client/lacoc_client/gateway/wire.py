@@ -28,7 +28,7 @@ FAULT = say("gateway.fault")
 
 
 class Unreadable(UserError):
-    """What a page sent is nothing that can be asked."""
+    """A page sent something that is no known request."""
 
 
 class TokenRefused(UserError):

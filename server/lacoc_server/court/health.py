@@ -20,7 +20,7 @@ from lacoc_shared.seat import BEAT_S, BEATS_PER_S, REPEATS_HZ, Phase
 from lacoc_shared.words import Phrase, say
 
 _LEAST_FACTOR = 1e-4
-"""Smallest real-time factor that is used; it keeps a division by zero away."""
+"""Smallest real-time factor that is used; it avoids a division by zero."""
 _CARRIED = 2
 """Most repeats that count for the next second: with jitter one second has 11 and the next 9."""
 

@@ -278,7 +278,7 @@ class Judge:
         return scene, str(models[0]) if models else None
 
     def _differences(self, number: int, beat: Beat) -> Iterator[str]:
-        """Name what a beat's record has otherwise than the judged beat."""
+        """Name what differs between a judged beat and its record."""
         record, match = self._record, self.match
         recorded = self._frames.get(number)
         events = self._events.pop(number, [])
@@ -307,7 +307,7 @@ class Judge:
         self._result = beat.result or self._result
 
     def _differs_at_the_end(self, last: int) -> Iterator[str]:
-        """Name what the whole record has otherwise than the judged match."""
+        """Name what differs between the whole judged match and its record."""
         record = self._record
         if not _same_result(record, self._result, last):
             yield "the result"

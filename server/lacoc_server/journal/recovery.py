@@ -43,8 +43,8 @@ class Unfinished:
     cut: str
     """Where the record ends, as a sentence."""
     other_arithmetic: str = ""
-    """How far this machine's arithmetic is from the recording machine's, and why, as sentences; ""
-    if they are the same.
+    """Sentences on how far, and why, this machine's arithmetic differs from the recording
+    machine's; "" if it does not.
     """
 
     @property
