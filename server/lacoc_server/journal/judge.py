@@ -174,8 +174,7 @@ class Judge:
         self.difference: Difference | None = None
         """The first difference; judging stops at it."""
         self.other_model: Difference | None = None
-        """The first place where this machine builds a model with other bits than the recorded one.
-        """
+        """Where this machine first builds a model with other bits than the recorded one."""
         self.beats = self.frames = 0
         """Number of beats judged, and of frames compared."""
         self._record = record

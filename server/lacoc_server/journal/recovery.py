@@ -21,8 +21,7 @@ from lacoc_shared.words import say
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 """Phases in which the court halts a match after a restart."""
 _OPENING_BYTES = 1 << 14
-"""Size [bytes] below which a file without a header was cut while it was opened, and holds nothing.
-"""
+"""A smaller file [bytes] without a header was cut while it was opened, and holds nothing."""
 
 
 @dataclass(frozen=True)

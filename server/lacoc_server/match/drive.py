@@ -22,13 +22,11 @@ class DriveState(msgspec.Struct, frozen=True):
     posture: int
     """Index of the target posture in the digit's sequence."""
     ticks: int
-    """advance "reached": ticks in a row that ended at the target; "time": ticks since the command.
-    """
+    """advance "reached": ticks in a row at the target; advance "time": ticks since the command."""
     angles: Posture
     """(joints,) commanded angles [rad], by joint id."""
     stands: bool = False
-    """True if the robot stands without a pressed key: it takes the first posture and stays in it.
-    """
+    """True if the robot stands without a pressed key: it keeps the first posture of key 0."""
 
 
 class Drive:

@@ -80,8 +80,7 @@ class MatchState:
         self.silent_beats = 0
         """Beats since any seat was last heard."""
         self.clock_offset = 0
-        """Ticks that a referee took off the time left to play; negative: time that a referee gave.
-        """
+        """Ticks that a referee took off the time left to play; negative: ticks given."""
         self.seats = [
             Seat(index, seat.id, seat.colour, seat.pattern)
             for index, seat in enumerate(self.arena.seats)

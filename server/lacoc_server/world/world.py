@@ -31,8 +31,7 @@ MUJOCO_VERSION = mujoco.mj_versionString()
 """MuJoCo's version; a replay is exact only with the same one."""
 
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
-"""Everything that the next step depends on; FULLPHYSICS is less, and not exact (docs/facts.md 1).
-"""
+"""All that the next step depends on; FULLPHYSICS is less, and not exact (docs/facts.md 1)."""
 
 _WARNINGS = {
     mujoco.mjtWarning.mjWARN_BADQPOS: say("fault.position"),
