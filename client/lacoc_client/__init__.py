@@ -1,1 +1,1 @@
-"""Everyone but the court."""
+"""Clients of a court: controllers, referees, spectators, gateways."""

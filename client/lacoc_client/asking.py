@@ -1,4 +1,4 @@
-"""Requests to a court, and its refusals put into words."""
+"""Requests to a court, and the errors from its refusals."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -19,7 +19,7 @@ from lacoc_shared.words import Phrase, render, say
 T = TypeVar("T")
 
 ANSWER_S = 5.0
-"""A court answers within a beat or two; one that needs longer is in trouble."""
+"""Longest wait for an answer; a healthy court answers within a beat or two."""
 
 _COMING_BACK_S = 0.5
 _AGAIN_S = 0.05
@@ -31,19 +31,19 @@ class NoCourt(UserError):
 
 
 class NoAnswer(NoCourt):
-    """The court was asked, and its answer is missing: it may have done it all the same."""
+    """The court was asked and its answer is missing; it may have done what was asked."""
 
 
 class NotNow(UserError):
-    """The court refuses for now: the same request may be taken later."""
+    """The court refuses for now; it may accept the same request later."""
 
 
 class Patience:
-    """How long a command waits for its court; the time begins anew when the court was there.
+    """How long a command waits for its court; the time starts again after each success.
 
     Args:
-        wait_s: how long; None: not at all, as is right for a person.
-        stopping: says whether somebody asked the command to end.
+        wait_s: how long; None: not at all, which suits a person.
+        stopping: returns whether somebody asked the command to end.
     """
 
     def __init__(self, wait_s: float | None, stopping: Callable[[], bool] = lambda: False) -> None:
@@ -52,10 +52,10 @@ class Patience:
         self._told = ""
 
     def until(self, do: Callable[[], T]) -> T:
-        """Do what needs a court, again and again while there is none, or it says "not now".
+        """Call `do` until it succeeds, while there is no court or the court says "not now".
 
         Raises:
-            UserError: as `do`, for good or when the time is over.
+            UserError: as `do`, if the error is final or the time is over.
             KeyboardInterrupt: if the command is asked to end.
         """
         end_s = time.monotonic() + (self.wait_s or 0.0)
@@ -85,22 +85,22 @@ def ask(
     reply: type[T],
     timeout_s: float = ANSWER_S,
 ) -> T:
-    """Ask a court and read its answer.
+    """Ask a court and decode its answer.
 
     Args:
         session: the connection.
         keys: the court's key expressions.
-        key: the one to ask under.
-        message: what to ask.
-        reply: the message that answers.
+        key: key expression of the request.
+        message: the request.
+        reply: type of the answer.
         timeout_s: how long to wait.
 
     Raises:
-        NoAnswer: if the court was asked, and does not answer.
-        NoCourt: if there is none to ask; the message says which courts there are.
+        NoAnswer: if the court was asked and does not answer.
+        NoCourt: if there is no such court; the message lists the courts that are there.
         FileRefused: if the court found mistakes in files.
         NotNow: if the court refuses for now; the message is its reason.
-        UserError: if it refuses for good.
+        UserError: if the court refuses for good.
     """
     return understand(fetch(session, keys, key, codec.encode(message), timeout_s), reply)
 
@@ -108,10 +108,10 @@ def ask(
 def fetch(
     session: Session, keys: Keys, key: str, payload: bytes = b"", timeout_s: float = ANSWER_S
 ) -> bytes:
-    """Ask a court in bytes; see `ask`.
+    """Ask a court and return its answer as bytes; see `ask`.
 
-    A court that was started again can't be asked for a moment after its first frame: it is asked
-    again, as long as nobody can have taken the request in.
+    A restarted court can't be asked for a moment after its first frame. So the request is sent
+    again, as long as no court can have received it.
     """
     end_s = time.monotonic() + _COMING_BACK_S
     reached: tuple[str, ...] = ()
@@ -120,7 +120,7 @@ def fetch(
         try:
             return session.ask(key, payload, timeout_s)
         except NoReply as silence:
-            # Zenoh gives up what was asked some milliseconds before it says that a link broke.
+            # Zenoh drops requests some milliseconds before it reports a broken link.
             time.sleep(_AGAIN_S)
             lost = reached and session.routers() != reached
             if lost or isinstance(silence, TooLate):
@@ -135,10 +135,10 @@ def fetch(
 
 
 def understand(payload: bytes, kind: type[T]) -> T:
-    """Decode what a court sent.
+    """Decode a message of a court.
 
     Raises:
-        UserError: if it is not understood, because the court has another version.
+        UserError: if it can't be decoded, because the court has another version.
     """
     with understood():
         return codec.decode(payload, kind, MAX_BYTES)
@@ -146,7 +146,7 @@ def understand(payload: bytes, kind: type[T]) -> T:
 
 @contextmanager
 def understood() -> Iterator[None]:
-    """Say in words that a court's message makes no sense.
+    """Turn a `BadMessage` of a court into a sentence.
 
     Raises:
         UserError: in place of `BadMessage`.

@@ -1,4 +1,4 @@
-"""A brain behind a controller: a bot plays as a person does, with the same messages."""
+"""A bot on a controller: it plays with the same messages as a person."""
 
 import time
 
@@ -14,12 +14,12 @@ _ASK_AGAIN_S = 1.0
 
 
 class BotPlayer:
-    """Says ready and presses a brain's keys, match after match.
+    """Says ready and presses a bot's keys, match after match.
 
     Args:
         controller: holds the seat.
-        arena: the game, for bots of its own.
-        name: the bot; see `brains.find`.
+        arena: the game, with its own bots.
+        name: name of the bot; see `brains.find`.
 
     Raises:
         UserError: if there is no such bot.
@@ -34,7 +34,7 @@ class BotPlayer:
         self._asked_s = -_ASK_AGAIN_S
 
     def see(self, frame: Frame) -> None:
-        """Do what a frame calls for: say ready, or press a key.
+        """React to a frame: say ready, or press a key.
 
         Raises:
             UserError: if the seat is lost for good.
@@ -56,7 +56,7 @@ class BotPlayer:
         self._pressed = controller.press(int(key.level), key.key), key
 
     def _is_on_its_way(self, key: Key, answered_seq: int) -> bool:
-        """Whether the same key was pressed and the court has not answered it yet."""
+        """Return whether the same key was pressed and the court has not answered it yet."""
         return (
             self._pressed is not None
             and self._pressed[1] == key
@@ -70,5 +70,5 @@ class BotPlayer:
         self._asked_s = now_s
         try:
             self._controller.ready()
-        except UserError:  # the phase changed meanwhile, or the court is away: seen in frames
+        except UserError:  # the phase changed, or the court is away: frames will tell
             return

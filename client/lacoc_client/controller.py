@@ -1,4 +1,4 @@
-"""Hold a seat: join, press keys, see what became of them, and come back after a break."""
+"""Holds a seat: joins, presses keys, reports refusals, and joins again after a break."""
 
 import time
 from collections.abc import Callable
@@ -35,22 +35,23 @@ _WHY = {int(no): why for no, why in WHY_NO.items()}
 
 
 class Hold(Enum):
-    """What a controller knows of its seat: the names of `hold.*`."""
+    """How a controller holds its seat: the names of `hold.*`."""
 
     NOT_JOINED = "not-joined"
     HELD = "held"
     LOST = "lost"
-    """The court was restarted and has not answered yet, or can't take the controller back now:
-    it is asked again."""
+    """The court was restarted and has not answered yet, or can't accept the controller now; it is
+    asked again.
+    """
     REPLACED = "replaced"
-    """The same token joined again elsewhere."""
+    """A newer session with the same token took the seat."""
     REFUSED = "refused"
-    """The court was restarted and won't take the controller back."""
+    """The court was restarted and does not accept the controller again."""
     LEFT = "left"
 
     @property
     def phrase(self) -> Phrase:
-        """What is said of it where there is no other reason."""
+        """The sentence for this state, if there is no other reason."""
         return _HOLDS[self]
 
 
@@ -79,11 +80,11 @@ class _Press(NamedTuple):
 
 
 class Controller:
-    """One seat of a court, held by a person's page, a bot or a ghost alike.
+    """One seat of a court, held for a person's page, a bot or a ghost.
 
-    One thread uses it, and calls `poll` or `wait_frame` at least ten times a second while the
-    seat is held: they repeat the last command, which keeps the seat alive. After a restart of
-    the court they join again by themselves, with the same token and files.
+    One thread uses it. While the seat is held, that thread calls `poll` or `wait_frame` at least
+    ten times a second: they repeat the last command, which keeps the seat alive. After a restart of
+    the court they join again, with the same token and files.
 
     Args:
         session: an open client session.
@@ -93,7 +94,8 @@ class Controller:
         team: the team's name.
         robot: a robot file; None: the contest's robot.
         postures: a Loco-data file.
-        locomotion: a LocoTra-data file; neither: the sample gait of the contest's robot.
+        locomotion: a LocoTra-data file; without either gait file: the sample gait of the contest's
+            robot.
         notify: called on Zenoh's thread when a frame has come; it must return at once.
 
     Raises:
@@ -114,7 +116,7 @@ class Controller:
         notify: Callable[[], None] | None = None,
     ) -> None:
         self.view = Spectator(session, court, notify)
-        """All that anybody sees of the court: frames, events, sheet, health."""
+        """Everything public about the court: frames, events, sheet, health."""
         self.seat = seat
         self._session = session
         self._keys = self.view.keys
@@ -126,7 +128,7 @@ class Controller:
             postures=postures,
             locomotion=locomotion,
         )
-        self.index  # noqa: B018 - no such seat is a mistake to hear of before its key is sent on
+        self.index  # noqa: B018 - raises early if there is no such seat
         self._commands = session.publisher(self._keys.command(seat))
         self._joined: Joined | None = None
         self._health_seen: Health | None = None
@@ -134,20 +136,21 @@ class Controller:
         """Whether the newest health named another session."""
         self._seq = 0
         self._requests = 0
-        """Of this session, ready and leave."""
+        """Number of ready and leave requests in this session."""
         self._standing = (0, 0, 0)
-        """Sequence number, level and key of the command that stands."""
+        """Sequence number, level and key of the standing command."""
         self._sent_s = 0.0
         self._pressed: dict[int, _Press] = {}
         self._refused: list[RefusedKey] = []
         self.repeating = True
-        """Whether `poll` repeats the command, and takes the seat back from a court that was
-        restarted; False where the one who steers has gone."""
+        """Whether `poll` repeats the command and joins a restarted court again; False when the
+        player has gone.
+        """
         self.hold = Hold.NOT_JOINED
         self.reason: Phrase | None = None
-        """Why the seat is not held, where there is more to say."""
+        """Why the seat is not held, if there is more to say than `hold` does."""
         self.round_trip_ms: float | None = None
-        """From the newest key to the frame that shows it."""
+        """Time from the newest key to the frame that shows it."""
 
     @property
     def index(self) -> int:
@@ -167,7 +170,7 @@ class Controller:
         """Take the seat, also from an older controller with the same token.
 
         Returns:
-            What the contestant should know.
+            Notes for the contestant.
 
         Raises:
             FileRefused: if the files have mistakes.
@@ -182,7 +185,7 @@ class Controller:
         key = self._keys.request(self.seat, "join")
         joined = ask(self._session, self._keys, key, self._join, Joined, timeout_s)
         self.view.poll()
-        self._health_seen = self.view.health  # older than the session: says nothing of it
+        self._health_seen = self.view.health  # older than the session, so it says nothing about it
         self._other_holder = False
         self._joined = joined
         self._requests = 0
@@ -197,7 +200,7 @@ class Controller:
         """Say ready, or take it back.
 
         Returns:
-            What the court says to it, if anything.
+            A sentence of the court, if it has one.
 
         Raises:
             UserError: if the court refuses or does not answer.
@@ -208,7 +211,7 @@ class Controller:
         """Give the seat up.
 
         Returns:
-            What the court says to it, if anything.
+            A sentence of the court, if it has one.
 
         Raises:
             UserError: if the court refuses or does not answer.
@@ -218,12 +221,12 @@ class Controller:
         return said
 
     def press(self, level: int, key: int, upon: Frame | None = None) -> int:
-        """Send a new command; it stands, and is repeated, until the next.
+        """Send a new command; it stands, and is repeated, until the next one.
 
         Args:
             level: a `Level`.
             key: a digit, or `RESTART_KEY`.
-            upon: the frame that it answers; None: the newest.
+            upon: the frame that the player saw; None: the newest.
 
         Returns:
             The command's sequence number.
@@ -241,7 +244,7 @@ class Controller:
         return self._seq
 
     def poll(self, now_s: float) -> Frame | None:
-        """Repeat the command if it is time, and take in what arrived.
+        """Repeat the command when it is due, and take in what arrived.
 
         Args:
             now_s: `time.monotonic()`.
@@ -250,7 +253,7 @@ class Controller:
             The newest frame, if it is a new one.
 
         Raises:
-            UserError: if the court's messages are not understood.
+            UserError: if the court's messages can't be decoded.
         """
         frame = self.view.poll()
         if frame is not None and self.index < len(frame.seats):
@@ -260,7 +263,7 @@ class Controller:
         if self.repeating and self.hold is Hold.HELD and now_s - self._sent_s >= REPEAT_S:
             sent_s = self._sent_s
             self._send()
-            # Frames wake this: what one repeat is late, the next is early.
+            # Frames wake the caller, so a repeat may be late; the next is then due earlier.
             self._sent_s = max(sent_s + REPEAT_S, now_s - REPEAT_S / 2)
         return frame
 
@@ -268,7 +271,7 @@ class Controller:
         """Wait for a new frame, repeating the command meanwhile; None if none came in time.
 
         Raises:
-            UserError: if the court's messages are not understood.
+            UserError: if the court's messages can't be decoded.
         """
         deadline_s = time.monotonic() + timeout_s
         while (frame := self.poll(now_s := time.monotonic())) is None:
@@ -278,7 +281,7 @@ class Controller:
         return frame
 
     def take_refused(self) -> list[RefusedKey]:
-        """Commands that the match refused since this was last called."""
+        """Return the commands that the match refused since the last call."""
         refused, self._refused = self._refused, []
         return refused
 
@@ -288,7 +291,7 @@ class Controller:
         return self.reason or self.hold.phrase
 
     def link(self, now_s: float) -> Phrase | None:
-        """Say how the link is; None while all is well."""
+        """Say what is wrong with the link; None if nothing is."""
         silent_s = self.view.silent_s(now_s)
         if self.hold is not Hold.HELD:
             return self.why_not_held
@@ -308,7 +311,7 @@ class Controller:
         return ask(self._session, self._keys, key, request, Done).said
 
     def _send(self, upon: Frame | None = None) -> None:
-        """Send the standing command, with the frame that it answers."""
+        """Send the standing command, with the frame that the player saw."""
         assert self._joined is not None
         frame, key_expression = upon or self.view.frame, self._keys.command(self.seat)
         seen = (frame.match, frame.beat) if frame is not None else (0, 0)
@@ -318,7 +321,7 @@ class Controller:
         self._sent_s = time.monotonic()
 
     def _compare(self, seat: SeatFrame) -> None:
-        """See what became of the keys that were pressed."""
+        """Compare the pressed keys with those that the frame shows as applied or refused."""
         newest = max(seat.applied_seq, seat.refused_seq)
         for seq in [seq for seq in self._pressed if seq <= newest]:
             press = self._pressed.pop(seq)
@@ -329,11 +332,11 @@ class Controller:
                 self._refused.append(RefusedKey(press.level, press.key, why))
 
     def _check_hold(self) -> None:
-        """See from the court's health whether the seat is still this controller's.
+        """Check in the court's health whether this controller still holds the seat.
 
-        A court that was restarted knows no session, and a newer session with the same token
-        replaces this one: health names the session that holds each seat. One that was made before
-        the join may arrive after it, so that only the second in a row is believed of another one.
+        Health names the session that holds each seat. A restarted court knows no session, and a
+        newer session with the same token replaces this one. A health message from before the join
+        may arrive after it, so another session counts only when two messages in a row name it.
         """
         health = self.view.health
         if health is None or health is self._health_seen:
@@ -353,9 +356,9 @@ class Controller:
     def _join_again(self) -> None:
         try:
             self.join(_REJOIN_TIMEOUT_S)
-        except NoCourt:  # perhaps it has made a session all the same: the next health tries again
+        except NoCourt:  # it may have made a session: the next health message decides
             self.hold, self.reason, self._joined = Hold.LOST, None, None
-        except NotNow as error:  # it has made none: who holds the seat from now on is another
+        except NotNow as error:  # it has made none: another session may hold the seat now
             self.hold, self.reason = Hold.LOST, error.phrase
         except FileRefused:
             self.hold, self.reason = Hold.REFUSED, say("hold.files-refused")

@@ -1,7 +1,7 @@
-"""What a court has said, from its bytes, and what of it is missing. No I/O, no clock.
+"""What a court has sent, and what of it is missing here. No I/O, no clock.
 
-A spectator and a gateway both hold one: they hand it what arrives and ask the court for
-what it lacks.
+A spectator and a gateway each hold one: they pass it what arrives, and ask the court for what is
+missing.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from lacoc_shared.messages import PROTOCOL, Event
 T = TypeVar("T")
 
 MAX_BYTES = 1 << 20
-"""A court's messages are shorter."""
+"""Longest message of a court [bytes]."""
 
 
 class _Sheet(msgspec.Struct):
@@ -26,7 +26,7 @@ class _Sheet(msgspec.Struct):
 
 
 class Told(msgspec.Struct):
-    """The fields of `Health` that say what a court has sent."""
+    """The fields of `Health` that tell what a court has sent."""
 
     match: int
     beat: int
@@ -37,8 +37,8 @@ class Told(msgspec.Struct):
 class CourtView(Generic[T]):
     """The newest sheet, scene and log of a court.
 
-    Whatever it takes comes from the network: each `take_...` raises `BadMessage` if the bytes make
-    no sense, and changes nothing then.
+    Everything it takes comes from the network: each `take_...` raises `BadMessage` if the bytes
+    can't be decoded, and changes nothing then.
 
     Args:
         keep: makes what is kept of an event, from the event and its bytes.
@@ -49,71 +49,75 @@ class CourtView(Generic[T]):
         self.log: EventLog[T] = EventLog()
         """The events of the match."""
         self.sheet: bytes | None = None
-        """The newest sheet that this version of the protocol understands."""
+        """The newest sheet in this version of the protocol."""
         self.scene: bytes | None = None
         """The newest scene that belongs to a frame."""
         self.match_id = ""
-        """Name of the match's record."""
+        """Id of the match; it names the record."""
         self.other_version: int | None = None
-        """Version of the protocol that the court speaks, if it is another; 0: it can't be read."""
+        """The court's version of the protocol, if it is another; 0: its sheet can't be read."""
         self._sheet_hash = self._scene_hash = b""
         self._frame_scene = self._sheet_scene = b""
-        """Hash of the scene that belongs to the newest frame, and to the sheet."""
+        """Hash of the newest frame's scene, and of the sheet's."""
         self._told = Told(0, 0)
         self._doubt = False
 
     @property
     def lacks_events(self) -> bool:
-        """Whether the court has sent an event that is not here."""
+        """True if the court has sent an event that is not here."""
         return self.log.differs(self._told.match, self._told.beat, self._told.events)
 
     @property
     def lacks_scene(self) -> bool:
-        """Whether the newest frame belongs to another scene."""
+        """True if the newest frame belongs to another scene."""
         return self._frame_scene != self._scene_hash
 
     @property
     def lacks_sheet(self) -> bool:
-        """Whether the court has another sheet, or may have."""
+        """True if the court has another sheet, or may have."""
         return self._doubt or self.has_older_sheet or not self.fits
 
     @property
     def has_older_sheet(self) -> bool:
-        """Whether the court said that it has another sheet."""
+        """True if the court said that it has another sheet."""
         return self._told.sheet not in (b"", self._sheet_hash)
 
     @property
     def fits(self) -> bool:
-        """Whether the sheet belongs to the newest frame."""
+        """True if the sheet belongs to the newest frame."""
         return self._frame_scene == self._sheet_scene
 
     def doubt(self) -> None:
-        """Note that a message made no sense: the sheet will tell the court's version."""
+        """Note that a message can't be decoded; the sheet will tell the court's version."""
         self._doubt = True
 
     def refuse_sheet(self) -> None:
-        """Note that the court's sheet itself can't be read."""
+        """Note that the court's sheet itself can't be decoded."""
         self.other_version = 0
 
     def see_frame(self, scene: bytes) -> None:
-        """Note the newest frame's scene, by its hash."""
+        """Note the scene of the newest frame.
+
+        Args:
+            scene: hash of the scene.
+        """
         self._frame_scene = scene
 
     def see_health(self, told: Told) -> None:
-        """Note what the court says that it has sent."""
+        """Note what the court says it has sent."""
         self._told = told
 
     def add_event(self, event: Event, payload: bytes) -> bool:
-        """Take an event; returns whether it is a new one."""
+        """Take in an event; return whether it is new."""
         return self.log.add(event, self._keep(event, payload))
 
     def take_log(self, payload: bytes) -> list[Event]:
-        """Take all events as the court lists them; returns those that are new, in their order."""
+        """Take in the court's list of events; return the new ones in order."""
         events = decode(payload, tuple[Event, ...], MAX_BYTES)
         return self.log.restore([(event, self._keep(event, encode(event))) for event in events])
 
     def take_sheet(self, payload: bytes) -> bool:
-        """Take a sheet; returns whether it is a new one of this version of the protocol."""
+        """Take in a sheet; return whether it is new and of this version of the protocol."""
         found = decode(payload, _Sheet, MAX_BYTES)
         self._doubt = False
         self._sheet_scene, self.match_id = found.scene, found.match_id
@@ -125,7 +129,7 @@ class CourtView(Generic[T]):
         return True
 
     def take_scene(self, payload: bytes) -> bool:
-        """Take a scene; returns whether it is a new one that belongs to the newest frame."""
+        """Take in a scene; return whether it is new and belongs to the newest frame."""
         found = message_hash(payload)
         if found != self._frame_scene or found == self._scene_hash:
             return False

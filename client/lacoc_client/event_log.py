@@ -1,4 +1,4 @@
-"""The events of one match, in their order, from a stream that may begin again."""
+"""The events of one match, in order, from a stream that may begin again."""
 
 from collections.abc import Iterator, Sequence
 from typing import Generic, TypeVar
@@ -13,27 +13,28 @@ T = TypeVar("T")
 class EventLog(Generic[T]):
     """Keeps something for each event: the event itself, or its bytes.
 
-    What a restarted court sends again is not new. Its events come in their order, so at the first
-    one that differs, those before it are still true and those after it are not.
+    Events that a restarted court sends again are not new. They come in order, so at the first one
+    that differs, those before it are still true and those after it are not.
     """
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Event, T]] = {}
         self._first = 1
-        """Number from which on the court still lists them."""
+        """Lowest event number that the court still lists."""
         self.number = 0
-        """Another number: the log began anew."""
+        """Version of the log; it changes when the log begins again."""
 
     def __iter__(self) -> Iterator[T]:
         return iter([kept for _, kept in self._known.values()])
 
     def differs(self, match: int, beat: int, number: int) -> bool:
-        """Whether the court's log is another than this: something did not come.
+        """Return whether the court's log differs from this one, so that something did not arrive.
 
         Args:
-            match: the match that is on, as the court's health says.
-            beat: when it said so.
-            number: of the newest event then, counted from 1 without a gap; 0: it does not say.
+            match: number of the open match, from the court's health.
+            beat: beat of that health.
+            number: number of the newest event then, counted from 1 without a gap; 0: it does not
+                say.
         """
         newest = self._known[max(self._known)][0] if self._known else None
         if newest is not None and len(self._known) <= newest.number - self._first:
@@ -46,10 +47,10 @@ class EventLog(Generic[T]):
         return newest.number < number or (newest.number > number and not came_later)
 
     def restore(self, events: Sequence[tuple[Event, T]]) -> list[Event]:
-        """Take in the log as the court lists it, instead of what was known.
+        """Replace what is known with the court's list of events.
 
         Returns:
-            Those that were not known, in their order.
+            The events that were not known, in order.
         """
         before, self._known = self._known, {event.number: (event, kept) for event, kept in events}
         self._first = events[0][0].number if events else 1
@@ -58,7 +59,7 @@ class EventLog(Generic[T]):
         return new
 
     def add(self, event: Event, kept: T) -> bool:
-        """Take an event in; False if it was known."""
+        """Take in an event; return False if it was known."""
         known = self._known.get(event.number)
         if known is not None and known[0] == event:
             return False

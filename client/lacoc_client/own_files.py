@@ -1,4 +1,4 @@
-"""A contestant's files on this machine, read again when they are saved again."""
+"""A contestant's files on this machine, read again whenever they change."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,15 +9,15 @@ from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import Phrase
 
 _Saved = tuple[tuple[Path, int, int], ...]
-"""Each file with its time [ns] and size [bytes]."""
+"""Each file with its modification time [ns] and size [bytes]."""
 
 
 class OwnFiles:
-    """The robot and gait files that a page brings unless it has chosen others.
+    """The robot and gait files that a page sends unless it has chosen others.
 
     Args:
-        robot: an installed robot, a folder or a robot file; None: the contest's.
-        gaits: gait files; none: those of the folder, the one saved last of each kind.
+        robot: an installed robot, a folder or a robot file; None: the contest's robot.
+        gaits: gait files; none: those of the folder, the newest of each kind.
         folder: where gait files are looked for.
 
     Raises:
@@ -33,17 +33,17 @@ class OwnFiles:
         self._folder = folder
         self._read_as = self._seen = self._saved()
         self.notes: list[Phrase] = []
-        """What is no mistake in them, but may not be meant."""
+        """Remarks on things in the files that are legal, but probably not meant."""
         self.files = self._read()
         self.version = 1
-        """Grows whenever the files have changed."""
+        """Number of the version; it grows with each change of the files."""
         self.changed: tuple[str, ...] = ()
-        """The names of the files that the newest version changed, brought or took away."""
+        """Names of the files that the newest version changed, added or removed."""
         self.refused: FileRefused | UserError | None = None
-        """Why the newest version can't be used; `files` are those before it then."""
+        """Why the newest version can't be used; `files` is then the version before it."""
 
     def look(self) -> bool:
-        """Read the files again if they were saved again; True if there is a new version.
+        """Read the files again if they were saved; return True if there is a new version.
 
         A file that is still being written is left alone until the next look.
         """
@@ -78,7 +78,7 @@ class OwnFiles:
         for path in paths:
             try:
                 stat = path.stat()
-            except OSError:  # it is not there, or not now: it is being replaced
+            except OSError:  # it is missing, or is being replaced right now
                 continue
             saved.append((path, stat.st_mtime_ns, stat.st_size))
         return tuple(saved)

@@ -1,4 +1,4 @@
-"""The referee's hand: decisions with who and why, and the court's word on each."""
+"""A referee's connection to a court: it sends decisions and returns the court's replies."""
 
 from lacoc_client.asking import ask
 from lacoc_shared.decisions import Decision
@@ -23,7 +23,7 @@ class RefereeClient:
         self._token = token
 
     def enter(self) -> None:
-        """Show the token; nothing is decided.
+        """Show the token; decide nothing.
 
         Raises:
             UserError: if it is not a referee's token of the court, or no court answers.
@@ -31,16 +31,17 @@ class RefereeClient:
         ask(self._session, self._keys, self._keys.enter, Enter(token=self._token), Done)
 
     def decide(self, decision: Decision, reason: Phrase | str, by: str) -> DecisionReply:
-        """Decide; the reply comes when the decision is on disk.
+        """Send a decision; the reply comes when the decision is on disk.
 
         Args:
-            decision: what is decided.
+            decision: the decision.
             reason: why, for the record: a text, or a phrase of `reason.*`.
             by: who decides, for the record.
 
         Raises:
-            NoAnswer: if nobody here knows whether it was done: the log of events does.
-            UserError: if the court refuses it; the message is its reason.
+            NoAnswer: if it is unknown here whether the decision was made; the log of events shows
+                it.
+            UserError: if the court refuses; the message is its reason.
         """
         name = str(type(decision).__struct_config__.tag)
         request = DecisionRequest(token=self._token, by=by, reason=reason, decision=decision)

@@ -1,4 +1,4 @@
-"""What a contestant brings: a robot file and gait files, from where they lie (rules 2)."""
+"""A contestant's robot and gait files, read from their folders (rules 2)."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -17,13 +17,13 @@ from lacoc_shared.words import Phrase, say
 _POSTURES = ("Loco-data.txt", "Loco-data.xlsx", "Loco-data-6legs.txt")
 _LOCOMOTION = ("LocoTra-data.txt", "LocoTra-data*.txt")
 
-_ZIP = b"PK\x03\x04"  # a workbook
+_ZIP = b"PK\x03\x04"  # first bytes of a workbook
 
 _Table = PostureTable | LocomotionTable
 
 
 class SeatFiles(NamedTuple):
-    """What goes with a join; None: the contest's robot, or its sample gait."""
+    """The files of a join; None: the contest's robot, or its sample gait."""
 
     robot: SentFile | None = None
     postures: SentFile | None = None
@@ -33,13 +33,13 @@ class SeatFiles(NamedTuple):
 def gather(
     robot: str | None, gaits: Sequence[Path], notes: list[Phrase] | None = None
 ) -> SeatFiles:
-    """Read the files that were named.
+    """Read a contestant's files.
 
     Args:
-        robot: an installed robot, a folder or a robot file; None: the contest's.
+        robot: an installed robot, a folder or a robot file; None: the contest's robot.
         gaits: gait files, at most one for each level; none: those beside the robot file.
-        notes: takes what is no mistake in a workbook, but may not be meant. The court says the
-            same of a text.
+        notes: receives phrases about things in a workbook that are legal, but probably not meant.
+            For a text file the court sends them.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -52,10 +52,13 @@ def gather(
 
 
 def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
-    """Turn workbooks into the text that they stand for: that is what a court reads.
+    """Turn workbooks into text, which is what a court reads.
 
-    Each keeps its name, by which mistakes are told to its contestant. `notes` takes what is no
-    mistake in a workbook, but may not be meant.
+    Each keeps its file name, so that mistakes name the contestant's own file.
+
+    Args:
+        files: the files of a join.
+        notes: receives phrases about things in a workbook that are legal, but probably not meant.
 
     Raises:
         FileRefused: with every mistake of every workbook.
@@ -76,15 +79,16 @@ def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
 
 
 def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = None) -> SeatFiles:
-    """Make level B of the postures where no locomotion file comes with them.
+    """Make level B from the postures if there is no locomotion file.
 
     Args:
-        files: as text; a posture file with mistakes is left to the court, which knows the robot.
-        sequences: for each digit key from 0 on, the postures it runs through, by their digits;
-            None: as the sample's keys, if the postures have all of theirs.
+        files: files as text; a posture file with mistakes is left to the court, which knows the
+            robot.
+        sequences: for each digit key from 0 on, the digits of its postures in order; None: as in
+            the sample gait, if the file has all those postures.
 
     Raises:
-        UserError: if a sequence is empty, or uses a posture that there is not.
+        UserError: if a sequence is empty, or uses a posture that does not exist.
     """
     postures = files.postures
     if postures is None or files.locomotion is not None:
@@ -105,7 +109,7 @@ def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = N
 
 
 def gaits_in(folder: Path) -> list[Path]:
-    """The gait files of a folder (workshop 4-1): for each level the one that was saved last."""
+    """Return the gait files of a folder (workshop 4-1): for each level the newest."""
     found = (
         [path for pattern in patterns for path in sorted(folder.glob(pattern))]
         for patterns in (_POSTURES, _LOCOMOTION)
@@ -114,7 +118,7 @@ def gaits_in(folder: Path) -> list[Path]:
 
 
 def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
-    """Say what a contestant may not expect of the gait files taken from a folder."""
+    """Return warnings about the gait files taken from a folder."""
     said = [
         say("play.no-workbook", file=path.name) for path in sorted(folder.glob("LocoTra*.xlsx"))
     ]
@@ -129,7 +133,7 @@ def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
 def _read(
     paths: Iterable[Path], notes: list[Phrase] | None
 ) -> tuple[SentFile | None, SentFile | None]:
-    """The posture file and the locomotion file, a workbook as the text it stands for."""
+    """Return the posture file and the locomotion file, with workbooks turned into text."""
     files: dict[type[_Table], SentFile] = {}
     mistakes: list[Mistake] = []
     for path in paths:
@@ -147,7 +151,7 @@ def _read(
         if data.startswith(_ZIP):
             files[type(table)] = _text(name, table)
             if notes is not None:
-                notes += noted  # the text has its own legend, so the court can't say it
+                notes += noted  # the text has a new legend, so the court can't find it
         else:
             files[type(table)] = SentFile(name, data)
     if mistakes:

@@ -1,4 +1,4 @@
-"""Watch a court: frames, events from the first on, the sheet and the scene."""
+"""Watches a court: frames, all events of the match, the sheet and the scene."""
 
 import time
 from collections.abc import Callable
@@ -19,18 +19,17 @@ _EVENTS_DEPTH = 4096
 _FETCH_TRIES = 3
 _STRAYS = 5
 _SHEET_S = 0.2
-"""A frame's sheet comes by itself, a moment after it; then it is asked for."""
+"""Longest wait for a frame's sheet, which follows the frame; after it the sheet is requested."""
 _OTHER_SCENE_S = 3.0
 _ANSWER_S = 2.0
-"""What lacks is asked for again when it has not come by then."""
+"""Time after which an unanswered request is sent again."""
 
 
 class Spectator:
-    """What one sees of a court; complete at once, also for a late comer.
+    """Everything public about a court; complete at once, also for a late comer.
 
-    One thread uses it. `poll` or `wait_frame` bring it up to date; the attributes never
-    change otherwise. What was not heard is asked for and comes later: no frame waits for it, and
-    no command of who watches because they steer.
+    One thread uses it. Only `poll` and `wait_frame` change the attributes. What did not arrive is
+    requested and comes later: neither frames nor the commands of a controller wait for it.
 
     Args:
         session: an open client session.
@@ -53,19 +52,19 @@ class Spectator:
         self._new_events: list[Event] = []
         self._view: CourtView[Event] = CourtView(lambda event, _: event)
         self.sheet: Sheet
-        """Who plays what; always that of the newest frame's scene."""
+        """The sheet that belongs to the newest frame's scene."""
         self._lacking_sheet = _Lacking(session, self.keys.sheet)
         self._read_sheet(fetch(session, self.keys, self.keys.sheet))
         self.frame: Frame | None = None
         """The newest frame."""
         self.frame_s = time.monotonic()
-        """When the newest arrived (before the first: since when it is waited for)."""
+        """When the newest frame arrived; before the first: when this began to wait."""
         self._other_since_s: float | None = None
-        """Since when frames come without their sheet."""
+        """Since when frames come without their sheet; None: they have it."""
         self.health: Health | None = None
         """The newest health."""
         self._strays = 0
-        """Messages in a row that make no sense."""
+        """Number of messages in a row that can't be decoded."""
         self._lacking_events = _Lacking(session, self.keys.event)
         self._read_events(fetch(session, self.keys, self.keys.event))
 
@@ -81,7 +80,7 @@ class Spectator:
             The newest frame, if it is a new one.
 
         Raises:
-            UserError: if the court's messages are not understood.
+            UserError: if the court's messages can't be decoded.
         """
         told: Health | None = None
         self._take_answers()
@@ -107,7 +106,7 @@ class Spectator:
         """Wait for a new frame; None if none came in time.
 
         Raises:
-            UserError: if the court's messages are not understood.
+            UserError: if the court's messages can't be decoded.
         """
         deadline_s = time.monotonic() + timeout_s
         while (frame := self.poll()) is None:
@@ -118,23 +117,23 @@ class Spectator:
         return frame
 
     def wait(self, timeout_s: float) -> None:
-        """Sleep until a frame is there, at most so long."""
+        """Sleep until a frame is there, for at most `timeout_s`."""
         self._frames.wait(timeout_s)
 
     def take_events(self) -> list[Event]:
-        """Events of this match and the one before that came since this was last called."""
+        """Return the events of this match and the one before that came since the last call."""
         events, self._new_events = self._new_events, []
         return events
 
     def silent_s(self, now_s: float) -> float:
-        """How long no frame has come; a court sends one every 20 ms in every phase."""
+        """Return how long no frame has come [s]; a court sends one every 20 ms in every phase."""
         return max(0.0, now_s - self.frame_s)
 
     def scene(self) -> Scene:
         """Fetch the drawable model that belongs to the sheet.
 
         Raises:
-            UserError: if no court answers, or what it sends does not fit its sheet.
+            UserError: if no court answers, or its scene does not fit its sheet.
         """
         for _ in range(_FETCH_TRIES):
             scene = fetch(self._session, self.keys, self.keys.scene)
@@ -144,13 +143,13 @@ class Spectator:
         raise UserError(_OTHER_SCENE)
 
     def _read(self, mail: Mail, kind: type[T]) -> T | None:
-        """Decode what the court sent; None if it makes no sense.
+        """Decode a message of the court; None if it can't be decoded.
 
-        Then the sheet is asked for: it says whether this court speaks another version. A single
-        message that went astray ends no match.
+        Then the sheet is requested: it says whether this court speaks another version. A single bad
+        message does not end the session.
 
         Raises:
-            UserError: if nothing makes sense any more.
+            UserError: if too many messages in a row can't be decoded.
         """
         try:
             message = understand(mail.payload, kind)
@@ -174,7 +173,7 @@ class Spectator:
         self.sheet = understand(payload, Sheet)
 
     def _ask_for_what_lacks(self, told: Health) -> None:
-        """Get what was sent while this was away, or was dropped on a slow link."""
+        """Request what was sent while this was away, or was lost on a slow link."""
         self._view.see_health(Told(told.match, told.beat, told.events, told.sheet))
         if self._view.lacks_events:
             self._lacking_events.ask()
@@ -182,10 +181,10 @@ class Spectator:
             self._lacking_sheet.ask()
 
     def _has_sheet_of(self, frame: Frame) -> bool:
-        """Whether the sheet belongs to a frame; if it does not come it is asked for.
+        """Return whether the sheet belongs to a frame; request the sheet if it does not come.
 
-        The court sends the frame a moment before the sheet, and the scene may change again: a
-        frame whose sheet is not there is passed over.
+        The court sends a frame a moment before its sheet, and the scene may change again, so a
+        frame without its sheet is skipped.
         """
         self._view.see_frame(frame.scene)
         if self._view.fits:
@@ -207,21 +206,21 @@ class Spectator:
         self._new_events.sort(key=lambda event: (event.match, event.number))
 
     def _take_answers(self) -> None:
-        """Take in what was asked for."""
+        """Take in the answers to requests."""
         if (events := self._lacking_events.take()) is not None:
             self._read_events(events)
         if (sheet := self._lacking_sheet.take()) is not None:
             self._read_sheet(sheet)
 
     def _take_events(self) -> None:
-        """Take in those that came; while a list is under way they wait, since it is older."""
+        """Take in new events, unless a list is under way: it is older, so they wait for it."""
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
             if event is not None and self._view.add_event(event, mail.payload):
                 self._keep(event)
 
     def _keep(self, event: Event) -> None:
-        """Keep a new event until it is taken; of matches before the last one nobody wants any."""
+        """Keep a new event until it is taken; drop events older than the match before."""
         if self._new_events and self._new_events[-1].match != event.match:
             last = (event.match - 1, event.match)
             self._new_events = [one for one in self._new_events if one.match in last]
@@ -229,7 +228,7 @@ class Spectator:
 
 
 class _Lacking:
-    """What did not come by itself: it is asked for, once at a time."""
+    """A request for something that did not arrive; at most one is open at a time."""
 
     def __init__(self, session: Session, key: str) -> None:
         self._session = session
@@ -238,25 +237,25 @@ class _Lacking:
 
     @property
     def is_asked(self) -> bool:
-        """Whether the answer is under way."""
+        """True if the answer is under way."""
         return self._question is not None
 
     def ask(self) -> None:
-        """Ask, unless the answer is under way."""
+        """Send the request, unless the answer is under way."""
         if self._question is None:
             self._question = self._session.question(self._key, timeout_s=_ANSWER_S)
 
     def forget(self) -> None:
-        """It came by itself."""
+        """Forget the request: the message came by itself."""
         self._question = None
 
     def take(self) -> bytes | None:
-        """The answer, once; None while it is not there."""
+        """Return the answer, once; None while it is not there."""
         if self._question is None:
             return None
         try:
             answer = self._question.take()
-        except (NoReply, Refused):  # it went away just now: who still lacks it asks again
+        except (NoReply, Refused):  # the court went away: whoever still needs it asks again
             self._question = None
             return None
         if answer is not None:

@@ -1,17 +1,17 @@
-"""Requests to end, noticed where a loop looks for them, so that nothing is left half-done."""
+"""Signals that end a program: a loop checks for them, so that nothing is left half-done."""
 
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, a kind kill, a closed window
+_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, kill, a closed window
 
 
 @contextmanager
 def stop_signals() -> Iterator[Callable[[], bool]]:
-    """Let signals be answered by a loop; gives a function that says whether to end.
+    """Catch signals until the block ends; give a function that says whether one has come.
 
-    A second signal does what it does without this.
+    A second signal has its usual effect.
     """
     asked: list[int] = []
     numbers = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]

@@ -1,1 +1,1 @@
-"""The court: the only authority of a match."""
+"""The court: the process that alone decides what happens in a match."""

@@ -1,4 +1,4 @@
-"""A match as fast as the machine can: the same match, beat by beat, with brains in the seats."""
+"""A match as fast as the machine can run it: the same beats, with bots in the seats."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -29,23 +29,23 @@ from lacoc_shared.seat import BEATS_PER_S, Phase
 from lacoc_shared.words import say
 
 _BROUGHT = "@"
-"""Between a bot and the folder of what it steers."""
+"""Separates a bot from the folder of the files that it steers."""
 _Files = tuple[SentFile, SentFile | None, SentFile | None]
 """Robot, postures (level A), locomotion (level B)."""
 
 SETTLE_BEATS = BEATS_PER_S
-"""Robots stand in READY for this long before the start."""
+"""How long robots stand in READY before the start [beats]."""
 
 
 @dataclass(frozen=True)
 class Player:
-    """Who sits in a seat: files and a brain."""
+    """A player of a seat: files and a bot."""
 
     join: JoinSeat
-    """Its `seat` is where the player sits."""
+    """The join; its `seat` is the player's seat."""
     bot: BotFactory
     late_ticks: int = 0
-    """The brain sees its first frame this much later; another moment makes another match."""
+    """Ticks by which the brain sees its first frame later; another value makes another match."""
 
 
 def player(
@@ -61,10 +61,10 @@ def player(
     Args:
         arena: the arena.
         seat: index of the seat.
-        bot: as `brains.find` takes it; with "@FOLDER" after it the bot steers what lies there: the
-            gait files, and `robot.toml` if there is one.
-        robot: an installed robot or a file, with the gait beside it; a ghost brings its own.
-        team: name of the team; None: the folder's, or the bot's.
+        bot: name as in `brains.find`. With "@FOLDER" after it, the bot steers the files in that
+            folder: gait files, and `robot.toml` if there is one.
+        robot: an installed robot, or a robot file with its gait beside it; a ghost has its own.
+        team: name of the team; None: the folder's name, or the bot's.
         late_ticks: see `Player`.
 
     Raises:
@@ -89,7 +89,7 @@ def _of_robot(arena: arenas.Arena, robot: str) -> _Files:
 
 
 def _of_folder(arena: arenas.Arena, folder: Path, robot: str) -> _Files:
-    """What somebody handed in; each file is named with its folder, as mistakes list them all."""
+    """Read the files that a team handed in; each file name gets the folder's name for mistakes."""
     folder = folder.expanduser().resolve()
     if not folder.is_dir():
         raise UserError(say("simulate.no-folder", folder=str(folder)))
@@ -105,10 +105,10 @@ def _of_folder(arena: arenas.Arena, folder: Path, robot: str) -> _Files:
 
 
 def _require_gait(arena: arenas.Arena, files: _Files, folder: Path) -> None:
-    """See that there is a gait file for a level that is open.
+    """Check that there is a gait file for an open level.
 
     Raises:
-        UserError: if there is none; it says where it is looked for.
+        UserError: if there is none; it names the folder that was searched.
     """
     levels = arena.match.open_levels
     if not any(files[1 + level] for level in levels):
@@ -128,15 +128,15 @@ def simulate(
     Args:
         setup: the match.
         players: one for each seat.
-        folder: where its record goes; None: no record.
-        watch: sees every frame.
+        folder: folder of the record; None: no record.
+        watch: called with every frame.
         arena: folder of the arena, if it is not installed.
 
     Returns:
         The official result.
 
     Raises:
-        UserError: if the arena has no end of time, or a record can't be written.
+        UserError: if the arena's matches have no end, or a record can't be written.
         FileRefused: if a player's files have mistakes.
     """
     match = Match(setup, World, arena)

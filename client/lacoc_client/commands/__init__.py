@@ -1,1 +1,1 @@
-"""The subcommands of `lacoc` for everyone but the court."""
+"""The subcommands of `lacoc` that need no court on this machine."""

@@ -1,4 +1,4 @@
-"""`lacoc bot`: a bot or a ghost in a seat."""
+"""`lacoc bot`: seat a bot or a ghost."""
 
 import time
 from collections.abc import Callable
@@ -24,7 +24,7 @@ from lacoc_shared.words import Phrase, render, say
 app = typer.Typer()
 
 _GONE_S = 120.0
-"""A court that is silent for so long does not come back by itself."""
+"""Longest silence that a bot waits for: after it a court does not come back by itself."""
 _NAME_MAX = 24
 
 
@@ -69,9 +69,9 @@ def bot_command(
 ) -> None:
     """Let a bot hold a seat: it joins, says ready and plays, match after match.
 
-    It ends with Ctrl-C, or when the court is gone for two minutes (or for the time of --wait, if
-    that is longer). A bot is a Python file with a
-    function bot(sheet, seat) that returns a function from a frame to a key.
+    It ends with Ctrl-C, or when the court has been gone for two minutes (or for the time of --wait,
+    if that is longer). A bot is a Python file with a function bot(sheet, seat), which returns a
+    function from a frame to a key.
     """
     access = entrance.seat(invitation, contest, court, connect, seat, token)
     notes: list[Phrase] = []
@@ -110,7 +110,7 @@ def bot_command(
 def _brings(
     name: str, robot: str | None, gaits: list[Path], notes: list[Phrase]
 ) -> tuple[SeatFiles, str]:
-    """The files a bot plays with, and its name; a ghost has those of its match."""
+    """Return a bot's files and its team name; a ghost has the files of its match."""
     if not name.startswith(brains.GHOST):
         return gather(robot, gaits, notes), text_of(Path(name).stem)
     join = brains.ghost_join(*brains.open_ghost(name))

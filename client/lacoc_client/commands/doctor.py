@@ -1,4 +1,4 @@
-"""`lacoc doctor`: is this machine ready, and is the court in reach?"""
+"""`lacoc doctor`: check this machine and its link to courts."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -57,12 +57,12 @@ def doctor_command(
     ] = 3.0,
     json: options.Json = False,
 ) -> None:
-    """Look whether this machine is ready: packages, ports, graphics, clock, disk.
+    """Check whether this machine is ready: packages, ports, graphics, clock, disk.
 
-    With --invitation, --connect or --contest also the link to a court, or to each court of the
-    contest: is it there, how long does a request take, how many frames arrive. With --court only
-    that one is looked at. Every finding is ok, a note or a problem, with what to do. The exit code
-    is 0 unless there is a problem.
+    With --invitation, --connect or --contest it also checks the link to a court, or to each court
+    of the contest: is it there, how long does a request take, how many frames arrive. With --court
+    it checks that court only. Every finding is ok, a note or a problem, and says what to do. The
+    exit code is 0 unless there is a problem.
     """
     plan = None if contest is None else contests.load(contest)
     planned = [*plan.courts] if plan and court is None else [court]

@@ -1,4 +1,4 @@
-"""A page for one person: a gateway on this machine alone, and the browser."""
+"""A page for one person: a gateway on this machine only, and a browser."""
 
 from contextlib import ExitStack
 from typing import Annotated
@@ -24,7 +24,7 @@ Terminal = Annotated[
 
 
 def check_pages() -> None:
-    """See that there are pages to show.
+    """Check that there are pages to show.
 
     Raises:
         UserError: if they are not built.
@@ -38,8 +38,8 @@ def show_page(home: Home, path: str, browser: bool) -> None:
 
     Args:
         home: the gateway's settings.
-        path: of the page, with its fragment.
-        browser: open it.
+        path: path of the page, with its fragment.
+        browser: whether to open the page in the browser.
 
     Raises:
         UserError: if the pages are not built.
@@ -51,7 +51,7 @@ def show_page(home: Home, path: str, browser: bool) -> None:
 
     def ready() -> None:
         shown = browser and open_browser(stack.enter_context(unseen(address)))
-        # Said in any case: a browser may open in a place where nobody looks.
+        # Always printed: the browser may open where nobody sees it.
         screen.show(f"{'Opened' if shown else 'Open'} {address}")
         screen.note("Keep this running while you are there; Ctrl-C ends it.")
 

@@ -1,4 +1,4 @@
-"""`lacoc play`: a contestant, at a page of their own or at the terminal."""
+"""`lacoc play`: play as a contestant, on a page or at the terminal."""
 
 import time
 from pathlib import Path
@@ -68,16 +68,17 @@ def play_command(
 ) -> None:
     """Hold a seat and steer your robot with the keyboard.
 
-    A page opens in your browser; it is for this machine alone. What you say here is filled in
-    there already, and the rest can be said there.
+    A page opens in your browser; only this machine can open it. What you give here is filled in
+    there already, and you can give the rest there.
 
-    With --terminal 0-9 move the robot, the arrows are 2 1 3 0 of level B, Tab changes the level,
-    x restarts, r says ready, z leaves and writes Pos-data.txt, q leaves.
+    With --terminal the keys are: 0-9 move the robot. The arrows up, left, right and down are 2, 1,
+    3 and 0 of level B. Tab changes the level. x restarts, r says ready, q leaves, z leaves and
+    writes Pos-data.txt.
 
-    At a terminal keys can come from a pipe, too. A line holds keys: '2', 'tab 1', or '1 2 3 4',
-    one after another. With a time in front, a number with a point as in '1.5 3', they come so many
-    seconds of play after the keys before. Keys that move the robot wait until the match is played.
-    After the last one its key stands until the match is over.
+    With --terminal keys can also come from a pipe. A line holds keys, which are pressed one after
+    another: '2', 'tab 1', or '1 2 3 4'. A number with a point at the start of a line is a time:
+    '1.5 3' presses 3 after 1.5 seconds of play since the keys before. Keys that move the robot wait
+    until the match is played. The last key stands until the match is over.
     """
     if terminal:
         access = entrance.seat(invitation, contest, court, connect, seat, token)
@@ -91,7 +92,7 @@ def play_command(
 
 
 def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:
-    """Read the files that were named, or the gait files of the current folder, and say so.
+    """Read the given files, or the gait files of the current folder, and print which.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -116,7 +117,7 @@ def play(
     Args:
         access: the way to the seat.
         team: the team's name.
-        files: what it brings.
+        files: the team's files.
         ready: say ready at once.
         greeting: printed before the keys.
 
@@ -139,7 +140,7 @@ def play(
 
 
 def _await_own_entry(controller: Controller, team: str) -> None:
-    """The sheet with the own robot comes a moment after the join."""
+    """Wait for the sheet that names the own team; it comes a moment after the join."""
     deadline_s = time.monotonic() + _SHEET_S
     while time.monotonic() < deadline_s:
         controller.wait_frame(0.05)

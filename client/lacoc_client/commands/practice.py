@@ -1,4 +1,4 @@
-"""`lacoc practice`: a court of one's own (workshop 4-4)."""
+"""`lacoc practice`: practise on a court of your own (workshop 4-4)."""
 
 import json
 import os
@@ -26,7 +26,7 @@ from lacoc_shared.words import render, say
 app = typer.Typer()
 
 _OPEN_S = 60.0
-"""Within this a court opens, also on a slow machine."""
+"""Time for a court to open, also on a slow machine."""
 _CLOSE_S = 10.0
 _LOOK_S = 0.02
 
@@ -47,10 +47,10 @@ def practice_command(
 ) -> None:
     """Walk your robot on a field of its own, with all keys, as long as you like.
 
-    A page opens in your browser. Both levels are open: postures (A) and locomotion (B); Tab
-    changes. x puts the robot back to the start, z leaves with Pos-data.txt.
+    A page opens in your browser. Both levels are open: postures (A) and locomotion (B); Tab changes
+    the level. x puts the robot back to the start, z leaves and writes Pos-data.txt.
 
-    With --terminal q leaves, and keys can come from a pipe as in 'lacoc play'; after the last one
+    With --terminal q leaves. Keys can come from a pipe as in 'lacoc play'; after the last one
     practice ends.
     """
     files = own_files(robot, gait or [])
@@ -81,10 +81,10 @@ def _greeting(files: SeatFiles) -> Text:
 
 @contextmanager
 def _court(folder: Path, recordings: Path) -> Iterator[Access]:
-    """A court with the practice arena, as a process that ends with this."""
-    # What it says goes into a file: a pipe that nobody empties would stop it.
+    """Run a court with the practice arena, as a process that ends with the block."""
+    # Its output goes into a file: it would block on a pipe that nobody empties.
     said, complained = folder / "court.out", folder / "court.err"
-    # Fresh: who practises begins anew, also where a killed court left a match in the folder.
+    # Fresh: a practice begins anew, even if a killed court left a match in the folder.
     words = ["serve", "--json", "--fresh", "--arena", "practice", "--listen", "tcp/127.0.0.1:0"]
     environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
     with said.open("wb") as out, complained.open("wb") as err:
@@ -94,14 +94,14 @@ def _court(folder: Path, recordings: Path) -> Iterator[Access]:
             stdin=subprocess.DEVNULL,
             stdout=out,
             stderr=err,
-            start_new_session=True,  # Ctrl-C is for the player: the court ends when they have left
+            start_new_session=True,  # keeps Ctrl-C from the court, which ends after the player
         )
     try:
         opened = _opened(court, said, complained)
         ((seat, token),) = opened["tokens"].items()
         access = Access(court=opened["court"], connect=opened["locators"][0])
         yield access.of_seat(seat, token)
-        if court.poll():  # it crashed: the stack of the crash lies in a folder that goes now
+        if court.poll():  # it crashed, and its traceback is in a folder that is deleted now
             screen.note(_text(complained))
     finally:
         court.terminate()
@@ -113,10 +113,10 @@ def _court(folder: Path, recordings: Path) -> Iterator[Access]:
 
 
 def _opened(court: subprocess.Popen[bytes], said: Path, complained: Path) -> dict[str, Any]:
-    """What a court says when it is open.
+    """Wait for a court to open; return the message that it prints then.
 
     Raises:
-        UserError: if it does not open; the message is its own.
+        UserError: if it does not open; the message is the court's own.
     """
     deadline_s = time.monotonic() + _OPEN_S
     while time.monotonic() < deadline_s:
@@ -133,7 +133,7 @@ def _opened(court: subprocess.Popen[bytes], said: Path, complained: Path) -> dic
 
 
 def _without_heading(error: str) -> str:
-    """Take away the word with which a command begins an error, in its language."""
+    """Remove the word that a command puts before an error, in its language."""
     return error.removeprefix(render(say("command.error"))).strip()
 
 

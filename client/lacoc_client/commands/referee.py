@@ -1,7 +1,7 @@
-"""`lacoc referee`: decisions, the log, and how the court is.
+"""`lacoc referee`: decide, read the log, show the state of the court.
 
-The subcommands of the decisions are made from `lacoc_shared.decisions`: a new decision
-there is a new subcommand here, with its arguments.
+The subcommands of the decisions are made from `lacoc_shared.decisions`: a new decision there is a
+new subcommand here, with its arguments.
 """
 
 import getpass
@@ -40,10 +40,10 @@ app = typer.Typer(
 )
 
 _HEALTH_S = 5.0
-"""A court says how it is twice a second; one that needs longer is in trouble."""
+"""Longest wait for a court's health, which it sends twice a second."""
 _HISTORY_S = 3.0
 _QUIET_S = 0.3
-"""The history of events is complete when for so long no more of it comes."""
+"""The list of events is complete when no more arrive for this time."""
 
 _FIELDS = {
     "seat": "The seat, such as 'left'.",
@@ -65,7 +65,7 @@ _TokenUnused = Annotated[
 
 
 _NOBODY = frozenset({"root", "admin", "administrator", "user", "nobody"})
-"""Accounts that are nobody's name: it would stand in the record."""
+"""Accounts that are nobody's name, so the record does not get them."""
 
 
 def _default_name() -> str:
@@ -106,11 +106,11 @@ _COMMON: dict[str, tuple[Any, Any]] = {
     "token": (options.Token, None),
     "json": (options.Json, False),
 }
-"""Options of every decision: annotation and default."""
+"""Options of every decision: type and default."""
 
 
 def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
-    """The function of a decision's subcommand; its parameters are the decision's fields."""
+    """Make the function of a decision's subcommand; its parameters are the decision's fields."""
     fields = {
         field.name: field
         for field in msgspec.structs.fields(kind)
@@ -146,7 +146,7 @@ def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
 
 
 def _annotation(field: FieldInfo) -> Any:
-    """A required field is an argument, any other an option."""
+    """Annotate a field for typer: a required one is an argument, any other an option."""
     help = _FIELDS.get(field.name) or _TYPES.get(field.type, "A word.")
     if _is_argument(field):
         name = field.encode_name.removesuffix("_s").upper()
@@ -157,12 +157,12 @@ def _annotation(field: FieldInfo) -> Any:
 
 
 def _is_argument(field: FieldInfo) -> bool:
-    """Whether a field must be given; one that old records lack has a default all the same."""
+    """Return whether a field must be given; `gives_s` has a default only for old records."""
     return field.required or field.name == "gives_s"
 
 
 for _name, _kind in DECISIONS.items():
-    # Ignoring unknown options lets a negative number be an argument.
+    # With unknown options ignored, a negative number can be an argument.
     app.command(
         _name, context_settings={"ignore_unknown_options": True}, rich_help_panel="Decisions"
     )(_command(_name, _kind))
@@ -265,10 +265,11 @@ def _decide_when_legal(
     name: str,
     decide: Callable[[], DecisionReply],
 ) -> DecisionReply:
-    """Decide as soon as the court says that it is legal.
+    """Decide as soon as the court says that the decision is legal.
 
-    What it says is half a second old at most: a decision that is refused although it was legal is
-    tried again if it is no longer.
+    The court's health is up to half a second old, so a decision may be refused although health
+    calls it legal. If the next health still does, the refusal is raised; otherwise this waits and
+    tries again.
     """
     deadline_s = time.monotonic() + wait_s
     seen: Health | None = None
@@ -295,10 +296,10 @@ def _decide_when_legal(
 
 
 def _look(view: Spectator) -> tuple[Frame, Health]:
-    """The newest frame and the health of a court.
+    """Wait for the newest frame and the health of a court.
 
     Raises:
-        UserError: if the court does not say how it is.
+        UserError: if the court sends no health.
     """
     deadline_s = time.monotonic() + _HEALTH_S
     while view.frame is None or view.health is None:
@@ -309,7 +310,7 @@ def _look(view: Spectator) -> tuple[Frame, Health]:
 
 
 def _history(view: Spectator) -> tuple[Event, ...]:
-    """All events so far; they come in the order they happened, a moment after the connection."""
+    """Return all events so far, in order; they arrive a moment after the connection."""
     now_s = time.monotonic()
     deadline_s, quiet_since_s = now_s + _HISTORY_S, now_s
     while (now_s := time.monotonic()) < deadline_s:

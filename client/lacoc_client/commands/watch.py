@@ -1,4 +1,4 @@
-"""`lacoc watch`: see a match at a page, in the terminal, or read it as JSON."""
+"""`lacoc watch`: show a match on a page or in the terminal, or print it as JSON."""
 
 import time
 from collections.abc import Callable
@@ -25,7 +25,7 @@ app = typer.Typer()
 
 _DRAW_HZ = 10.0
 _LAST_WORD_S = 2.0
-"""How long the event that ends a match may come after the frame that shows the end."""
+"""Longest wait for the event of a match's end after the frame that shows the end."""
 _ENDED = (Phase.OFFICIAL, Phase.VOID)
 
 
@@ -57,8 +57,8 @@ def watch_command(
 ) -> None:
     """Watch a match: clock, score and events as they come.
 
-    A page opens in your browser. In the terminal and with --json it ends when the result is
-    official or the match is void. Anybody may watch; it needs no token.
+    A page opens in your browser. In the terminal and with --json the command ends when the result
+    is official or the match is void. Anybody may watch without a token.
     """
     access = entrance.spectator(invitation, contest, court, connect)
     if not (terminal or board or json):
@@ -77,7 +77,7 @@ def watch_command(
 
 
 class _End:
-    """Says when there is nothing more to see."""
+    """Decides when there is nothing more to see."""
 
     def __init__(self, view: Spectator, forever: bool, stopping: Callable[[], bool]) -> None:
         self._view = view
@@ -86,7 +86,7 @@ class _End:
         self._ended_s: float | None = None
 
     def __call__(self) -> bool:
-        """Whether to end: somebody asks for it, or the match is over and its last event here."""
+        """Return whether to end: somebody asked for it, or the match's last event has been seen."""
         if self._stopping():
             return True
         frame = self._view.frame
@@ -99,7 +99,7 @@ class _End:
 
 
 def _print_json(view: Spectator, hz: float, end: _End) -> None:
-    """A line for every event, for frames, and each second in which the court is silent."""
+    """Print a line for each event, for frames, and for each second without word from the court."""
     frame_s = silent_s = 0.0
     while True:
         frame = view.wait_frame(0.1)
@@ -118,7 +118,7 @@ def _print_json(view: Spectator, hz: float, end: _End) -> None:
 
 
 def _draw(view: Spectator, terminal: LineView | BoardView, end: _End) -> None:
-    """Draw in one place; where that can't be (a pipe), events come as lines, and the end."""
+    """Draw in one place; in a pipe print events as lines, and one picture at the end."""
     console = screen.stdout
     in_place = console.is_terminal
     drawn_s = 0.0

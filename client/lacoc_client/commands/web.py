@@ -1,4 +1,4 @@
-"""`lacoc web`: the pages of a contest's courts, for everybody at the venue."""
+"""`lacoc web`: serve the pages of a contest's courts to everybody at the venue."""
 
 from contextlib import nullcontext
 from pathlib import Path
@@ -76,8 +76,9 @@ def web_command(
 ) -> None:
     """Serve the pages: spectators, broadcast, contestants, referee, replays.
 
-    Everybody who can reach it may watch. To play or to referee a page needs the address with the
-    key, and the seat's or the referee's token. It waits for a court that is not there yet.
+    Everybody who can reach this machine may watch. To play or to referee, a page needs the address
+    with the key, and the seat's or the referee's token. The pages wait for a court that is not
+    there yet.
     """
     plan = None if contest is None else contests.load(contest)
     exporter = Exporter(metrics) if metrics else None
@@ -115,7 +116,7 @@ def web_command(
 def _courts(
     invitation: Path | None, plan: Contest | None, court: str | None, connect: str | None
 ) -> dict[str, Access]:
-    """The way to each court: one that was named, or all of the contest."""
+    """Find the way to each court: the named one, or all of the contest."""
     if plan is None or court is not None or connect is not None or len(plan.courts) == 1:
         access = entrance.gateway(invitation, plan, court, connect)
         return {access.court: access}

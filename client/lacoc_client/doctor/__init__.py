@@ -1,1 +1,1 @@
-"""What `lacoc doctor` looks at."""
+"""The checks of `lacoc doctor`."""

@@ -1,4 +1,4 @@
-"""The link to a court, measured: does it go on, how long does it take, what gets lost."""
+"""Measures the link to a court: does it work, how long does it take, what gets lost."""
 
 import time
 from collections.abc import Iterator
@@ -21,11 +21,11 @@ _FIRST_S = 1.0
 
 
 def link(access: Access, seconds: float) -> Iterator[Finding]:
-    """Look at a court as a spectator does.
+    """Check the link to a court, as a spectator sees it.
 
     Args:
-        access: the way to it.
-        seconds: how long its frames are watched.
+        access: the way to the court.
+        seconds: how long its frames are counted.
     """
     about = say("doctor.court", court=access.court)
     try:
@@ -71,9 +71,9 @@ def _round_trip(session: Session, view: Spectator) -> Finding:
 
 
 def _frames(view: Spectator, seconds: float) -> Finding:
-    """Frames a second and the longest gap between two; a frame that is overtaken is lost.
+    """Measure frames a second, and the longest gap between two; an overtaken frame counts as lost.
 
-    One that came before does not count: a court that can't go on sends its last one again.
+    A repeated frame does not count: a court that can't go on sends its last one again.
     """
     about = say("doctor.frames", court=view.keys.court)
     first = view.wait_frame(_FIRST_S)
@@ -110,7 +110,7 @@ def _frames(view: Spectator, seconds: float) -> Finding:
 
 
 def _record(view: Spectator) -> Iterator[Finding]:
-    """What is wrong with the court's disk, if it says so."""
+    """Report what is wrong with the court's disk, if its health says so."""
     end_s = time.monotonic() + _FIRST_S
     while view.health is None and time.monotonic() < end_s:
         view.wait_frame(_FIRST_S)

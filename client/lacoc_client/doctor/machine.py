@@ -1,7 +1,7 @@
-"""What a machine is like that shall play, show or hold a match: looked at, and said in words.
+"""Checks a machine that is to play, show or hold a match, and reports in sentences.
 
-Nothing here needs MuJoCo, and nothing is changed: a port is opened and closed again, a
-small file is written beside the records and removed.
+Nothing here needs MuJoCo, and nothing is changed: a port is opened and closed again, a small file
+is written beside the records and removed.
 """
 
 import ctypes.util
@@ -33,16 +33,16 @@ from lacoc_shared.words import Phrase, render, say
 
 _MIB = 1 << 20
 _LEAST_FREE_BYTES, _GOOD_FREE_BYTES = 100 * _MIB, 1024 * _MIB
-"""A match has 2 MiB packed and 4 while it is played."""
+"""A match needs 2 MiB packed, and 4 MiB while it is played."""
 _FSYNCS = 10
 _SLOW_FSYNC_S = 0.5
-"""A record is brought to the disk once a second."""
+"""Slower than this is noted: a record is synced once a second."""
 _SLOW_PERCENT, _TOO_SLOW_PERCENT = 1.0, 10.0
 _ASK_S = 1.0
 
 
 class Status(StrEnum):
-    """How bad it is."""
+    """How serious a finding is."""
 
     OK = "ok"
     NOTE = "note"
@@ -51,7 +51,7 @@ class Status(StrEnum):
 
 
 class Finding(msgspec.Struct, frozen=True):
-    """What was found about one thing."""
+    """A finding about one thing."""
 
     about: Phrase | str
     status: Status
@@ -65,7 +65,7 @@ class Finding(msgspec.Struct, frozen=True):
 
 
 def packages() -> Iterator[Finding]:
-    """Python, this software, and whether every package that it needs is there and in range."""
+    """Check Python, this software, and that every package it needs is there and in range."""
     lacoc = distribution("lacoc")
     wanted = lacoc.metadata["Requires-Python"]
     python = platform.python_version()
@@ -117,14 +117,14 @@ def _package(needed: Requirement, *, optional: bool) -> Finding:
 def court_port(
     host: str, port: int, court: str | None, credentials: Credentials | None = None
 ) -> Finding:
-    """Whether a court can listen there, or does already.
+    """Check that a court can listen at a port, or does already.
 
     Args:
         host: address of this machine to listen at.
         port: the port.
-        court: the court that shall, by the contest file; None: any, and a taken port is only a
-            note.
-        credentials: to ask a court that has keys.
+        court: the court that should listen there, by the contest file; None: any court, and a taken
+            port is only a note.
+        credentials: credentials to ask a court that has keys.
     """
     about = say("doctor.port", port=port)
     why: Phrase | str = _why_taken(host, port)
@@ -145,12 +145,12 @@ def court_port(
 
 
 def web_port(host: str, port: int, *, needed: bool) -> Finding:
-    """Whether a gateway can listen there, or does already.
+    """Check that a gateway can listen at a port, or does already.
 
     Args:
         host: address of this machine to listen at.
         port: the port.
-        needed: it was asked for; otherwise a taken port is only a note.
+        needed: whether it was asked for; otherwise a taken port is only a note.
     """
     about = say("doctor.port", port=port)
     why: Phrase | str = _why_taken(host, port)
@@ -169,11 +169,11 @@ def web_port(host: str, port: int, *, needed: bool) -> Finding:
 
 
 def _why_taken(host: str, port: int) -> str:
-    """Why it is not possible to listen there; "" if it is."""
+    """Say why a program can't listen there; "" if it can."""
     try:
         family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         with socket.socket(family, kind) as probe:
-            if os.name == "posix":  # elsewhere it would let two programs share a port
+            if os.name == "posix":  # on Windows two programs could share the port
                 probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             probe.bind(address)
             probe.listen()
@@ -183,7 +183,7 @@ def _why_taken(host: str, port: int) -> str:
 
 
 def graphics() -> Finding:
-    """What a browser may draw with; what it really does only the browser can say."""
+    """Report the graphics that a browser may use; only the browser knows which it uses."""
     about, look = say("doctor.graphics"), say("doctor.graphics-look")
     if sys.platform != "linux":
         found = say("doctor.graphics-own", system=platform.system())
@@ -203,14 +203,14 @@ def graphics() -> Finding:
 
 
 def clock(seconds: float) -> Finding:
-    """How steadily this machine wakes a program 50 times a second, as a court wants to be."""
+    """Measure how punctually this machine wakes a program 50 times a second, as a court needs."""
     late_s = []
     due_s = time.monotonic()
     for _ in range(max(1, round(seconds / BEAT_S))):
         due_s += BEAT_S
         time.sleep(max(0.0, due_s - time.monotonic()))
         late_s.append(time.monotonic() - due_s)
-        due_s = max(due_s, time.monotonic() - BEAT_S)  # a stall is one late beat, not many
+        due_s = max(due_s, time.monotonic() - BEAT_S)  # a stall counts as one late beat, not many
     slow_percent = 100 * sum(one > BEAT_S for one in late_s) / len(late_s)
     resolution_ns = time.get_clock_info("monotonic").resolution * 1e9
     about = say("doctor.clock-name")
@@ -229,7 +229,7 @@ def clock(seconds: float) -> Finding:
 
 
 def disk(folder: Path) -> Finding:
-    """Whether records can be written to a folder, how much room there is, how long a sync takes."""
+    """Check that records can be written to a folder, its free space, and how long a sync takes."""
     about = say("doctor.disk-name")
     above = (folder.absolute(), *folder.absolute().parents)
     there = next(one for one in above if os.path.lexists(one))

@@ -1,5 +1,5 @@
 """The gateway between a court and browsers (docs/gateway.md).
 
-One event loop holds all pages; what asks the court and waits runs on other threads. A
-page never gets a queue: what it is too slow for, it misses, except what must arrive.
+One event loop serves all pages; whatever asks the court and waits runs on other threads. No page
+has a queue: a page that is too slow misses messages, except those that must arrive.
 """

@@ -1,4 +1,4 @@
-"""How what a page asks is answered: at once, later, or from another thread."""
+"""Answers to a page's requests: at once, later, or from another thread."""
 
 import asyncio
 import time
@@ -32,21 +32,21 @@ class Answers:
         self._tasks: set[asyncio.Task[None]] = set()
 
     def reply(self, to: int, value: Any) -> None:
-        """Answer what was asked."""
+        """Answer a request."""
         self._viewer.send(wire.reply(to, value))
 
     def refuse(self, to: int, error: UserError | FileRefused) -> None:
-        """Say why something was not done."""
+        """Answer that a request was not done, and why."""
         self._viewer.send(wire.refusal(to, error))
-        # The sentences name no token; a page that asks for more of them is heard less often.
+        # The sentences contain no token. A page gets one refusal a second into the log, on average.
         if self._logged.take(1, time.monotonic()):
             self._log(f"Refused: {error}", "refused")
 
     def later(self, to: int, work: Coroutine[Any, Any, Any]) -> None:
-        """Answer with what comes of some work, and go on reading meanwhile.
+        """Answer with the result of a coroutine, and go on reading meanwhile.
 
         Raises:
-            UserError: if too much is going on already.
+            UserError: if too many requests are open already.
         """
         if len(self._tasks) >= _AT_ONCE:
             work.close()
@@ -60,7 +60,7 @@ class Answers:
             self.reply(to, await work)
         except (UserError, FileRefused) as error:
             self.refuse(to, error)
-        except Exception:  # a bug, but no page waits for ever
+        except Exception:  # a bug, but the page must get an answer
             self.refuse(to, UserError(wire.FAULT))
             raise
 
@@ -77,13 +77,13 @@ class Answers:
         return answer
 
     def stop(self) -> None:
-        """Nobody waits for an answer any more."""
+        """Cancel the open requests: nobody waits for them any more."""
         for task in self._tasks:
             task.cancel()
 
 
 def in_loop(loop: asyncio.AbstractEventLoop, do: Callable[[], None]) -> None:
-    """Do something on the event loop's thread, if the loop has not ended."""
+    """Call a function on the event loop's thread, unless the loop has ended."""
     try:
         loop.call_soon_threadsafe(do)
     except RuntimeError:

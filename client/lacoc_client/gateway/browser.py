@@ -1,8 +1,8 @@
 """Opens a page in this person's browser, without a secret in a command line.
 
-Every user of a machine can read the command lines of all programs, and a browser gets
-there what it is to open. So an address that has a key is written into a file that only
-its owner can read, and the browser opens the file, which leads on to the address.
+Every user of a machine can read the command lines of all programs, and a browser gets its address
+there. So an address with a key is written into a file that only its owner can read. The browser
+opens the file, which redirects to the address.
 """
 
 import html
@@ -24,28 +24,28 @@ _LEADS_ON = (
 
 @contextmanager
 def unseen(address: str) -> Iterator[str]:
-    """An address that leads to another one and shows nothing of it; it holds until the end.
+    """Give an address that leads to another one without showing it; valid until the block ends.
 
-    Where no file can be written it is the address itself.
+    If no file can be written, it is the other address itself.
 
     Args:
-        address: with a key in its fragment.
+        address: the other address, with a key in its fragment.
     """
     with ExitStack() as stack:
         try:
             way = stack.enter_context(_file(address)).as_uri()
-        except (OSError, RuntimeError):  # the latter: nobody knows where this person's home is
+        except (OSError, RuntimeError):  # RuntimeError: the home folder is not known
             way = address
         yield way
 
 
 @contextmanager
 def _file(address: str) -> Iterator[Path]:
-    # In sight in the home folder: browsers in a sandbox (snap, flatpak) have a /tmp of their own,
-    # and see no hidden folders.
+    # Visible, and in the home folder: browsers in a sandbox (snap, flatpak) have their own /tmp and
+    # see no hidden folders.
     with tempfile.TemporaryDirectory(
         prefix="lacoc-", dir=Path.home(), ignore_cleanup_errors=True
-    ) as folder:  # its owner's alone
+    ) as folder:  # private to its owner
         path = Path(folder, "lacoc.html")
         with open(path, "x", encoding="utf-8", opener=_private) as file:
             file.write(_LEADS_ON.format(html.escape(address)))
@@ -57,11 +57,11 @@ def _private(name: str, flags: int) -> int:
 
 
 def open_browser(address: str) -> bool:
-    """Show a page in this person's browser; False if there is none to be opened."""
+    """Show a page in this person's browser; return False if no browser could be opened."""
     if sys.platform.startswith("linux") and not any(
         os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     ):
-        return False  # a browser for terminals would take the terminal away
+        return False  # a text browser would take over the terminal
     found: list[bool] = []
 
     def open_it() -> None:
@@ -70,7 +70,7 @@ def open_browser(address: str) -> bool:
         except (webbrowser.Error, OSError):
             found.append(False)
 
-    # Some browsers are waited for until they are closed.
+    # Some browsers block this call until they are closed.
     opening = threading.Thread(target=open_it, daemon=True)
     opening.start()
     opening.join(_BROWSER_S)

@@ -1,4 +1,4 @@
-"""The courts of a gateway, and who finds room at them."""
+"""The courts of a gateway, and their limits on pages."""
 
 import asyncio
 
@@ -15,11 +15,13 @@ from lacoc_shared.words import Phrase, say
 _THREADS = 16
 _FILES_S = 0.5
 _STRANGERS = 4
-"""A wrong token holds one for 2 s at a court with keys; no decision and no fetch waits for it."""
+"""Threads for unproven tokens: at a court with keys a wrong one takes 2 s. Decisions and fetches
+use other threads, so they never wait for it.
+"""
 
 
 class Courts:
-    """The feeds of a gateway's courts and who referees there; made when first asked for.
+    """The feeds of a gateway's courts and their referees; made when first asked for.
 
     Args:
         home: the gateway's settings.
@@ -28,15 +30,15 @@ class Courts:
     def __init__(self, home: Home) -> None:
         self.home = home
         self.threads = Threads(_THREADS)
-        """Where courts are asked."""
+        """Threads that ask courts."""
         self.strangers = Threads(_STRANGERS)
-        """Where tokens are shown that no court has taken yet."""
+        """Threads that try tokens that no court has accepted yet."""
         self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
         self.sent_away = 0
-        """Pages that were too many."""
+        """Number of pages that were refused because there were too many."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
-        """A court's feed, listening; without a name that of the first court.
+        """Return a court's feed, started, and its referees; without a name, the first court's.
 
         Raises:
             UserError: if this gateway has no such court.
@@ -53,20 +55,20 @@ class Courts:
 
     @property
     def feeds(self) -> list[CourtFeed]:
-        """The feeds of all courts that were asked for; may be asked from any thread."""
+        """The feeds of all courts that were asked for; may be read from any thread."""
         return [feed for feed, _ in list(self._feeds.values())]
 
     def over(self) -> list[str]:
-        """List the matches that are over and still on at their courts; any thread may ask."""
+        """List the matches that are over but still open at their courts; any thread may call it."""
         pictures = [feed.picture for feed in self.feeds]
         ended = (Phase.OFFICIAL, Phase.VOID)
         return [picture.view.match_id for picture in pictures if picture.phase in ended]
 
     def why_full(self, viewer: Viewer) -> Phrase | None:
-        """Say why there is no room for a page; None if there is.
+        """Say why there is no room for a page; None if there is room.
 
-        Who can act has the key: a hall of spectators, or whoever opens as many pages without it,
-        takes no place from them.
+        Pages that may act have the key, and a limit of their own. So no crowd of spectators, and
+        nobody who opens many pages without the key, can take their places.
         """
         acts = viewer.can_act
         most = ACTING_MOST if acts else self.home.viewers_most
@@ -77,7 +79,7 @@ class Courts:
         return say("gateway.full", most=most)
 
     async def watch_files(self) -> None:
-        """Tell the pages that may act when the files on this machine were saved again."""
+        """Tell the pages that may act when the files on this machine have changed."""
         own = self.home.prefill.files if self.home.prefill is not None else None
         while own is not None:
             await asyncio.sleep(_FILES_S)

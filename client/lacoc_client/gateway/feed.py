@@ -1,4 +1,4 @@
-"""What a court says, taken once and given to all pages that watch it."""
+"""Receives what a court sends, once, and passes it to all pages that watch it."""
 
 import asyncio
 import contextlib
@@ -33,37 +33,37 @@ _FETCH_AGAIN_S = 0.3
 class CourtFeed:
     """A court as its pages see it; used from the event loop only.
 
-    It may be made before there is a court, and outlives any number of its restarts.
+    It may exist before its court does, and survives any number of the court's restarts.
 
     Args:
-        access: the way to the court, for somebody who watches.
-        threads: where it asks the court.
+        access: the way to the court, as a spectator.
+        threads: threads that ask the court.
     """
 
     def __init__(self, access: Access, threads: Threads) -> None:
         self.access = access
         self.court = court = access.court
         self.session: Session | None = None
-        """The connection; None until there was one."""
+        """The connection; None until the first one."""
         self._keys = Keys(court)
         self._threads = threads
         self.audience = Audience()
         """The pages that watch."""
         self.picture = CourtPicture()
-        """What they see."""
+        """The newest state of the court, as its pages see it."""
         self._say = log.get(court=court)
         self._frame_s = time.monotonic()
         self._connected = False
-        """Whether it sends frames, of the version that this gateway speaks: only then pages do."""
+        """Whether the court sends frames in this gateway's version; only then pages get them."""
         self._why: Phrase | None = None
-        """Why it does not."""
+        """Why the court sends none."""
         self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
         self._explained_s = 0.0
         self._task: asyncio.Task[None] | None = None
 
     def start(self) -> None:
-        """Begin to listen to the court, once."""
+        """Start listening to the court; a second call does nothing."""
         if self._task is None:
             self._task = asyncio.get_running_loop().create_task(self._run())
 
@@ -79,22 +79,22 @@ class CourtFeed:
 
     @property
     def connected(self) -> bool:
-        """Whether the court sends frames."""
+        """True if the court sends frames."""
         return self._connected
 
     def log(self, text: str, kind: str, **particulars: object) -> None:
-        """Log something of this court."""
+        """Log a line about this court."""
         self._say.info(text, kind=kind, match_id=self.picture.view.match_id, **particulars)
 
     def add(self, viewer: Viewer) -> None:
-        """Let a page watch; it gets all there is at once."""
+        """Let a page watch; send it everything that is known."""
         for framed in (self._link(), *self._all()):
             viewer.send(framed)
         self.audience.add(viewer)
 
     def _all(self) -> tuple[bytes, ...]:
         frame = self.picture.frame
-        if frame is None or not self._connected:  # never an old picture as a new one
+        if frame is None or not self._connected:  # an old frame must not look like a new one
             return self.picture.all_but_frame()
         return (*self.picture.all_but_frame(), frame)
 
@@ -125,7 +125,7 @@ class CourtFeed:
             await asyncio.sleep(_LOOK_S)
 
     def _come_back(self) -> None:
-        """A frame after a silence: the court may be another one, so everything is sent again."""
+        """Take up a court after a silence; it may be another one, so everything is sent again."""
         self._connected, self._why = True, None
         self.log(f"Court {self.court} sends frames.", "link", connected=True)
         self.audience.send(self._link(), *self._all())
@@ -145,7 +145,7 @@ class CourtFeed:
         )
 
     def _explain(self, now_s: float) -> None:
-        """Find words for the silence; asking for them takes a while."""
+        """Start a request for the reason of the court's silence; the request takes a while."""
         idle = self._explaining is None or self._explaining.done()
         if self._wrong_version or not idle or now_s - self._explained_s < _WHY_S:
             return
@@ -158,7 +158,7 @@ class CourtFeed:
         self._why = None if self._connected else why
 
     async def _subscribe(self, session: Session) -> None:
-        """Listen; pages that see a frame know its sheet and all that happened before."""
+        """Subscribe to the court; the sheet and the log come before the first frame."""
         loop = asyncio.get_running_loop()
 
         def hear(key: str, depth: int, take: Callable[[bytes], None]) -> None:
@@ -173,11 +173,11 @@ class CourtFeed:
                     loop.call_soon_threadsafe(empty)
 
             boxes.append(session.mailbox(key, depth, notify))
-            empty()  # what came before there was a box to look into
+            empty()  # messages that came before the mailbox was in the list
 
         hear(self._keys.sheet, 1, self._hear_sheet)
         hear(self._keys.event, _EVENTS_DEPTH, self._take_event)
-        with contextlib.suppress(UserError, BadMessage):  # it will come
+        with contextlib.suppress(UserError, BadMessage):  # it comes later
             await self._fetch_sheet()
             self._take_log(await self._ask(self._keys.event))
         hear(self._keys.health, 1, self._take_health)
@@ -216,7 +216,7 @@ class CourtFeed:
             self._send_log()
 
     def _send_log(self) -> None:
-        # The link's new number says that what was before is no more.
+        # The new log number in the link message tells pages to drop the old events.
         self.audience.send(self._link(), *self.picture.log)
 
     def _take_scene(self, payload: bytes) -> None:
@@ -249,13 +249,13 @@ class CourtFeed:
             self.audience.send_if_fast(framed)
 
     def _stray(self) -> None:
-        """Something made no sense: the sheet says whether the court has another version."""
+        """Handle a message that can't be decoded: the sheet tells whether the version differs."""
         if self._other_version is None:
             self.picture.view.doubt()
             self._catch_up()
 
     def _look_at_version(self, before: int | None) -> None:
-        """Show nothing of a court of another version until it has another sheet."""
+        """Hide a court of another version until it has another sheet."""
         if self._other_version not in (None, before):
             self._connected = False
             self.log(render(self._wrong_version or ""), "link", connected=False)
@@ -267,26 +267,26 @@ class CourtFeed:
 
     @property
     def _log_number(self) -> int:
-        """Another number: the log began anew."""
+        """Version of the log; it changes when the log begins again."""
         return self.picture.view.log.number
 
     @property
     def _wrong_version(self) -> Phrase | None:
-        """Why a court of another version is not shown; None for one of this version."""
+        """Why a court of another version is not shown; None if it has this version."""
         if self._other_version is None:
             return None
         version = self._other_version or None
         return say("gateway.other-version", court=self.court, version=version, gateway=PROTOCOL)
 
     def _catch_up(self) -> None:
-        """Get what is new, was sent while this was away, or was dropped on a slow link."""
+        """Fetch what is new, was sent while this was away, or was lost on a slow link."""
         if self._restoring is None or self._restoring.done():
             self._restoring = asyncio.get_running_loop().create_task(self._restore())
 
     async def _restore(self) -> None:
         view = self.picture.view
         while view.lacks_events or view.lacks_scene or view.lacks_sheet:
-            with contextlib.suppress(UserError, BadMessage):  # it went away just now
+            with contextlib.suppress(UserError, BadMessage):  # the court went away
                 if view.lacks_events:
                     self._take_log(await self._ask(self._keys.event))
                 if view.lacks_scene:

@@ -1,4 +1,4 @@
-"""The built pages, as a gateway gives them away."""
+"""The built pages, as a gateway serves them."""
 
 import gzip
 import mimetypes
@@ -16,16 +16,16 @@ _TYPES = {".js": "text/javascript", ".svg": "image/svg+xml", ".wasm": "applicati
 
 
 class PageFile(NamedTuple):
-    """A file of the pages."""
+    """One file of the pages."""
 
     data: bytes
     packed: bytes | None
-    """The same with gzip, if that is shorter."""
+    """The data compressed with gzip, if that is shorter."""
     media_type: str
 
 
 class PageFiles:
-    """The built pages; each file is read and packed once."""
+    """The built pages; each file is read and compressed once."""
 
     def __init__(self, folder: Path = PAGES) -> None:
         self._folder = folder.resolve()
@@ -33,11 +33,11 @@ class PageFiles:
 
     @property
     def built(self) -> bool:
-        """Whether there are any."""
+        """True if the pages are built."""
         return (self._folder / "index.html").is_file()
 
     def find(self, name: str) -> PageFile | None:
-        """A file by its path below the folder; None: there is none, or it is not below."""
+        """Return a file by its path in the folder; None if there is none, or it lies outside."""
         try:
             path = (self._folder / name).resolve()
             if not path.is_relative_to(self._folder) or not path.is_file():
@@ -46,7 +46,7 @@ class PageFiles:
             file = self._files.get((name, version))
             if file is None:
                 file = self._files[name, version] = _read(path)
-        except (OSError, ValueError):  # a NUL in the name, a file that is being built anew
+        except (OSError, ValueError):  # a NUL in the name, or a file being rebuilt
             return None
         return file
 

@@ -1,8 +1,8 @@
-"""Who may talk to a gateway: the browser of a person who opened its page, and nobody's else.
+"""Decides who may talk to a gateway: browsers that opened its page, and no other site's pages.
 
-Any web site can send a browser to 127.0.0.1. So the Host must be a name of this machine
-(or a number: a site's own name could be made to point here, a number can't), and a page
-of another origin gets no WebSocket.
+Any web site can make a browser send requests to 127.0.0.1. So the Host must be a name of this
+machine, or an IP address: another site's name could be made to point here, an IP address can't. And
+a page of another origin gets no WebSocket.
 """
 
 import ipaddress
@@ -22,18 +22,18 @@ _POLICY = (
     "frame-ancestors {ancestors}"
 )
 _EMBEDDABLE = ("/overlay",)
-"""Pages that show in somebody else's: they take no input."""
+"""Pages that other sites may embed: they take no input."""
 
 
 def machine_names() -> frozenset[str]:
-    """The names by which others know this machine."""
+    """Return the names by which others know this machine."""
     name = socket.gethostname().lower()
     first = name.partition(".")[0]
     return frozenset({"localhost", name, first, f"{first}.local"}) - {""}
 
 
 class Guard:
-    """Stands before the application.
+    """Checks each connection before the application gets it.
 
     Args:
         app: the application.
@@ -76,9 +76,9 @@ class Guard:
 
 
 def answer(scope: Scope, said: Phrase, status: int) -> PlainTextResponse:
-    """Answer a browser with a sentence in its person's language, in the place of a page."""
+    """Answer a browser with a sentence in its language, instead of a page."""
     wanted = Headers(scope=scope).get("accept-language", "").lower()
-    # Browsers name the language that is wanted most first.
+    # Browsers list the preferred language first.
     found = ((wanted.find(language), language) for language in LANGUAGES if language in wanted)
     chosen = min(found, default=(0, LANGUAGES[0]))[1]
     return PlainTextResponse(f"{render(said, chosen)}\n", status_code=status)
@@ -100,7 +100,7 @@ def _all(scope: Scope, name: bytes) -> list[str]:
 
 
 def _name_of(host: str) -> str:
-    """The host without its port."""
+    """Return the host without its port."""
     if host.startswith("["):
         return host[1:].partition("]")[0].lower()
     return host.partition(":")[0].lower().rstrip(".")

@@ -1,4 +1,4 @@
-"""What a gateway was started for: whose it is, which courts, what is filled in already."""
+"""The settings of a gateway: its kind, its courts, and what its pages have filled in."""
 
 import hashlib
 import secrets
@@ -14,9 +14,9 @@ from lacoc_shared.contest.invitation import Access
 Kind = Literal["venue", "player", "practice"]
 
 VIEWERS_MOST = 400
-"""More pages than this that only watch are sent away: 25 frames a second of 400 need 3 MB/s."""
+"""Most pages that only watch: 25 frames a second for 400 pages need 3 MB/s."""
 ACTING_MOST = 100
-"""Pages that have the key, besides: several for each seat and referee of a large contest."""
+"""Most pages with the key, in addition: several for each seat and referee of a large contest."""
 
 
 def new_key() -> str:
@@ -26,13 +26,13 @@ def new_key() -> str:
 
 @dataclass(frozen=True)
 class Prefill:
-    """What one person said on the command line, so that the page need not ask."""
+    """What one person gave on the command line, so that the page need not ask for it."""
 
     seat: str = ""
     token: str = ""
     name: str = ""
     files: OwnFiles | None = None
-    """What lies on this machine; a page may bring others."""
+    """Files on this machine; the page may send others."""
 
 
 @dataclass(frozen=True)
@@ -40,26 +40,26 @@ class Home:
     """A gateway's settings."""
 
     courts: dict[str, Access]
-    """The way to each court by its name; the first is shown where a page names none."""
+    """The way to each court, by its name; a page that names no court gets the first."""
     kind: Kind = "venue"
     contest: str = ""
     """The contest's name; "" if nobody gave it one."""
     prefill: Prefill | None = None
     recordings: Path | None = None
-    """Folder of the recordings that may be fetched."""
+    """Folder of the recordings that pages may fetch."""
     names: frozenset[str] = frozenset()
     """Names by which browsers may call this machine, besides its own."""
     viewers_most: int = VIEWERS_MOST
     exporter: Exporter | None = None
-    """Where its numbers are shown."""
+    """Serves the gateway's metrics."""
     key: str = field(default_factory=new_key)
-    """Lets a page act; without it a page only watches."""
+    """With this key a page may act; without it a page only watches."""
 
 
 def lasting_key(contest: Contest) -> str:
-    """A key that is the same each time the gateway of a contest is started.
+    """Return a contest's key, which is the same at each start of its gateway.
 
-    So pages that are open go on when it is started again. It is as secret as the contest file.
+    So open pages keep working after a restart. The key is as secret as the contest file.
     """
     secret = " ".join(court.referee.token for court in contest.courts.values())
     digest = hashlib.blake2b(secret.encode(), digest_size=16, person=b"lacoc web key").digest()
@@ -67,5 +67,5 @@ def lasting_key(contest: Contest) -> str:
 
 
 def player_home(access: Access, prefill: Prefill, kind: Kind, recordings: Path | None) -> Home:
-    """The gateway of one person at one court."""
+    """Return the settings of a gateway for one person at one court."""
     return Home({access.court: access.watching()}, kind, "", prefill, recordings)

@@ -1,4 +1,4 @@
-"""A gateway's numbers for Prometheus: who watches, and what they get."""
+"""A gateway's numbers for Prometheus: who watches, and the frames they get."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ from lacoc_client.gateway.courts import Courts
 
 
 class GatewayMetrics(Collector):
-    """What a scrape of a gateway shows; it reads plain numbers of the event loop's.
+    """The metrics of a gateway; a scrape reads plain numbers that the event loop writes.
 
     Args:
         courts: the courts of the gateway.
@@ -20,7 +20,7 @@ class GatewayMetrics(Collector):
         self._courts = courts
 
     def collect(self) -> Iterator[Metric]:
-        """All families; called by a scrape, on its own thread."""
+        """Return all metric families; called by a scrape, on its own thread."""
         labels = ["court"]
         connected = GaugeMetricFamily(
             "lacoc_gateway_connected", "1 while the court sends frames.", labels=labels

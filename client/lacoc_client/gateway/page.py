@@ -1,4 +1,4 @@
-"""One page: what it may ask, and who does it."""
+"""One page's connection: the requests that it may make, and who answers them."""
 
 import asyncio
 import hmac
@@ -25,9 +25,9 @@ from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import say
 
 TRY_LATER = 1013
-"""WebSocket close code: come again later."""
+"""WebSocket close code: try again later."""
 GARBAGE = 1008
-"""WebSocket close code: what was sent can't be read at all."""
+"""WebSocket close code: a message can't be decoded at all."""
 
 _ASKS_HZ, _ASKS_BURST = 100.0, 200
 _TOKENS_HZ, _TOKENS_BURST = 1.0, 10
@@ -39,7 +39,7 @@ class Page:
     """One page's connection.
 
     Args:
-        websocket: not yet accepted.
+        websocket: the page's WebSocket, not accepted yet.
         courts: the courts of the gateway.
     """
 
@@ -61,12 +61,12 @@ class Page:
         """Answer the page until it goes."""
         await self._websocket.accept()
         try:
-            # A connection that never says what it wants must not be kept.
+            # A connection that never sends a request must not stay open.
             first = await asyncio.wait_for(self._websocket.receive(), _FIRST_S)
             while first["type"] == "websocket.receive":
                 if not await self._take(first.get("bytes") or b""):
                     return
-                # Who asks too much is not read until it is its turn again: nobody else notices.
+                # A page that asks too much is not read for a while; no other page notices.
                 while not self._asks.take(1, time.monotonic()):
                     await asyncio.sleep(1 / _ASKS_HZ)
                 first = await self._websocket.receive()
@@ -76,7 +76,7 @@ class Page:
             self._gone()
 
     async def _take(self, data: bytes) -> bool:
-        """Answer one message; False if the page is to go."""
+        """Answer one message; return False if the page is to be closed."""
         try:
             asked = wire.read(data)
         except wire.Unreadable as error:
@@ -121,7 +121,7 @@ class Page:
         return True
 
     async def _watch(self, asked: wire.Watch) -> bool:
-        _spend(self._greetings)  # some bytes ask for all that has happened in a match
+        _spend(self._greetings)  # a few bytes ask for a whole match
         viewer = self._viewer
         viewer.can_act = asked.key is not None and hmac.compare_digest(
             asked.key.encode("utf-8", "surrogatepass"), self._home.key.encode()
@@ -136,7 +136,7 @@ class Page:
         try:
             self._feed, self._referees = self._courts.find(asked.court)
         except UserError:
-            viewer.send(self._welcome(None))  # it says which courts there are
+            viewer.send(self._welcome(None))  # it lists the courts
             raise
         viewer.send(self._welcome(self._feed.court))
         prefill = self._home.prefill
@@ -183,26 +183,26 @@ class Page:
         if feed.session is None:
             raise UserError(say("gateway.court-not-there", court=feed.court))
         access = feed.access.of_referee(asked.token)
-        # One at a time, so that a page with wrong tokens is one of those that wait, not many.
+        # One at a time, so that a page that tries wrong tokens uses one thread, not many.
         if self._entering.locked():
             raise UserError(TOO_MUCH)
         async with self._entering:
             await self._show_token(access, feed, referees)
-        if referees is self._referees:  # it may have gone to another court meanwhile
+        if referees is self._referees:  # the page may have gone to another court
             referees.enter(self._viewer, access, by)
             self._log(f"{by} sits down as a referee.", "referee", by=by)
         return {}
 
     async def _show_token(self, access: Access, feed: CourtFeed, referees: Referees) -> None:
         courts = self._courts
-        # A referee who comes back stands in no queue with those who try.
+        # A referee who comes back does not wait behind people who try tokens.
         threads = courts.threads if referees.knows(access) else courts.strangers
         try:
             await threads.run(lambda: as_referee(access, RefereeClient.enter))
         except NoCourt:
             raise
         except UserError as error:
-            # The court is there, as it sends frames to this gateway: so it is the token.
+            # The court sends frames to this gateway, so it is there: the token must be wrong.
             raise wire.TokenRefused(error.said) if feed.connected else error from None
 
     async def _decide(self, asked: wire.DecideAsk, referees: Referees) -> Any:
@@ -214,7 +214,7 @@ class Page:
         )
 
     def _log(self, text: str, kind: str, **particulars: object) -> None:
-        """Log something about this page, once it is at a court."""
+        """Log a line about this page, once it is at a court."""
         client, feed = self._websocket.client, self._feed
         if feed is not None:
             feed.log(text, kind, page=client and f"{client.host}:{client.port}", **particulars)

@@ -17,13 +17,13 @@ from lacoc_shared.words import render, say
 
 
 class PageSeat:
-    """Joins a seat, steers it and tells its page how it is; used from the event loop only.
+    """Joins a seat, steers it and reports its state to the page; used from the event loop only.
 
     Args:
         viewer: the page.
-        answers: answers what it asks.
-        prefill: what it need not say.
-        log: logs something about the page: a sentence, its kind and particulars.
+        answers: answers the page's requests.
+        prefill: what the page need not send.
+        log: logs a line about the page: a sentence, its kind and particulars.
     """
 
     def __init__(
@@ -40,14 +40,14 @@ class PageSeat:
         self._thread: SeatThread | None = None
         self._joins = 0
         self._hold = ("", "")
-        """The seat and how it is held, as it was told last."""
+        """The seat and its hold, as last logged."""
 
     def join(self, asked: wire.JoinAsk, watching: Access) -> None:
-        """Take a seat, instead of the one before if there is one.
+        """Take a seat; it replaces the page's earlier seat, if it had one.
 
         Args:
-            asked: by the page.
-            watching: the way to the court, for somebody who watches.
+            asked: the page's request.
+            watching: the way to the court, as a spectator.
 
         Raises:
             UserError: if there is no token.
@@ -74,10 +74,10 @@ class PageSeat:
         )
 
     def steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk) -> None:
-        """Let the seat's controller do something.
+        """Pass a request to the seat's controller.
 
         Raises:
-            UserError: if there is no seat.
+            UserError: if the page has no seat.
         """
         if self._thread is None:
             raise UserError(say("gateway.no-seat"))
@@ -91,7 +91,7 @@ class PageSeat:
                 do(lambda controller: {"seq": controller.press(level, key)}, answer)
 
     def leave(self) -> None:
-        """The page goes: stop repeating now; the seat stays the contestant's."""
+        """Stop repeating when the page goes; the contestant keeps the seat."""
         self._end()
         if self._hold[0]:
             self._log(f"The page of seat {self._hold[0]} has gone.", "seat", seat=self._hold[0])
@@ -104,7 +104,7 @@ class PageSeat:
         self._joins += 1
 
     def _entry(self, asked: wire.JoinAsk, watching: Access) -> tuple[Access, str, SeatFiles]:
-        """The way to the seat and what it brings; what the page left open is prefilled."""
+        """Return the way to the seat, the team's name and its files; fill in what is missing."""
         token, name = asked.token, asked.name
         files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
         prefill = self._prefill
@@ -123,7 +123,7 @@ class PageSeat:
 
     def _tell(self, seat: dict[str, Any], joins: int) -> None:
         if joins != self._joins:
-            return  # of a seat that the page has no more
+            return  # an older seat of this page
         self._viewer.send(wire.map_message(Kind.SEAT, seat))
         hold = (seat["seat"], seat["hold"])
         if hold != self._hold:

@@ -1,8 +1,8 @@
-"""uvicorn's WebSocket, with what a fan-out to hundreds of pages needs besides.
+"""uvicorn's WebSocket, extended for sending to hundreds of pages.
 
-A message to a page is made once, as the bytes of its WebSocket frame, and written to
-all of them: through ASGI each of 300 pages would cost a task's turn 25 times a second.
-The socket knows whether a page keeps up, so that it is given no more than it takes.
+A message to a page is made once, as the bytes of its WebSocket frame, and written to all of them.
+Through ASGI, each of 300 pages would need a task switch 25 times a second. The socket knows whether
+a page keeps up, so that it gets no more than it can take.
 """
 
 import socket
@@ -14,12 +14,13 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 from websockets.http11 import Request
 
 KEPT_BYTES = 1 << 20
-"""A page for which more than this waits has gone, or is hopeless: it is cut off."""
+"""Most bytes that may wait for a page; a page with more has gone or is hopeless, and is cut off."""
 _UNSENT_BYTES = 4096
-"""What the system may hold back before a page counts as slow: a dozen frames."""
+"""Bytes that the system may hold back before a page counts as slow: a dozen frames."""
 _UNANSWERED_S = 1.0
-"""A page that has not answered a ping for so long gets no frames until it does: what lies in
-between, and whatever keeps it, never fills with old frames."""
+"""Longest time to answer a ping. A page that takes longer gets no frames until it answers, so that
+buffers on the way, however large, never fill with old frames.
+"""
 _WATCHED_PING_S = 0.3
 
 
@@ -27,12 +28,12 @@ class PageSocket(WebSocketsSansIOProtocol):
     """A WebSocket that takes finished frames; found as `websocket.state.socket`."""
 
     heard_s = 0.0
-    """When anything came from the page, by the loop's clock."""
+    """Time when the page last sent anything, on the loop's clock."""
     drained: Callable[[], None] | None = None
-    """Called when all that was written has gone out, after a time in which it had not."""
+    """Called when everything written has been sent, after a time in which some waited."""
 
     def connection_made(self, transport: BaseTransport) -> None:
-        """Take the connection over; see `asyncio.Protocol`."""
+        """Take over a connection; see `asyncio.Protocol`."""
         super().connection_made(transport)
         self.heard_s = self.loop.time()
         cast(Transport, transport).set_write_buffer_limits(high=0)
@@ -47,19 +48,19 @@ class PageSocket(WebSocketsSansIOProtocol):
             self.scope["state"]["socket"] = self
 
     def data_received(self, data: bytes) -> None:
-        """Take bytes in; see `asyncio.Protocol`."""
+        """Take in bytes; see `asyncio.Protocol`."""
         self.heard_s = self.loop.time()
         super().data_received(data)
 
     def resume_writing(self) -> None:
-        """All is sent; see `asyncio.Protocol`."""
+        """Continue after everything was sent; see `asyncio.Protocol`."""
         super().resume_writing()
         if self.drained is not None:
             self.drained()
 
     @property
     def keeps_up(self) -> bool:
-        """Whether all that was written has gone out, and the page shows that it takes it."""
+        """True if everything written has been sent and the page answers its pings."""
         if self.transport.get_write_buffer_size():
             return False
         if self.pending_ping_payload is None:
@@ -67,7 +68,7 @@ class PageSocket(WebSocketsSansIOProtocol):
         return self.loop.time() - self.ping_sent_at < _UNANSWERED_S
 
     def write(self, framed: bytes) -> None:
-        """Send a finished frame, whatever waits already."""
+        """Send a finished frame, even if others still wait."""
         if self.close_sent or self.transport.is_closing():
             return
         if self.transport.get_write_buffer_size() > KEPT_BYTES:
@@ -76,7 +77,7 @@ class PageSocket(WebSocketsSansIOProtocol):
         self.transport.write(framed)
 
     def watch_closely(self) -> None:
-        """Ping the page several times a second: somebody steers a robot from it."""
+        """Ping the page several times a second, because somebody steers a robot from it."""
         if self.ping_interval != _WATCHED_PING_S:
             self.ping_interval = _WATCHED_PING_S
             self.stop_keepalive()

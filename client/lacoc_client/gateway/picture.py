@@ -1,4 +1,4 @@
-"""What a court said last, as the bytes that its pages get."""
+"""The newest state of a court, as the bytes that its pages get."""
 
 import msgspec
 
@@ -10,7 +10,7 @@ from lacoc_shared.messages import Event
 
 
 class _Frame(msgspec.Struct, array_like=True):
-    """The places of a `Frame` up to its scene; pages read the others."""
+    """The fields of a `Frame` up to its scene; only pages read the others."""
 
     match: int
     beat: int
@@ -24,19 +24,19 @@ class _Frame(msgspec.Struct, array_like=True):
 
 
 class CourtPicture:
-    """A court as a page that comes now is shown it.
+    """A court as a page that comes now sees it.
 
-    Each `take_...` returns what pages are sent, or None if they have it. It raises `BadMessage`
-    if the court's bytes make no sense, and the picture is then as it was.
+    Each `take_...` returns the bytes for pages, or None if they have them. It raises `BadMessage`
+    if the court's bytes can't be decoded; then the picture does not change.
     """
 
     def __init__(self) -> None:
         self.view: CourtView[bytes] = CourtView(lambda _, data: wire.message(Kind.EVENT, data))
-        """What the court has said, and what of it is missing."""
+        """What the court has sent, and what of it is missing here."""
         self.phase = 0
-        """Of the newest frame."""
+        """Phase in the newest frame."""
         self.frame: bytes | None = None
-        """The newest."""
+        """The newest frame."""
         self._health: bytes | None = None
 
     @property
@@ -45,7 +45,7 @@ class CourtPicture:
         return tuple(self.view.log)
 
     def all_but_frame(self) -> tuple[bytes, ...]:
-        """List what a page needs before a frame means something to it."""
+        """Return what a page needs before it can show a frame."""
         view = self.view
         sheet = [] if view.sheet is None else [wire.message(Kind.SHEET, view.sheet)]
         scene = [] if view.scene is None else [_scene(view.scene)]
@@ -66,15 +66,15 @@ class CourtPicture:
         return wire.message(Kind.EVENT, payload) if is_new else None
 
     def take_scene(self, payload: bytes) -> bytes | None:
-        """Take a scene in; one that is not the frame's is for no page."""
+        """Take a scene in; it goes to pages if it belongs to the newest frame."""
         return _scene(payload) if self.view.take_scene(payload) else None
 
     def take_sheet(self, payload: bytes) -> bytes | None:
-        """Take a sheet in; one of another version is for no page."""
+        """Take a sheet in; it goes to pages if it has this version of the protocol."""
         return wire.message(Kind.SHEET, payload) if self.view.take_sheet(payload) else None
 
     def take_health(self, payload: bytes) -> bytes | None:
-        """Take health in; that of another version is for no page."""
+        """Take health in; it goes to pages if the court has this version of the protocol."""
         self.view.see_health(decode(payload, Told, MAX_BYTES))
         if self.view.other_version is not None:
             return None

@@ -1,7 +1,7 @@
-"""The recordings that a gateway gives away: finished ones, and of a match that is over a copy.
+"""The recordings that a gateway serves: finished ones, and copies of matches just over.
 
-A court packs the record of a match when the next one opens. Until then the match that
-everybody has just seen would be missing, so the gateway copies what there is of it.
+A court packs the record of a match when the next one opens. Until then the match that everybody has
+just seen would be missing, so the gateway packs a copy of what is there.
 """
 
 import contextlib
@@ -19,27 +19,27 @@ from lacoc_shared.record.pack import copy_in_background
 from lacoc_shared.record.summary import Summary, summary
 
 _RECORDING = ".mcap"
-_SEGMENT = ".live.mcap"  # of a match that is still being recorded
+_SEGMENT = ".live.mcap"  # a match that is still being recorded
 _KEPT = 2000
 
 
 class Listed(msgspec.Struct, frozen=True):
-    """A recording as it is listed."""
+    """A recording, as it is listed."""
 
     name: str
     bytes: int
     modified: str
-    """ISO 8601, UTC."""
+    """Time of its last change, ISO 8601, UTC."""
     match: Summary | None
-    """What was played; None: the file does not say."""
+    """Summary of the match; None: the file has none."""
 
 
 class Recordings:
     """The recordings of one folder; its methods may be called from any thread.
 
     Args:
-        folder: where they lie; None: there are none.
-        over: gives the ids of the matches that are over at courts and not closed yet.
+        folder: the folder; None: there are no recordings.
+        over: returns the ids of the matches that are over but still open at their courts.
     """
 
     def __init__(self, folder: Path | None, over: Callable[[], Iterable[str]]) -> None:
@@ -51,7 +51,7 @@ class Recordings:
         self._lock = Lock()
 
     def listed(self) -> list[Listed]:
-        """All recordings, the newest first."""
+        """List all recordings, the newest first."""
         with self._lock:
             self._copy()
             found = []
@@ -70,11 +70,11 @@ class Recordings:
             ]
 
     def find(self, name: str) -> Path | None:
-        """A recording by its name; None: there is none."""
+        """Return a recording's path by its name; None if there is none."""
         return self._paths().get(name)
 
     def close(self) -> None:
-        """Forget the copies."""
+        """Delete the copies."""
         for copying in self._copying.values():
             copying.terminate()
             copying.wait()
@@ -92,7 +92,7 @@ class Recordings:
         }
 
     def _copy(self) -> None:
-        """Begin to copy the matches that are over and not packed."""
+        """Start copying the matches that are over and not packed."""
         folder = self._folder
         for match_id in self._over() if folder is not None else ():
             assert folder is not None
@@ -100,7 +100,7 @@ class Recordings:
             if match_id in self._copying or not segments:
                 continue
             out = files.packed_path(Path(self._copies.name), match_id)
-            with contextlib.suppress(OSError):  # no room for another process: it is packed later
+            with contextlib.suppress(OSError):  # no resources for a process: it is packed later
                 self._copying[match_id] = copy_in_background(segments, out)
 
     def _summary(self, path: Path, modified_ns: int, size: int) -> Summary | None:

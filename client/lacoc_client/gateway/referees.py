@@ -1,4 +1,4 @@
-"""Who acts as referee at a court through this gateway: one page, the others watch."""
+"""The referees of a court at this gateway: one page acts, the others watch."""
 
 from collections.abc import Callable
 from typing import TypeVar
@@ -16,13 +16,13 @@ T = TypeVar("T")
 
 
 def as_referee(access: Access, do: Callable[[RefereeClient], T]) -> T:
-    """Ask a court something with a referee's own credentials.
+    """Call a function with a referee's own connection to a court.
 
-    The connection is made for this alone: a decision is rare, and so no gateway keeps a
+    The connection exists for this call only. Decisions are rare, and so a gateway never keeps a
     connection that can decide.
 
     Raises:
-        UserError: if the court refuses, or does not let it in.
+        UserError: if the court refuses, or does not let the referee in.
     """
     with open_client([access.connect], credentials=access.credentials) as session:
         return do(RefereeClient(session, access.court, access.token))
@@ -37,17 +37,17 @@ class Referees:
         self._taken: set[Access] = set()
 
     def knows(self, access: Access) -> bool:
-        """Whether the court has taken this token before."""
+        """Return whether the court has accepted this token before."""
         return access in self._taken
 
     def enter(self, viewer: Viewer, access: Access, by: str) -> None:
-        """A page has shown a token; it acts if nobody does."""
+        """Add a page that has entered with a token; it acts if no other page does."""
         self._entered[viewer] = (access, by)
         self._taken.add(access)
         self._act(self._acting or viewer)
 
     def take_over(self, viewer: Viewer) -> None:
-        """Let this page act.
+        """Let a page act in place of another.
 
         Raises:
             UserError: if it has not entered.
@@ -57,10 +57,10 @@ class Referees:
         self._act(viewer)
 
     def acting(self, viewer: Viewer) -> tuple[Access, str]:
-        """What a page decides with, and in whose name.
+        """Return the access and the name with which a page decides.
 
         Raises:
-            UserError: if it does not act.
+            UserError: if the page does not act.
         """
         if viewer not in self._entered:
             raise UserError(say("gateway.enter-first"))
@@ -71,13 +71,13 @@ class Referees:
         return self._entered[viewer]
 
     def leave(self, viewer: Viewer) -> None:
-        """A page has gone."""
+        """Remove a page; if it acted, nobody acts."""
         if self._entered.pop(viewer, None) is None:
             return
         self._act(None if viewer is self._acting else self._acting)
 
     def state(self, viewer: Viewer) -> bytes:
-        """What a page is told."""
+        """Return the message that tells a page who acts."""
         acting = None if self._acting is None else self._entered[self._acting][1]
         body = {"acting": acting, "mine": viewer is self._acting}
         return wire.map_message(Kind.REFEREE, body)

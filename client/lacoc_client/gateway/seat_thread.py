@@ -1,8 +1,8 @@
-"""A seat that a page holds: a controller on a thread of its own.
+"""A seat held for a page: a controller on a thread of its own.
 
-The thread repeats the command 10 times a second whatever the browser does: a hidden tab
-slows its own timers. It stops with the page: a contestant who is gone stands after a
-second (rules 3), and a page that comes back joins again.
+The thread repeats the command 10 times a second. A page could not: browsers slow the timers of
+hidden tabs. The thread stops when the page goes. Then the robot stands after a second (rules 3),
+and a page that comes back joins again.
 """
 
 import queue
@@ -20,11 +20,11 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
 LOST_AFTER_S = 1.0
-"""A page that was not heard for so long has gone, though nobody closed its connection."""
+"""Silence after which a page counts as gone, though nobody closed its connection."""
 _TELL_S = 0.5
 
 Answer = Callable[[Any, UserError | FileRefused | None], None]
-"""Takes what came of a job: its value, or the error."""
+"""Takes the result of a job: its value, or the error."""
 
 
 class _Job(NamedTuple):
@@ -38,11 +38,11 @@ class SeatThread:
     Args:
         access: the way to the seat.
         team: the team's name.
-        files: makes what it brings, as text, and adds what is to be said of it; called on the
-            thread, as a workbook takes a while.
-        unheard_s: says how long the page was not heard.
-        tell: told how the seat is (see docs/gateway.md, "seat"); on the thread.
-        joined: told what came of the join; on the thread.
+        files: returns the team's files as text, and adds notes about them; called on the thread,
+            because a workbook takes a while.
+        unheard_s: returns how long the page has been silent [s].
+        tell: receives the state of the seat (see docs/gateway.md, "seat"), on the thread.
+        joined: receives the result of the join, on the thread.
     """
 
     def __init__(
@@ -69,13 +69,13 @@ class SeatThread:
         self._thread.start()
 
     def do(self, job: Callable[[Controller], Any], answer: Answer) -> None:
-        """Let the controller do something as soon as it can, in the order it is asked."""
+        """Give the controller a job; jobs are done in order, as soon as possible."""
         self._jobs.put(_Job(job, answer))
         if not self._thread.is_alive():
             self._refuse_rest()
 
     def end(self) -> None:
-        """Stop repeating now; the seat stays the contestant's."""
+        """Stop repeating now; the contestant keeps the seat."""
         self._ended = True
         self._jobs.put(None)
 
@@ -110,7 +110,7 @@ class SeatThread:
                 reason = say("hold.files-refused") if isinstance(told, FileRefused) else told.phrase
                 lost = {"hold": Hold.REFUSED.value, "reason": reason, "round_trip_ms": None}
                 self._tell(self._told | lost)
-            if told is not error:  # a bug, but no page waits for ever
+            if told is not error:  # a bug, but the page must get an answer
                 raise
         finally:
             self._refuse_rest()
@@ -136,7 +136,7 @@ class SeatThread:
             job.answer(value, None)
 
     def _report(self, controller: Controller) -> None:
-        """Say how the seat is: at once when it changed, now and then for the round trip."""
+        """Report the seat: at once when it changed, twice a second at most for the round trip."""
         now_s = time.monotonic()
         trip_ms = controller.round_trip_ms
         told: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""Runs a gateway: opens its port, and serves until it is asked to end."""
+"""Runs a gateway: opens its port and serves until somebody asks it to end."""
 
 import asyncio
 import contextlib
@@ -20,13 +20,13 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 LOOPBACK = "127.0.0.1:0"
-"""Where a gateway listens if nobody says otherwise: for this machine only, on a free port."""
+"""Where a gateway listens by default: on a free port, for this machine only."""
 
 _LISTEN = re.compile(r"(?P<host>\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9_.-]+):(?P<port>[0-9]{1,5})")
 _LOOK_S = 0.1
 _ANY = ("0.0.0.0", "::")
 _PING_S, _GONE_S = 3.0, 20.0
-_BACKLOG = 512  # a hall opens its pages at once
+_BACKLOG = 512  # a whole hall opens its pages at once
 
 
 def listen(where: str) -> socket.socket:
@@ -36,7 +36,7 @@ def listen(where: str) -> socket.socket:
         where: "HOST:PORT"; port 0 takes a free one.
 
     Raises:
-        UserError: if it is no such address, or can't be listened on.
+        UserError: if the address is wrong, or can't be listened on.
     """
     match = _LISTEN.fullmatch(where)
     if match is None or int(match["port"]) > 65_535:
@@ -45,15 +45,15 @@ def listen(where: str) -> socket.socket:
     try:
         found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         family, kind, protocol, _, address = found
-        # Only of a socket that says it is TCP asyncio turns Nagle's algorithm off: else a reply
-        # and the frame after it would wait 40 ms for the page's late acknowledgement.
+        # asyncio turns Nagle's algorithm off only for a socket whose protocol is TCP. With it a
+        # reply and the frame after it would wait 40 ms for the page's delayed acknowledgement.
         opened = socket.socket(family, kind, protocol)
     except OSError as error:
         raise UserError(
             say("gateway.cannot-listen", where=where, why=error.strerror or str(error))
         ) from None
     try:
-        if os.name == "posix":  # elsewhere it would let two programs share a port
+        if os.name == "posix":  # on Windows two programs could share the port
             opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         opened.bind(address)
         opened.listen(_BACKLOG)
@@ -67,7 +67,7 @@ def listen(where: str) -> socket.socket:
 
 
 def url(opened: socket.socket) -> str:
-    """The address of a gateway's pages, as others can call it."""
+    """Return the address of a gateway's pages, as other machines can open it."""
     host, port = opened.getsockname()[:2]
     if host in _ANY:
         host = own_address()
@@ -75,22 +75,22 @@ def url(opened: socket.socket) -> str:
 
 
 def own_address() -> str:
-    """This machine's number in its network; 127.0.0.1 if it is in none."""
+    """Return this machine's IP address in its network; 127.0.0.1 if it is in none."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
-            probe.connect(("192.0.2.1", 9))  # sends nothing: asks which way it would go
+            probe.connect(("192.0.2.1", 9))  # sends nothing: it only finds the route
         except OSError:
             return "127.0.0.1"
         return str(probe.getsockname()[0])
 
 
 def serve(home: Home, opened: socket.socket, stopping: Callable[[], bool]) -> None:
-    """Serve pages until `stopping` says so.
+    """Serve pages until `stopping` returns True.
 
     Args:
         home: the gateway's settings.
-        opened: the port, see `listen`.
-        stopping: asked several times a second.
+        opened: the port; see `listen`.
+        stopping: called several times a second.
     """
     asyncio.run(_serve(home, opened, stopping))
 
@@ -129,7 +129,7 @@ async def _await_end(server: uvicorn.Server, stopping: Callable[[], bool]) -> No
 class _Server(uvicorn.Server):
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Leave signals to `stop_signals`: uvicorn would end the process by them."""
+        """Leave signals to `stop_signals`: uvicorn's handlers would end the process."""
         yield
 
 
@@ -138,8 +138,8 @@ def run(home: Home, opened: socket.socket, ready: Callable[[], None]) -> None:
 
     Args:
         home: the gateway's settings.
-        opened: the port.
-        ready: called when signals are looked after; says where the pages are.
+        opened: the port; see `listen`.
+        ready: called once signals are handled; it prints where the pages are.
     """
     with opened, stop_signals() as stopping:
         ready()

@@ -22,9 +22,9 @@ from lacoc_client.gateway.recordings import Recordings
 from lacoc_shared.words import say
 
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay")
-"""Each is the same file, which looks at its own path."""
+"""Paths that serve the same file, which looks at its own path."""
 
-_FOR_EVER = "public, max-age=31536000, immutable"  # the names of assets carry their hash
+_FOR_EVER = "public, max-age=31536000, immutable"  # names of assets contain their hash
 _MCAP = "application/octet-stream"
 
 
@@ -61,7 +61,7 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         return _not_found(request) if file is None else _response(request, file, _FOR_EVER)
 
     async def top_file(request: Request) -> Response:
-        """What stands beside index.html: the icon."""
+        """Serve a file beside index.html: the icon."""
         file = await asyncio.to_thread(files.find, request.path_params["name"])
         return _not_found(request) if file is None else _response(request, file, "max-age=3600")
 

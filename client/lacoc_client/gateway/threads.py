@@ -1,4 +1,4 @@
-"""Threads for what asks a court and waits, so that the event loop never does."""
+"""Threads for calls that wait for a court, so that the event loop never waits."""
 
 import asyncio
 from collections.abc import Callable
@@ -9,10 +9,10 @@ T = TypeVar("T")
 
 
 class Threads:
-    """A few threads; who comes when all are busy waits for one.
+    """A few threads; a call waits while all are busy.
 
     Args:
-        count: how many.
+        count: number of threads.
     """
 
     def __init__(self, count: int) -> None:
@@ -23,5 +23,5 @@ class Threads:
         return await asyncio.get_running_loop().run_in_executor(self._pool, do)
 
     def close(self) -> None:
-        """Take nothing more on; what runs is left to end."""
+        """Accept no more calls; those that run may finish."""
         self._pool.shutdown(wait=False, cancel_futures=True)

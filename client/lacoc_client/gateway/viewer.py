@@ -1,4 +1,4 @@
-"""One page: how often it gets a frame, and what may act through it."""
+"""One page: how often it gets a frame, and whether it may act."""
 
 import time
 from dataclasses import dataclass
@@ -7,25 +7,25 @@ from lacoc_client.gateway.page_socket import PageSocket
 
 LEAST_HZ, MOST_HZ = 1.0, 50.0
 USUAL_HZ = 25.0
-"""For who watches."""
+"""Frame rate of pages that only watch."""
 
 _EARLY_S = 0.01  # half a beat: frames come with some jitter
 
 
 @dataclass
 class Frames:
-    """What became of the frames that were due."""
+    """Counts of the frames that were due for pages."""
 
     sent: int = 0
     dropped: int = 0
-    """The page was too slow for them and got a newer one."""
+    """Frames that a page was too slow for; it got a newer one."""
 
 
 class Viewer:
     """A page's place in a feed.
 
-    Frames have one slot: while the page is too slow, the newest takes the place of the one before
-    it. Everything else is written at once, and a page that does not take it is cut off.
+    Frames have one slot: while the page is too slow, a newer frame replaces the waiting one.
+    Everything else is written at once; a page that does not take it is cut off.
 
     Args:
         socket: the page's WebSocket.
@@ -38,21 +38,21 @@ class Viewer:
         self._next_s = 0.0
         self.frames = Frames()
         self.can_act = False
-        """Whether it showed the key of this run."""
+        """Whether the page showed the gateway's key."""
         socket.drained = self._send_slot
 
     def rate(self, hz: float) -> None:
-        """Get so many frames a second, within bounds."""
-        # A NaN is not below anything: it ends as the most.
+        """Set the frames a second, within bounds."""
+        # Comparisons with NaN are False, so it becomes the highest rate.
         self._interval_s = 1 / (MOST_HZ if not hz < MOST_HZ else max(LEAST_HZ, hz))
         self._next_s = 0.0
 
     def at_least(self, hz: float) -> None:
-        """Get no fewer frames than this a second."""
+        """Raise the frames a second to at least `hz`."""
         self.rate(max(hz, 1 / self._interval_s))
 
     def offer(self, framed: bytes, now_s: float) -> None:
-        """Take a frame, if it is time for one."""
+        """Send or store a frame, if one is due."""
         next_s = self._next_s
         if now_s < next_s - _EARLY_S:
             return
@@ -66,20 +66,20 @@ class Viewer:
             self._slot = framed
 
     def send(self, framed: bytes) -> None:
-        """Send what must arrive."""
+        """Send a message that must arrive."""
         self._socket.write(framed)
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Send what another message will soon replace."""
+        """Send a message that another will soon replace."""
         if self._socket.keeps_up:
             self._socket.write(framed)
 
     def watch_closely(self) -> None:
-        """Look several times a second whether the page is there."""
+        """Check several times a second that the page is there."""
         self._socket.watch_closely()
 
     def unheard_s(self) -> float:
-        """How long nothing has come from the page; may be asked from any thread."""
+        """Return how long the page has sent nothing [s]; may be called from any thread."""
         return time.monotonic() - self._socket.heard_s
 
     def _send_slot(self) -> None:

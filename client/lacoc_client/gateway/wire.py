@@ -1,7 +1,7 @@
-"""Messages between the gateway and a page (docs/gateway.md has them as tables).
+"""Messages between the gateway and a page (docs/gateway.md lists them).
 
-To a page: one byte of kind, then the payload; a court's messages go on as they came.
-From a page: a msgpack map with its `id` and what to `do`; each is answered by a reply.
+To a page: one byte of kind, then the payload; messages of a court are passed on unchanged. From a
+page: a msgpack map with its `id` and what to `do`; each is answered by a reply.
 """
 
 from enum import IntEnum
@@ -19,24 +19,24 @@ from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import Phrase, say
 
 JOIN_BYTES = JOIN_MAX_BYTES
-"""A longer message of a page closes its connection."""
+"""Longest message of a page; a longer one closes its connection."""
 REQUEST_BYTES = 4096
-"""A longer message that is no join is refused."""
+"""Longest message that is not a join; a longer one is refused."""
 
 
 FAULT = say("gateway.fault")
 
 
 class Unreadable(UserError):
-    """What a page sent is nothing that can be asked."""
+    """A page sent something that is no known request."""
 
 
 class TokenRefused(UserError):
-    """A court does not take a referee's token: to show the same one again is of no use."""
+    """A court refuses a referee's token: showing the same one again is useless."""
 
 
 class Kind(IntEnum):
-    """What a message to a page is."""
+    """Kinds of messages to a page."""
 
     WELCOME = 1
     FRAME = 2
@@ -62,7 +62,7 @@ class _Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
 
 
 class Watch(_Ask, frozen=True, kw_only=True, tag="watch"):
-    """The first message: which court, how often, and what lets the page act."""
+    """The first message: which court, how many frames a second, and the key to act with."""
 
     court: _Short | None = None
     hz: float | None = None
@@ -70,13 +70,13 @@ class Watch(_Ask, frozen=True, kw_only=True, tag="watch"):
 
 
 class Rate(_Ask, frozen=True, kw_only=True, tag="rate"):
-    """Frames a second."""
+    """Set the frames a second."""
 
     hz: float
 
 
 class Ping(_Ask, frozen=True, kw_only=True, tag="ping"):
-    """Ask for a sign of life."""
+    """Ask for a reply, as a sign of life."""
 
     t: float | int | str | None = None
 
@@ -91,7 +91,9 @@ class JoinAsk(_Ask, frozen=True, kw_only=True, tag="join"):
     postures: SentFile | None = None
     locomotion: SentFile | None = None
     sequences: tuple[tuple[_Digit, ...], ...] | None = None
-    """Level B of the postures, where there is no locomotion file; None: as the sample's keys."""
+    """Postures of each key of level B, if there is no locomotion file; None: as in the sample's
+    keys.
+    """
 
 
 class ReadyAsk(_Ask, frozen=True, kw_only=True, tag="ready"):
@@ -112,14 +114,14 @@ class KeyAsk(_Ask, frozen=True, kw_only=True, tag="key"):
 
 
 class EnterAsk(_Ask, frozen=True, kw_only=True, tag="enter"):
-    """Open the referee's desk."""
+    """Enter as a referee."""
 
     token: _Token
     by: _Short
 
 
 class TakeOver(_Ask, frozen=True, kw_only=True, tag="take_over"):
-    """Act as referee from now on, in the place of another page."""
+    """Act as referee from now on, in place of another page."""
 
 
 class DecideAsk(_Ask, frozen=True, kw_only=True, tag="decide"):
@@ -132,7 +134,7 @@ class DecideAsk(_Ask, frozen=True, kw_only=True, tag="decide"):
 Asked = (
     Watch | Rate | Ping | JoinAsk | ReadyAsk | LeaveAsk | KeyAsk | EnterAsk | TakeOver | DecideAsk
 )
-"""Whatever a page asks."""
+"""Every request of a page."""
 
 
 class _AnyId(msgspec.Struct):
@@ -149,10 +151,10 @@ _any_do = msgspec.msgpack.Decoder(_AnyDo)
 
 
 def read(data: bytes) -> Asked:
-    """Read what a page asks.
+    """Decode a request of a page.
 
     Raises:
-        Unreadable: if it is nothing that can be asked, or too long for what it is.
+        Unreadable: if it is no known request, or too long for its kind.
     """
     try:
         if len(data) > REQUEST_BYTES and _any_do.decode(data).do != "join":
@@ -164,7 +166,7 @@ def read(data: bytes) -> Asked:
 
 
 def read_id(data: bytes) -> int | None:
-    """The id of a message that can't be read otherwise; None: it has none."""
+    """Return the id of a message that can't be decoded otherwise; None if it has none."""
     try:
         return _any_id.decode(data).id
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
@@ -172,7 +174,7 @@ def read_id(data: bytes) -> int | None:
 
 
 def message(kind: Kind, payload: bytes) -> bytes:
-    """A message to a page, as the WebSocket frame that carries it: made once for all pages."""
+    """Make a message to a page, as a finished WebSocket frame: made once for all pages."""
     size = len(payload) + 1
     if size < 126:
         head = bytes((0x82, size, kind))
@@ -184,12 +186,12 @@ def message(kind: Kind, payload: bytes) -> bytes:
 
 
 def map_message(kind: Kind, value: dict[str, Any]) -> bytes:
-    """A message of the gateway's own, as a WebSocket frame."""
+    """Make a message of the gateway's own, as a WebSocket frame."""
     return message(kind, encode(value))
 
 
 def files_message(own: OwnFiles, used: int | None = None) -> bytes:
-    """Tell a page which files lie on this machine.
+    """Make the message that tells a page which files are on this machine.
 
     Args:
         own: the files.
@@ -209,12 +211,12 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
 
 
 def reply(to: int, value: Any) -> bytes:
-    """The answer to what was asked."""
+    """Make the answer to a request."""
     return map_message(Kind.REPLY, {"id": to, "ok": True, "value": value})
 
 
 def refusal(to: int, error: UserError | FileRefused) -> bytes:
-    """The answer to what was not done."""
+    """Make the answer to a request that was not done."""
     mistakes = error.mistakes if isinstance(error, FileRefused) else []
     body = {
         "id": to,

@@ -1,7 +1,7 @@
-"""The field from above in the characters of a terminal: two pixels a character.
+"""The field from above, drawn with the characters of a terminal: two pixels a character.
 
-Whose a marker is, and which robot is whose, is told by letters too: nothing depends on
-colours, and a terminal without colours shows shades instead.
+Letters also tell whose a marker or a robot is, so nothing depends on colours. A terminal without
+colours shows shades instead.
 """
 
 import math
@@ -31,11 +31,11 @@ FALLEN: _Rgb = (58, 62, 68)
 INK_DARK, INK_LIGHT = (16, 18, 20), (245, 245, 245)
 
 _ROBOT_RADIUS_M = 0.12
-"""With its feet; the ring around it is a pixel wide."""
+"""Radius of a robot with its feet; a ring one pixel wide surrounds it."""
 _ARROWS = "→↗↑↖←↙↓↘"  # counter-clockwise from +x
 _SHADES = {"floor": " ", "wall": "█", "neutral": "·", "left": "░", "right": "▒", "down": " "}
-_SAMPLES = 4  # a pixel's edge is looked at in so many places
-_MARGIN_M = 0.15  # around the markers, where the scene has no floor
+_SAMPLES = 4  # samples across a pixel, for smooth edges
+_MARGIN_M = 0.15  # around the markers, if the scene has no floor
 
 
 class Field(NamedTuple):
@@ -48,7 +48,7 @@ class Field(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene, sheet: Sheet) -> "Field":
-        """The floor of a scene, or what is around the markers if it has none."""
+        """Return the floor of a scene, or the area around the markers if it has none."""
         for geom in scene.geoms:
             if geom.type == "plane" and min(geom.size[:2]) > 0:
                 return cls(geom.pos[0], geom.pos[1], geom.size[0], geom.size[1])
@@ -58,7 +58,7 @@ class Field(NamedTuple):
 
 
 class _Mark(NamedTuple):
-    """A character written over the picture."""
+    """A character drawn over the picture."""
 
     x_m: float
     y_m: float
@@ -68,11 +68,11 @@ class _Mark(NamedTuple):
 
 
 class Grid:
-    """Where things lie in a picture of some size; shared by the pictures of a match.
+    """The pixels of a picture of some size; shared by the pictures of a match.
 
     Args:
         field: the floor.
-        rows: height of the picture in lines of text; one pixel all round is wall.
+        rows: height of the picture in lines of text; its outermost pixels are wall.
     """
 
     def __init__(self, field: Field, rows: int) -> None:
@@ -88,28 +88,28 @@ class Grid:
         self._circles: dict[tuple[float, float, float], _Image] = {}
 
     def circle(self, x_m: float, y_m: float, radius_m: float) -> _Image:
-        """How much of each pixel a circle covers, 0 to 1: (height, width)."""
+        """Return how much of each pixel a circle covers, 0 to 1: (height, width)."""
         inside = (self._x_m - x_m) ** 2 + (self._y_m[:, None] - y_m) ** 2 <= radius_m**2
         samples = inside.reshape(self.height, _SAMPLES, self.width, _SAMPLES)
         covered: _Image = samples.mean(axis=(1, 3))
         return covered
 
     def marker(self, marker: MarkerInfo) -> _Image:
-        """As `circle`, for something that stays where it is."""
+        """Return what `circle` does for a marker; cached, because a marker does not move."""
         place = (marker.x_m, marker.y_m, marker.radius_m)
         if place not in self._circles:
             self._circles[place] = self.circle(*place)
         return self._circles[place]
 
     def cell(self, x_m: float, y_m: float) -> tuple[int, int]:
-        """Row and column of the character at a point."""
+        """Return row and column of the character at a point."""
         field = self.field
         column = 1 + (x_m - field.x_m + field.half_x_m) / self.pixel_m
         line = 1 + (field.y_m + field.half_y_m - y_m) / self.pixel_m
         return int(line / 2), int(column)
 
     def base(self) -> _Image:
-        """An empty floor with its walls."""
+        """Return an empty floor with its walls: (height, width, 3)."""
         image = np.empty((self.height, self.width, 3))
         image[:] = WALL
         image[1:-1, 1:-1] = FLOOR
@@ -117,11 +117,11 @@ class Grid:
 
 
 class BoardPicture:
-    """A frame, drawn; printed with rich.
+    """A picture of a frame, for printing with rich.
 
     Args:
-        grid: the size.
-        frame: what to draw.
+        grid: the pixels of the picture.
+        frame: the frame.
         sheet: the sheet of that frame.
     """
 
@@ -149,7 +149,7 @@ class BoardPicture:
         if marker.radius_m > self._grid.pixel_m:
             self._fill(self._grid.marker(marker), colour, _SHADES[name])
             ink, bold = _ink(colour), False
-        else:  # too small to be a shape: its letter stands for it
+        else:  # too small for a shape: only a letter
             ink = INK_LIGHT if name == "neutral" else _mix(colour, INK_LIGHT, 0.2)
             bold = name == "neutral"
         points = str(marker.points) if marker.points > 1 or bold else ""
@@ -162,7 +162,7 @@ class BoardPicture:
         inner_m = _ROBOT_RADIUS_M - self._grid.pixel_m
         self._fill(self._grid.circle(x_m, y_m, _ROBOT_RADIUS_M), INK_LIGHT, " ")
         self._fill(self._grid.circle(x_m, y_m, inner_m), colour, " ")
-        # What lies below it is hidden.
+        # The robot hides what lies below it.
         self._marks = [
             mark
             for mark in self._marks
@@ -206,7 +206,7 @@ class BoardPicture:
 
 
 def seat_letters(ids: Sequence[str]) -> list[str]:
-    """A letter for each seat, such as L and R; numbers where two seats begin alike."""
+    """Return a letter for each seat, such as L and R; numbers if two seats begin alike."""
     letters = [name[:1].upper() for name in ids]
     if len(set(letters)) == len(letters):
         return letters
@@ -219,7 +219,7 @@ def _style(front: _Rgb, back: _Rgb, bold: bool = False) -> Style:
 
 
 def _joined(segments: list[Segment]) -> Iterator[Segment]:
-    """Neighbours of one style as one segment."""
+    """Merge neighbours of the same style into one segment."""
     text, style = "", None
     for segment in segments:
         if segment.style is not style and text:
@@ -240,6 +240,6 @@ def _mix(colour: _Rgb, other: _Rgb, part: float) -> _Rgb:
 
 
 def _ink(back: _Rgb) -> _Rgb:
-    """Dark or light, whichever can be read on a colour."""
+    """Return dark or light ink, whichever can be read on a colour."""
     red, green, blue = back
     return INK_DARK if 0.3 * red + 0.59 * green + 0.11 * blue > 110 else INK_LIGHT

@@ -22,7 +22,7 @@ _SIDE_MIN = 30
 
 
 class BoardView:
-    """Draws a court again and again, in one place."""
+    """Draws a court again and again, in the same place."""
 
     events_above = False
 
@@ -34,12 +34,12 @@ class BoardView:
         self._grid: Grid | None = None
 
     def draw(self, view: Spectator, events: Sequence[Event], silent_s: float) -> RenderableType:
-        """The picture for now.
+        """Draw the present state.
 
         Args:
             view: the court.
-            events: those that are new.
-            silent_s: how long no frame has come.
+            events: the new events.
+            silent_s: how long no frame has come [s].
         """
         self._events.extend(events)
         line = self._line.draw(view, events, silent_s)
@@ -57,11 +57,11 @@ class BoardView:
         return both
 
     def _fitting_grid(self, view: Spectator) -> Grid | None:
-        """The largest grid that the terminal has room for."""
+        """Return the largest grid that fits the terminal."""
         if view.sheet.scene != self._scene or self._field is None:
             try:
                 self._field = Field.of(view.scene(), view.sheet)
-            except UserError:  # the court is away: there is a line that says so
+            except UserError:  # the court is away; a line of the picture says so
                 return self._grid
             self._scene, self._grid = view.sheet.scene, None
         field, (width, height) = self._field, screen.stdout.size
@@ -74,7 +74,7 @@ class BoardView:
 
 
 def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
-    """The score, line by line."""
+    """Return the score, line by line."""
     phase = Phase(frame.phase)
     left = "left" if sheet.duration_s else "played"
     lines = [
@@ -107,7 +107,7 @@ def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
 
 
 def _latest(events: Sequence[Event], sheet: Sheet, rows: int, width: int) -> list[Text]:
-    """The latest events that fit, whole, the newest last."""
+    """Return the latest events that fit as a whole, the newest last."""
     shown: list[Text] = []
     for event in reversed(events):
         clock, text = event_columns(event, sheet)

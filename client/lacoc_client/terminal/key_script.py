@@ -1,9 +1,8 @@
-"""Keys from a pipe: a little language, so that a file or a program can play.
+"""Keys from a pipe: a small language, so that a file or a program can play.
 
-A line holds keys: `2`, or `tab 1`, or `1 2 3 4` (also `1234`), one after another. A number
-with a point before them is a time: `1.5 3` presses 3 a second and a half after the keys before.
-The time runs only while the match is played, and keys that move the robot wait until it is.
-`#` begins a remark.
+A line holds keys: `2`, or `tab 1`, or `1 2 3 4` (also `1234`), one after another. A number with a
+point before them is a time: `1.5 3` presses 3 a second and a half after the keys before. Time runs
+only while the match is played; keys that move the robot wait until then. `#` begins a comment.
 """
 
 import math
@@ -15,7 +14,7 @@ from typing import NamedTuple
 
 NAMED = ("tab", "space", "up", "down", "left", "right")
 MOVING = frozenset("0123456789x") | {"up", "down", "left", "right"}
-"""Keys that mean something only while the match is played."""
+"""Keys that have an effect only while the match is played."""
 _LETTERS = frozenset("xzrq")
 _READ_BYTES = 4096
 
@@ -26,21 +25,21 @@ class _Step(NamedTuple):
 
 
 class KeyScript:
-    """The keys of a script, each when it is its turn."""
+    """The keys of a script, each when it is due."""
 
     def __init__(self) -> None:
         self._steps: deque[_Step] = deque()
         self._since_s = 0.0
-        """Seconds of play at which the last key was due: times are counted from there."""
+        """Seconds of play at which the last key was due; times count from there."""
         self._moved_s = -1.0
         """Seconds of play at which the last key that moves the robot was pressed."""
         self._lines = 0
 
     def add(self, line: str) -> str:
-        """Take a line in.
+        """Take in a line.
 
         Returns:
-            What is wrong with it, if it is left out; else "".
+            What is wrong with the line, which is then left out; else "".
         """
         self._lines += 1
         words = line.partition("#")[0].lower().split()
@@ -56,10 +55,10 @@ class KeyScript:
         return ""
 
     def due(self, playing_s: float, playing: bool) -> list[str]:
-        """The keys whose turn it is: of those that move the robot one for each tick.
+        """Return the keys that are due; of those that move the robot at most one a tick.
 
         Args:
-            playing_s: for how long the match has been played.
+            playing_s: how long the match has been played [s].
             playing: whether it is being played.
         """
         keys: list[str] = []
@@ -78,14 +77,14 @@ class KeyScript:
 
     @property
     def empty(self) -> bool:
-        """No key waits."""
+        """True if no key is waiting."""
         return not self._steps
 
 
 class PipeKeys:
     """The keys of a script that comes through a pipe.
 
-    A pipe can't be looked into on every system, so a thread reads it; it does nothing else.
+    Not every system can tell whether a pipe has data, so a thread does nothing but read it.
     """
 
     def __init__(self, descriptor: int) -> None:
@@ -97,11 +96,11 @@ class PipeKeys:
 
     @property
     def ended(self) -> bool:
-        """The script was read and every key of it was pressed."""
+        """True if the script was read and all its keys were pressed."""
         return self._read_all and self._script.empty
 
     def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
-        """See `terminal_keys.Keys`."""
+        """Return the keys that are due; see `keys.Keys`."""
         try:
             while True:
                 line = self._lines.get(timeout=timeout_s)
@@ -114,7 +113,7 @@ class PipeKeys:
             return self._script.due(playing_s, playing)
 
     def take_said(self) -> list[str]:
-        """See `terminal_keys.Keys`."""
+        """Return what is wrong with the script; see `keys.Keys`."""
         said, self._said = self._said, []
         return said
 
@@ -140,7 +139,7 @@ def _known(key: str) -> bool:
 
 
 def _number(word: str) -> float | None:
-    if "." not in word:  # "1 2 3 4" are keys
+    if "." not in word:  # without a point these are keys: "1 2 3 4"
         return None
     try:
         return float(word)

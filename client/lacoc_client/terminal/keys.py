@@ -1,6 +1,6 @@
 """Keys from a terminal, one by one, as they are pressed.
 
-The terminal is in its usual state again when this is left, however that happens.
+Afterwards the terminal is in its usual state again, also after an error.
 """
 
 import codecs
@@ -40,34 +40,34 @@ _WINDOWS_LOOK_S = 0.005
 
 
 class Keys(Protocol):
-    """Where keys come from."""
+    """A source of keys."""
 
     @property
     def ended(self) -> bool:
-        """No more will come."""
+        """True if no more keys will come."""
 
     def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
         """Wait a little for keys: digits and letters as they are, others by name.
 
         Args:
-            timeout_s: how long at most.
-            playing_s: for how long the match has been played; a script's clock.
+            timeout_s: longest wait [s].
+            playing_s: how long the match has been played [s]; a script's clock.
             playing: whether it is being played.
         """
 
     def take_said(self) -> list[str]:
-        """What is wrong with the input, since this was last called."""
+        """Return what was wrong with the input since the last call."""
 
 
 class KeyDecoder:
-    """Bytes of a terminal to names of keys."""
+    """Turns the bytes of a terminal into names of keys."""
 
     def __init__(self) -> None:
         self._decoder = codecs.getincrementaldecoder("utf-8")(errors="replace")
         self._rest = ""
 
     def feed(self, data: bytes) -> list[str]:
-        """Decode what was read; half an escape sequence waits for its other half."""
+        """Decode bytes; half an escape sequence waits for its other half."""
         text = self._rest + self._decoder.decode(data)
         self._rest = ""
         keys: list[str] = []
@@ -89,7 +89,7 @@ class KeyDecoder:
 
 
 def key_name(character: str) -> str | None:
-    """The name of a character's key, also where a Japanese input method is on."""
+    """Return the name of a character's key, also if a Japanese input method is on."""
     character = narrow(character)
     return _NAMES.get(character) or (character.lower() if character.isprintable() else None)
 
@@ -112,7 +112,7 @@ def open_keys() -> Iterator[Keys]:
 
 
 class _PosixKeys:
-    """Keys of a terminal that gives each character at once."""
+    """Keys of a terminal that delivers each character at once."""
 
     def __init__(self, descriptor: int) -> None:
         self.ended = False

@@ -24,7 +24,7 @@ PHASE_STYLES = {
 
 
 class LineView:
-    """One live line: phase, clock, teams, score, and what happened last."""
+    """One live line: phase, clock, teams, score and the newest event."""
 
     events_above = True
 
@@ -32,12 +32,12 @@ class LineView:
         self._last = ""
 
     def draw(self, view: Spectator, events: Sequence[Event], silent_s: float) -> RenderableType:
-        """The line for now.
+        """Draw the present state.
 
         Args:
             view: the court.
-            events: those that are new.
-            silent_s: how long no frame has come.
+            events: the new events.
+            silent_s: how long no frame has come [s].
         """
         if events:
             self._last = render(events[-1].said)
@@ -54,25 +54,25 @@ class LineView:
 
 
 def status_line(frame: Frame, sheet: Sheet) -> Text:
-    """Phase, clock, teams and score."""
+    """Return a line of phase, clock, teams and score."""
     phase = Phase(frame.phase)
     line = Text.assemble(
         (f" {phase.name} ", PHASE_STYLES.get(phase, "")),
         (f" {words.match_clock(frame, sheet)} ", "bold"),
     )
     names = words.teams(sheet)
-    if len(frame.seats) == 1:  # practice: no points to win
+    if len(frame.seats) == 1:  # practice has no points
         return line.append_text(Text.assemble(("■ ", sheet.seats[0].colour), names[0]))
     for index, (info, seat) in enumerate(zip(sheet.seats, frame.seats, strict=False)):
         if index:
             line.append(" : ", "dim")
         parts = [("■ ", info.colour), (names[index], ""), (f" {seat.score}", "bold")]
-        if index == len(frame.seats) - 1 and index:  # the scores stand side by side
+        if index == len(frame.seats) - 1 and index:  # puts both scores side by side
             parts = [(f"{seat.score} ", "bold"), (names[index], ""), (" ■", info.colour)]
         line.append_text(Text.assemble(*parts))
     return line
 
 
 def event_columns(event: Event, sheet: Sheet) -> tuple[Text, Text]:
-    """When something happened, and what, as the log has it."""
+    """Return the time and the text of an event, as in the log."""
     return Text(f"{words.event_clock(event, sheet):>7}  ", "dim"), Text(render(event.said))

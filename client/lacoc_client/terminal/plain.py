@@ -27,15 +27,15 @@ from lacoc_shared.words import render
 
 
 def frame_dict(frame: Frame, sheet: Sheet) -> dict[str, Any]:
-    """Put a frame into words.
+    """Turn a frame into plain values.
 
     Args:
         frame: the frame.
         sheet: the sheet that belongs to it.
 
     Returns:
-        Its values by name; lengths in metres, times in seconds, angles in degrees. `poses` is
-        empty while there are no robots, and where the sheet belongs to another scene.
+        Its values by name; lengths in metres, times in seconds, angles in degrees. `poses` is empty
+        while there are no robots, and if the sheet belongs to another scene.
     """
     used_s = frame.clock_ticks * BEAT_S
     return {
@@ -53,7 +53,7 @@ def frame_dict(frame: Frame, sheet: Sheet) -> dict[str, Any]:
 
 
 def event_dict(event: Event, sheet: Sheet) -> dict[str, Any]:
-    """Give an event plain values: code and values, the words, seat by name, clock in seconds."""
+    """Turn an event into plain values: code, values, text, seat by name, clock in seconds."""
     plain: dict[str, Any] = msgspec.to_builtins(event) | {"text": render(event.said)}
     del plain["clock_ticks"]
     plain["clock_s"] = round(event.clock_ticks * BEAT_S, 2)
@@ -62,13 +62,13 @@ def event_dict(event: Event, sheet: Sheet) -> dict[str, Any]:
 
 
 def reply_dict(reply: DecisionReply) -> dict[str, Any]:
-    """Give the answer to a decision plain values, with the words as `text`."""
+    """Turn the reply to a decision into plain values, with its sentence as `text`."""
     plain: dict[str, Any] = msgspec.to_builtins(reply)
     return plain | {"text": render(reply.said)}
 
 
 def marker_states(frame: Frame, sheet: Sheet) -> dict[str, str]:
-    """The state of each marker by its name."""
+    """Return the state of each marker by its name."""
     if 4 * len(frame.markers) < len(sheet.markers):
         return {}
     states = unpack_states(frame.markers, len(sheet.markers))
@@ -79,7 +79,7 @@ def marker_states(frame: Frame, sheet: Sheet) -> dict[str, str]:
 
 
 def poses(frame: Frame, sheet: Sheet) -> dict[str, dict[str, float]]:
-    """Where each seat's robot is: x_m, y_m, z_m, and the heading of its body's +y.
+    """Return each robot's position in the world's frame [m] and the heading of its body's +y.
 
     The heading counts counter-clockwise from the world's +x [deg].
     """

@@ -1,4 +1,4 @@
-"""Hold a seat from a terminal: keys in, one picture of the match out (rules 3)."""
+"""Holds a seat from a terminal: reads keys and draws the match (rules 3)."""
 
 import time
 from collections import deque
@@ -41,8 +41,8 @@ class TerminalPlay:
 
     Args:
         controller: holds the seat.
-        keys: where keys come from.
-        folder: where Pos-data.txt goes.
+        keys: the source of keys.
+        folder: folder of Pos-data.txt.
     """
 
     def __init__(self, controller: Controller, keys: Keys, folder: Path) -> None:
@@ -84,7 +84,7 @@ class TerminalPlay:
         self._leave()
 
     def _step(self) -> list[Text]:
-        """Take in keys, frames and events; returns the lines that are to stand above."""
+        """Take in keys, frames and events; return the lines to print above the live picture."""
         controller = self._controller
         frame = self._view.frame
         playing = frame is not None and frame.phase == Phase.PLAYING
@@ -110,7 +110,7 @@ class TerminalPlay:
         return lines
 
     def _press(self, key: str) -> None:
-        """Do what a key says."""
+        """Act on a key."""
         self._message = ""
         try:
             if key.isdecimal() and len(key) == 1:
@@ -139,7 +139,7 @@ class TerminalPlay:
             self._say("Arrows are for level B; Tab changes the level.")
 
     def _change_level(self) -> None:
-        """The next of the open levels; that alone sends nothing (rules 3)."""
+        """Change to the next open level; that alone sends nothing (rules 3)."""
         levels = [Level(level) for level in self._view.sheet.levels]
         if levels == [self._level]:
             self._say(f"This arena opens level {_LEVEL_NAMES[self._level]} only.")
@@ -176,7 +176,7 @@ class TerminalPlay:
         self._said.append(text)
 
     def _check_end(self) -> None:
-        """See whether the seat is lost, or a script and its match are over.
+        """Check whether the seat is lost, or a script and its match are over.
 
         Raises:
             UserError: if the seat is lost, or a script waits for a court that is gone.
@@ -215,7 +215,7 @@ class TerminalPlay:
         return Group(first, second, self._third(now_s))
 
     def _third(self, now_s: float) -> Text:
-        """What matters most now: the link, an answer to a key, the seat, the phase, the keys."""
+        """Return the most important line: link, answer to a key, seat, phase, or the keys."""
         controller, frame = self._controller, self._view.frame
         assert frame is not None
         banner = words.link(self._view.silent_s(now_s))
@@ -232,7 +232,7 @@ class TerminalPlay:
         return Text(state, "cyan") if state else Text(_HELP, "dim")
 
     def _leave(self) -> None:
-        """Give the seat up, and write what the robot did."""
+        """Give the seat up, and write Pos-data.txt if the contestant asked for it."""
         controller = self._controller
         if self._view.silent_s(time.monotonic()) < 1.0 and controller.hold is Hold.HELD:
             try:
@@ -254,7 +254,7 @@ class TerminalPlay:
 
 
 def keys_table(controller: Controller) -> Table:
-    """Which keys do what in this seat."""
+    """Return a table of the keys and what they do in this seat."""
     sheet = controller.view.sheet
     seat = sheet.seats[controller.index]
     table = Table(show_header=False, box=None, padding=(0, 2))

@@ -1,4 +1,4 @@
-"""Clocks, scores, keys and links in words, the same on every screen of the terminal."""
+"""Clocks, scores, keys and links as texts, the same on every screen of the terminal."""
 
 from lacoc_client.terminal.plain import poses
 from lacoc_shared.command.log import log_clock
@@ -19,29 +19,29 @@ _PHASES = {
 
 
 def clock(ticks: int) -> str:
-    """A time of the clock: "2:05"; the second that has begun counts."""
+    """Format a time of the clock, rounded up to a second: "2:05"."""
     seconds = -(-max(0, ticks) // BEATS_PER_S)
     return f"{seconds // 60}:{seconds % 60:02d}"
 
 
 def match_clock(frame: Frame, sheet: Sheet) -> str:
-    """The time that is left, or the time played where a match has no end."""
+    """Format the time left, or the time played if the match has no end."""
     return clock(_shown_ticks(frame.clock_ticks, sheet))
 
 
 def event_clock(event: Event, sheet: Sheet) -> str:
-    """Say when something happened, with tenths: the time that the clock showed."""
+    """Format the time that the clock showed at an event, with tenths."""
     return log_clock(_shown_ticks(event.clock_ticks, sheet))
 
 
 def _shown_ticks(clock_ticks: int, sheet: Sheet) -> int:
-    """Ticks that are left, or were played where a match has no end."""
+    """Return the ticks left, or the ticks played if the match has no end."""
     lasts = round(sheet.duration_s * BEATS_PER_S)
     return lasts - clock_ticks if lasts else clock_ticks
 
 
 def phase_hint(frame: Frame, sheet: Sheet) -> str:
-    """What a phase other than PLAYING means, and in the lobby who is missing."""
+    """Say what a phase other than PLAYING means, and in the lobby who is missing."""
     if frame.phase == Phase.LOBBY:
         return "; ".join(_missing(frame, sheet)) or _PHASES[Phase.LOBBY]
     countdown_s = frame.countdown_beats * BEAT_S
@@ -49,17 +49,17 @@ def phase_hint(frame: Frame, sheet: Sheet) -> str:
 
 
 def score(frame: Frame) -> str:
-    """The score: "18 : 20"."""
+    """Format the score: "18 : 20"."""
     return " : ".join(str(seat.score) for seat in frame.seats)
 
 
 def teams(sheet: Sheet) -> list[str]:
-    """The teams' names; a seat's own where nobody has joined."""
+    """Return the teams' names; a seat's id where nobody has joined."""
     return [seat.team or seat.id for seat in sheet.seats]
 
 
 def standing_key(seat: SeatFrame, sheet: Sheet, index: int) -> str:
-    """What a robot does: "B key 2, posture 1/4"."""
+    """Say what a robot does: "B key 2, posture 1/4"."""
     text = f"{'AB'[seat.level]} key {seat.key}"
     counts = sheet.seats[index].postures
     if seat.level == Level.LOCOMOTION and seat.key < len(counts) and counts[seat.key] > 1:
@@ -68,17 +68,17 @@ def standing_key(seat: SeatFrame, sheet: Sheet, index: int) -> str:
 
 
 def place(frame: Frame, sheet: Sheet, seat: str) -> str:
-    """Where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" while it has none."""
+    """Say where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" if it has none."""
     pose = poses(frame, sheet).get(seat)
     if pose is None:
         return ""
-    # Adding zero turns -0.00 into 0.00 once it is rounded.
+    # Adding zero turns a rounded -0.00 into 0.00.
     x_m, y_m = (round(pose[name], 2) + 0.0 for name in ("x_m", "y_m"))
     return f"  x {x_m:.2f} m  y {y_m:.2f} m  heading {pose['heading_deg']:.0f}°"
 
 
 def seat_state(seat: SeatFrame) -> str:
-    """Why a seat's keys do nothing now, or that it is not heard; "" if all is well."""
+    """Say why a seat's keys do nothing now, or that it is silent; "" if all is well."""
     flags = SeatFlag(seat.flags)
     if SeatFlag.FROZEN in flags:
         return f"frozen by the referee for {_wait_s(seat)} s"
@@ -88,7 +88,7 @@ def seat_state(seat: SeatFrame) -> str:
 
 
 def link(silent_s: float) -> str:
-    """A banner where no frame comes; "" while they do."""
+    """Return a banner if no frame comes; "" while they do."""
     if silent_s < SILENT_AFTER_S:
         return ""
     return f"No word from the court for {silent_s:.0f} s - trying again"

@@ -93,7 +93,7 @@ def init(
         for seat in arenas.load(arena).seats
     )
     text = _TEMPLATE.format(file=file, court=court, arena=arena, seats=seats, referee=new_token())
-    before = os.umask(0o077)  # only its owner may read it, from its first byte on
+    before = os.umask(0o077)  # nobody but its owner may ever read it
     try:
         kept = save(file, text.encode())
     finally:
@@ -135,14 +135,14 @@ def keys(
 ) -> None:
     """Encrypt a contest: make its keys, and an invitation for each person.
 
-    They go to the folder 'keys' beside the contest file, or to 'keys-FILE' where another contest's
-    are in 'keys'; the contest file gets an entry that says so. From then on its courts listen
-    with TLS, and each person can do no more than their invitation says.
+    They go to the folder 'keys' beside the contest file, or to 'keys-FILE' if 'keys' belongs to
+    another contest. An entry in the contest file names the folder. From then on the courts listen
+    with TLS, and each person can do no more than their invitation allows.
 
-    Run again, it adds what is new (a court, a token, a host); invitations that were handed out
-    stay valid. Courts that run take the new keys when they are started again.
+    Run again, it adds what is new (a court, a token, a host); invitations that were handed out stay
+    valid. Courts that are running use the new keys after a restart.
     """
-    from lacoc_server.keys.make import make_keys  # needs what the base install leaves out
+    from lacoc_server.keys.make import make_keys  # needs packages that the base install lacks
 
     made = make_keys(file, host or (), renew)
     if made.kept is not None:
@@ -185,7 +185,7 @@ def show(
     for name, by_person in lines.items():
         for person, line in by_person.items():
             screen.show(Text(f"# court {name}, {person}", style="dim"))
-            screen.stdout.print(line, markup=False, soft_wrap=True)  # to be copied whole
+            screen.stdout.print(line, markup=False, soft_wrap=True)  # so that it can be copied
     if contest.keys:
         screen.note(f"The invitations are in {contest.keys.invitations}.")
     if any("/HOST:" in line for by_person in lines.values() for line in by_person.values()):

@@ -1,4 +1,4 @@
-"""`lacoc demo`: a whole match, each part a process of its own, over the real network."""
+"""`lacoc demo`: a whole match over the real network, with a process for each part."""
 
 import json
 import os
@@ -23,12 +23,12 @@ from lacoc_shared.words import say
 app = typer.Typer()
 
 _READY_S = 60
-"""Within this the bots have joined and said ready, also on a slow machine."""
+"""Time for the bots to join and say ready, also on a slow machine."""
 _DAY_S = 86_400
 _LOOK_S = 0.5
-"""How often it is looked whether all processes are alive."""
+"""Time between two checks that all processes are alive."""
 _END_S = 10
-"""Within this a process that was asked to end has ended."""
+"""Time that a process has to end after it was asked to."""
 
 
 @app.command(name="demo")
@@ -53,11 +53,11 @@ def demo_command(
 ) -> None:
     """Show a whole match: a court, two bots and a referee meet over the network.
 
-    Every part is a process of its own, as in a contest. The match is shown at a page in your
-    browser; where there is none, in the terminal. At the end the record is simulated again
-    and must give the same match, bit for bit. The page stays, with the replay, until Ctrl-C.
+    Every part is a process of its own, as in a contest. The match is shown on a page in your
+    browser, or in the terminal if there is no browser. At the end the record is simulated again and
+    must give the same match, bit for bit. The page and its replay stay until Ctrl-C.
     """
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that all that was started ends
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that all started processes end too
     with ExitStack() as page:
         with ExitStack() as processes:
             court = processes.enter_context(_court(arena, seconds, speed, recordings))
@@ -102,7 +102,7 @@ def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> 
 
 
 class _Court:
-    """The court's process and what it says."""
+    """A court's process and what it prints."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self._said: Queue[dict[str, Any] | None] = Queue()
@@ -117,7 +117,7 @@ class _Court:
         self.referee: str = opened["referee"]
 
     def hear(self, timeout_s: float) -> dict[str, Any] | None:
-        """The next event; None if there is none in time.
+        """Return the next event; None if none comes in time.
 
         Raises:
             UserError: if the court has ended.
@@ -131,7 +131,7 @@ class _Court:
         return event
 
     def record(self, folder: Path) -> Path:
-        """The record of its match."""
+        """Return the path of the match's packed record."""
         return packed_path(folder, self._match_id)
 
     def _listen(self, lines: IO[str]) -> None:
@@ -141,10 +141,10 @@ class _Court:
 
 
 def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bool) -> str:
-    """Show events until the result is official; returns the sentence of the result.
+    """Show events until the result is official; return the sentence of the result.
 
     Raises:
-        UserError: if a process that is needed ends badly.
+        UserError: if a process that the match needs fails.
     """
     result = ""
     while True:
@@ -153,7 +153,7 @@ def _follow(court: _Court, needed: Sequence[subprocess.Popen[str]], *, quiet: bo
             if any(process.poll() for process in needed):
                 raise UserError(say("demo.gave-up"))
             continue
-        if "number" not in event:  # of the court, not of the match
+        if "number" not in event:  # an event of the court, not of the match
             continue
         if event["kind"] == "result":
             result = event["text"]
@@ -182,7 +182,7 @@ def _process(
 
 @contextmanager
 def _ended(process: subprocess.Popen[str]) -> Iterator[subprocess.Popen[str]]:
-    """A process that is asked to end when it is no longer needed."""
+    """Ask a process to end when the block is left, and kill it if it does not."""
     try:
         yield process
     finally:
@@ -194,7 +194,7 @@ def _ended(process: subprocess.Popen[str]) -> Iterator[subprocess.Popen[str]]:
 
 
 def _lacoc(*words: str, output: int | None = None, token: str = "") -> subprocess.Popen[str]:
-    """Start a subcommand; its token is in the environment, where others can't read it."""
+    """Start a subcommand; its token goes into the environment, which other users can't read."""
     environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
     if token:
         environment["LACOC_TOKEN"] = token

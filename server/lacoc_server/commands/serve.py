@@ -1,4 +1,4 @@
-"""`lacoc serve`: a court."""
+"""`lacoc serve`: run a court."""
 
 import secrets
 import signal
@@ -78,13 +78,13 @@ def serve_command(
 ) -> None:
     """Run a court: it steps the robots, keeps the clock, scores and records.
 
-    Without a contest file the court makes its own tokens and prints the line for each contestant
-    and for the referee. Ctrl-C closes the court; the record is finished first.
+    Without a contest file the court makes its own tokens and prints the command line for each
+    contestant and for the referee. Ctrl-C closes the court; the record is finished first.
 
-    If the court was killed in a match, start it again in the same way: the match goes on from
-    where it was, halted, with its seats, clock and score. Where no referee starts matches, it
-    resumes by itself when a contestant is back. Without a contest file the new tokens open its
-    seats, and those with which they were taken do still.
+    If the court was killed in a match, start it again in the same way. The match goes on where it
+    stopped: it is halted and keeps its seats, clock and score. A match without a referee resumes by
+    itself when a contestant is back. Without a contest file both the new tokens and the old ones
+    open the seats.
     """
     plan, made_here = _contest(contest, arena, listen, court)
     name, entry = plan.court(court)
@@ -95,7 +95,7 @@ def serve_command(
     left = None if fresh else unfinished(folder, name, loaded)
     levels = {*loaded.match.open_levels}
     if left is not None:
-        levels |= {*left.match.rules.open_levels}  # the match that is on has the last word
+        levels |= {*left.match.rules.open_levels}  # an unfinished match may need more levels
         screen.note(f"Going on with match {left.match.setup.match_id}. --fresh opens a new one.")
         if left.match.setup.settings != loaded.settings:
             screen.note("It keeps the settings that it was opened with; the next has the new ones.")
@@ -122,7 +122,7 @@ def serve_command(
             secrets.token_bytes,
             last_seqs=left.last_seqs if left else None,
             joined=left.token_hashes if left else (),
-            # A contest file's word is the last: who lost a token gets another one there.
+            # With a contest file only its tokens count: an organiser replaces a lost token there.
             former=left.token_hashes if left and made_here else None,
             most_delay_ms=entry.most_delay_ms,
         )
@@ -149,7 +149,7 @@ def serve_command(
 def _contest(
     path: Path | None, arena: str | None, listen: str | None, court: str | None
 ) -> tuple[Contest, bool]:
-    """The contest, and whether it was made here."""
+    """Load the contest, or make one for this run; also return whether it was made here."""
     if path is not None:
         if arena is not None:
             raise UserError(say("serve.contest-or-arena"))
@@ -214,7 +214,7 @@ def _open_doors(
 
 
 def _stop_on_signal() -> list[int]:
-    """A list that fills when somebody asks the process to end."""
+    """Return a list that fills when somebody asks the process to end."""
     asked: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda received, _: asked.append(received))

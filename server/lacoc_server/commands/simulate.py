@@ -1,4 +1,4 @@
-"""`lacoc simulate`: matches without a network, as fast as the machine can."""
+"""`lacoc simulate`: play matches without a network, as fast as the machine can."""
 
 import itertools
 import os
@@ -26,7 +26,7 @@ from lacoc_shared.words import render, say
 app = typer.Typer()
 
 _LATE_TICKS = 7
-"""A repetition lets the brains wake this much later than the one before."""
+"""Ticks by which each repetition starts the bots later than the one before."""
 
 
 class _Job(msgspec.Struct, frozen=True):
@@ -80,11 +80,11 @@ def simulate_command(
 ) -> None:
     """Play matches of bots or ghosts headless, and print the results.
 
-    'planner@anna' lets the bot planner steer what lies in the folder anna: LocoTra-data.txt, and
-    robot.toml if there is one. Bots take key 0 for stand, 1 left, 2 forward, 3 right.
+    'planner@anna' lets the bot planner steer the files in the folder anna: LocoTra-data.txt, and
+    robot.toml if there is one. Bots use key 0 to stand, 1 for left, 2 for forward, 3 for right.
 
-    The same physics and rules as at a court: a match that is simulated is bit for bit the match
-    that would have been played.
+    Physics and rules are those of a court: a simulated match is bit for bit the match that a court
+    would play.
     """
     overrides = {"match": {"duration_s": seconds}} if seconds else {}
     loaded = arenas.load(arena, overrides)
@@ -114,11 +114,11 @@ def simulate_command(
 
 
 def _weigh_in(arena: arenas.Arena, players: Sequence[str], robot: str) -> None:
-    """See that everybody can play, before anything begins.
+    """Check that everybody can play, before anything begins.
 
     Raises:
-        UserError: if somebody is not there.
-        FileRefused: with every mistake of everybody's files.
+        UserError: if a bot, robot or folder does not exist.
+        FileRefused: with every mistake in every player's files.
     """
     levels = arena.match.open_levels
     mistakes: list[Mistake] = []
@@ -134,7 +134,7 @@ def _weigh_in(arena: arenas.Arena, players: Sequence[str], robot: str) -> None:
 
 
 def _first_number(record: Path | None) -> int:
-    """Goes on after the matches whose records lie in the folder: none is overwritten."""
+    """Return the first number after the records in the folder, so that none is overwritten."""
     known = [] if record is None else record.glob("simulated-[0-9]*.mcap")
     return 1 + max((int(path.name.split("-")[1].split(".")[0]) for path in known), default=0)
 
@@ -181,7 +181,7 @@ def _run_one(job: _Job) -> list[Result]:
 
 def _run_many(work: Sequence[_Job], jobs: int | None) -> list[Result]:
     results: dict[str, Result] = {}
-    # A fresh interpreter for each worker: a forked one would share what must not be shared.
+    # Each worker is a fresh interpreter: a forked one would inherit the parent's state.
     pool = ProcessPoolExecutor(jobs or os.cpu_count(), mp_context=get_context("spawn"))
     with screen.progress() as progress, pool:
         task = progress.add_task("matches", total=len(work))

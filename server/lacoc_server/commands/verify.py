@@ -42,18 +42,18 @@ def verify_command(
     ] = BOUND,
     json: options.Json = False,
 ) -> None:
-    """Judge a record again, simulate it again section by section, and say one of three verdicts.
+    """Judge a record again, simulate it again section by section, and print one of three verdicts.
 
     "same, bit for bit": this machine computes every bit of the record.
 
-    "same match, other arithmetic": another machine recorded it, whose last bits are others. The
-    games and the result are what the inputs give, and no robot is farther from where it was
-    recorded than --bound.
+    "same match, other arithmetic": another kind of machine recorded it, and only the last bits
+    differ. The games and the result are what the inputs give, and no robot is farther than --bound
+    from its recorded place.
 
-    "beat N differs": the record is not what its inputs give. Exit code 1, also where a part of the
-    record is lost or damaged.
+    "beat N differs": the record is not what its inputs give. The exit code is 1, also if a part of
+    the record is lost or damaged.
 
-    No folder is used because a record names it: its code would run.
+    A folder that only the record names is never used, because its code would run.
     """
     record = Record.read(record_paths(file))
     verdict: Verdict | None = None

@@ -1,6 +1,6 @@
-"""The records of matches that are over: closed and packed beside the beat.
+"""The records of finished matches: closed and packed on another thread than the beat's.
 
-A disk may need seconds until it holds what was written, and the next match is open by then.
+A disk may need seconds until it has stored what was written. By then the next match is open.
 """
 
 import subprocess
@@ -14,12 +14,12 @@ from lacoc_shared.record.writer import RecordWriter
 
 
 class Archive:
-    """Where the records of a court go.
+    """Closes and packs the records of one court.
 
     Args:
-        folder: where they lie; None: nothing is recorded.
-        court: whose they are.
-        log: told what the disk says of a match that is over, and when no record can be packed.
+        folder: folder of the records; None: nothing is recorded.
+        court: name of the court.
+        log: receives disk errors of finished matches, and records that can't be packed.
     """
 
     def __init__(self, folder: Path | None, court: str, log: CourtLog) -> None:
@@ -30,18 +30,18 @@ class Archive:
         self._packing: list[subprocess.Popen[bytes]] = []
 
     def pack(self, match_id: str) -> None:
-        """Pack what an earlier court left; `match_id` is the match that is on."""
+        """Pack the records that an earlier court left; `match_id` names the match now open."""
         self._aside.submit(self._pack, match_id)
 
     def take(self, match_id: str, writer: RecordWriter | None) -> None:
-        """Finish the record of a match that is over; its end is written at once."""
+        """Finish the record of a finished match; its last message is written at once."""
         if writer is None:
             return
         writer.end()
         self._aside.submit(self._put_away, match_id, writer)
 
     def close(self) -> None:
-        """Wait until all records are as they will stay."""
+        """Wait until all records are closed and packed."""
         self._aside.shutdown()
         for packing in self._packing:
             packing.wait()
@@ -55,9 +55,9 @@ class Archive:
         self._pack(match_id)
 
     def _pack(self, match_id: str) -> None:
-        """Pack the matches that are over, in a process of its own.
+        """Pack all finished matches, in a separate process.
 
-        What can't be packed now waits for the next time: the end of a match or a court's start.
+        What can't be packed now is tried again at the next match's end or court's start.
         """
         if self._folder is None:
             return

@@ -1,9 +1,9 @@
-"""A court: the loop that gives a match its beats, and the only reader of a clock.
+"""A court: the loop that gives a match its beats, and the only code that reads a clock.
 
-One thread; only an outbox sends beside it, and an archive puts away the records of matches that
-are over. Each beat takes what arrived, lets the match have it, records, and only then answers and
-publishes: what anybody was told is on disk (docs/architecture.md). Where the disk does not take
-it, the court waits: no beat passes until it does.
+The loop runs on one thread. An outbox sends on a second, and an archive stores the records of
+finished matches on a third. Each beat takes what arrived, passes it to the match and records it,
+and only then answers and publishes: everything that anybody is told is on disk
+(docs/architecture.md). While the disk fails, the court waits and no beat passes.
 """
 
 import hashlib
@@ -37,33 +37,33 @@ from lacoc_shared.seat import BEATS_PER_S, Phase
 from lacoc_shared.words import Phrase
 
 HEALTH_BEATS = BEATS_PER_S // 2
-"""Health goes out twice a second."""
+"""Beats between two health messages: two messages a second."""
 
 
 @dataclass(frozen=True)
 class CourtSettings:
-    """What a court is started with."""
+    """Settings that a court is started with."""
 
     name: str
     arena: Arena
     limits: Mapping[str, float]
-    """Contest limits for robots that differ from the defaults of rules 1."""
+    """Contest limits for robots, where they differ from the defaults of rules 1."""
     recordings: Path | None
     """Folder of the records; None: no record."""
     speed: float = 1.0
-    """1: a beat every 20 ms; more for a demonstration in a hurry."""
+    """Multiple of real time: at 1 a beat takes 20 ms. A demonstration may run faster."""
     health: HealthLimits = field(default_factory=HealthLimits)
-    """Beyond these a replay is advised."""
+    """Limits beyond which a replay is advised."""
 
 
 class _Made(NamedTuple):
-    """A beat that is over, and what is to be told of it."""
+    """A beat that has been computed, with what is to be sent about it."""
 
     beat: Beat
     frame: bytes
     arrivals: Sequence[Arrival]
     outcomes: Sequence[Outcome]
-    """For each arrival."""
+    """One outcome for each arrival."""
 
 
 class Court:
@@ -71,8 +71,8 @@ class Court:
 
     Args:
         settings: what to play.
-        network: how others reach it; opened by the caller.
-        left: a match that an earlier court left behind, to go on with.
+        network: connects the court to others; opened by the caller.
+        left: a match that an earlier court left unfinished, to go on with.
     """
 
     def __init__(
@@ -85,20 +85,20 @@ class Court:
         self._network = network
         self._log = CourtLog(settings.name)
         self.metrics = CourtMetrics(settings.name)
-        """Its numbers, for who watches courts."""
+        """The court's numbers for Prometheus."""
         self._scene = b""
         self._archive = Archive(settings.recordings, settings.name, self._log)
         self._pace = Pace(time.monotonic(), settings.speed, _offset_s(network.locators))
         self._inputs: list[Input] = []
-        """The court's own, for the next beat."""
+        """The court's own inputs for the next beat."""
         self._made: _Made | None = None
-        """A beat that nobody was told of yet."""
+        """A computed beat that has not been sent yet."""
         self._frame = b""
-        """The newest that was published."""
+        """The newest published frame, encoded."""
         self._trouble: Phrase | None = None
-        """What is wrong with the disk of the record (`record.*`)."""
+        """What is wrong with the record's disk (`record.*`)."""
         self._waits = 0
-        """Beats that could have been in the time that the disk did not take the record."""
+        """Beats skipped while the disk refused writes."""
         if left is None:
             self._journal = self._open(1)
         else:
@@ -110,13 +110,13 @@ class Court:
 
     @property
     def match_id(self) -> str:
-        """Names the record of the match that is on."""
+        """Id of the open match; it names the record."""
         return self._journal.match.setup.match_id
 
     def run(self, stopping: Callable[[], bool]) -> None:
-        """Give the match its beats until `stopping` says so; then finish the record.
+        """Give the match its beats until `stopping` returns True; then finish the record.
 
-        An error in the loop ends the court, and not its match: that is for the next start.
+        An error in the loop ends the court but not its match: the next start goes on with it.
         """
         pace = self._pace
         self._archive.pack(self.match_id)
@@ -149,7 +149,7 @@ class Court:
         self._tell(made, now_s)
 
     def _make(self, now_s: float) -> _Made:
-        """Let the match have a beat."""
+        """Compute one beat of the match."""
         own, self._inputs = self._inputs, []
         match, network = self._journal.match, self._network
         silent = [seat.silent for seat in match.seats]
@@ -158,9 +158,9 @@ class Court:
         return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])
 
     def _wait(self, now_s: float, trouble: Phrase) -> None:
-        """Let no beat pass: nobody may be told what is not on disk.
+        """Skip a beat: nobody may be told what is not on disk.
 
-        What was published last is published again, so that nobody takes the court for dead.
+        The last frame is published again, so that nobody thinks the court is dead.
         """
         self._trouble = trouble
         self._network.turn_away(trouble)
@@ -171,7 +171,7 @@ class Court:
         self._waits += 1
 
     def _tell(self, made: _Made, now_s: float) -> None:
-        """Answer and publish what a beat made."""
+        """Answer and publish the results of a beat."""
         match, network, beat = self._journal.match, self._network, made.beat
         for arrival, outcome in zip(made.arrivals, made.outcomes, strict=True):
             if arrival.answer is not None:
@@ -190,17 +190,17 @@ class Court:
             self._say_health(now_s)
 
     def _open_next(self) -> None:
-        if self._waits % HEALTH_BEATS:  # a match takes longer than a beat to make
+        if self._waits % HEALTH_BEATS:  # making a match takes longer than a beat
             raise UserError(self._trouble or "")
         match = self._journal.match
         following = self._open(match.setup.match + 1)
         self._close()
         self._journal = following
-        heap.give_back()  # models and worlds of the match before
+        heap.give_back()  # return the memory of the last match's models
         self._inputs = list(match.next_joins())
 
     def _follow(self) -> list[Input]:
-        """What comes after a beat that was recorded: the court's own decisions."""
+        """Return the court's own decisions that follow a recorded beat."""
         match, before = self._journal.match, self._trouble
         self._trouble = now = self._journal.trouble
         why = before or now
@@ -270,8 +270,8 @@ class Court:
 
 
 def _offset_s(locators: tuple[str, ...]) -> float:
-    """Part of a second by which a court's beats are shifted (docs/architecture.md).
+    """Return the fraction of a second by which a court's beats are shifted (docs/architecture.md).
 
-    Names of courts may be the same on one machine; where they listen is not.
+    It comes from the addresses: two courts on a machine may share a name, but never an address.
     """
     return int.from_bytes(hashlib.blake2b(repr(locators).encode(), digest_size=4).digest()) / 2**32

@@ -1,8 +1,8 @@
 """How well a match is held: measured on the wall clock and on the links, beside the match.
 
-Pure: times, counts and beats come in, the verdict comes out. It is no part of the match,
-which is the same at any speed and with any loss; so it stands in the record as a message
-of its own. Only its advice enters the match, as an input (docs/architecture.md).
+Pure: times, counts and beats come in, the verdict comes out. The verdict is not part of the match,
+which is the same at any speed and with any loss; so the record has it as a message of its own. Only
+its advice enters the match, as an input (docs/architecture.md).
 """
 
 from collections import Counter
@@ -20,13 +20,13 @@ from lacoc_shared.seat import BEAT_S, BEATS_PER_S, REPEATS_HZ, Phase
 from lacoc_shared.words import Phrase, say
 
 _LEAST_FACTOR = 1e-4
-"""What a rounded real-time factor can tell from standing still."""
+"""Smallest real-time factor that is used; it avoids a division by zero."""
 _CARRIED = 2
-"""Repeats that came before their second began: a second may have 9 of them and the next 11."""
+"""Most repeats that count for the next second: with jitter one second has 11 and the next 9."""
 
 
 class _Link:
-    """One seat's link in PLAYING."""
+    """One seat's link during PLAYING."""
 
     def __init__(self, before: LinkVerdict | None) -> None:
         self.silences = before.silences if before else 0
@@ -36,13 +36,13 @@ class _Link:
         self.refused = Counter(before.refused if before else {})
         self._silent = False
         self._heard: int | None = None
-        """What the doors had counted when this second of PLAYING began."""
+        """Valid commands counted when this second of PLAYING began."""
         self._counted = 0
-        """Its beats so far."""
+        """Beats of this second so far."""
         self._carried = 0
 
     def count(self, silent: bool, heard: int) -> None:
-        """Count a beat of PLAYING."""
+        """Count one beat of PLAYING."""
         self.silent_s += silent * BEAT_S
         self.silences += silent and not self._silent
         self._silent = silent
@@ -63,15 +63,15 @@ class _Link:
 
 
 class MatchHealth:
-    """Measures one match, in its court or in several after another.
+    """Measures how well one match is held, also across restarts of its court.
 
     Args:
         match: the match.
-        limits: beyond which a replay is advised.
-        doors: what the doors had counted for each seat before this match.
-        speed: of the court; 2 lets two beats of 20 ms pass in 20 ms.
-        before: what was measured before the court was killed, if it was.
-        resumptions: how often the match went on after that.
+        limits: limits beyond which a replay is advised.
+        doors: counts of each seat's door before this match.
+        speed: speed of the court; at 2 two beats pass in 20 ms.
+        before: the verdict before the court was killed, if it was.
+        resumptions: how many times the match went on after its court was killed.
     """
 
     def __init__(
@@ -92,10 +92,10 @@ class MatchHealth:
         self._doors = doors
         self._now_s = self._late_s = 0.0
         self._playing_since: float | None = None
-        """When the last beat began, if it was one of PLAYING."""
+        """When the last beat began, if it was a beat of PLAYING."""
         self._beats = before.played_beats if before else 0
         factor = max(before.real_time_factor, _LEAST_FACTOR) if before else 1.0
-        # In seconds of a court of speed 1, so that it can be gone on with at another speed.
+        # Scaled to speed 1, so that a court of another speed can go on with it.
         self._took_s = self._beats * BEAT_S / factor
         self._slow_beats = before.slow_beats if before else 0
         self._worst_late_s = before.worst_late_ms / 1000 if before else 0.0
@@ -104,20 +104,20 @@ class MatchHealth:
         self._links = [_Link(seat) for seat in seats]
 
     def begin(self, now_s: float, late_s: float, doors: Sequence[Door]) -> None:
-        """A beat begins.
+        """Note that a beat begins.
 
         Args:
             now_s: monotonic time.
-            late_s: how much later than it should.
-            doors: what the doors counted so far.
+            late_s: how late the beat begins.
+            doors: counts of each seat's door so far.
         """
         self._now_s, self._late_s, self._doors = now_s, late_s, doors
 
     def measure(self, inputs: Sequence[Input], beat: Beat) -> HealthVerdict | None:
-        """Count what a beat made of its inputs.
+        """Count a beat and the outcomes of its inputs.
 
         Returns:
-            The verdict, where the record wants one: every second of PLAYING, and with each result.
+            The verdict when the record needs one: every second of PLAYING, and with each result.
         """
         self._count(inputs, beat)
         playing = beat.frame.phase == Phase.PLAYING
@@ -135,7 +135,7 @@ class MatchHealth:
             for link in self._links:
                 link.pause()
             return
-        # The first beat of PLAYING began before anybody could play.
+        # The first beat of PLAYING does not count: it began before anybody could play.
         if self._playing_since is not None:
             self._beats += 1
             self._took_s += (self._now_s - self._playing_since) * self._speed
@@ -143,13 +143,13 @@ class MatchHealth:
             self._worst_late_s = max(self._worst_late_s, self._late_s)
         self._playing_since = self._now_s
         for seat, link, door in zip(self._match.seats, self._links, self._doors, strict=True):
-            if seat.left:  # nobody wants to hear of it
+            if seat.left:  # the contestant has left: silence is expected
                 link.pause()
             else:
                 link.count(seat.silent, door.heard)
 
     def verdict(self) -> HealthVerdict:
-        """How well the match was held so far."""
+        """Return the verdict on the match so far."""
         took_s = self._took_s
         verdict = HealthVerdict(
             played_beats=self._beats,
@@ -177,7 +177,7 @@ class MatchHealth:
 
 
 def advice(verdict: HealthVerdict, limits: HealthLimits) -> Iterator[Phrase]:
-    """List everything in which a match was held worse than its contest wants."""
+    """List every limit of the contest that the match exceeded."""
     if verdict.real_time_factor < limits.real_time_factor:
         yield say(
             "health.real-time", factor=verdict.real_time_factor, least=limits.real_time_factor

@@ -1,4 +1,4 @@
-"""What a court says in its log: every event, and what goes wrong beside the match."""
+"""A court's log: every event, and what goes wrong beside the match."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -11,9 +11,9 @@ from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase, render, say
 
 _TROUBLE = frozenset({"advice", "fault", "silent"})
-"""Kinds of events that an organiser looks up for."""
+"""Kinds of events that are logged as warnings."""
 _SLOW_BEATS = 30 * BEATS_PER_S
-"""The first slow beats are told at once, later ones together: a busy machine has some a second."""
+"""Fewest beats between two reports of slow beats; a busy machine has some every second."""
 
 
 class CourtLog:
@@ -28,11 +28,11 @@ class CourtLog:
         self._refused: Counter[tuple[str, str]] = Counter()
         self._slow_beats = 0
         self._slow_told = (0, 0)
-        """Match and beat in which slow beats were told last."""
+        """Match and beat of the last report of slow beats."""
         self._trouble: Phrase | None = None
 
     def event(self, match_id: str, event: Event, duration_ticks: int = 0) -> None:
-        """Log an event of a match that lasts so long; 0: without end."""
+        """Log an event; `duration_ticks` is the length of its match, 0 if it has no end."""
         write = self._log.warning if event.kind in _TROUBLE else self._log.info
         fields = msgspec.structs.asdict(event)
         if duration_ticks:
@@ -40,7 +40,7 @@ class CourtLog:
         _write(write, fields.pop("said"), match_id=match_id, **fields)
 
     def health(self, match_id: str, health: Health) -> None:
-        """Log what went wrong since this was last called: refusals, slow beats, the disk."""
+        """Log what went wrong since the last call: refusals, slow beats, the disk."""
         write = self._log.bind(match_id=match_id, match=health.match, beat=health.beat).warning
         refused = Counter(dict(_refused(health)))
         for (seat, why), count in (refused - self._refused).items():
@@ -61,18 +61,18 @@ class CourtLog:
             _write(write, self._trouble or say("log.record-again"), kind="record")
 
     def disk(self, match_id: str, trouble: Phrase | None) -> None:
-        """Log what the disk said of the record of a match that is over, if anything."""
+        """Log a disk error in the record of a finished match, if there was one."""
         if trouble:
             _write(self._log.warning, trouble, match_id=match_id, kind="record")
 
     def not_packed(self, match_id: str, error: OSError) -> None:
-        """Log that no record could be packed: nothing is lost by that."""
+        """Log that a record could not be packed; nothing is lost by that."""
         said = say("log.not-packed", why=str(error))
         _write(self._log.warning, said, match_id=match_id, kind="record")
 
 
 def _write(write: Callable[..., object], said: Phrase, **fields: object) -> None:
-    """Write a line: the words for a person, the code for a program."""
+    """Write a line: the sentence for a person, the code for a program."""
     write(render(said), code=said.code, **fields)
 
 

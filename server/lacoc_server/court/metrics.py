@@ -1,4 +1,4 @@
-"""A court's numbers for Prometheus: its beats, its seats, what it refused."""
+"""A court's numbers for Prometheus: its beats, its seats, its refusals."""
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
@@ -16,14 +16,14 @@ from lacoc_server.doors.inbox import Door
 from lacoc_shared.messages import Health
 
 BUCKETS_S = (0.0005, 0.001, 0.002, 0.003, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.05, 0.1)
-"""Upper bounds of the histogram of beats; a beat has 20 ms."""
+"""Upper bounds of the buckets for beat durations; a beat has 20 ms."""
 
 
 class CourtMetrics(Collector):
-    """What a scrape of a court shows.
+    """The metrics of one court.
 
-    The court's loop writes plain numbers, a scrape reads them on another thread: no lock
-    is held in a beat.
+    The court's loop writes plain numbers and a scrape reads them on another thread, so no beat
+    waits for a lock.
 
     Args:
         court: its name.
@@ -36,16 +36,16 @@ class CourtMetrics(Collector):
         self._said: tuple[str, Health, Sequence[Door]] | None = None
 
     def beat(self, took_s: float) -> None:
-        """Count a beat and how long it took."""
+        """Count a beat and its duration."""
         self._counts[bisect_left(BUCKETS_S, took_s)] += 1
         self._sum_s += took_s
 
     def health(self, match_id: str, health: Health, doors: Sequence[Door]) -> None:
-        """Take in how the court is, as it is published twice a second."""
+        """Take the health message, as it is published twice a second."""
         self._said = match_id, health, doors
 
     def collect(self) -> Iterator[Metric]:
-        """All families; called by a scrape."""
+        """Return all metric families; called by a scrape."""
         yield self._durations()
         if self._said is None:
             return

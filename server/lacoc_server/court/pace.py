@@ -1,6 +1,6 @@
-"""The pace of a court: when the next beat is due, and how well that was kept.
+"""The pace of a court: when the next beat is due, and how late beats begin.
 
-Pure: times of the monotonic clock go in and come out. Only the court's loop reads it.
+Pure: the caller passes times of the monotonic clock. Only the court's loop reads that clock.
 """
 
 from collections import deque
@@ -8,7 +8,7 @@ from collections import deque
 from lacoc_shared.seat import BEAT_S
 
 CATCH_UP_BEATS = 5
-"""After a stall at most so many beats come without a pause; then the match runs late."""
+"""Most beats that follow a stall without a pause; time lost beyond them is not made up."""
 SLOW_S = BEAT_S
 """A beat that starts later than this is a slow beat."""
 _WINDOW_BEATS = 250
@@ -19,9 +19,10 @@ class Pace:
 
     Args:
         now_s: monotonic time.
-        speed: 2 lets two beats of 20 ms pass in 20 ms.
-        offset_s: beats come so long after the whole beats of the machine's clock, which is the
-            same for all its processes: so they come between those of other courts.
+        speed: at 2 two beats pass in 20 ms.
+        offset_s: shift of the beats against multiples of the beat on the machine's monotonic clock.
+            All processes share that clock, so different offsets keep courts from working at the
+            same moment.
     """
 
     def __init__(self, now_s: float, speed: float = 1.0, offset_s: float = 0.0) -> None:
@@ -34,11 +35,11 @@ class Pace:
         self.worst_late_s = 0.0
 
     def wait_s(self, now_s: float) -> float:
-        """How long to wait for the next beat; 0 if it is due."""
+        """Return the time to wait for the next beat; 0 if it is due."""
         return max(0.0, self._due_s - now_s)
 
     def begin(self, now_s: float) -> None:
-        """A beat begins now."""
+        """Note that a beat begins now."""
         self.late_s = late_s = now_s - self._due_s
         self.worst_late_s = max(self.worst_late_s, late_s)
         if late_s > SLOW_S:
@@ -48,7 +49,7 @@ class Pace:
 
     @property
     def real_time_factor(self) -> float:
-        """Speed of the last beats over the speed that was asked for: 1 is on time."""
+        """Speed of the last 250 beats divided by the wanted speed; 1 is on time."""
         if len(self._starts_s) < 2:
             return 1.0
         took_s = self._starts_s[-1] - self._starts_s[0]

@@ -1,6 +1,6 @@
-"""What a court decides by itself in a match that no referee judges (`start = "ready"`, rules 4).
+"""Decisions of a court in a match without a referee (`start = "ready"`, rules 4).
 
-Each is a decision like a referee's, in the record with the court's name: a replay needs
+Each is a decision like a referee's. It is in the record with the court's name, so a replay needs
 nothing but the record.
 """
 
@@ -13,18 +13,18 @@ from lacoc_shared.seat import BEATS_PER_S, NOBODY, Phase
 from lacoc_shared.words import Phrase, say
 
 _RESULT_BEATS = 10 * BEATS_PER_S
-"""How long two can read who has won, before the next match opens."""
+"""Beats between a result and the next match, so that two players can read who has won."""
 _RESUME_BEATS = BEATS_PER_S // 2
-"""Play is resumed at most twice a second: a fault that comes back at once fills no log."""
+"""Beats between two attempts to resume: a fault that comes back at once must not fill the log."""
 
 
 def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
-    """What follows from how the match is now.
+    """Return the decisions that follow from the match's present state.
 
     Args:
-        match: begins when its seats are ready.
-        held: says for each seat whether a session holds it. After a restart of the court none
-            does until its controller has joined again, though the match has not missed it yet.
+        match: a match that begins when its seats are ready.
+        held: returns for each seat whether a session holds it. After a restart of the court this is
+            False until the controller has joined again, though the seat is not silent yet.
     """
     if match.phase is Phase.FINISHED:
         return [_decide(Official())]
@@ -39,7 +39,7 @@ def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
 
 
 def _put_back(match: Match) -> list[Input]:
-    """From where physics stopped it would only stop again."""
+    """Restart the robots that stopped physics: without it physics would stop again."""
     if match.fault is None:
         return []
     return [

@@ -1,4 +1,4 @@
-"""Weighing in at a court's door: files are read, and robots tried in physics beside its loop."""
+"""Weighing in at a court's door: files are read, and robots tried in physics, beside its loop."""
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -11,15 +11,14 @@ from lacoc_shared.messages import Join
 from lacoc_shared.mistakes import FileRefused, Mistake
 
 _REMEMBERED = 32
-"""Trials of other robots than the last ones are forgotten."""
+"""Number of trials whose results are kept; older ones are forgotten."""
 
 
 class Weighing:
-    """Weighs in what comes with joins; used as a context manager.
+    """Weighs in the files of joins; used as a context manager.
 
-    A trial takes some tens of milliseconds, longer than a beat has. It runs in a thread of its
-    own, one at a time, and what was tried once is known. Whoever joins again with the same robot
-    does not wait.
+    A trial takes some tens of milliseconds, longer than a beat. So it runs on a separate thread,
+    one at a time, and its result is kept: a second join with the same robot does not wait.
 
     Args:
         admission: reads the files.
@@ -29,7 +28,7 @@ class Weighing:
         self._admission = admission
         self._worker = ThreadPoolExecutor(1, "weighing")
         self._trials: dict[object, Future[list[Mistake]]] = {}
-        """By all that a trial depends on; the newest last."""
+        """Trials by everything that their result depends on; the newest last."""
 
     def __enter__(self) -> Self:
         return self
@@ -41,10 +40,11 @@ class Weighing:
         """Complete a join.
 
         Returns:
-            The join with its robot, or None while the robot is tried: ask again in the next beat.
+            The join with its robot; None while the robot is being tried: call again in the next
+            beat.
 
         Raises:
-            FileRefused: with every mistake of every file, or with what the robot did that was to
+            FileRefused: with every mistake of every file, or with what the robot did when it should
                 stand.
         """
         admission = self._admission

@@ -1,1 +1,1 @@
-"""What comes into a court from the network and what goes out."""
+"""The doors of a court: what comes in from the network, and what goes out."""

@@ -1,6 +1,6 @@
-"""Which of the referee's requests a court listens to: token, form, sane numbers.
+"""The door for referees' requests: it checks token, form and sane numbers.
 
-Whether a decision is legal now is not judged here but by the match.
+The match itself decides whether a decision is legal now.
 """
 
 import math
@@ -17,7 +17,7 @@ from lacoc_shared.keyspace import DECISION_MAX_BYTES
 from lacoc_shared.messages import DecisionRequest, Done, Enter, Refusal
 from lacoc_shared.words import Phrase, say
 
-_NUMBER_MAX = 1e6  # seconds, points, an event's number
+_NUMBER_MAX = 1e6  # largest absolute value of seconds, points and event numbers
 
 
 class _Token(msgspec.Struct):
@@ -36,28 +36,28 @@ class DecisionDesk:
     """Takes the requests of referees.
 
     Args:
-        referee_hashes: hashes of the tokens that open it.
+        referee_hashes: hashes of the tokens that are accepted.
     """
 
     def __init__(self, referee_hashes: Collection[str]) -> None:
         self._referee_hashes = tuple(referee_hashes)
         self.refused: Counter[str] = Counter()
-        """Refusals by `Why`."""
+        """Number of refusals by `Why`."""
 
     def enter(self, payload: bytes) -> Done | Refusal:
-        """Judge a token that is only shown.
+        """Check the token of somebody who only enters.
 
         Args:
-            payload: an `Enter`, perhaps.
+            payload: should be an `Enter`.
         """
         return self._check_token(payload, Enter) or Done()
 
     def decision(self, name: str, payload: bytes) -> Decide | Refusal:
-        """Judge a request.
+        """Check a request.
 
         Args:
-            name: the decision's name in the key expression it came under.
-            payload: a `DecisionRequest`, perhaps.
+            name: the decision's name, from the key expression of the request.
+            payload: should be a `DecisionRequest`.
         """
         refusal = self._check_token(payload, _Token)
         if refusal is not None:
@@ -95,7 +95,7 @@ class DecisionDesk:
 
 
 def _is_reason(reason: Phrase | str) -> bool:
-    """Whether a reason may stand in the record: a text, or a phrase of `reason.*` with texts."""
+    """Return whether a record may have this reason: a text, or a `reason.*` phrase with texts."""
     if isinstance(reason, str):
         return True
     plain = all(value is None or isinstance(value, str) for value in reason.values.values())
@@ -108,7 +108,7 @@ def _numbers_are_sane(decision: Decision) -> bool:
 
 
 def _all_decisions() -> str:
-    """Every decision with its arguments: "start, adjust (seat: str, points: int), ..."."""
+    """List every decision with its arguments: "start, adjust (seat: str, points: int), ..."."""
     texts = []
     for name, kind in DECISIONS.items():
         fields = ", ".join(f"{f.name}: {f.type.__name__}" for f in msgspec.structs.fields(kind))

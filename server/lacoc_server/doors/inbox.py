@@ -1,8 +1,8 @@
-"""What a court believes of what arrives: tokens, sessions, sequence numbers, seals, floods.
+"""Checks what arrives at a court: tokens, sessions, sequence numbers, seals, floods.
 
-Pure: bytes and the time come in, inputs and refusals come out. Whatever the network
-lets through, nothing passes here that is not proven to be the seat's own, and nothing
-that arrives ever raises or costs more than a fixed amount of a beat.
+Pure: bytes and the time come in, inputs and refusals come out. A message passes only with proof
+that the seat's own controller sent it. Nothing that arrives ever raises an exception, or costs more
+than a fixed part of a beat.
 """
 
 from collections import Counter, deque
@@ -40,17 +40,19 @@ from lacoc_shared.seat import RESTART_KEY, SILENT_AFTER_S
 from lacoc_shared.words import Phrase, say
 
 COMMANDS_PER_BEAT = 16
-"""More of a seat's commands do not count in one beat: the newest do."""
+"""Most commands of a seat that count in one beat; the newest do."""
 LOOKED_AT_PER_BEAT = 64
-"""More of what comes for a seat is not looked at in one beat, whoever it is from."""
+"""Most messages for a seat that are checked in one beat, whoever sent them."""
 COMMANDS_HZ = 200.0
-"""Nor more than this in the long run; a controller sends 10 and what is pressed, a bot 60."""
+"""Most commands of a seat per second, on average. A controller sends 10 and the pressed keys, a bot
+60.
+"""
 NAME_MAX = 24
 FILE_NAME_MAX = 100
-"""A file's name stands in each of its mistakes."""
+"""Longest file name [characters]: each mistake in a file repeats its name."""
 
-_JOINS_HZ, _JOINS_BURST = 1.0, 5  # each may cost the reading of three files
-_READYS_HZ, _READYS_BURST = 1.0, 5  # each may cost the making of a model, and is an event for all
+_JOINS_HZ, _JOINS_BURST = 1.0, 5  # a join may cost reading three files
+_READYS_HZ, _READYS_BURST = 1.0, 5  # may build a model, and all see an event
 _RATE_WINDOW_S = 2.0
 
 _NO_SESSION = {
@@ -62,16 +64,16 @@ _NO_SESSION = {
 
 
 Later = Callable[[], JoinSeat | Refusal | None]
-"""A request that takes longer than a beat: to be asked in each beat until it has an answer."""
+"""A request that takes longer than a beat: called in each beat until it gives an answer."""
 
 
 class Door(NamedTuple):
-    """What was counted for a seat since the court was started."""
+    """Counts of one seat since the court was started."""
 
     heard: int
-    """Valid commands."""
+    """Number of valid commands."""
     refused: Mapping[str, int]
-    """Refusals by `Why`."""
+    """Number of refusals by `Why`."""
 
 
 class _Seat:
@@ -83,7 +85,7 @@ class _Seat:
         self.heard_s: float | None = None
         self.refused: Counter[str] = Counter()
         self.heard = 0
-        """Valid commands."""
+        """Number of valid commands."""
         self.valid_s: deque[float] = deque(maxlen=int(2 * COMMANDS_HZ * _RATE_WINDOW_S))
         self.commands = Allowance(COMMANDS_HZ, COMMANDS_PER_BEAT)
         self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
@@ -102,21 +104,21 @@ _MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one me
 
 
 class Inbox:
-    """The seats of a court and who holds them.
+    """The seats of a court and their holders.
 
     Args:
-        keys: key expressions of the court; seals are over them.
+        keys: key expressions of the court; seals cover them.
         seats: the seats' names, in the arena's order.
-        token_hashes: hash of the token that opens a seat, by the seat's name; a seat without one
-            can't be joined.
-        check_files: weighs a join's files in; returns the join with the robot file filled in, or
-            None while that takes longer, or raises `FileRefused`.
-        random_bytes: makes that many random bytes, for the sessions' numbers and secrets.
-        last_seqs: for a restarted court, the newest sequence numbers of its record, by seat.
+        token_hashes: hash of each seat's token, by the seat's name; a seat without one can't be
+            joined.
+        check_files: weighs a join's files in. It returns the join with the robot file filled in, or
+            None while it needs more time; it raises `FileRefused` for bad files.
+        random_bytes: returns that many random bytes, for numbers and secrets of sessions.
+        last_seqs: for a restarted court, the newest sequence numbers in its record, by seat.
         joined: for a restarted court, the seats that are held.
-        former: hashes of tokens that open seats too: of who held them before a restart of the
-            court made new ones.
-        most_delay_ms: links are made equal by a delay of at most this; 0: they are not.
+        former: hashes of older tokens that open the seats too, by seat: those with which seats were
+            taken before a restart of the court made new ones.
+        most_delay_ms: longest delay that makes the links equal; 0: links are not made equal.
     """
 
     def __init__(
@@ -140,7 +142,7 @@ class Inbox:
             for index, name in enumerate(seats)
         ]
         self.links = Links(len(seats), most_delay_ms)
-        """Told of every beat by the network."""
+        """Round trips and held commands; the network tells it of every beat."""
         self._sessions = Sessions(random_bytes)
         self._now_s = 0.0
 
@@ -152,16 +154,16 @@ class Inbox:
     def commands(
         self, now_s: float, arrived: Sequence[Sequence[bytes]], silent: Sequence[bool]
     ) -> list[Input]:
-        """Take a beat's commands in.
+        """Take in a beat's commands.
 
         Args:
             now_s: monotonic time.
             arrived: for each seat the payloads on its key expression, the newest last.
-            silent: for each seat, whether the match takes it for silent.
+            silent: for each seat, whether it is silent in the match.
 
         Returns:
-            For each seat: that it fell silent or is heard again, then of the keys that take effect
-            now its newest [x], then its newest digit (rules 3).
+            For each seat, in this order: that it fell silent or is heard again; the newest [x] that
+            takes effect now; the newest digit that takes effect now (rules 3).
         """
         self._now_s = now_s
         inputs: list[Input] = []
@@ -174,7 +176,7 @@ class Inbox:
         return inputs
 
     def join(self, index: int, payload: bytes) -> JoinSeat | Refusal | Later:
-        """Judge a join; it takes effect with `seated`, once the match has taken it in."""
+        """Check a join; call `seated` once the match has accepted it."""
         seat = self._seats[index]
         try:
             protocol = codec.decode(payload, _Version, JOIN_MAX_BYTES).protocol
@@ -203,7 +205,7 @@ class Inbox:
         )
 
     def _weighed(self, seat: _Seat, join: Join, token_hash: str) -> JoinSeat | Refusal | None:
-        """Judge a join by its files; None while they are still weighed in."""
+        """Check a join's files; return None while they are being weighed in."""
         try:
             checked = self._check_files(join)
         except FileRefused as refused:
@@ -227,7 +229,7 @@ class Inbox:
         )
 
     def seated(self, index: int, notes: tuple[Phrase, ...] = ()) -> Joined:
-        """Give a seat to whoever's join was taken in; an older session of it ends."""
+        """Give a seat to the sender of an accepted join; the seat's older session ends."""
         seat = self._seats[index]
         number, secret = self._sessions.begin(index)
         seat.joined = True
@@ -235,7 +237,7 @@ class Inbox:
         return Joined(session=number, secret=secret, last_seq=seat.last_seq, notes=notes)
 
     def ready(self, index: int, payload: bytes) -> ReadySeat | Refusal:
-        """Judge a ready request."""
+        """Check a ready request."""
         request = self._request(index, payload, "ready")
         if isinstance(request, Refusal):
             return request
@@ -245,12 +247,12 @@ class Inbox:
         return ReadySeat(index, request.ready)
 
     def leave(self, index: int, payload: bytes) -> LeaveSeat | Refusal:
-        """Judge a leave request; it takes effect with `left`."""
+        """Check a leave request; call `left` once the match has accepted it."""
         request = self._request(index, payload, "leave")
         return request if isinstance(request, Refusal) else LeaveSeat(index)
 
     def left(self, index: int) -> None:
-        """Free a seat whose leaving was taken in."""
+        """Free a seat after the match has accepted a leave request."""
         seat = self._seats[index]
         self._sessions.end(index, Why.LEFT)
         seat.joined = False
@@ -258,11 +260,11 @@ class Inbox:
         self.links.drop(index)
 
     def doors(self) -> tuple[Door, ...]:
-        """What was let in and refused, for each seat."""
+        """Return the counts of valid commands and refusals, for each seat."""
         return tuple(Door(seat.heard, seat.refused) for seat in self._seats)
 
     def health(self, now_s: float) -> tuple[SeatHealth, ...]:
-        """How each seat's link is."""
+        """Return the health of each seat's link."""
         return tuple(self._health(seat, now_s) for seat in self._seats)
 
     def _health(self, seat: _Seat, now_s: float) -> SeatHealth:
@@ -281,9 +283,9 @@ class Inbox:
         )
 
     def _own(self, seat: _Seat, payloads: Sequence[bytes]) -> list[Command]:
-        """The newest commands that are proven to be the seat's own, the oldest first.
+        """Return the newest commands that the seat itself sealed, the oldest first.
 
-        What anybody else sends takes nothing of what the seat may send.
+        Messages of others use up nothing of the seat's allowance.
         """
         allowed = seat.commands.left(self._now_s)
         own: list[Command] = []
@@ -313,7 +315,7 @@ class Inbox:
         seat.heard_s = self._now_s
         seat.heard += 1
         seat.valid_s.append(self._now_s)
-        if is_new:  # else only a sign of life
+        if is_new:  # a repeat is only a sign of life
             seat.last_seq = command.seq
             self.links.hold(seat.index, command)
 
@@ -362,10 +364,13 @@ class Inbox:
         return request
 
     def _presence(self, seat: _Seat, is_silent: bool) -> list[Input]:
-        """What the match takes the seat for and it is not: also a new match, or a restarted one."""
+        """Return the input that corrects what the match believes about a seat's silence.
+
+        A match that is new, or goes on after a restart, may be wrong about it too.
+        """
         if not seat.joined:
             return []
-        if seat.heard_s is None:  # held since before a restart of the court
+        if seat.heard_s is None:  # held since before the court's restart
             if is_silent:
                 return []
             seat.heard_s = self._now_s

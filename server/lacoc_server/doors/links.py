@@ -1,10 +1,12 @@
-"""The links of a court's seats: how long each takes, and the delay that makes them equal.
+"""The links of a court's seats: their round trips, and the delay that makes them equal.
 
-Pure: times of the court's clock come in. A command names the frame that its sender had newest,
-and the court knows when it sent that frame: so no client's clock is asked for a round trip. Where
-a contest equalises its links, what was done upon a frame takes effect so long after it was sent,
-for every seat: commands that are there earlier are held until then, commands that come later take
-effect at once and are counted (docs/decisions/0010-equal-links.md).
+Pure: the court's clock comes in as arguments. A command names the newest frame that its sender had,
+and the court knows when it sent that frame. So no round trip needs a client's clock.
+
+A contest may make its links equal: then an answer to a frame takes effect a fixed delay after the
+frame was sent. The delay is the same for every seat. Commands that arrive earlier are held until
+then; commands that arrive later take effect at once and are counted
+(docs/decisions/0010-equal-links.md).
 """
 
 import math
@@ -17,25 +19,25 @@ from lacoc_shared.messages import Command
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S
 
 WINDOW_BEATS = 10 * BEATS_PER_S
-"""A link is judged by its last round trips."""
+"""Round trips of this many last beats judge a link."""
 MEASURE_BEATS = BEATS_PER_S // 2
-"""How often it is."""
+"""Beats between two measurements of a link."""
 CHANGE_BEATS = 3 * BEATS_PER_S
-"""The common delay changes at most so often."""
+"""Beats between two changes of the common delay."""
 LOWER_BEATS = 2
-"""It is only lowered by so much or more: a delay that wavers is worse than a long one."""
+"""Smallest step down of the common delay [beats]: a delay that wavers is worse than a long one."""
 FRESH_BEATS = 2 * BEATS_PER_S
-"""A frame that is named again is not older than this, or whoever names it is not there any more."""
+"""Oldest frame [beats] that a repeat may name as a sign of life; else its sender has gone."""
 TRUST_S = 2 * BEAT_S
-"""A command is believed to have been under way for its seat's p95 and so much more, at most."""
+"""Added to a seat's p95: no command is believed to have been under way for longer than the sum."""
 
 
 _NONE = (0, 0)
-"""Match and beat of no frame."""
+"""Match and beat that a command names if its sender had no frame."""
 
 
 class Trip(NamedTuple):
-    """How long a seat takes: from a frame to the beat that has the answer to it."""
+    """Round trip of a seat: from a frame to the beat that has the answer to it."""
 
     p50_s: float
     p95_s: float
@@ -44,11 +46,11 @@ class Trip(NamedTuple):
 class _Frame(NamedTuple):
     sent_s: float
     delay_s: float
-    """From then until what was done upon it takes effect; 0: at once."""
+    """From the frame's sending until answers to it take effect; 0: at once."""
 
     @property
     def due_s(self) -> float:
-        # A beat that begins a little early is still the one that was meant.
+        # Half a beat of tolerance: a beat may begin a little early.
         return self.sent_s + self.delay_s - BEAT_S / 2
 
 
@@ -67,7 +69,7 @@ class _Link:
     """Match and beat of the newest frame that a command named."""
     trip: Trip | None = None
     held: deque[_Held] = field(default_factory=deque)
-    """In the order of their arrival, and of their effect."""
+    """In the order in which they arrived, and take effect."""
     late: int = 0
 
 
@@ -76,7 +78,7 @@ class Links:
 
     Args:
         seats: number of seats.
-        most_ms: the common delay is never longer; 0: commands are not held.
+        most_ms: longest common delay; 0: commands are not held.
     """
 
     def __init__(self, seats: int, most_ms: int = 0) -> None:
@@ -85,25 +87,25 @@ class Links:
         self._delay_beats = 0
         self._match, self._beat = 1, 0
         self._tick = 0
-        """Counts beats over all matches."""
+        """Number of beats over all matches."""
         self._begun_s: deque[float] = deque([0.0, 0.0], maxlen=2)
         self._frames: deque[_Frame] = deque(maxlen=WINDOW_BEATS)
 
     @property
     def delay_ms(self) -> int:
-        """The common delay; 0: none."""
+        """The common delay [ms]; 0: none."""
         return round(self._delay_beats * BEAT_S * 1000)
 
     def trip(self, seat: int) -> Trip | None:
-        """How long a seat took lately; None: not known."""
+        """Return a seat's round trip over the last 10 s; None if it is not known."""
         return self._links[seat].trip
 
     def late(self, seat: int) -> int:
-        """How many of a seat's keys came too late for the common delay."""
+        """Return how many of a seat's keys came too late for the common delay."""
         return self._links[seat].late
 
     def begin(self, now_s: float, match: int, beat: int) -> None:
-        """A beat of a match begins."""
+        """Note that a beat of a match begins."""
         self._match, self._beat = match, beat
         self._tick += 1
         self._begun_s.append(now_s)
@@ -114,19 +116,19 @@ class Links:
             self._agree()
 
     def sent(self, now_s: float) -> None:
-        """The beat's frame goes out; those who see the same frame have the same delay."""
+        """Note that the beat's frame is sent; its delay is the same for all who see it."""
         self._frames.append(self._frame(now_s))
 
     def is_ahead(self, command: Command) -> bool:
-        """Whether it names a frame that was not there yet."""
+        """Return whether a command names a frame that did not exist yet."""
         return (command.match, command.seen) > (self._match, self._beat - 1)
 
     def heard(self, seat: int, command: Command) -> bool:
-        """Take a round trip; one that names no newer frame than the last says nothing new.
+        """Take a round trip from a command that names a newer frame than the last one did.
 
         Returns:
-            Whether it says that its sender is there: it names a newer frame, or the same, if that
-            is not long ago. So a command that was overheard is soon worth nothing.
+            Whether the command proves that its sender is there: it names a newer frame than before,
+            or the same one while that is recent. So an overheard command is soon worthless.
         """
         link, seen = self._links[seat], (command.match, command.seen)
         if seen <= link.newest:
@@ -139,11 +141,12 @@ class Links:
         return True
 
     def hold(self, seat: int, command: Command) -> None:
-        """Take a new key; `release` gives it back when it takes effect."""
+        """Take in a new key; `release` returns it when it takes effect."""
         link, now_s = self._links[seat], self._begun_s[-1]
         frame = self._seen(command)
         upon = frame or (self._frames[-1] if self._frames else _Frame(now_s, 0.0))
-        # Who names an older frame than it had would be held for less: its own p95 bounds that.
+        # A sender that names an older frame than it had would be held for less. Its p95 limits
+        # that.
         believed_s = TRUST_S + (link.trip.p95_s if link.trip else 0.0)
         if upon.sent_s < now_s - believed_s:
             upon = self._frame(now_s - believed_s)
@@ -151,7 +154,7 @@ class Links:
         link.held.append(_Held(max(upon.due_s, last_s), self._tick, command, frame))
 
     def release(self, seat: int) -> list[KeySeat]:
-        """The keys that take effect in this beat, in their order."""
+        """Return the keys that take effect in this beat, in their order."""
         link, released = self._links[seat], []
         while link.held and link.held[0].due_s <= self._begun_s[-1]:
             _, tick, command, frame = link.held.popleft()
@@ -171,20 +174,20 @@ class Links:
         return released
 
     def drop(self, seat: int) -> None:
-        """Forget what is held for a seat that was left."""
+        """Drop the held commands of a seat that was left."""
         self._links[seat].held.clear()
 
     def _frame(self, sent_s: float) -> _Frame:
         return _Frame(sent_s, self._delay_beats * BEAT_S)
 
     def _seen(self, command: Command) -> _Frame | None:
-        """The frame that a command names, or the oldest that is known; None: none of this match."""
+        """Find the frame that a command names, else the oldest known; None for another match."""
         if command.match != self._match or not self._frames:
             return None
         return self._frames[-min(self._beat - command.seen, len(self._frames))]
 
     def _late(self, frame: _Frame | None) -> int:
-        """How many beats ago what was done upon a frame should have taken effect."""
+        """Count the beats by which an answer to a frame is late; 0: it is in time."""
         if frame is None or not frame.delay_s or frame.due_s > self._begun_s[-2]:
             return 0
         return max(1, int((self._begun_s[-1] - frame.due_s) / BEAT_S))
@@ -201,7 +204,7 @@ class Links:
         link.trip = Trip(trips_s[p50], trips_s[p95])
 
     def _agree(self) -> None:
-        """Let the common delay be the longest p95, in whole beats."""
+        """Set the common delay to the longest p95 of all seats, in whole beats."""
         longest_s = max((link.trip.p95_s for link in self._links if link.trip), default=0.0)
         wanted = min(math.ceil(longest_s / BEAT_S), self._most_beats)
         if not self._delay_beats - LOWER_BEATS < wanted <= self._delay_beats:

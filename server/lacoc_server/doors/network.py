@@ -1,8 +1,8 @@
-"""A court's place on the network: what arrives in a beat, what goes out after it.
+"""A court's place on the network: what arrives in a beat, and what goes out after it.
 
-Nothing comes in on a thread of its own: rings and desks are emptied by `poll`, once a
-beat, in the same order every time. What it may believe is the inbox's to say; a request is
-answered when the match has taken it in and the record is written. An outbox sends the rest.
+No message is handled on Zenoh's threads: once a beat, `poll` empties the rings and desks, always in
+the same order. The inbox decides what can be believed. A request is answered once the match has
+taken it in and the record is written. An outbox sends the rest.
 """
 
 from collections import deque
@@ -34,7 +34,7 @@ from lacoc_shared.words import Phrase
 _RING = LOOKED_AT_PER_BEAT
 _DESK = 16
 _FETCH_DESK = 256  # a crowd may arrive at once
-_REQUESTS_PER_BEAT = 4  # that are refused; of one desk at most one enters a beat
+_REQUESTS_PER_BEAT = 4  # refused ones; at most one request of a desk enters a beat
 _FETCHES_PER_BEAT = 8
 
 
@@ -42,25 +42,26 @@ _Judge = Callable[[Request], Input | Done | Refusal | Later]
 
 
 class Arrival(NamedTuple):
-    """An input for the match, and where its outcome goes."""
+    """An input for the match, and the receiver of its outcome."""
 
     input: Input
     answer: Callable[[Outcome], None] | None
-    """To be called once the outcome is on disk; None: nobody waits for it."""
+    """Called once the outcome is on disk; None: nobody waits for it."""
 
 
 class CourtNetwork:
-    """Opens a court to the network; used as a context manager.
+    """Connects a court to the network; used as a context manager.
 
     Args:
         keys: the court's key expressions.
         listen: addresses to listen on; port 0 takes a free one.
-        inbox: judges what comes for the seats.
-        decision_desk: judges what comes from referees.
-        protection: the court's keys and users; None: anybody may connect, nothing is encrypted.
+        inbox: checks what comes for the seats.
+        decision_desk: checks what comes from referees.
+        protection: the court's certificate and users; None: anybody may connect, and nothing is
+            encrypted.
 
     Raises:
-        UserError: if an address can't be listened on.
+        UserError: if the court can't listen on an address.
     """
 
     def __init__(
@@ -91,7 +92,7 @@ class CourtNetwork:
         ]
         self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
         self._waiting: dict[Desk, tuple[Request, Later]] = {}
-        """Of each desk a request that has no answer yet; those behind it wait too."""
+        """The request of each desk that has no answer yet; those behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
         self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
         self._log_desk = session.desk(keys.event, _FETCH_DESK)
@@ -100,7 +101,7 @@ class CourtNetwork:
         self._sheet_bytes = self._scene_bytes = b""
         session.announce(keys.alive)
         self.locators = session.locators()
-        """Addresses to connect to, with the port it really got."""
+        """Addresses to connect to, with the real ports."""
 
     def __enter__(self) -> Self:
         return self
@@ -112,13 +113,13 @@ class CourtNetwork:
     def poll(self, now_s: float, match: int, beat: int, silent: Sequence[bool]) -> list[Arrival]:
         """Take in what arrived since the last beat.
 
-        What is refused at the door is answered at once and is not among the arrivals.
+        A request that a door refuses is answered at once and is not among the arrivals.
 
         Args:
             now_s: monotonic time.
             match: number of the match.
             beat: number of the beat that begins now.
-            silent: for each seat, whether the match takes it for silent.
+            silent: for each seat, whether it is silent in the match.
         """
         self._inbox.links.begin(now_s, match, beat)
         waiting = [_empty(ring) for ring in self._commands]
@@ -130,10 +131,10 @@ class CourtNetwork:
         return arrivals
 
     def turn_away(self, why: Phrase) -> None:
-        """Refuse the requests that arrived: no beat can take them in.
+        """Refuse the requests that arrived, because no beat can take them in.
 
         Args:
-            why: a sentence for those who asked.
+            why: sentence for the senders.
         """
         refusal = encode(Refusal(why, again=True))
         for desk, _ in self._desks:
@@ -146,8 +147,8 @@ class CourtNetwork:
         """Send an encoded frame; a slow receiver misses it.
 
         Args:
-            frame: that of the beat.
-            now_s: monotonic time: answers to it are counted from here.
+            frame: frame of the beat.
+            now_s: monotonic time, from which round trips are measured.
         """
         self._inbox.links.sent(now_s)
         self._outbox.send_newest(self._frame, frame)
@@ -157,55 +158,55 @@ class CourtNetwork:
         self._outbox.send_newest(self._frame, frame)
 
     def publish_event(self, event: Event) -> None:
-        """Send an event, and keep it for those who come late or missed it."""
+        """Send an event, and keep it for clients that come late or missed it."""
         if self._log and self._log[0].match != event.match:
             self._log.clear()
         self._log.append(event)
         self._outbox.send(self._event, encode(event))
 
     def publish_sheet(self, sheet: Sheet) -> None:
-        """Send a changed sheet, and keep it for those who ask."""
+        """Send a changed sheet, and keep it for clients that ask."""
         self._sheet_bytes = encode(sheet)
         self._outbox.send(self._sheet, self._sheet_bytes)
 
     def publish_scene(self, scene: Scene) -> None:
-        """Keep a changed scene for those who ask: frames tell by its hash that it changed."""
+        """Keep a changed scene for clients that ask; the hash in the frames shows the change."""
         self._scene_bytes = encode(scene)
 
     def publish_health(self, health: Health) -> None:
-        """Send the court's health; by it everybody finds what did not reach them."""
+        """Send the court's health; it tells each client what did not reach them."""
         self._outbox.send_newest(self._health, encode(health))
 
     @property
     def newest_event(self) -> int:
-        """Number of the event that was sent last; 0: none."""
+        """Number of the last event that was sent; 0: none."""
         return self._log[-1].number if self._log else 0
 
     @property
     def sheet_hash(self) -> bytes:
-        """Of the sheet that was sent last."""
+        """Hash of the last sheet that was sent."""
         return message_hash(self._sheet_bytes)
 
     def seat_health(self, now_s: float) -> tuple[SeatHealth, ...]:
-        """How each seat's link is, in the arena's order."""
+        """Return the health of each seat's link, in the arena's order."""
         return self._inbox.health(now_s)
 
     def doors(self) -> tuple[Door, ...]:
-        """What was let in and refused, for each seat."""
+        """Return the counts of valid commands and refusals, for each seat."""
         return self._inbox.doors()
 
     @property
     def input_delay_ms(self) -> int:
-        """The common delay of all seats' links; 0: none."""
+        """The common delay of all seats' links [ms]; 0: none."""
         return self._inbox.links.delay_ms
 
     @property
     def dropped(self) -> dict[str, int]:
-        """Refusals that belong to no seat, by `Why`."""
+        """Number of refusals that belong to no seat, by `Why`."""
         return dict(self._decision_desk.refused)
 
     def _serve_fetches(self) -> None:
-        if self._sheet_bytes:  # who asks too early waits
+        if self._sheet_bytes:  # a client that asks earlier waits
             _serve(self._sheet_desk, lambda: self._sheet_bytes)
         if self._scene_bytes:
             _serve(self._scene_desk, lambda: self._scene_bytes)
@@ -225,7 +226,7 @@ class CourtNetwork:
                 return
             if isinstance(judged, Refusal):
                 request.refuse(encode(judged))
-            elif isinstance(judged, Done):  # nothing that concerns the match
+            elif isinstance(judged, Done):  # it does not concern the match
                 request.reply(encode(judged))
             else:
                 yield Arrival(judged, partial(self._answer, request, judged))
@@ -262,7 +263,7 @@ def _empty(ring: Ring) -> list[bytes]:
 
 
 def _serve(desk: Desk, payload: Callable[[], bytes]) -> None:
-    """Answer those who fetch something; those who ask in a crowd wait their turn."""
+    """Answer clients that fetch something, at most 8 in a beat; the others wait."""
     for _ in range(_FETCHES_PER_BEAT):
         request = desk.take()
         if request is None:

@@ -1,7 +1,7 @@
-"""What a court publishes, sent by a thread of its own: a crowd never makes a beat longer.
+"""Sends what a court publishes, on a separate thread: a crowd never makes a beat longer.
 
-Sending to a thousand sessions takes longer than a beat's own work. The thread only sends what
-the court has made and recorded; it decides nothing and the match never waits for it.
+Sending to a thousand sessions takes longer than a beat's own work. The thread only sends what the
+court has already recorded. It decides nothing, and the match never waits for it.
 """
 
 import threading
@@ -11,7 +11,7 @@ from lacoc_shared.network.session import Publisher
 
 
 class Outbox:
-    """Sends in the order of the court; closed before the session is."""
+    """Sends in the order of the court's calls; close it before the session."""
 
     def __init__(self) -> None:
         self._waiting: SimpleQueue[tuple[Publisher, bytes] | None] = SimpleQueue()
@@ -20,16 +20,16 @@ class Outbox:
         self._thread.start()
 
     def send(self, publisher: Publisher, payload: bytes) -> None:
-        """Send what must arrive."""
+        """Send a message that must arrive."""
         self._waiting.put((publisher, payload))
 
     def send_newest(self, publisher: Publisher, payload: bytes) -> None:
-        """Send what a newer one replaces: if it still waits then, it is left out."""
+        """Send a message that a newer one replaces: if it is still waiting then, it is dropped."""
         self._newest[publisher] = payload
         self._waiting.put((publisher, payload))
 
     def close(self) -> None:
-        """Send what waits, then end."""
+        """Send the waiting messages, then end."""
         self._waiting.put(None)
         self._thread.join()
 

@@ -1,4 +1,4 @@
-"""Who holds which seat: sessions, each a number with a secret, and why one ended."""
+"""The sessions of a court: which one holds which seat, and why one ended."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ _REMEMBERED = 64
 
 
 class Why(StrEnum):
-    """Why something was not believed: the names of `count.*`, which a referee sees counted."""
+    """Why a message was refused: the names of `count.*`, which a referee sees counted."""
 
     BAD_BYTES = "bad-bytes"
     TOO_LONG = "too-long"
@@ -36,31 +36,31 @@ class _Held:
     seat: int
     secret: bytes
     requests: int = 0
-    """Sequence number of the newest ready or leave."""
+    """Sequence number of the newest ready or leave request."""
 
 
 class Sessions:
-    """The sessions of a court: at most one holds a seat.
+    """The sessions of a court; at most one holds a seat.
 
     Args:
-        random_bytes: makes that many random bytes.
+        random_bytes: returns that many random bytes.
     """
 
     def __init__(self, random_bytes: Callable[[int], bytes]) -> None:
         self._random_bytes = random_bytes
         self._held: dict[int, _Held] = {}
-        """Each session that holds a seat."""
+        """The sessions that hold a seat, by number."""
         self._ended: dict[int, tuple[int, Why]] = {}
-        """Seat of each ended session and why it ended; the oldest are forgotten."""
+        """Seat of each ended session and why it ended; only the newest are kept."""
 
     def begin(self, seat: int) -> tuple[int, bytes]:
-        """Let a new session hold a seat; an older one is replaced.
+        """Start a session that holds a seat; it replaces an older one.
 
         Returns:
             The session's number and its secret.
         """
         self.end(seat, Why.REPLACED)
-        # Random, so that a restarted court does not mistake an old number for a new one.
+        # Random, so that a restarted court does not take an old number for one of its own.
         number = 1 + int.from_bytes(self._random_bytes(4)) % (2**32 - 1)
         secret = self._random_bytes(SECRET_BYTES)
         self._held[number] = _Held(seat, secret)
@@ -76,11 +76,11 @@ class Sessions:
             del self._ended[next(iter(self._ended))]
 
     def holder(self, seat: int) -> int:
-        """Number of the session that holds a seat; 0: none."""
+        """Return the number of the session that holds a seat; 0: none."""
         return next((number for number, held in self._held.items() if held.seat == seat), 0)
 
     def secret(self, seat: int, number: int) -> bytes | Why:
-        """The secret of a session that holds a seat, or why it does not hold it."""
+        """Return the secret of a session that holds a seat, or why it does not hold it."""
         if number in self._held:
             held = self._held[number]
             return held.secret if held.seat == seat else Why.NOT_YOUR_SEAT
@@ -88,11 +88,14 @@ class Sessions:
         return why if its_seat == seat else Why.NOT_YOUR_SEAT
 
     def is_next(self, number: int, seq: int) -> bool:
-        """Whether a proven request of a session is newer than all before; then it is the newest.
+        """Accept a sequence number if it is newer than all before it in the session.
 
         Args:
-            number: of a session that holds a seat.
-            seq: the request's own.
+            number: number of a session that holds a seat.
+            seq: sequence number of a request whose seal is proven.
+
+        Returns:
+            Whether it was newer.
         """
         held = self._held[number]
         if seq <= held.requests:

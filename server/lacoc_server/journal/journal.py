@@ -1,8 +1,8 @@
-"""A match with its record: every beat is on its way to the disk before anyone is answered.
+"""A match with its record: a beat's messages go to the disk before anybody is answered.
 
-A beat's frame comes after all else that the beat made, and so seals it: what stands in a
-record without the frame of its beat was written by a court that was killed in that beat.
-Only beats in which nothing happened at all have no frame.
+A beat's frame is written after everything else of that beat, and so seals it. Messages without the
+frame of their beat come from a court that was killed in that beat. Only a beat in which nothing
+happened has no frame.
 """
 
 import platform
@@ -24,24 +24,24 @@ from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase
 
 SNAPSHOT_TICKS = 250
-"""A full snapshot every 5 s of physics."""
+"""Ticks between two full snapshots: one every 5 s of physics."""
 
 Measure = Callable[[Sequence[Input], Beat], HealthVerdict | None]
-"""Measures how well a beat was held; gives the verdict on the match where one is due."""
+"""Measures how well a beat was held; returns a verdict on the match when one is due."""
 
 
 class Journal:
     """Runs a match and writes its record.
 
     Args:
-        match: the match; may have run some beats already.
-        folder: where the record goes; None: no record.
-        segment: how many segments of this match's record came before.
-        measure: measures how well the match is held; None: it runs headless, and nothing can be
-            late.
+        match: the match; it may have run some beats already.
+        folder: folder of the record; None: no record.
+        segment: number of earlier segments of this match's record.
+        measure: measures how well the match is held; None for a headless match, in which no beat
+            can be late.
 
     Raises:
-        UserError: if the record can't be made.
+        UserError: if the record can't be created.
     """
 
     def __init__(
@@ -98,31 +98,31 @@ class Journal:
         return beat, encoded
 
     def flush(self) -> None:
-        """See that all beats so far are written.
+        """Write all beats so far to the file.
 
         Raises:
-            UserError: if the disk does not take them.
+            UserError: if the disk refuses them.
         """
         if self.writer is not None:
             self.writer.flush()
 
     @property
     def trouble(self) -> Phrase | None:
-        """What the disk said of what was written before; None while all is well."""
+        """Disk error of earlier writes; None while there is none."""
         return None if self.writer is None else self.writer.sync_trouble
 
     def close(self) -> None:
-        """Finish the record: the match is over, and nobody goes on with it."""
+        """Finish the record of a match that is over."""
         if self.writer is not None:
             self.writer.close()
 
     def leave(self) -> None:
-        """Let go of the record as it is: the next start of its court goes on with the match."""
+        """Leave the record unfinished: the next start of its court goes on with the match."""
         if self.writer is not None:
             self.writer.leave()
 
     def _new(self, frame: Frame) -> bool:
-        """Whether a frame without physics says more than that time passes."""
+        """Return whether a frame shows more than that time has passed since the one before it."""
         content = (frame.phase, frame.seats, frame.markers, frame.poses, frame.clock_ticks)
         new, self._last = content != self._last, content
         return new

@@ -1,8 +1,8 @@
-"""A record's match, judged again on the poses that it recorded.
+"""A record's match, judged again on the recorded poses.
 
-The rules judged exactly the poses that frames carry, so this is exact on any machine, and needs no
-physics. What the match asks of physics on the way is cut into sections, which are simulated apart.
-A last beat without its frame was never answered and does not count (`journal`).
+The rules judged exactly the poses that frames carry. So judging them again is exact on any machine
+and needs no physics. What the match asked of physics is cut into sections, which are simulated
+separately. A last beat without its frame was never answered and does not count (`journal`).
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -41,19 +41,19 @@ _FRAME = (
     "scene",
     "state hash",
 )
-"""What the parts of a frame are called, in its order."""
+"""Names of the fields of a frame, in its order."""
 _SCENE_BOUND = 1e-9
-"""Another arithmetic may build a model whose drawn lengths [m] differ by this much."""
+"""Most by which a drawn length [m] may differ in a model built on another kind of machine."""
 
 
 class RecordedPhysics:
     """Recorded poses behind the protocol of physics; notes what the match asks for.
 
     Args:
-        world: the robots as they are built here; it is not stepped.
-        record: what is recorded of them.
-        scene: as it is recorded; None: as it is built here.
-        model_hash: the same.
+        world: the robots as this machine builds them; it is not stepped.
+        record: the recorded messages of the present beat.
+        scene: recorded scene; None: the scene of `world`.
+        model_hash: recorded hash of the model; None: the hash of `world`.
     """
 
     def __init__(
@@ -70,35 +70,35 @@ class RecordedPhysics:
 
     @property
     def digest(self) -> bytes:
-        """The frame's."""
+        """Digest in the frame."""
         frame = self._record.frame
         return frame.digest if frame else self.world.digest
 
     def place(self, seat: int, place: Place) -> None:
-        """Note it."""
+        """Note that the match puts a robot at a place."""
         self._places.append((seat, place))
 
     def step(self, angles: Sequence[Posture]) -> Fault | None:
-        """Note the angles; it fails where the record says so."""
+        """Note the commanded angles; return the recorded fault, if there is one."""
         self._angles = tuple(angles)
         return self._record.fault
 
     def save(self) -> bytes:
-        """The recorded snapshot of this beat, if there is one."""
+        """Return the recorded snapshot of this beat; empty if there is none."""
         return self._record.snapshot or b""
 
     def poses(self) -> bytes:
-        """The frame's."""
+        """Return the poses in the frame."""
         frame = self._record.frame
         return frame.poses if frame and frame.poses else self.world.poses()
 
     def touched(self) -> Sequence[tuple[int, ...]]:
-        """As it is recorded."""
+        """Return the recorded touches."""
         self._asked = True
         return self._record.touched
 
     def take(self) -> Step | None:
-        """Give what this beat asked for and what its frame says; None if that is nothing."""
+        """Return what this beat asked for and what its frame shows; None if there is neither."""
         record, frame = self._record, self._record.frame
         places, angles, asked = tuple(self._places), self._angles, self._asked
         self._places, self._angles, self._asked = [], None, False
@@ -117,16 +117,16 @@ class RecordedPhysics:
 
 
 class Recorded:
-    """What is recorded of one beat after another."""
+    """The recorded messages of one beat after another."""
 
     def __init__(self, record: Record) -> None:
         self.seats = 0
-        """Robots on the field."""
+        """Number of robots on the field."""
         self.beat = -1
         self.has_frame = False
         """Whether this beat has a frame of its own."""
         self.frame: Frame | None = None
-        """The newest so far."""
+        """The newest frame so far."""
         self.fault: Fault | None = None
         self._frames = dict(record.frames)
         self._touches = record.touches
@@ -144,13 +144,13 @@ class Recorded:
 
     @property
     def touched(self) -> tuple[tuple[int, ...], ...]:
-        """For each seat the markers it touched in this beat."""
+        """For each seat the markers that it touched in this beat."""
         touch = self._touches.get(self.beat)
         return touch.touched if touch else ((),) * self.seats
 
     @property
     def snapshot(self) -> bytes | None:
-        """The snapshot after this beat."""
+        """The snapshot after this beat; None: there is none."""
         return self._snapshots.get(self.beat)
 
 
@@ -159,24 +159,24 @@ class Judge:
 
     Args:
         record: what to judge.
-        folder: of its arena, if that is not installed.
-        snapshots: by beat, where sections begin and end.
+        folder: folder of its arena, if the arena is not installed.
+        snapshots: snapshots by beat, at which sections begin and end.
 
     Raises:
-        UserError: if no match can be made of the record.
+        UserError: if the record does not describe a match.
     """
 
     def __init__(self, record: Record, folder: Path | None, snapshots: Mapping[int, bytes]) -> None:
         self.worlds = Worlds()
-        """Has the world of the newest build."""
+        """Keeps the world that was built last."""
         self.section: Section | None = None
-        """The section that goes on; its steps are none just after a snapshot."""
+        """The section that is being filled; just after a snapshot it has no steps."""
         self.difference: Difference | None = None
-        """The first that was found; it ended the judging."""
+        """The first difference; judging stops at it."""
         self.other_model: Difference | None = None
-        """Where the model that is built here first has other bits than the recorded one."""
+        """Where this machine first builds a model with other bits than the recorded one."""
         self.beats = self.frames = 0
-        """How many were compared."""
+        """Number of beats judged, and of frames compared."""
         self._record = record
         self._folder = folder
         self._snapshots = snapshots
@@ -197,10 +197,10 @@ class Judge:
         """Judge beat by beat, up to the first difference.
 
         Yields:
-            Each section when its last beat is judged.
+            Each section, once its last beat is judged.
 
         Raises:
-            UserError: if the record's messages do not fit together.
+            UserError: if the record's messages contradict each other.
         """
         last = last_beat(self._record)
         for number in range(last + 1):
@@ -222,7 +222,7 @@ class Judge:
             yield self.section
 
     def _judge(self, number: int) -> list[str]:
-        """Let one beat pass; returns what of it the record has otherwise."""
+        """Judge one beat; return the names of what differs from the record."""
         record = self._record
         self._beat = number
         with fits_together(record):
@@ -241,7 +241,7 @@ class Judge:
         return differs
 
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """Make the physics of a match: the world itself where there is nobody on it."""
+        """Make the physics of a match; without robots it is the world itself."""
         world = World(arena, entries)
         scene, model_hash = self._other_model(world)
         if not entries:
@@ -257,10 +257,10 @@ class Judge:
         return RecordedPhysics(world, self._recorded, scene, model_hash)
 
     def _other_model(self, world: World) -> tuple[Scene | None, str | None]:
-        """Find what another arithmetic built of the same robots.
+        """Find what another kind of machine built from the same robots.
 
         Returns:
-            The recorded scene and hash of the model, where these may differ by their last bits.
+            The recorded scene and hash of the model, where they may differ by their last bits.
         """
         beat = max(0, self._beat)
         made_by = header_at(self._record, beat).arithmetic.get("model")
@@ -277,7 +277,7 @@ class Judge:
         return scene, str(models[0]) if models else None
 
     def _differences(self, number: int, beat: Beat) -> Iterator[str]:
-        """What a beat's record has otherwise."""
+        """Name what differs between a judged beat and its record."""
         record, match = self._record, self.match
         recorded = self._frames.get(number)
         events = self._events.pop(number, [])
@@ -306,7 +306,7 @@ class Judge:
         self._result = beat.result or self._result
 
     def _differs_at_the_end(self, last: int) -> Iterator[str]:
-        """What the whole record has otherwise."""
+        """Name what differs between the whole judged match and its record."""
         record = self._record
         if not _same_result(record, self._result, last):
             yield "the result"
@@ -318,7 +318,7 @@ class Judge:
 
 @contextmanager
 def fits_together(record: Record) -> Iterator[None]:
-    """Say it in words where a record's messages contradict each other: it may be damaged."""
+    """Turn errors from messages that contradict each other into a `UserError`."""
     try:
         yield
     except (ValueError, ArithmeticError, LookupError, TypeError, AssertionError) as error:
@@ -327,22 +327,22 @@ def fits_together(record: Record) -> Iterator[None]:
 
 
 def last_beat(record: Record) -> int:
-    """The last beat that counts."""
+    """Return the number of the last beat that counts."""
     sealed = not record.cut or any(beat == record.last_beat for beat, _ in record.frames[-1:])
     return record.last_beat if sealed else record.last_beat - 1
 
 
 def header_at(record: Record, beat: int) -> Header:
-    """The header of the segment that a beat is in."""
+    """Return the header of the segment that a beat is in."""
     return next(
         (header for header in reversed(record.headers) if header.first_beat <= beat), record.header
     )
 
 
 def _same_result(record: Record, again: Result | None, last: int) -> bool:
-    """Whether a recorded result is the one, as far as it was answered."""
+    """Return whether two results are equal, up to the last beat that was answered."""
     recorded = record.result
-    if recorded is None:  # or it was of a beat that was not answered, in an earlier segment
+    if recorded is None:  # a beat of an earlier segment may have had it, unanswered
         return again is None or len(record.headers) > 1
     if recorded.beats == last + 2 and record.cut:
         return True
@@ -350,7 +350,7 @@ def _same_result(record: Record, again: Result | None, last: int) -> bool:
 
 
 def _same_sheet(recorded: Sheet | None, again: Sheet) -> bool:
-    """Whether a recorded sheet is the one; it also says which software wrote it."""
+    """Return whether two sheets are equal, apart from the software that wrote them."""
     if recorded is None:
         return False
     return replace(recorded, version=again.version, protocol=again.protocol) == again
@@ -370,7 +370,7 @@ def _frame_differences(recorded: Frame, again: Frame) -> list[str]:
 
 
 def _near(one: object, other: object) -> bool:
-    """Whether two scenes are the same but for the last bits of their numbers."""
+    """Return whether two scenes are equal, apart from the last bits of their numbers."""
     if isinstance(one, msgspec.Struct) and type(one) is type(other):
         return all(_near(getattr(one, f), getattr(other, f)) for f in one.__struct_fields__)
     if isinstance(one, tuple) and isinstance(other, tuple):

@@ -19,35 +19,36 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
 
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
-"""What the court halts when its match was interrupted."""
+"""Phases in which the court halts a match after a restart."""
 _OPENING_BYTES = 1 << 14
-"""A shorter file without a header was cut while its court opened it: nothing is lost with it."""
+"""A smaller file [bytes] without a header was cut while it was opened, and holds nothing."""
 
 
 @dataclass(frozen=True)
 class Unfinished:
-    """A match as it was when its court died."""
+    """A match as it was when its court was killed."""
 
     match: Match
     segment: int
     """Number of the record's next segment."""
     events: tuple[Event, ...]
-    """To be published again: the history that died with the court."""
+    """Events to publish again: the court's list of them was lost."""
     last_seqs: dict[str, int]
-    """By seat: its sequence numbers go on after this one."""
+    """Newest sequence number in the record, by seat; a seat goes on after it."""
     token_hashes: dict[str, str]
-    """By seat that is held: the token that opens it."""
+    """Hash of the token of each held seat, by seat."""
     health: HealthVerdict | None
-    """How well it had been held until then."""
+    """The verdict until the court was killed."""
     cut: str
-    """Where its record ends, in words."""
+    """Where the record ends, as a sentence."""
     other_arithmetic: str = ""
-    """That and how this machine computes otherwise than the one that recorded it, in words; "" if
-    it does not."""
+    """Sentences on how far, and why, this machine's arithmetic differs from the recording
+    machine's; "" if it does not.
+    """
 
     @property
     def inputs(self) -> list[Input]:
-        """What the court does first: nobody may find a match already running."""
+        """The court's first inputs: a match in play is halted, so that nobody finds it running."""
         if self.match.phase in IN_PLAY:
             why = say("reason.court-restarted")
             if self.other_arithmetic:
@@ -57,18 +58,18 @@ class Unfinished:
 
 
 def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
-    """Find the newest match of a court, if its court did not end it; None if it did.
+    """Find the newest match of a court, if it was left unfinished; else None.
 
-    A match that a running court of this name holds right now was not left behind, nor one without
-    a header: its court was killed before it had opened.
+    It skips a match that a running court of this name holds. It also skips a match without a
+    header: its court was killed while it opened.
 
     Args:
-        folder: of the records.
+        folder: folder of the records.
         court: the court's name.
-        arena: what the court is to play.
+        arena: arena that the court is to play.
 
     Raises:
-        UserError: if there is one and it can't go on here; the message says why.
+        UserError: if there is such a match and it can't go on here; the message says why.
     """
     for name, segments in reversed(court_matches(folder, court).items()):
         if is_over(name, segments):
@@ -95,7 +96,7 @@ def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
 
 
 def _check_origin(record: Record, name: MatchName, arena: Arena) -> None:
-    """See that a record is of the match that its files are named after, and of this arena.
+    """Check that a record is of the match named by its files, and of this arena.
 
     Raises:
         UserError: if it is not.

@@ -1,8 +1,8 @@
-"""A record played again: verified by physics, or taken up where it ended.
+"""A record played again: verified by physics, or continued where it ended.
 
 The games are judged on the recorded poses, over the whole match (`judge`). Physics is simulated
-from each snapshot to the next (`section`): in this way it is exact with the same arithmetic, and
-with another one it has no time to get far from the record.
+section by section, each from the snapshot before it, so that another kind of machine can't drift
+far from the record.
 """
 
 import os
@@ -25,7 +25,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.words import say
 
 _SECTIONS_PER_PROCESS = 4
-"""To start a process takes as long as to simulate two or three sections."""
+"""Fewest sections for each process: starting one takes as long as simulating two or three."""
 
 
 def verify(
@@ -38,16 +38,17 @@ def verify(
 
     Args:
         record: what to verify.
-        folder: of its arena, if that is not installed.
-        bound: how far from the record another arithmetic may end a section [m, rad].
-        processes: how many simulate side by side; 1: this one; None: one for each core.
+        folder: folder of its arena, if the arena is not installed.
+        bound: largest distance from the record that another arithmetic may reach in a section [m,
+            rad].
+        processes: number of processes that simulate; 1: only this one; None: one for each core.
 
     Yields:
-        How many beats were simulated so far (for a progress bar), and last the `Verdict`.
+        The number of beats simulated so far (for a progress bar); at the end the `Verdict`.
 
     Raises:
-        UserError: if its arena is not installed, another MuJoCo made it, or it is damaged in a
-            way that no match can be made of it.
+        UserError: if the arena is not installed, another version of MuJoCo made the record, or it
+            is too damaged to describe a match.
     """
     _same_physics(record)
     judge = Judge(record, folder, dict(record.snapshots))
@@ -70,32 +71,33 @@ def verify(
 
 @dataclass(frozen=True)
 class Resumed:
-    """A match that goes on."""
+    """A match that can go on."""
 
     match: Match
     distance: float | None = None
-    """How far this machine's arithmetic is from the record after its newest snapshot [m, rad];
-    None: every bit is the same."""
+    """Distance of this machine's arithmetic from the record after the newest snapshot [m, rad];
+    None: every bit is the same.
+    """
 
 
 def resume(record: Record, at: int | None = None, folder: Path | None = None) -> Resumed:
-    """Take a match up where its record ends.
+    """Continue a match where its record ends.
 
-    Up to the newest snapshot the recorded poses stand for physics, and only from there on it is
-    simulated. Another arithmetic gets no farther from the record than `BOUND` on this way.
+    Up to the newest snapshot the recorded poses stand in for physics; only the rest is simulated.
+    On that stretch another arithmetic stays within `BOUND` of the record.
 
     Args:
-        record: of a court that was killed; may be cut anywhere.
-        folder: of its arena, if that is not installed.
-        at: take up physics from the newest snapshot at or before this beat; None: from the
-            newest that there is.
+        record: record of a court that was killed; it may be cut anywhere.
+        folder: folder of its arena, if the arena is not installed.
+        at: simulate from the newest snapshot at or before this beat; None: from the newest of all.
 
     Returns:
         The match after its last recorded beat, with its physics ready to go on.
 
     Raises:
-        UserError: if its arena is not installed, another MuJoCo made it, or the match that comes
-            out is not the recorded one, because it is damaged or other software wrote it.
+        UserError: if the arena is not installed or another version of MuJoCo made the record. Also
+            if the resulting match differs from the record: it is damaged, or other software wrote
+            it.
     """
     _same_physics(record)
     judge = Judge(
@@ -114,7 +116,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
         if section.steps:
             findings.append(simulate(section, judge.worlds))
             world.digest = section.steps[-1].digest
-        # What was published stays, whatever other last bits are computed here.
+        # Keep what was published, even if this machine computes other last bits.
         world.scene, world.scene_hash = physics.scene, physics.scene_hash
         world.model_hash = physics.model_hash
         physics = world
@@ -129,7 +131,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
 
 
 def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[Finding]:
-    """Simulate the sections of a match while it is judged."""
+    """Simulate the sections of a match while it is being judged."""
     if processes <= 1:
         worlds = Worlds()
         for section in judge.sections():
@@ -153,11 +155,11 @@ def _processes(record: Record, wanted: int | None) -> int:
 
 
 _worlds = Worlds()
-"""Of a process that simulates sections."""
+"""Worlds of a process that simulates sections."""
 
 
 def _begin() -> None:
-    """Begin a process that simulates sections; Ctrl-C is for the one that started it."""
+    """Start a process that simulates sections; it leaves Ctrl-C to its parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 

@@ -1,8 +1,8 @@
-"""A section of a match: what physics does from one snapshot to the next.
+"""A section of a match: the beats from one snapshot to the next, as physics sees them.
 
-A section holds all that its simulation needs, so that sections can be simulated side by side. How
-a simulation compares with the record is told twice: where its bits first differ, and where it is
-first farther away than another arithmetic can be the reason for.
+A section holds everything that its simulation needs, so sections can be simulated side by side. A
+simulation reports two comparisons with the record: where bits first differ, and where the distance
+first exceeds what another arithmetic can explain.
 """
 
 from collections.abc import Sequence
@@ -21,12 +21,12 @@ from lacoc_shared.gait.tables import Posture
 from lacoc_shared.record.schema import Setup
 
 BOUND = 1e-5
-"""Within this distance [m, rad] of the record another arithmetic ends a section."""
+"""Largest distance from the record [m, rad] that another arithmetic may reach in a section."""
 
 _ROUNDING = 2.0**-23
-"""A recorded pose is rounded to float32."""
+"""Rounding error of a recorded pose, a float32."""
 _NO_DIGEST = bytes(8)
-"""Before the first tick."""
+"""Digest before the first tick."""
 
 
 class Difference(NamedTuple):
@@ -38,38 +38,38 @@ class Difference(NamedTuple):
 
 @dataclass(frozen=True)
 class Build:
-    """What robots on a field are built from."""
+    """Inputs from which a world is built."""
 
     number: int
-    """Counts the builds of a match from 0."""
+    """Number of the build in its match, from 0."""
     setup: Setup
     folder: Path | None
-    """Of the arena, if it is not installed."""
+    """Folder of the arena, if it is not installed."""
     entries: tuple[Entry, ...]
 
     def world(self) -> World:
-        """Build them."""
+        """Build the world."""
         setup = self.setup
         return World(arenas.from_settings(setup.arena, setup.settings, self.folder), self.entries)
 
 
 @dataclass(frozen=True)
 class Step:
-    """A beat of a section: what the match wants of physics, and what the record has of it."""
+    """A beat of a section: what the match asks of physics, and what the record has for it."""
 
     beat: int
     places: tuple[tuple[int, Place], ...]
-    """Seats whose robots are put at a start place, in order."""
+    """Seats whose robots are put at a start place, with the place, in order."""
     angles: tuple[Posture, ...] | None
-    """For each seat the commanded angles [rad]; None: no tick passes."""
+    """Commanded angles of each seat [rad]; None: no tick passes."""
     fault: Fault | None
-    """What stopped physics in this tick."""
+    """The fault that stopped physics in this tick; None: none did."""
     touched: tuple[tuple[int, ...], ...] | None
-    """For each seat the markers it touches; None: the rules did not ask."""
+    """Markers that each seat's robot touches; None: the rules did not ask."""
     poses: bytes | None
-    """The frame's; None: this beat has no frame."""
+    """Poses in the frame; None: this beat has no frame."""
     digest: bytes
-    """The frame's, or the last before it."""
+    """Digest of the frame, or of the last frame before it."""
 
 
 @dataclass
@@ -78,46 +78,46 @@ class Section:
 
     build: Build
     start: bytes | None
-    """The snapshot that it starts from; None: robots as they are built."""
+    """The snapshot that it starts from; None: it starts with the robots as built."""
     digest: bytes
-    """The last recorded before the section's first step."""
+    """The last recorded digest before the section's first step."""
     steps: list[Step] = field(default_factory=list)
     end: bytes | None = None
     """The snapshot after the last step; None: there is none."""
 
     @property
     def first_beat(self) -> int:
-        """Its first beat."""
+        """Number of its first beat."""
         return self.steps[0].beat
 
     @property
     def last_beat(self) -> int:
-        """Its last beat."""
+        """Number of its last beat."""
         return self.steps[-1].beat
 
 
 @dataclass
 class Finding:
-    """What the simulation of a section found."""
+    """Result of a section's simulation."""
 
     first_beat: int
     last_beat: int
     bits: Difference | None = None
-    """Where the first bits differ; None: all are the same."""
+    """Where bits first differ; None: none do."""
     beyond: Difference | None = None
-    """Where it is first too far from the record; None: nowhere."""
+    """Where the simulation is first too far from the record; None: nowhere."""
     distance: float = 0.0
-    """How far it is from the record at most, in frames and at its end [m, rad]."""
+    """Largest distance from the record, in frames and at the section's end [m, rad]."""
 
     def differ(self, beat: int, what: str, far: bool) -> None:
-        """Note that something differs in a beat, and whether it is too far."""
+        """Note what differs in a beat, and whether it is too far."""
         self.bits = _joined(self.bits, beat, what)
         if far:
             self.beyond = _joined(self.beyond, beat, what)
 
 
 class Worlds:
-    """Keeps the newest world that was built: sections of one build follow each other."""
+    """Keeps the newest world that was built: sections of the same build follow each other."""
 
     def __init__(self) -> None:
         self._number = -1
@@ -129,10 +129,10 @@ class Worlds:
         self._number, self._world, self._start = build.number, world, world.save()
 
     def at_start(self, section: Section) -> World:
-        """Give the world of a section, in the state in which the section starts.
+        """Return the world of a section, in the state in which the section starts.
 
         Raises:
-            ValueError: if its snapshot is not of its model.
+            ValueError: if the section's snapshot is of another model.
         """
         if self._world is None or self._number != section.build.number:
             self.keep(section.build, section.build.world())
@@ -146,8 +146,8 @@ def simulate(section: Section, worlds: Worlds, bound: float = BOUND) -> Finding:
 
     Args:
         section: what to simulate.
-        worlds: where its world comes from; afterwards the world is as the section's end.
-        bound: how far another arithmetic may be [m, rad].
+        worlds: source of its world, which is in the state of the section's end afterwards.
+        bound: largest distance that another arithmetic may reach [m, rad].
     """
     found = Finding(section.first_beat, section.last_beat)
     try:
@@ -191,9 +191,9 @@ def _step(step: Step, before: bytes, world: World, found: Finding, bound: float)
 def _end(
     saved: bytes, step: Step, before: bytes, world: World, found: Finding, bound: float
 ) -> None:
-    """Compare the end with its snapshot, and the snapshot with its own frame.
+    """Compare the world with the snapshot at the end, and the snapshot with its frame.
 
-    A snapshot holds the state whose hash is in the frame, so that much can be told anywhere.
+    The frame has the hash of the snapshot's state, so any machine can check that part.
     """
     if world.save() != saved:
         apart = world.apart(saved)
@@ -210,7 +210,7 @@ def _end(
 
 
 def _apart(recorded: bytes, poses: bytes) -> float:
-    """Measure how far two frames' poses are apart; infinite if they are not of the same robots."""
+    """Return the largest difference between two frames' poses; infinite for other robots."""
     if len(recorded) != len(poses):
         return float("inf")
     gaps = np.abs(np.frombuffer(recorded, "<f4").astype(float) - np.frombuffer(poses, "<f4"))
@@ -218,7 +218,7 @@ def _apart(recorded: bytes, poses: bytes) -> float:
 
 
 def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> bool:
-    """Say whether robots that are a bound away from here can have touched these markers."""
+    """Return whether robots up to `bound` away from here can have touched these markers."""
     surely, perhaps = world.touched(gap_m=-bound), world.touched(gap_m=bound)
     return len(recorded) == len(surely) and all(
         set(sure) <= set(marked) <= set(maybe)
@@ -227,7 +227,7 @@ def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> 
 
 
 def _joined(known: Difference | None, beat: int, what: str) -> Difference:
-    """Add what differs in a beat to the first difference that is known."""
+    """Add a difference in a beat to the first known difference."""
     if known is None:
         return Difference(beat, (what,))
     return known if known.beat != beat else Difference(beat, (*known.what, what))

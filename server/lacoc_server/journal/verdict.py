@@ -1,4 +1,4 @@
-"""What a verification comes to."""
+"""The verdict of a verification."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -21,43 +21,43 @@ _ORDER = (
     "scene",
     "state hash",
 )
-"""In this order differences of a beat are told; all others come after them."""
+"""Order in which a beat's differences are listed; all others come after them."""
 
 
 class Kind(StrEnum):
     """The three verdicts."""
 
     SAME = "same"
-    """Every bit is what its inputs give."""
+    """Every bit is what the inputs give."""
     OTHER_ARITHMETIC = "other-arithmetic"
-    """The games and the result are what the inputs give; poses are, but for their last bits."""
+    """Games and result are what the inputs give; poses differ only by their last bits."""
     DIFFERS = "differs"
-    """The record is not what its inputs give."""
+    """The record is not what the inputs give."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a verification found."""
+    """Result of a verification."""
 
     kind: Kind
     beats: int
-    """Beats that were judged again."""
+    """Number of beats judged again."""
     frames: int
-    """Frames that were compared."""
+    """Number of frames compared."""
     sections: int
-    """Sections that were simulated again."""
+    """Number of sections simulated again."""
     text: str
-    """The verdict in words."""
+    """The verdict as a sentence."""
     differs_at: int | None = None
-    """First beat that differs; None: none does."""
+    """First beat that differs; None: no beat does."""
     distance: float = 0.0
-    """How far the worst section is from the record [m, rad]."""
+    """Distance of the worst section from the record [m, rad]."""
     worst: tuple[int, int] | None = None
-    """First and last beat of that section; None: all bits are the same."""
+    """First and last beat of the worst section; None: all bits are the same."""
 
     @property
     def same(self) -> bool:
-        """Whether the record is what its inputs give, on whichever arithmetic."""
+        """True if the record is what its inputs give, on any machine's arithmetic."""
         return self.kind is not Kind.DIFFERS
 
 
@@ -70,19 +70,19 @@ def conclude(
     other_model: Difference | None = None,
     bound: float = BOUND,
 ) -> Verdict:
-    """Make a verdict of all that was found.
+    """Make a verdict from all findings.
 
-    Bits may only differ where a segment was recorded with another arithmetic, or does not say with
-    which one.
+    Bits may differ only where a segment was recorded with another arithmetic, or does not name its
+    arithmetic.
 
     Args:
-        headers: of the record's segments.
-        beats: how many were judged.
-        frames: how many were compared.
-        judged: differences of the games.
-        findings: what each section's simulation found.
-        other_model: where a model was built that has other bits.
-        bound: how far another arithmetic may be [m, rad].
+        headers: headers of the record's segments.
+        beats: number of beats judged.
+        frames: number of frames compared.
+        judged: differences between the games.
+        findings: result of each section's simulation.
+        other_model: where this machine built a model with other bits.
+        bound: largest distance that another arithmetic may reach [m, rad].
     """
     found = [difference for difference in judged if difference is not None]
     found += [
@@ -118,7 +118,7 @@ def conclude(
 
 
 def may_differ(headers: Sequence[Header], finding: Finding) -> bool:
-    """Say whether a section may have other bits here: not all of it was recorded this way."""
+    """Return whether a section may have other bits: another arithmetic recorded some of it."""
     here = arithmetic.here()
     ends = [header.first_beat for header in headers[1:]] + [finding.last_beat + 1]
     return not all(
@@ -129,7 +129,7 @@ def may_differ(headers: Sequence[Header], finding: Finding) -> bool:
 
 
 def other_arithmetic(record: Mapping[str, str], here: Mapping[str, str]) -> str:
-    """Say in words how two arithmetics differ; "" if they do not."""
+    """Describe how the arithmetic of two machines differs; "" if it does not."""
     if not record:
         return "The record does not say with which arithmetic it was made."
     if arithmetic.same(record, here):

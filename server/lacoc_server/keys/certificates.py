@@ -1,4 +1,4 @@
-"""A contest's own certificates: an authority, and what it issues to the courts (X.509, P-256)."""
+"""A contest's own certificates: its authority, and what that issues to courts (X.509, P-256)."""
 
 import ipaddress
 from collections.abc import Iterable
@@ -17,7 +17,7 @@ from cryptography.hazmat.primitives.serialization import (
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 LIFE = timedelta(days=397)
-"""A contest's season, and some."""
+"""Validity of a contest's certificates: a season and some weeks."""
 _CLOCKS_DIFFER = timedelta(days=1)
 _NAME = "LACOC contest"
 
@@ -30,17 +30,17 @@ class Pair(NamedTuple):
 
 
 class Authority(NamedTuple):
-    """Who vouches for the courts of a contest."""
+    """The certificate authority of a contest."""
 
     certificate: x509.Certificate
     private_key: ec.EllipticCurvePrivateKey
 
     @classmethod
     def new(cls, now: datetime) -> Self:
-        """Make one.
+        """Make a new authority.
 
         Args:
-            now: aware of its zone.
+            now: time with a time zone.
         """
         key = ec.generate_private_key(ec.SECP256R1())
         name = _name(f"{_NAME} authority")
@@ -55,10 +55,10 @@ class Authority(NamedTuple):
 
     @classmethod
     def load(cls, pair: Pair) -> Self:
-        """Read one.
+        """Read an authority from its files.
 
         Raises:
-            ValueError: if it is none.
+            ValueError: if they are not the files of an authority.
         """
         key = load_pem_private_key(pair.private_key, None)
         certificate = x509.load_pem_x509_certificate(pair.certificate)
@@ -70,19 +70,19 @@ class Authority(NamedTuple):
 
     @property
     def ends(self) -> datetime:
-        """Until when it vouches, and all that it issued with it."""
+        """The end of its validity, and of all certificates that it issued."""
         return self.certificate.not_valid_after_utc
 
     def pair(self) -> Pair:
-        """It as files."""
+        """Return the authority as PEM files."""
         return _pair(self.certificate, self.private_key)
 
     def issue(self, hosts: Iterable[str], now: datetime) -> Pair:
         """Make a certificate for courts, valid as long as the authority.
 
         Args:
-            hosts: names and numbers by which they are reached.
-            now: aware of its zone.
+            hosts: names and IP addresses by which the courts are reached.
+            now: time with a time zone.
         """
         key = ec.generate_private_key(ec.SECP256R1())
         names = x509.SubjectAlternativeName([_general_name(host) for host in hosts])
@@ -101,10 +101,13 @@ class Authority(NamedTuple):
 
 
 def hosts_of(certificate: bytes) -> list[str]:
-    """Names and numbers that a court's certificate (PEM) is made for.
+    """List the names and IP addresses in a court's certificate.
+
+    Args:
+        certificate: the certificate, PEM.
 
     Raises:
-        ValueError: if it is none.
+        ValueError: if it is no certificate of a court.
     """
     try:
         extensions = x509.load_pem_x509_certificate(certificate).extensions
@@ -118,7 +121,7 @@ def hosts_of(certificate: bytes) -> list[str]:
 
 
 def utc_now() -> datetime:
-    """This moment."""
+    """Return the present time, in UTC."""
     return datetime.now(UTC)
 
 

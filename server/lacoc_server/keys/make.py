@@ -1,4 +1,4 @@
-"""Makes a contest's keys and invitations beside its contest file."""
+"""Makes a contest's keys and invitations, in a folder beside its contest file."""
 
 import itertools
 import json
@@ -25,34 +25,34 @@ _FOLDER = "keys"
 
 
 class Made(NamedTuple):
-    """What was made."""
+    """The result of `make_keys`."""
 
     folder: KeyFolder
     invitations: list[Access]
     hosts: list[str]
-    """What the courts' certificate is made for."""
+    """Names and IP addresses in the courts' certificate."""
     ends: str
     """Last day of all certificates (ISO 8601)."""
     handed_out_hold: bool
-    """Whether there were keys before, and invitations of then are still valid."""
+    """Whether there were keys before, and their invitations are still valid."""
     kept: Path | None
-    """Where the keys before these are now, if they were replaced."""
+    """Folder of the replaced keys; None: none were replaced."""
 
 
 def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
-    """Make keys, or add to them what is new; write the entry into the contest file.
+    """Make a contest's keys, or add what is new; write the entry into the contest file.
 
-    The authority is made once: invitations that were handed out stay valid. The courts'
+    The authority is made once, so invitations that were handed out stay valid. The courts'
     certificate and the invitations are written again, from what the contest file says now.
 
     Args:
         file: the contest file.
-        hosts: names and numbers of the courts' machine; the first stands in the invitations
-            where the file says none.
-        renew: replace all keys, and keep those before.
+        hosts: names and IP addresses of the courts' machine; invitations use the first one for a
+            court without an address in the file.
+        renew: replace all keys, and keep the old ones under another name.
 
     Raises:
-        UserError: if file or keys can't be read or written.
+        UserError: if the file or the keys can't be read or written.
     """
     hosts = [address.host(address.endpoint(host)) for host in hosts]
     data, contest = _with_entry(file)
@@ -90,12 +90,12 @@ def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
 
 
 def _with_entry(file: Path) -> tuple[bytes, Contest]:
-    """The contest file as it will be, with the entry that says where its keys are."""
+    """Return the contest file with the entry that names its folder of keys, and the contest."""
     try:
         data = file.read_bytes()
         table = read_toml(data).get("contest", {})
     except (OSError, BadToml):
-        contests.load(file)  # says what is wrong
+        contests.load(file)  # raises an error that says what is wrong
         raise
     if "keys" not in table:
         data = _insert_entry(data, file, must_have_table=bool(table))
@@ -103,24 +103,24 @@ def _with_entry(file: Path) -> tuple[bytes, Contest]:
 
 
 def _insert_entry(data: bytes, file: Path, *, must_have_table: bool) -> bytes:
-    folder = json.dumps(_free_folder(file), ensure_ascii=False)  # such a string is TOML's too
+    folder = json.dumps(_free_folder(file), ensure_ascii=False)  # JSON strings are TOML's too
     entry = f"keys = {folder}  # folder, beside this file, of what 'lacoc contest keys' made"
     lines = data.decode("utf-8-sig").splitlines(keepends=True)
     heads = [row for row, line in enumerate(lines) if "".join(line.split()).startswith(_TABLE)]
     if must_have_table and not heads:
         wanted = f"{_TABLE[1:-1]}.keys = {folder}"
         raise UserError(say("contest.keys-write", entry=wanted, file=str(file)))
-    # Without such a table it becomes the last one: what stands before belongs to others.
+    # Without the table, append it: lines before it would belong to other tables.
     where = heads[0] + 1 if heads else len(lines)
     lines[where:where] = [f"{entry}\n"] if heads else [f"\n{_TABLE}\n{entry}\n"]
     return "".join(lines).encode()
 
 
 def _free_folder(file: Path) -> str:
-    """A folder beside a contest file for its keys; one that is there belongs to another contest.
+    """Choose a new folder for keys beside a contest file; existing ones belong to other contests.
 
     Raises:
-        UserError: if both names that it may have are taken.
+        UserError: if both possible names are taken.
     """
     names = (_FOLDER, f"{_FOLDER}-{file.stem}")
     free = [name for name in names if not (file.resolve().parent / name).exists()]
@@ -130,10 +130,10 @@ def _free_folder(file: Path) -> str:
 
 
 def _authority(folder: KeyFolder) -> Authority:
-    """The contest's authority; a new one if there is none.
+    """Load the contest's authority; make a new one if there is none.
 
     Raises:
-        UserError: if there is one that can't issue anything.
+        UserError: if the authority that is there can't issue certificates.
     """
     if not folder.ca.exists():
         authority = Authority.new(utc_now())
@@ -160,10 +160,10 @@ def _authority(folder: KeyFolder) -> Authority:
 
 
 def _before(folder: KeyFolder) -> list[str]:
-    """The hosts that the courts' certificate was made for; none if there is none yet.
+    """List the hosts in the courts' present certificate; none if there is no certificate yet.
 
     Raises:
-        UserError: if what is there is no certificate of a court.
+        UserError: if the file is no certificate of a court.
     """
     if not folder.certificate.exists():
         return []
@@ -177,7 +177,7 @@ def _before(folder: KeyFolder) -> list[str]:
 
 
 def _set_aside(path: Path) -> Path | None:
-    """Give a folder the first free number; None if there is none."""
+    """Rename a folder with the first free number; None if there is no such folder."""
     if not path.exists():
         return None
     numbered = (path.with_name(f"{path.name}.{number}") for number in itertools.count(1))
@@ -186,7 +186,7 @@ def _set_aside(path: Path) -> Path | None:
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Write a file that is its owner's alone from its first byte on, whole or not at all."""
+    """Write a file whole or not at all; only its owner may ever read it."""
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     new = path.with_name(f"{path.name}.new")
     new.unlink(missing_ok=True)

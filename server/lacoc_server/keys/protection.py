@@ -1,4 +1,4 @@
-"""What a court of a contest with keys protects itself with."""
+"""Finds the certificate and the users of a court in a contest with keys."""
 
 from lacoc_shared.contest import entrances
 from lacoc_shared.contest.file import Contest
@@ -15,7 +15,7 @@ def protection(contest: Contest, court: str) -> Protection | None:
     if keys is None:
         return None
     for path in (keys.certificate, keys.private_key):
-        keys.read(path)  # says what to do, which Zenoh does not
+        keys.read(path)  # its error says what to do; Zenoh's does not
     everybody = entrances.everybody(contest, court)
     credentials = [access.credentials for access in everybody.values()]
     return Protection(

@@ -1,6 +1,6 @@
-"""What contestants ask of a match: to join, be ready, leave, press keys; and their silence.
+"""Contestants' requests to a match: join, ready, leave and keys; and their silence.
 
-Each is legal in some phases (rules 3 and 4); what is refused changes nothing and says why.
+Each is legal in some phases (rules 3 and 4). A refused one changes nothing and says why.
 """
 
 from typing import Any
@@ -20,7 +20,7 @@ _AFTER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
 
 def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
-    """Take a seat, or come back to it; the files of a match stay those that it began with."""
+    """Take a seat, or come back to it; during a match its files stay as they were at the start."""
     seat = match.seats[item.seat]
     if match.phase in _BEFORE:
         return _sit_down(match, seat, item)
@@ -45,7 +45,7 @@ def _sit_down(match: MatchState, seat: Seat, item: JoinSeat) -> Done | Refusal:
         return Refusal(say("refused.mistakes", count=len(mistakes), first=None), mistakes)
     if seat.join is None or _files(seat.join) != _files(item):
         seat.ready = False
-        match.back_to_lobby()  # also if everybody says ready again in this beat
+        match.back_to_lobby()  # even if everybody says ready again in this beat
     seat.join, seat.entry, seat.silent = item, entry, False
     match.sheet_changed()
     said = say("event.joined", team=item.team, seat=seat.id, robot=entry.robot.name)
@@ -54,7 +54,7 @@ def _sit_down(match: MatchState, seat: Seat, item: JoinSeat) -> Done | Refusal:
 
 
 def ready(match: MatchState, seat: Seat, is_ready: bool) -> Done | Refusal:
-    """Say ready, or take it back."""
+    """Mark a seat as ready, or take that back."""
     if match.phase not in _BEFORE:
         return Refusal(say("refused.match-on", phase=match.phase.word))
     if seat.join is None:
@@ -70,7 +70,7 @@ def ready(match: MatchState, seat: Seat, is_ready: bool) -> Done | Refusal:
 
 
 def leave(match: MatchState, seat: Seat) -> Done:
-    """Free the seat; during a match it stays the contestant's, and the robot stands."""
+    """Free a seat; during a match the contestant keeps it, and the robot stands."""
     if match.phase in _BEFORE:
         said = say("event.left-seat", team=seat.team, seat=seat.id)
         match.tell("leave", said, seat=seat.index)
@@ -85,7 +85,7 @@ def leave(match: MatchState, seat: Seat) -> Done:
 
 
 def unattended(match: MatchState) -> Phrase | None:
-    """Say why a match that nobody judges is over, though its game is not; None: it goes on."""
+    """Say why a match without a referee is over before its game is; None: it goes on."""
     if match.rules.start != "ready":
         return None
     if all(seat.left for seat in match.seats):
@@ -97,7 +97,7 @@ def unattended(match: MatchState) -> Phrase | None:
 
 
 def silent(match: MatchState, seat: Seat) -> Done:
-    """Let a robot stand whose controller is not heard any more (rules 3)."""
+    """Mark a seat as silent and let its robot stand (rules 3)."""
     if not seat.silent:
         seat.silent = True
         seat.stand()
@@ -106,7 +106,7 @@ def silent(match: MatchState, seat: Seat) -> Done:
 
 
 def heard(match: MatchState, seat: Seat) -> Done:
-    """Note that a controller is heard again; its robot stands until a new command."""
+    """Mark a seat as heard again; its robot stands until a new command."""
     if seat.silent:
         seat.silent = False
         match.tell("heard", say("event.heard", team=seat.team), seat=seat.index)
@@ -114,14 +114,14 @@ def heard(match: MatchState, seat: Seat) -> Done:
 
 
 def key(match: MatchState, seat: Seat, item: KeySeat) -> Done | Refusal:
-    """Take a digit or [x]."""
+    """Apply a digit or [x] to its seat, or refuse it."""
     why = No.NOT_PLAYING
     if match.phase is Phase.PLAYING:
         why = seat.why_not(item, match.ticks, match.rules.open_levels)
     if why is not No.NONE:
         seat.refused = (item.seq, why)
         return Refusal(WHY_NO[why])
-    # An older digit may come after a newer [x]: that is the order of a tick (rules 3).
+    # A digit may come after a newer [x]: a tick takes each seat's [x] first (rules 3).
     seat.applied = (max(item.seq, seat.applied[0]), match.beats)
     if item.key == RESTART_KEY:
         seat.restart()

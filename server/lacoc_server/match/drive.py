@@ -1,8 +1,7 @@
 """The drive: from a standing command to commanded angles, tick by tick (rules 3).
 
-Pure and exact: it knows commanded angles only, never measured ones, so a match's
-drives can be followed with pencil and paper. What changes is a `DriveState`; a
-`Drive` is what a seat's robot and files make of it.
+Pure and exact: it knows only commanded angles, never measured ones, so drives can be checked with
+pencil and paper. `DriveState` is what changes; a `Drive` is made from a seat's robot and gait.
 """
 
 from typing import Literal
@@ -15,7 +14,7 @@ from lacoc_shared.seat import BEAT_US
 
 
 class DriveState(msgspec.Struct, frozen=True):
-    """What a drive remembers from one tick to the next."""
+    """State of a drive between two ticks."""
 
     level: Level
     digit: int
@@ -23,20 +22,19 @@ class DriveState(msgspec.Struct, frozen=True):
     posture: int
     """Index of the target posture in the digit's sequence."""
     ticks: int
-    """advance "reached": ticks at whose end the target had been reached, in a row; "time": ticks
-    since the command."""
+    """advance "reached": ticks in a row at the target; advance "time": ticks since the command."""
     angles: Posture
     """(joints,) commanded angles [rad], by joint id."""
     stands: bool = False
-    """Nobody pressed the key: it is the first posture of its sequence, and stays."""
+    """True if the robot stands without a pressed key: it keeps the first posture of key 0."""
 
 
 class Drive:
-    """How a seat's robot turns keys into commanded angles.
+    """Turns a seat's keys into commanded angles.
 
     Args:
-        gait: the seat's files.
-        start: (joints,) start posture [rad]; also what key 0 means at a level whose file lacks it.
+        gait: gait of the seat's robot.
+        start: (joints,) start posture [rad]; key 0 means it at a level whose file has no key 0.
         ang_min_rad_s: AngMin, the speed of every commanded angle [rad/s].
         advance: when a sequence goes on: when its posture is "reached", or by "time".
         hold_us: how long a reached posture is held, or the time of each posture [us].
@@ -61,24 +59,24 @@ class Drive:
         self._repeat = repeat
 
     def begin(self, level: Level) -> DriveState:
-        """The start posture, from which it stands at a level."""
+        """Return the state of a robot that stands at a level, in the start posture."""
         return DriveState(level, 0, 0, 0, self._start, stands=True)
 
     def stand(self, state: DriveState) -> DriveState:
-        """Key 0 at the same level, of which only the first posture is taken (decision 15)."""
+        """Let the robot stand: key 0 at the same level, only its first posture (decision 15)."""
         if state.stands:
             return state
         return DriveState(state.level, 0, 0, 0, state.angles, stands=True)
 
     def has(self, level: Level, digit: int) -> bool:
-        """Whether a digit does something at a level."""
+        """Return whether a digit does something at a level."""
         return self._gait.sequence(level, digit) is not None
 
     def press(self, state: DriveState, level: Level, digit: int) -> DriveState:
         """Take a command; its sequence begins with this tick.
 
-        A command is (level, digit): with `repeat`, the one that stands already changes nothing;
-        without, it starts its sequence again.
+        A command is (level, digit). With `repeat`, pressing the standing command again changes
+        nothing; without, it starts the sequence again.
         """
         was_pressed = (level, digit) == (state.level, state.digit) and not state.stands
         if self._repeat and was_pressed:

@@ -1,4 +1,4 @@
-"""A seat's entry: the robot and gait files, weighed in together (rules 1 and 2)."""
+"""A seat's entry: its robot and gait files, weighed in together (rules 1 and 2)."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -23,12 +23,12 @@ _TABLES: dict[Level, tuple[type[PostureTable] | type[LocomotionTable], Phrase]] 
 
 @dataclass(frozen=True)
 class Entry:
-    """A robot with its gait, admitted to a match."""
+    """A robot with its gait, weighed in for a match."""
 
     robot: RobotSpec
     gait: Gait
     notes: tuple[Phrase, ...] = ()
-    """What is no mistake in its files, but may not be meant; sentences."""
+    """Remarks on things in the files that are legal, but probably not meant."""
 
 
 def weigh_in(
@@ -38,17 +38,17 @@ def weigh_in(
     limits: Limits = DEFAULT_LIMITS,
     levels: Collection[Level] = tuple(Level),
 ) -> Entry:
-    """Read and check what a contestant brings.
+    """Read and check a contestant's files.
 
-    The same files are read once: a court asks at its door and again as the match takes a join in,
-    which a record has as files.
+    The result is cached, because a court weighs the same files in twice: at its door, and when the
+    match takes in the join. The record has the join with its files.
 
     Args:
         robot: the robot file.
         postures: a Loco-data file, or None.
         locomotion: a LocoTra-data file, or None.
-        limits: what the contest allows.
-        levels: levels of control that are open: a gait must have keys at one of them.
+        limits: limits of the contest.
+        levels: open levels of control; a gait must have keys at one of them.
 
     Raises:
         FileRefused: with every mistake of every file.
@@ -99,22 +99,26 @@ def _weigh_in(
 
 @dataclass(frozen=True)
 class Admission:
-    """Weighs in what comes with a join, and fills in what a contestant did not bring.
+    """Weighs in the files of a join, and fills in those that are missing.
 
-    A team without a robot file gets the contest's robot; without gait files too, its sample gait.
+    A team without a robot file gets the contest's robot; without gait files too, that robot's
+    sample gait.
     """
 
     robot: SentFile
     """The contest's robot."""
     postures: SentFile | None
     locomotion: SentFile | None
-    """Its sample gait."""
+    """Sample gait of the contest's robot."""
     limits: Limits
     levels: Collection[Level]
     """Levels of control that the arena opens."""
 
     def __call__(self, join: Join) -> Join:
-        """Complete a join.
+        """Weigh in a join's files, after filling in those that are missing.
+
+        Returns:
+            The join with a robot file.
 
         Raises:
             FileRefused: with every mistake of every file.
@@ -131,7 +135,7 @@ class Admission:
 def _read_gait(
     file: SentFile, robot: RobotSpec | None, notes: list[Phrase]
 ) -> PostureTable | LocomotionTable:
-    """Read a gait for a robot, or for any where the robot file itself is refused."""
+    """Read a gait for a robot; None: for any robot, because the robot file was refused."""
     if robot is None:
         return read_gait(file.data, file.name)
     labels, ranges_deg = robot.labels, robot.ranges_deg

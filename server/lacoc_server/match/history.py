@@ -1,8 +1,8 @@
-"""What the rules have seen and decided, so that one event can be taken back (rules 4).
+"""What the rules saw and decided, so that one event can be taken back (rules 4).
 
-Nothing is edited away. A match keeps every observation since its first event; to take
-an event back, the game is folded again from that tick with that event's claim struck
-out. Paths, clock and all other decisions stay as they were.
+Nothing is deleted. A match keeps every observation since its first event. To take an event back, it
+judges the game again from that tick, without the event's claim. Paths, clock and all other
+decisions stay as they were.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from lacoc_shared.words import Phrase
 
 
 class SetMarker(msgspec.Struct, frozen=True):
-    """A referee set a marker between two ticks."""
+    """A referee's change of a marker, between two ticks."""
 
     marker: int
     value: int
@@ -25,49 +25,49 @@ class SetMarker(msgspec.Struct, frozen=True):
 
 
 class Step(msgspec.Struct, frozen=True):
-    """One thing that the rules judged, with what they made of it."""
+    """One observation or change of a marker, and what the rules made of it."""
 
     seen: Observation | SetMarker
     before: Any
-    """The game's state before it."""
+    """The game's state before the step."""
     events: tuple[GameEvent, ...] = ()
     numbers: tuple[int, ...] = ()
-    """Numbers of those events in the match's log; of a `SetMarker`, its decision's."""
+    """Numbers of those events in the log; for a `SetMarker`, the number of its decision."""
     struck: frozenset[Claim] = frozenset()
     over: Phrase | None = None
-    """Why the game was over after it; steps that come later are kept, but not judged."""
+    """Why the game was over after this step; later steps are kept, but not judged."""
 
 
 @dataclass(frozen=True)
 class Fold:
-    """What a take-back would make of the match."""
+    """Result of a take-back, before it is accepted."""
 
     steps: list[Step]
-    """The whole history as judged again."""
+    """All steps, as judged again."""
     state: Any
     over: Phrase | None
-    """Why the game is over; None if it is not."""
+    """Why the game is over; None: it is not."""
     vanished: tuple[tuple[int, GameEvent], ...]
-    """Events that are no more, with their numbers."""
+    """Events that disappear, with their numbers."""
     appeared: tuple[tuple[int, int, GameEvent], ...]
-    """New events, with the index of their step and their index in it."""
+    """New events, with the index of their step and their index in that step."""
 
 
 class History:
-    """The judged ticks of a match and the state of its game."""
+    """The judged ticks of a match, and the state of its game."""
 
     def __init__(self, game: AnyGame) -> None:
         self._game = game
         self.state: Any = game.start()
         """The game's state now."""
         self._steps: list[Step] = []
-        """From the one before the first event that can be taken back."""
+        """Steps from the one before the first event that can be taken back."""
         self._step_of: dict[int, int] = {}
         self._judged: tuple[Any, Phrase | None] = (None, None)
-        """The newest state after a tick, and why the game was over in it."""
+        """The newest state after a tick, and why the game was over in that state."""
 
     def observe(self, observation: Observation, next_number: int) -> list[GameEvent]:
-        """Judge one tick; its events get the numbers from `next_number` on."""
+        """Judge one tick; number its events from `next_number` on."""
         before = self.state
         self.state, events = self._game.step(before, observation, BEAT_S)
         numbers = tuple(range(next_number, next_number + len(events))) if events else ()
@@ -78,11 +78,16 @@ class History:
 
     @property
     def over(self) -> Phrase | None:
-        """Why the game is over; None while it is not."""
+        """Why the game is over; None: it is not."""
         return self._steps[-1].over if self._steps else None
 
     def set(self, marker: int, value: int, number: int) -> None:
-        """Set a marker, as the decision with this event number says.
+        """Set a marker, by a referee's decision.
+
+        Args:
+            marker: index of the marker.
+            value: its new state.
+            number: event number of the decision.
 
         Raises:
             NoSuchState: if the marker has no such state.
@@ -93,11 +98,11 @@ class History:
         self._append(step)
 
     def knows(self, number: int) -> bool:
-        """Whether an event can be taken back: it stands, and the game or a `set` made it."""
+        """Return whether an event can be taken back: it stands, and the game or a `set` made it."""
         return number in self._step_of
 
     def without(self, number: int) -> Fold:
-        """Fold the game again without one event; changes nothing here.
+        """Judge the game again without one event; change nothing here.
 
         Raises:
             KeyError: if there is no such event.
@@ -140,7 +145,7 @@ class History:
         return Fold(steps, state, over, tuple(vanished), tuple(appeared))
 
     def accept(self, fold: Fold, next_number: int) -> None:
-        """Take a fold as what happened; its new events get the numbers from `next_number` on."""
+        """Make a fold the history; number its new events from `next_number` on."""
         self._steps = list(fold.steps)
         for number, (index, place, _) in enumerate(fold.appeared, next_number):
             step = self._steps[index]
@@ -156,8 +161,8 @@ class History:
 
     def _append(self, step: Step) -> None:
         if not (step.numbers or self._step_of):
-            # A fold begins at an event: without one, the step just before is all it can need.
-            # A practice, which has none, may go on for days.
+            # Judging again begins at an event; without one only the newest step is needed. A
+            # practice has no events and may go on for days.
             self._steps.clear()
         for number in step.numbers:
             self._step_of[number] = len(self._steps)
@@ -165,7 +170,7 @@ class History:
 
 
 def _strike(step: Step, number: int) -> tuple[Observation | SetMarker, frozenset[Claim]]:
-    """A step's observation and struck claims, without one of its events."""
+    """Return a step's observation and struck claims, with one more event struck."""
     if isinstance(step.seen, SetMarker):
         return SetMarker(step.seen.marker, step.seen.value, struck=True), step.struck
     event = step.events[step.numbers.index(number)]

@@ -1,11 +1,11 @@
 """A match: one beat after another (docs/rules.md 4).
 
-A match is a pure function of its setup and its inputs. It reads no clock, opens no
-socket and knows physics only as a protocol: live, headless and in a replay the same
-inputs give the same match, bit for bit.
+A match is a pure function of its setup and its inputs. It reads no clock, opens no socket and knows
+physics only as a protocol. Live, headless and in a replay the same inputs give the same match, bit
+for bit.
 
-A beat favours no seat. Its order: requests of contestants, silences, the referee's
-decisions, every seat's [x], every seat's digit, one tick of physics, the rules.
+A beat favours no seat. Its order: requests of contestants, silences, the referee's decisions, every
+seat's [x], every seat's digit, one tick of physics, the rules.
 """
 
 from collections.abc import Sequence
@@ -38,11 +38,11 @@ from lacoc_shared.words import Phrase, say
 PHYSICS_RUNS = frozenset({Phase.READY, Phase.PLAYING})
 
 MOST_STRAYS = 3
-"""A robot that leaves its start place so often before play does not stand: it is not ready."""
+"""A robot that leaves its start place this often before play does not stand: it is not ready."""
 
 
 class Beat(msgspec.Struct, frozen=True):
-    """What a beat made."""
+    """The results of a beat."""
 
     frame: Frame
     events: tuple[Event, ...]
@@ -51,7 +51,7 @@ class Beat(msgspec.Struct, frozen=True):
     ticked: bool
     """Whether physics ran."""
     touch: Touch | None
-    """What the rules saw beside the poses; None: nothing."""
+    """What the rules saw besides the poses; None: nothing."""
     result: Result | None
     """The result, in a beat that changed it."""
     sheet_changed: bool
@@ -64,14 +64,21 @@ class Match(MatchState):
         super().__init__(setup, make_physics, folder)
         self._touch: Touch | None = None
         self._shown: tuple[Any, bytes, tuple[int, ...]] = (None, b"", ())
-        """A state of the game, its board as frames carry it, and each seat's points."""
+        """The last game state that was packed, its board as in frames, and each seat's points."""
 
     def legality(self) -> dict[str, Phrase | None]:
-        """List every decision: None if it is legal now, else the reason why not."""
+        """List every decision by name: None if it is legal now, else why not."""
         return referee.legality(self)
 
     def beat(self, inputs: Sequence[Input] = ()) -> Beat:
-        """Let one beat pass."""
+        """Let one beat pass.
+
+        Args:
+            inputs: inputs of the beat, in any order; each has a rank.
+
+        Returns:
+            The results of the beat, with an outcome for each input.
+        """
         self.beats += 1
         self._events = []
         self._touch = None
@@ -96,7 +103,7 @@ class Match(MatchState):
         )
 
     def _take_all(self, inputs: Sequence[Input]) -> tuple[Outcome, ...]:
-        """Take a beat's inputs in the order of their ranks; outcomes are in the inputs' order."""
+        """Apply a beat's inputs by rank; return the outcomes in the order of the inputs."""
         outcomes: list[Outcome] = [Done()] * len(inputs)
         for index in sorted(range(len(inputs)), key=lambda index: _rank(inputs[index])):
             outcomes[index] = self._take(inputs[index])
@@ -122,14 +129,14 @@ class Match(MatchState):
                 return contestant.key(self, self.seats[item.seat], item)
 
     def _take_advice(self, reasons: tuple[Phrase | str, ...]) -> Done:
-        """Log what the court measured; whether to play again is the referee's word."""
+        """Log the court's advice; whether to play again is the referee's decision."""
         self.advice = reasons
         advised = say("event.advised", reasons=reasons) if reasons else say("event.not-advised")
         self.tell("advice", advised)
         return Done()
 
     def _move_on(self) -> None:
-        """Change phase where that needs nobody's word."""
+        """Change the phase where nobody has to decide."""
         self.silent_beats = (self.silent_beats + 1) * all(seat.silent for seat in self.seats)
         if self.phase is Phase.LOBBY and not self.missing():
             self.build()
@@ -140,14 +147,18 @@ class Match(MatchState):
             self.begin_countdown()
         if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
             self.enter(Phase.PLAYING)
-        if self.phase is Phase.PLAYING and self.time_is_up:  # a referee moved the clock
+        if self.phase is Phase.PLAYING and self.time_is_up:  # after a referee moved the clock
             self.finish(say("over.time"))
         on = self.phase in (Phase.PLAYING, Phase.HALTED)  # a countdown leads to PLAYING
         if on and (why := contestant.unattended(self)):
             self.finish(why)
 
     def _tick(self) -> bool:
-        """One tick of physics, judged by the rules while the match is played."""
+        """Run one tick of physics; while the match is played, let the rules judge it.
+
+        Returns:
+            Whether the tick passed: False after a fault.
+        """
         states = [seat.drive.tick(seat.state) for seat in self.seats if seat.drive and seat.state]
         self.fault = self.physics.step([state.angles for state in states])
         if self.fault is not None:
@@ -163,7 +174,7 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Send back who left its start place before play; not ready is who does so for ever."""
+        """Put back robots that leave their start place before play; the third time ends READY."""
         for seat in self.seats:
             gone_m = self.staging.from_start_m(seat.index)
             if gone_m <= FARTHEST_M:
@@ -187,7 +198,7 @@ class Match(MatchState):
             self.finish(say("over.time"))
 
     def _fail(self, fault: Fault) -> None:
-        """MuJoCo's warning or reset: the state before the tick stands, and the match halts."""
+        """Handle a fault: the state before the tick stands, and a match in play halts."""
         self.tell("fault", say("event.fault", why=fault.why), seat=fault.seat)
         if self.phase is Phase.PLAYING:
             self.enter(Phase.HALTED)
@@ -197,7 +208,7 @@ class Match(MatchState):
 
     def _frame(self) -> Frame:
         game, state = self.game, self.history.state
-        if state is not self._shown[0]:  # it changes seldom, and frames are many
+        if state is not self._shown[0]:  # it changes seldom, and there are many frames
             self._shown = (state, pack_states(game.board(state)), game.score(state))
         _, board, points = self._shown
         seats, scores, ticks = self.seats, self._adjusted(points), self.ticks
@@ -216,7 +227,7 @@ class Match(MatchState):
 
 
 def _rank(item: Input) -> int:
-    """Place of an input in the order of a beat; a seat's [x] comes before its digit."""
+    """Return an input's rank in a beat's order; a seat's [x] comes before its digit."""
     match item:
         case JoinSeat() | LeaveSeat() | ReadySeat():
             return 0

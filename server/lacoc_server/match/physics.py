@@ -1,7 +1,7 @@
-"""What a match needs of a physics: the wall between the rules and MuJoCo.
+"""What a match needs from physics: the protocol between the rules and MuJoCo.
 
-`world.World` is the real one. A record's poses behind the same protocol judge a match
-again without physics.
+`world.World` implements it. A record's poses implement it too, and so a match can be judged again
+without physics.
 """
 
 from collections.abc import Sequence
@@ -18,12 +18,12 @@ from lacoc_shared.words import Phrase
 
 @dataclass(frozen=True)
 class Fault:
-    """Physics failed in a tick; everything is as it was before that tick."""
+    """A failure of physics in a tick; everything is as it was before that tick."""
 
     seat: int
-    """The robot that it began with; `NOBODY` if that is not known."""
+    """Index of the seat whose robot failed first; `NOBODY` if that is not known."""
     why: Phrase
-    """`fault.*`."""
+    """Why it failed (`fault.*`)."""
 
 
 class Physics(Protocol):
@@ -35,15 +35,15 @@ class Physics(Protocol):
 
     @property
     def scene_hash(self) -> bytes:
-        """8 bytes; another scene has others."""
+        """Hash of the scene, 8 bytes."""
 
     @property
     def model_hash(self) -> str:
-        """Hash of the compiled model, hexadecimal: a replay needs the same."""
+        """Hash of the compiled model, hexadecimal; a replay needs the same model."""
 
     @property
     def digest(self) -> bytes:
-        """8 bytes that chain the whole state, tick after tick."""
+        """Hash chain over the whole state, tick after tick: 8 bytes."""
 
     def place(self, seat: int, place: Place) -> None:
         """Put a robot at a start place: start posture, all velocities zero."""
@@ -55,21 +55,21 @@ class Physics(Protocol):
             angles: for each seat the commanded angles [rad], by joint id.
 
         Returns:
-            None, or what went wrong; then nothing has changed.
+            None, or the fault; then nothing has changed.
         """
 
     def save(self) -> bytes:
-        """The whole state after the last tick, from which the same physics goes on bit for bit."""
+        """Return the whole state after the last tick; physics can go on from it bit for bit."""
 
     def poses(self) -> bytes:
-        """The robots as `Frame.poses`."""
+        """Return the poses of the robots, in the form of `Frame.poses`."""
 
     def touched(self) -> Sequence[tuple[int, ...]]:
-        """For each seat the markers whose probes it touches now, in ascending order."""
+        """Return for each seat the markers whose probes it touches now, in ascending order."""
 
 
 class MakePhysics(Protocol):
     """Builds the physics of a match: once, when all seats are ready."""
 
     def __call__(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """No entries: the empty field, for its scene."""
+        """Build the physics; without entries it is the empty field, for its scene."""

@@ -1,8 +1,8 @@
 """The referee's decisions: when each is legal, why it is not, and what it does.
 
-Workshop 5-1 rule 8 and 5-2 rule 9: "In the event of an unexpected event, the referee
-will consult and make a decision." Every decision is an event with who, beat and reason;
-nothing is edited away (rules 4).
+Workshop 5-1 rule 8 and 5-2 rule 9: "In the event of an unexpected event, the referee will consult
+and make a decision." Every decision is an event with referee, beat and reason; nothing is deleted
+(rules 4).
 """
 
 from collections.abc import Callable
@@ -28,7 +28,7 @@ MAX_POINTS = 1000
 
 
 class Illegal(ValueError):
-    """A decision can't be taken.
+    """A decision is not legal.
 
     Args:
         why: the reason for the referee (`why.*`).
@@ -41,15 +41,15 @@ class Illegal(ValueError):
 
 @dataclass(frozen=True)
 class _Rule:
-    """When a decision is legal and what it does."""
+    """When a decision is legal, and what it does."""
 
     phases: frozenset[Phase]
     act: Callable[[MatchState, Any], Phrase]
-    """Does it and returns what was done; raises `Illegal` before changing anything."""
+    """Does it and returns the sentence for the log; raises `Illegal` before any change."""
     then: Callable[[MatchState, Any], object] = lambda match, decision: None
-    """What follows and is told as events of its own, after the decision."""
+    """Does what follows from the decision; its events come after the decision's own."""
     also: Callable[[MatchState], Phrase | None] = lambda match: None
-    """Further reason why not; None if there is none."""
+    """Further reason why it is not legal; None if there is none."""
 
     def why_not(self, match: MatchState) -> Phrase | None:
         """Say why no decision of this kind is legal now; None if one may be."""
@@ -73,7 +73,7 @@ def legality(match: MatchState) -> dict[str, Phrase | None]:
 
 
 def decide(match: MatchState, item: Decide) -> DecisionReply | Refusal:
-    """Take a decision, or say why it can't be taken; an illegal one changes nothing."""
+    """Take a decision, or refuse it with the reason; a refused one changes nothing."""
     rule, decision = _RULES[type(item.decision)], item.decision
     name = str(decision.__struct_config__.tag)
     if why := rule.why_not(match):
@@ -193,13 +193,13 @@ def _set(match: MatchState, decision: d.Set) -> Phrase:
         )
     except NoSuchState as error:
         raise Illegal(error.why) from None
-    except ValueError as error:  # a game of others says it in a text
+    except ValueError as error:  # third-party games raise a plain text
         raise Illegal(say("plain.text", text=str(error))) from None
     return say("decision.set", marker=decision.marker, state=decision.state)
 
 
 def _clock(match: MatchState, decision: d.Clock) -> Phrase:
-    # Records of protocol 1 have `seconds`, which took time; `gives_s` gives it.
+    # Records of protocol 1 have `seconds`, which took time away; `gives_s` adds time.
     given_s = -decision.seconds if decision.seconds else decision.gives_s
     if not _is_within(given_s, MAX_CLOCK_S):
         raise Illegal(say("why.bad-clock", seconds=given_s, most=MAX_CLOCK_S))
@@ -242,7 +242,7 @@ def _next(match: MatchState, decision: d.Next) -> Phrase:
 
 
 def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> DecisionReply:
-    """Strike out one event and judge the match again without it (rules 4, take-back)."""
+    """Strike one event and judge the match again without it (rules 4, take-back)."""
     if decision.event in match.adjustments:
         adjustments = {n: a for n, a in match.adjustments.items() if n != decision.event}
         scores = match.scores(adjustments=adjustments)
@@ -274,7 +274,7 @@ def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> Decisio
 
 
 def _changes(fold: Fold) -> tuple[Phrase, ...]:
-    """List the events that vanish, then those that appear."""
+    """List the events that disappear, then those that are new."""
     vanished = [
         say("change.vanishes", event=number, kind=event.kind, marker=event.marker)
         for number, event in fold.vanished
@@ -286,7 +286,7 @@ def _changes(fold: Fold) -> tuple[Phrase, ...]:
 
 
 def _follow(match: MatchState, over: Phrase | None) -> None:
-    """Let the phase follow from what the game is after a take-back."""
+    """Set the phase to what the game requires after a take-back."""
     if match.phase is Phase.HALTED and over:
         match.finish(over)
     elif match.phase is Phase.FINISHED and not (over or match.time_is_up or match.declared):
@@ -305,7 +305,7 @@ def _nobody(match: MatchState) -> Phrase | None:
 
 
 def _missing(match: MatchState) -> Phrase | None:
-    missing = match.missing()  # also what changed a moment ago, in this beat
+    missing = match.missing()  # also changes earlier in this beat
     return say("plain.sentences", sentences=missing) if missing else None
 
 

@@ -1,4 +1,4 @@
-"""A seat as the match sees it: who sits there, with what, and what its keys do now."""
+"""A seat in a match: its contestant, robot and drive, and the state of its keys."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from lacoc_shared.inputs import JoinSeat, KeySeat
 from lacoc_shared.messages import SeatFrame, SheetSeat
 from lacoc_shared.seat import RESTART_KEY, No, SeatFlag
 
-# Plain numbers: an IntFlag takes longer to add up than all the rest of a frame.
+# Plain numbers: adding up an IntFlag takes longer than making the rest of a frame.
 _JOINED, _READY, _SILENT, _FROZEN = (
     int(flag) for flag in (SeatFlag.JOINED, SeatFlag.READY, SeatFlag.SILENT, SeatFlag.FROZEN)
 )
@@ -26,34 +26,34 @@ class Seat:
     join: JoinSeat | None = None
     entry: Entry | None = None
     coming: JoinSeat | None = None
-    """Who joined since the match began: sits here in the next one."""
+    """The join that arrived since the match began; it counts from the next match on."""
     ready: bool = False
     silent: bool = False
     left: bool = False
-    """The contestant left during play; the next match does not take them along."""
+    """True if the contestant left during play; the next match does not seat them."""
     drive: Drive | None = None
-    """From READY on."""
+    """The drive; from READY on."""
     state: DriveState | None = None
     locked_until: int = 0
-    """Ticks played from which keys are taken again after a restart."""
+    """Tick of PLAYING from which keys are taken again, after a restart."""
     frozen_until: int = 0
-    """The same, after a referee's freeze."""
+    """Tick of PLAYING from which keys are taken again, after a referee's freeze."""
     applied: tuple[int, int] = (0, 0)
     """Newest applied command: sequence number, beat."""
     refused: tuple[int, No] = (0, No.NONE)
     """Newest refused command: sequence number, reason."""
     restarting: bool = False
-    """It goes back to its start place in this beat."""
+    """True if the robot goes back to its start place in this beat."""
     strays: int = 0
-    """How often it left its start place in this READY."""
+    """How many times the robot left its start place in this READY phase."""
 
     @property
     def team(self) -> str:
-        """The team's name, or the seat's while nobody has joined."""
+        """The team's name; the seat's id while nobody has joined."""
         return self.join.team if self.join else self.id
 
     def begin(self, repeat: bool, level: Level) -> None:
-        """Stand in the start posture, with the drive that robot and files make."""
+        """Stand in the start posture, with a new drive made from robot and gait."""
         if self.entry is None:
             return
         self.strays = 0
@@ -69,18 +69,18 @@ class Seat:
         self.state = self.drive.begin(level)
 
     def stand(self) -> None:
-        """Key 0 at the same level, and no step further (silence, freeze)."""
+        """Stand: key 0 at the same level, but only its first posture (silence, freeze)."""
         if self.drive and self.state:
             self.state = self.drive.stand(self.state)
 
     def restart(self) -> None:
-        """Go back to the start in this beat, and stand at the same level (rules 4, [x])."""
+        """Go back to the start place in this beat, and stand at the same level (rules 4, [x])."""
         self.restarting = True
         if self.drive and self.state:
             self.state = self.drive.begin(self.state.level)
 
     def why_not(self, key: KeySeat, ticks: int, levels: tuple[Level, ...]) -> No:
-        """Why a command is refused while the match is played; `No.NONE` if it is not."""
+        """Say why a command is refused while the match is played; `No.NONE` if it is not."""
         if ticks < self.frozen_until:
             return No.FROZEN
         if ticks < self.locked_until:
@@ -94,7 +94,7 @@ class Seat:
         return No.NONE
 
     def frame(self, score: int, ticks: int) -> SeatFrame:
-        """The seat as frames carry it."""
+        """Return the seat as frames carry it."""
         flags = (
             (self.join is not None) * _JOINED
             + self.ready * _READY
@@ -117,7 +117,7 @@ class Seat:
         )
 
     def sheet(self) -> SheetSeat:
-        """The seat as the sheet names it."""
+        """Return the seat as the sheet describes it."""
         if self.join is None or self.entry is None:
             return SheetSeat(id=self.id, colour=self.colour, pattern=self.pattern)
         gait = self.entry.gait

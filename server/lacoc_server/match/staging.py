@@ -1,4 +1,4 @@
-"""The robots of a match on their field: built once, put back at their starts, looked at."""
+"""The robots of a match on their field: build them, put them back, observe them."""
 
 import math
 import struct
@@ -12,17 +12,19 @@ from lacoc_server.match.seat import Seat
 from lacoc_shared.record.schema import Touch
 
 MIN_START_DISTANCE_M = 0.35
-"""A start place is free if the other robot's centre is at least this far, and both radii."""
+"""Least distance of a free start place from another robot's centre; the sum of both radii counts if
+it is larger.
+"""
 
 _BODY = struct.Struct("<7f")
 
 
 class Staging:
-    """Physics with what the rules and the frames see of it.
+    """Physics, and what the rules and the frames see of it.
 
     Args:
         arena: the field and its game.
-        make_physics: builds the robots on it.
+        make_physics: builds the robots on the field.
     """
 
     def __init__(self, arena: Arena, make_physics: MakePhysics) -> None:
@@ -31,12 +33,12 @@ class Staging:
         self.clear()
 
     def clear(self) -> None:
-        """Leave the field empty."""
+        """Empty the field."""
         self.physics: Physics = self.make_physics(self._arena, ())
         self.poses = b""
-        """The robots as `Frame.poses`: exactly the numbers that everybody sees."""
+        """Poses in the form of `Frame.poses`: exactly the numbers that everybody sees."""
         self._bodies: list[tuple[Any, ...]] = []
-        """For each seat the first numbers of `RobotView`."""
+        """For each seat the first 7 fields of `RobotView`."""
         self._offsets: tuple[int, ...] = ()
         self._radii_m: tuple[float, ...] = ()
         self._placed: list[Place | None] = []
@@ -54,19 +56,19 @@ class Staging:
         self.look()
 
     def look(self) -> None:
-        """Take in where the robots are now."""
+        """Read where the robots are now."""
         self.poses = self.physics.poses()
         self._bodies = [_BODY.unpack_from(self.poses, offset) for offset in self._offsets]
 
     def from_start_m(self, seat: int) -> float:
-        """Measure how far a robot's centre is from where it was put, seen from above."""
+        """Return how far a robot's centre is from its start place, seen from above [m]."""
         return math.dist(self._starts[seat][:2], self._bodies[seat][:2])
 
     def observe(self) -> tuple[Observation, Touch | None]:
-        """What the rules see of a tick.
+        """Observe a tick for the rules.
 
         Returns:
-            The observation, and of it what does not stand in the poses, if there is any.
+            The observation, and the part of it that is not in the poses, if there is any.
         """
         touched, placed = self.physics.touched(), self._placed
         if not (any(touched) or any(placed)):
@@ -83,8 +85,8 @@ class Staging:
         going = [seat for seat in seats if seat.restarting]
         if not going:
             return
-        # Robots that restart in the same beat are not in the way: each goes to its own side, and
-        # so no seat comes first.
+        # Robots that restart in the same beat do not block each other: each goes to its own side.
+        # So no seat has an advantage.
         staying = [seat for seat in seats if not seat.restarting]
         for seat in going:
             place = self._free_place(seat, staying)
@@ -94,7 +96,7 @@ class Staging:
         self.look()
 
     def _free_place(self, seat: Seat, others: Sequence[Seat]) -> Place:
-        """The first start place that is far enough from the others (rules 4), or the farthest."""
+        """Find the first start place far enough from the others (rules 4), or the farthest."""
 
         def room_m(place: Place) -> float:
             gaps_m = (

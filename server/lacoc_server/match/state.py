@@ -1,7 +1,6 @@
 """The state of a match: phase, seats, clock, score and log.
 
-What contestants and referees do works on it (`contestant`, `referee`); `match` lets its
-beats pass.
+`contestant` and `referee` change it on request; `match` lets its beats pass.
 """
 
 from collections.abc import Mapping
@@ -33,7 +32,7 @@ TRANSITIONS: dict[Phase, frozenset[Phase]] = {
     Phase.OFFICIAL: frozenset(),
     Phase.VOID: frozenset(),
 }
-"""The phases that can follow each phase; `next` opens a new match instead."""
+"""Phases that may follow each phase; `next` opens a new match instead."""
 
 _ENTERED = {
     Phase.LOBBY: say("event.lobby"),
@@ -44,10 +43,10 @@ _ENTERED = {
     Phase.OFFICIAL: say("event.official"),
     Phase.VOID: say("event.void"),
 }
-"""What the log says of a phase; of FINISHED also why."""
+"""Log text for each phase that is entered; for FINISHED see `enter`."""
 
 _ENDED = frozenset({Phase.FINISHED, Phase.OFFICIAL, Phase.VOID})
-"""A match has a result in these phases."""
+"""Phases in which a match has a result."""
 
 
 class MatchState:
@@ -69,49 +68,49 @@ class MatchState:
         self.limits = Limits.of(setup.limits)
         self.rules = self.arena.match
         self.duration_ticks = round(self.rules.duration_s * BEATS_PER_S)
-        """Ticks that the match lasts; 0: without end."""
+        """Length of the match [ticks]; 0: it has no end."""
         self.phase = Phase.CREATED
         self.beats = -1
-        """Number of the beat; the first is 0."""
+        """Number of the present beat; the first is 0."""
         self.entered_beat = 0
-        """The beat in which this phase began."""
+        """Beat in which this phase began."""
         self.countdown_beats = 0
         self.ticks = 0
-        """Ticks of PLAYING."""
+        """Ticks of PLAYING so far."""
         self.silent_beats = 0
         """Beats since any seat was last heard."""
         self.clock_offset = 0
-        """Ticks that a referee took from the time to play; below 0: gave."""
+        """Ticks that a referee took off the time left to play; negative: ticks given."""
         self.seats = [
             Seat(index, seat.id, seat.colour, seat.pattern)
             for index, seat in enumerate(self.arena.seats)
         ]
         self.history = History(self.game)
         self.adjustments: dict[int, tuple[int, int]] = {}
-        """Seat and points of each correction, by the number of its event."""
+        """Seat and points of each correction, by its event number."""
         self.declared: str | None = None
-        """The winner whom a referee declared: a seat's id or "draw"."""
+        """The winner that a referee declared: a seat's id or "draw"."""
         self.ended: Phrase | None = None
-        """Why play ended; None while it has not."""
+        """Why play ended; None: it has not."""
         self.advice: tuple[Phrase | str, ...] = ()
-        """Why the court advises a replay."""
+        """Reasons why the court advises a replay."""
         self.next_wanted = False
         self.fault: Fault | None = None
-        """What stopped physics in the newest tick; None: nothing did."""
+        """The fault that stopped physics in the newest tick; None: none did."""
         self.staging = Staging(self.arena, make_physics)
         self._event_count = 0
-        # What this beat made so far.
+        # Results of this beat so far.
         self._events: list[Event] = []
         self._result_changed = False
         self._sheet_changed = True
         self._told_result: tuple[str, tuple[int, ...]] | None = None
-        """Winner by the rules and scores that the log has; None: the log has none."""
+        """Winner by the rules and scores, as last logged; None: not logged yet."""
 
     # Questions.
 
     @property
     def physics(self) -> Physics:
-        """The robots on their field; before READY the empty field."""
+        """The robots on their field; before READY the field is empty."""
         return self.staging.physics
 
     @property
@@ -121,7 +120,7 @@ class MatchState:
 
     @property
     def time_is_up(self) -> bool:
-        """Whether the last tick has been played: none follows it (docs/rules.md 4)."""
+        """True if the last tick has been played, and none follows (docs/rules.md 4)."""
         return 0 < self.duration_ticks <= self.clock_ticks
 
     @property
@@ -163,7 +162,7 @@ class MatchState:
         return next(seat.team for seat in self.seats if seat.id == seat_id)
 
     def missing(self) -> list[Phrase]:
-        """List everything that the match still needs to be READY (`why.*`)."""
+        """List everything that the match still needs to become READY (`why.*`)."""
         reasons = []
         for seat in self.seats:
             if seat.join is None:
@@ -173,7 +172,7 @@ class MatchState:
         return reasons
 
     def next_joins(self) -> list[JoinSeat]:
-        """List who sits where in the next match, with the files that they sent last."""
+        """List the joins of the next match, with the files that each team sent last."""
         joins = [seat.coming or seat.join for seat in self.seats if not seat.left]
         return [join for join in joins if join is not None]
 
@@ -217,7 +216,7 @@ class MatchState:
     # Changes.
 
     def enter(self, phase: Phase, **data: Any) -> None:
-        """Change the phase."""
+        """Enter a phase and log it."""
         assert phase in TRANSITIONS[self.phase], f"{self.phase.name} to {phase.name}"
         before, self.phase, self.entered_beat = self.phase, phase, self.beats
         said = _ENTERED.get(phase) or say("event.finished", why=self.ended)
@@ -253,7 +252,7 @@ class MatchState:
         """End play.
 
         Args:
-            why: `over.*`.
+            why: phrase of `over.*`.
         """
         self.ended = why
         self.enter(Phase.FINISHED)
@@ -261,11 +260,11 @@ class MatchState:
         self.tell_result()
 
     def take_up(self, physics: Physics, make_physics: MakePhysics) -> None:
-        """Go on with other physics: from the next beat on `physics` steps this match.
+        """Continue with other physics, which steps the match from the next beat on.
 
         Args:
             physics: the robots on their field, where they are now.
-            make_physics: builds the physics after that.
+            make_physics: builds any later physics.
         """
         self.staging.physics = physics
         self.staging.make_physics = make_physics
@@ -273,7 +272,7 @@ class MatchState:
     # The log.
 
     def tell(self, kind: str, said: Phrase, seat: int = NOBODY, **data: Any) -> int:
-        """Log an event; returns its number."""
+        """Log an event and return its number."""
         self._event_count += 1
         self._events.append(
             Event(
@@ -290,11 +289,11 @@ class MatchState:
         return self._event_count
 
     def tell_judged(self, event: GameEvent, again: bool = False) -> None:
-        """Log what the rules decided.
+        """Log an event that the rules decided.
 
         Args:
-            event: of the game.
-            again: whether they decided it anew, after a take-back.
+            event: event of the game.
+            again: whether a take-back made the rules decide it.
         """
         said = event.said.with_values(team=self.seats[event.seat].team)
         self.tell(
@@ -307,7 +306,7 @@ class MatchState:
         )
 
     def tell_result(self) -> None:
-        """Log winner and scores by the rules after play, whenever they differ from the log's."""
+        """Log winner and scores by the rules, after play, if they differ from those logged last."""
         if self.phase is not Phase.FINISHED:
             return
         result = winner, scores = self.winner(), self.scores()
@@ -321,9 +320,9 @@ class MatchState:
         self.tell("result", said, winner=winner, scores=scores)
 
     def result_changed(self) -> None:
-        """Let this beat carry the result, if the match has one."""
+        """Put the result into this beat, if the match has one."""
         self._result_changed = self.phase in _ENDED
 
     def sheet_changed(self) -> None:
-        """Let this beat carry the sheet."""
+        """Put the sheet into this beat."""
         self._sheet_changed = True

@@ -1,7 +1,7 @@
-"""The fingerprint of this machine's arithmetic: why a path has other bits somewhere else.
+"""The fingerprint of this machine's arithmetic: it explains why paths differ between machines.
 
-MuJoCo calls the C library's sin, cos, exp, pow and so on, and a C library picks their code by
-processor. Where two machines answer in another last bit, their paths part.
+MuJoCo calls the C library's sin, cos, exp, pow and so on. A C library chooses their code by
+processor, and results may differ in the last bit. From there on paths differ too.
 """
 
 import functools
@@ -19,10 +19,10 @@ import numpy as np
 from lacoc_robots.model import set_options
 
 BITS = ("functions", "model", "path")
-"""The entries that decide; the others tell a person where these come from."""
+"""Entries that decide whether two fingerprints match; the others explain them to a person."""
 
 _ROWS = 512
-"""Arguments tried for each function."""
+"""Number of arguments tried for each function."""
 _STEPS = 200
 _ONE: dict[Callable[[float], float], float] = {
     math.sin: 7.0,
@@ -37,7 +37,7 @@ _ONE: dict[Callable[[float], float], float] = {
     math.exp: 30.0,
     math.log1p: 0.9,
 }
-"""Functions of one number, each with the largest argument that is tried, of either sign."""
+"""Functions of one number, each with the largest absolute argument that is tried."""
 _TWO: tuple[Callable[[float, float], float], ...] = (math.pow, math.atan2, math.fmod)
 
 
@@ -46,8 +46,8 @@ def here() -> Mapping[str, str]:
     """Take the fingerprint of this process's arithmetic.
 
     Returns:
-        `functions`, `model` and `path`: hashes over the C library's functions, a compiled model
-        and 200 steps of it; `processor`, `libc`, `python`, `system`: where they come from.
+        `functions`, `model` and `path`: hashes over the C library's functions, a compiled model and
+        200 steps of it; `processor`, `libc`, `python`, `system`: what produced them.
     """
     model, path = _reference()
     return {
@@ -62,7 +62,7 @@ def here() -> Mapping[str, str]:
 
 
 def same(one: Mapping[str, str], other: Mapping[str, str]) -> bool:
-    """Say whether two fingerprints are of the same arithmetic; one without hashes is of none."""
+    """Return whether two fingerprints are of the same arithmetic; without hashes they are not."""
     return all(name in one and one[name] == other.get(name) for name in BITS)
 
 
@@ -78,7 +78,7 @@ def _functions() -> str:
 
 
 def _parts(seed: int) -> list[float]:
-    """Numbers between -1 and 1 that are exact, and so the same everywhere."""
+    """Make numbers between -1 and 1 that are exact, and so the same on every machine."""
     return [((row * 2654435761 + seed * 40503) % 2**32 - 2**31) / 2**31 for row in range(_ROWS)]
 
 
@@ -87,10 +87,10 @@ def _packed(numbers: list[float]) -> bytes:
 
 
 def _reference() -> tuple[str, str]:
-    """Compile a small model with all that robots have, and let it fall.
+    """Compile a small model with every element that robots have, and let it fall.
 
     Returns:
-        A hash of the model, and one of its state after some steps.
+        A hash of the model, and a hash of its state after 200 steps.
     """
     spec = mujoco.MjSpec()
     set_options(spec)
@@ -123,7 +123,7 @@ def _reference() -> tuple[str, str]:
 
 
 def _processor() -> str:
-    """Name the processor; platforms without /proc say what they call it."""
+    """Return the name of the processor; without /proc, as the platform names it."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

@@ -1,4 +1,4 @@
-"""Where a robot lies in the arrays of a compiled model."""
+"""The place of a robot in the arrays of a compiled model."""
 
 import math
 from dataclasses import dataclass
@@ -13,17 +13,17 @@ from lacoc_server.match.entry import Entry
 
 @dataclass(frozen=True)
 class Robot:
-    """One robot in the arrays of MuJoCo."""
+    """The indices of one robot in MuJoCo's arrays."""
 
     entry: Entry
     root_qpos: int
-    """Where its position and quaternion begin in `qpos`: 7 numbers."""
+    """Index in `qpos` of its position and quaternion: 7 numbers."""
     root_dof: int
-    """Where its linear and angular velocity begin in `qvel`: 6 numbers."""
+    """Index in `qvel` of its linear and angular velocity: 6 numbers."""
     joint_qpos: npt.NDArray[np.intp]
-    """(joints,) places of its angles in `qpos`, by joint id."""
+    """(joints,) indices in `qpos` of its angles, by joint id."""
     joint_dofs: npt.NDArray[np.intp]
-    """(joints,) places of their velocities in `qvel`, by joint id."""
+    """(joints,) indices in `qvel` of its joint velocities, by joint id."""
     actuators: slice
     """Its commanded angles in `ctrl`, by joint id."""
     geoms: npt.NDArray[np.intp]
@@ -35,8 +35,8 @@ class Robot:
 
         Args:
             model: the `MjModel`.
-            entry: what the robot was built of.
-            seat: id of its seat; with a slash it begins all its names.
+            entry: entry that the robot was built from.
+            seat: id of its seat; all its names begin with it and a slash.
         """
         joints = [model.joint(f"{seat}/j{joint}") for joint in range(entry.robot.joints)]
         root = model.joint(f"{seat}/root")
@@ -54,11 +54,11 @@ class Robot:
 
     @property
     def pose_qpos(self) -> list[int]:
-        """Places in `qpos` of its numbers in `Frame.poses`, in their order."""
+        """Indices in `qpos` of its numbers in `Frame.poses`, in their order."""
         return [*range(self.root_qpos, self.root_qpos + 7), *self.joint_qpos.tolist()]
 
     def put(self, data: Any, place: Place) -> None:
-        """Put it at a start place: start posture, all velocities zero."""
+        """Put the robot at a start place: start posture, all velocities zero."""
         spec = self.entry.robot
         at = self.root_qpos
         half_yaw = (place.heading_rad - math.pi / 2) / 2  # the body's forward is its +y

@@ -23,16 +23,16 @@ _TYPES = {
 
 
 def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
-    """Describe a model.
+    """Describe a model for drawing.
 
     Args:
         model: the compiled `MjModel`; a robot's names begin with its seat and a slash.
-        game: whose markers the geoms named `marker:NAME:STATE` show.
+        game: the game; geoms named `marker:NAME:STATE` show its markers.
         seats: ids of the seats.
 
     Raises:
-        UserError: if a body has a joint that pages can't draw (they know free roots and one
-            hinge through a body's origin), a geom is of another type, or no marker has its name.
+        UserError: if pages can't draw the model. They know free roots, one hinge through a body's
+            origin, and the geom types above. Also if a geom's marker does not exist.
     """
     bodies = tuple(_body(model, index, seats) for index in range(model.nbody))
     geoms = []
@@ -91,7 +91,7 @@ def _seat(name: str, seats: Sequence[str]) -> int:
 
 
 def _team_colour(model: Any, geom: int, seats: Sequence[str]) -> int:
-    """The seat whose colour a geom takes: of a robot's geoms those in its body's colour."""
+    """Return the seat whose colour a geom takes, if it has its robot body's colour; else -1."""
     body = model.geom_bodyid[geom]
     root = model.body_rootid[body]
     plain = model.geom_rgba[model.body_geomadr[root]]

@@ -1,9 +1,8 @@
-"""Which markers the robots touch: looked at once a tick, without any force.
+"""Which markers the robots touch: tested once a tick, without any force.
 
-MuJoCo's own distance of two geoms decides, and is asked only about pairs that may touch. Whether
-they may is found from above, in the plane of the floor: a probe stands upright and is a circle
-there, and nothing is farther apart than it is in space. What is far from a whole robot, or from a
-whole leg, needs no closer look.
+MuJoCo's own distance of two geoms decides. It is asked only about pairs that may touch, which are
+found in a top view: there a probe is a circle, because it stands upright, and nothing is farther
+apart than in space. Probes far from a whole robot, or from a whole leg, are skipped at once.
 """
 
 import math
@@ -18,13 +17,13 @@ from lacoc_server.world.robot import Robot
 from lacoc_shared.messages import MarkerInfo
 
 _TOUCH_M = 1e-3
-"""Two geoms may touch if their distance from above is at most this: more than MuJoCo's error."""
+"""Margin of the top view [m], larger than the error of MuJoCo's distance."""
 _CELL_M = 0.04
-"""Side of a square of the floor that knows the probes within a robot's reach."""
+"""Side of a square of the floor; each square lists the probes within a robot's reach."""
 
 
 class _Probe(NamedTuple):
-    """What a robot touches of a marker: a geom that stands upright and never moves."""
+    """The geom of a marker that robots touch: it stands upright and never moves."""
 
     marker: int
     geom: int
@@ -34,23 +33,23 @@ class _Probe(NamedTuple):
 
 
 class _Part(NamedTuple):
-    """A geom of a robot, with the capsule around it that lies along its z axis."""
+    """A geom of a robot, with a capsule around it along its z axis."""
 
     geom: int
     radius_m: float
     half_m: float
-    """Half the distance between the centres of the capsule's round ends."""
+    """Half the distance between the centres of the capsule's two ends."""
 
 
 class _Limb(NamedTuple):
-    """A leg, or the robot's own body: some of its parts, one after another."""
+    """A leg, or the robot's own body: a run of parts."""
 
     first: int
     """Index of its first part."""
     end: int
     """Index after its last part."""
     reach_m: float
-    """How far a point of it can be from the first part's middle, at whatever angles."""
+    """Largest distance of any of its points from the first part's centre, at any angles."""
 
 
 class TouchTest:
@@ -59,7 +58,7 @@ class TouchTest:
     Args:
         model: the compiled model.
         data: its data, with the robots where they are now.
-        robots: the robots, seat by seat.
+        robots: the robots, in the order of the seats.
         markers: markers of the game; the probe of a marker is the geom "probe:NAME".
     """
 
@@ -74,17 +73,17 @@ class TouchTest:
         self._none: list[tuple[int, ...]] = [()] * len(robots)
 
     def __call__(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
-        """For each seat the markers it touches, in ascending order.
+        """Return for each seat the markers that it touches, in ascending order.
 
         Args:
-            gap_m: the largest distance that counts as a touch; below 0: only deeper ones count.
+            gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
         if self._no_probes:
             return self._none
         near = [robot.probes_near(gap_m) for robot in self._robots]
         if not any(near):
             return self._none
-        # After mj_step the geoms still stand where the last step began.
+        # After mj_step the geoms are still where the last step began.
         mujoco.mj_kinematics(self._model, self._data)
         return [
             robot.touched(probes, gap_m) for robot, probes in zip(self._robots, near, strict=True)
@@ -107,7 +106,7 @@ class _Outline:
         self._parts = [_part(model, geom) for geom in geoms]
         self._limbs = _limbs(model, geoms)
         self._probes = probes
-        # Views into MuJoCo's own arrays: they always show what is there now.
+        # Views into MuJoCo's own arrays: they always show the present values.
         self._root_m = data.qpos[robot.root_qpos : robot.root_qpos + 2]
         self._middles_m = data.geom_xpos[geoms[0] : geoms[-1] + 1, :2]
         self._axes = data.geom_xmat[geoms[0] : geoms[-1] + 1, 2:6:3]  # x and y of the z axis
@@ -115,17 +114,17 @@ class _Outline:
         self._near = _map(probes, max(_reach_m(model, geom, root) for geom in geoms))
 
     def probes_near(self, gap_m: float) -> Sequence[_Probe]:
-        """Probes that the robot may touch from where its body is now."""
-        if gap_m > 0:  # the map is drawn for real touches
+        """Return the probes that the robot may touch from where its body is now."""
+        if gap_m > 0:  # the map holds for real touches only
             return self._probes
         x_m, y_m = self._root_m.tolist()
         return self._near.get((x_m // _CELL_M, y_m // _CELL_M), ())
 
     def touched(self, probes: Sequence[_Probe], gap_m: float) -> tuple[int, ...]:
-        """Find the markers whose probe it touches.
+        """Find the markers whose probe the robot touches.
 
         Args:
-            probes: those to look at, in the order of their markers.
+            probes: the probes to test, in the order of their markers.
             gap_m: the largest distance that counts as a touch.
         """
         if not probes:
@@ -144,7 +143,7 @@ class _Outline:
     def _close(
         self, probe: _Probe, room_m: float, middles_m: list[list[float]], axes: list[list[float]]
     ) -> Iterator[_Part]:
-        """Find the parts that are at most `room_m` from a probe, seen from above."""
+        """Find the parts that are at most `room_m` from a probe in the top view."""
         _, _, probe_x_m, probe_y_m, probe_radius_m = probe
         around_m = probe_radius_m + room_m
         for first, end, reach_m in self._limbs:
@@ -171,7 +170,7 @@ class _Outline:
 
 
 def _gap_m2(x_m: float, y_m: float, end_x_m: float, end_y_m: float) -> float:
-    """Square of the distance of a point from the line between an end and its opposite."""
+    """Return the squared distance of a point from the segment between an end and its opposite."""
     along = x_m * end_x_m + y_m * end_y_m
     whole = end_x_m * end_x_m + end_y_m * end_y_m
     share = along / whole if abs(along) < whole else math.copysign(1.0, along)
@@ -179,10 +178,10 @@ def _gap_m2(x_m: float, y_m: float, end_x_m: float, end_y_m: float) -> float:
 
 
 def _map(probes: Sequence[_Probe], reach_m: float) -> dict[tuple[float, float], list[_Probe]]:
-    """Draw a map of the probes within reach from each square of the floor that has any."""
+    """Map each square of the floor to the probes within reach of it."""
     near: dict[tuple[float, float], list[_Probe]] = defaultdict(list)
     for probe in probes:
-        # From anywhere in a square, which is half a diagonal around its middle.
+        # The robot may be anywhere in the square, up to half a diagonal from its centre.
         apart_m = reach_m + probe.radius_m + _TOUCH_M + _CELL_M * math.sqrt(0.5)
         around = math.ceil(apart_m / _CELL_M)
         column, row = round(probe.x_m / _CELL_M), round(probe.y_m / _CELL_M)
@@ -210,7 +209,7 @@ def _part(model: Any, geom: int) -> _Part:
 
 
 def _limbs(model: Any, geoms: Sequence[int]) -> list[_Limb]:
-    """Take a robot apart: its body, then each leg from the root hinge outward."""
+    """Split a robot into limbs: its body, then each leg from the root hinge outward."""
     bodies = [_limb_of(model, geom) for geom in geoms]
     limbs = []
     for body in dict.fromkeys(bodies):
@@ -222,7 +221,7 @@ def _limbs(model: Any, geoms: Sequence[int]) -> list[_Limb]:
 
 
 def _limb_of(model: Any, geom: int) -> int:
-    """The first body of the leg that a geom belongs to, or the robot's own."""
+    """Return the first body of the leg that a geom belongs to, or the robot's own body."""
     body = model.geom_bodyid[geom]
     root = model.body_rootid[body]
     while body != root and model.body_parentid[body] != root:
@@ -231,7 +230,7 @@ def _limb_of(model: Any, geom: int) -> int:
 
 
 def _reach_m(model: Any, geom: int, base: int) -> float:
-    """How far from a body's origin a geom can be, at whatever angles of the hinges between.
+    """Return how far a geom can be from a body's origin, at any angles of the hinges between [m].
 
     Every hinge goes through the origin of its own body.
     """
@@ -244,5 +243,5 @@ def _reach_m(model: Any, geom: int, base: int) -> float:
 
 
 def _middle_m(model: Any, geom: int) -> float:
-    """How far the middle of a geom is from the origin of its body."""
+    """Return the distance of a geom's centre from the origin of its body [m]."""
     return float(np.linalg.norm(model.geom_pos[geom]))

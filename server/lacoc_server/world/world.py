@@ -1,4 +1,4 @@
-"""The world: the one place where physics is stepped (docs/architecture.md)."""
+"""The world: the only place where physics is stepped (docs/architecture.md)."""
 
 import hashlib
 import math
@@ -25,13 +25,13 @@ from lacoc_shared.seat import NOBODY
 from lacoc_shared.words import say
 
 SUBSTEPS = 10
-"""Physics steps of 2 ms in a tick of 20 ms."""
+"""Physics steps in a tick: 10 steps of 2 ms make 20 ms."""
 
 MUJOCO_VERSION = mujoco.mj_versionString()
-"""A replay is exact only with the same."""
+"""MuJoCo's version; a replay is exact only with the same one."""
 
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
-"""Everything the next step depends on; less (FULLPHYSICS) is not exact (docs/facts.md 1)."""
+"""All that the next step depends on; FULLPHYSICS is less, and not exact (docs/facts.md 1)."""
 
 _WARNINGS = {
     mujoco.mjtWarning.mjWARN_BADQPOS: say("fault.position"),
@@ -47,8 +47,8 @@ _WARNINGS = {
 class World:
     """Robots on a field, stepped tick by tick; implements `physics.Physics`.
 
-    The model is compiled here, once. A tick is exact: the same state and angles give the same
-    bits on one version of MuJoCo and one kind of machine.
+    The model is compiled here, once. A tick is exact: the same state and angles give the same bits
+    on one version of MuJoCo and one kind of machine.
 
     Args:
         arena: the field and its game.
@@ -81,7 +81,7 @@ class World:
         pose_qpos = [index for robot in self._robots for index in robot.pose_qpos]
         self._pose_qpos = np.array(pose_qpos, np.intp)
         self._touch = TouchTest(self.model, self.data, self._robots, arena.game.markers)
-        # Views into MuJoCo's own arrays: they always show what is there now.
+        # Views into MuJoCo's own arrays: they always show the present values.
         self._control = self.data.ctrl
         self._write_control = struct.Struct(f"{self.model.nu}d").pack_into
         self._warned = self.data.warning.number
@@ -105,7 +105,7 @@ class World:
             angles: for each seat the commanded angles [rad], by joint id.
 
         Returns:
-            None, or what went wrong; then the state before the tick stands.
+            None, or the fault; then the state is as before the tick.
         """
         self._write_control(self._control, 0, *chain.from_iterable(angles))
         mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
@@ -116,32 +116,32 @@ class World:
         return None
 
     def poses(self) -> bytes:
-        """The robots as `Frame.poses`."""
+        """Return the poses of the robots, in the form of `Frame.poses`."""
         poses: npt.NDArray[np.float32] = self.data.qpos[self._pose_qpos].astype("<f4")
         return poses.tobytes()
 
     def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
-        """For each seat the markers whose probes it touches now, in ascending order.
+        """Return for each seat the markers whose probes it touches now, in ascending order.
 
         A probe is a geom that exerts no force. A robot touches it if MuJoCo's distance between
         their geoms is at most 0; the order of the contact list plays no part.
 
         Args:
-            gap_m: the largest distance that counts as a touch; below 0: only deeper ones count.
+            gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
         return self._touch(gap_m)
 
     # Snapshots
 
     def save(self) -> bytes:
-        """The state; with `load` a world of the same model goes on bit for bit."""
+        """Return the state; after `load`, a world of the same model goes on bit for bit."""
         return self.digest + self._state.tobytes()
 
     def load(self, saved: bytes) -> None:
-        """Go on from a saved state.
+        """Continue from a saved state.
 
         Raises:
-            ValueError: if it is not of this model.
+            ValueError: if the state is not of this model.
         """
         state = np.frombuffer(saved[8:])
         if state.size != self._state.size:
@@ -154,9 +154,9 @@ class World:
         """Measure how far this state is from a saved one.
 
         Returns:
-            The largest difference of a position [m] or an angle [rad], now or, by the difference
-            of velocities and accelerations, within the next tick. Infinite if anything else
-            differs: the time, the commanded angles, or what is always 0.
+            The largest difference of a position [m] or an angle [rad], either now or within the
+            next tick because velocities or accelerations differ. Infinite if anything else differs:
+            the time, the commanded angles, or a number that is always 0.
         """
         if len(saved) != 8 + self._state.nbytes:
             return math.inf
@@ -167,7 +167,7 @@ class World:
 
     @staticmethod
     def follows(saved: bytes, digest: bytes) -> bool:
-        """Say whether a saved state's digest is chained to that of the tick before it."""
+        """Return whether a saved state's digest continues the chain from the tick before it."""
         return _chained(digest, saved[8:]) == saved[:8]
 
     # Private
@@ -176,7 +176,7 @@ class World:
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
 
     def _undo(self) -> Fault:
-        """Go back to before the tick; MuJoCo may have reset everything (docs/facts.md 3)."""
+        """Restore the state before the tick; MuJoCo may have reset everything (docs/facts.md 3)."""
         numbers = self.data.warning.number
         kind = int(np.flatnonzero(numbers)[0])
         where = int(self.data.warning[kind].lastinfo)
@@ -186,7 +186,12 @@ class World:
         return Fault(self._seat_of(mujoco.mjtWarning(kind), where), why)
 
     def _seat_of(self, kind: mujoco.mjtWarning, where: int) -> int:
-        """The robot that a warning is about; `where` is the index that MuJoCo gives."""
+        """Return the seat of the robot that a warning is about.
+
+        Args:
+            kind: the warning.
+            where: index that MuJoCo gives with it.
+        """
         for seat, robot in enumerate(self._robots):
             match kind:
                 case mujoco.mjtWarning.mjWARN_BADQPOS:
@@ -203,16 +208,16 @@ class World:
 
 
 def _chained(digest: bytes, state: bytes | memoryview) -> bytes:
-    """Chain a state to the digest of the tick before it."""
+    """Return the digest of a state, chained to the digest of the tick before it."""
     following = hashlib.sha256(digest)
     following.update(state)
     return following.digest()[:8]
 
 
 def _weights(model: Any) -> npt.NDArray[np.float64]:
-    """What a difference of each number of the state makes of a position or angle in a tick.
+    """Return how much a difference of each number of the state can move a robot in a tick.
 
-    0: no arithmetic may change this number.
+    A weight of 0 marks a number that no arithmetic may change.
     """
     tick_s = SUBSTEPS * model.opt.timestep
     weight = {
