@@ -417,6 +417,5 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "gateway.no-page": ["There is no such page here.", "このページはありません。"],
   "page.not-connected": ["not connected", "接続されていません"],
   "page.connection-lost": ["the connection is lost", "接続が切れました"],
-  "page.no-answer": ["no answer", "応答がありません"],
   "page.team": ["Team {seat:seat.*}", "チーム {seat:seat.*}"],
 };
