@@ -19,7 +19,7 @@ WAITS = {
     "/referee": ".banner",
     "/overlay": ".waits",
 }
-FULL = "This gateway shows the match to 1 pages already: try again later"
+FULL = "1 page watches the match here already"
 
 
 def opened(open_page: OpenPage, venue: Venue, path: str, **options: Any) -> Show:

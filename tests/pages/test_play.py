@@ -411,7 +411,7 @@ def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
     other = playing(venue, page)
     page.until("document.activeElement.matches('.field3d')")
     page.page.click(".leave")
-    page.page.get_by_role("dialog").get_by_role("button", name="Cancel").click()
+    page.page.get_by_role("button", name="Stay").click()
     page.until("document.activeElement.matches('.field3d')")
 
     page.page.evaluate("window.dispatchEvent(new Event('blur'))")

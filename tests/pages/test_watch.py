@@ -37,7 +37,7 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
     show.has_scores(19, 17)
     show.sees(".score-bug .team[data-seat='0']", "Ants")
     show.sees(".score-bug .phase", "Playing")
-    show.sees(".hint", "Ants leads by 2")
+    show.sees(".hint", "Ants: ahead by 2")
     expect(show.find(".panel .log li")).to_have_count(len(referee.events))
     assert show.view("marker(35)") == 1
     assert show.find(".board g[aria-label='c5r5: left']").count() == 1
@@ -52,7 +52,7 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
     show.has_scores(19, 21)
     show.sees(".third.neutral .what", "Referee Kim: +4 points for Bees")
     show.sees(".third.neutral .gain", "+4")
-    show.sees(".hint", "Bees leads by 2")
+    show.sees(".hint", "Bees: ahead by 2")
     expect(show.find(".panel .log li").first).to_contain_text("+4 points for Bees")
     show.until(lambda: show.view("drawnBeat") > reply["beat"] + 230, "time stands still")
     show.misses(".third")

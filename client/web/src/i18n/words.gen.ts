@@ -407,8 +407,8 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "gateway.too-much": ["Too many requests at once. Wait for the answers.", "要求が多すぎます。応答をお待ちください。"],
   "gateway.no-token": ["The token is missing. Ask the organiser for it.", "トークンがありません。主催者から受け取ってください。"],
   "gateway.no-seat": ["This page holds no seat. Join first.", "このページは席に着いていません。先に参加してください。"],
-  "gateway.full": ["{most} pages watch the match here already, and no more can. Try again later, or watch the stream if there is one.", "すでに {most} ページが接続しています。後でもう一度試すか、配信をご覧ください。"],
-  "gateway.full-with-key": ["{most} pages with the key are open here already. Close those that nobody needs.", "鍵の付いたページがすでに {most} 個開いています。不要なページを閉じてください。"],
+  "gateway.full": ["{most} {most:plural page watches|pages watch} the match here already, and no more can. Try again later, or watch the stream if there is one.", "すでに {most} ページが接続しています。後でもう一度試すか、配信をご覧ください。"],
+  "gateway.full-with-key": ["{most} {most:plural page|pages} with the key {most:plural is|are} open here already. Close what nobody needs.", "鍵の付いたページがすでに {most} 個開いています。不要なページを閉じてください。"],
   "gateway.unknown-name": ["This computer is not known as {name:quoted}. Open its page by its number or its own name, or start the gateway with --host {host}.", "このパソコンの名前は{name:quoted}ではありません。番号か正しい名前でページを開くか、--host {host} を付けてサーバーを起動してください。"],
   "gateway.cannot-listen": ["It is not possible to listen at {where}: {why}.", "{where} で待ち受けできません（{why}）。"],
   "gateway.port-used": ["It is not possible to listen at {where}: another program uses that port. Is another gateway running? Choose another port; 0 takes a free one.", "{where} で待ち受けできません。ほかのプログラムがそのポートを使っています。別のサーバーが動いていないか確かめるか、別のポートを選んでください（0 なら空きポートを使います）。"],
@@ -417,6 +417,5 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "gateway.no-page": ["There is no such page here.", "このページはありません。"],
   "page.not-connected": ["not connected", "接続されていません"],
   "page.connection-lost": ["the connection is lost", "接続が切れました"],
-  "page.no-answer": ["no answer", "応答がありません"],
   "page.team": ["Team {seat:seat.*}", "チーム {seat:seat.*}"],
 };

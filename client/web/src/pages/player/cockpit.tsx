@@ -156,7 +156,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
         onView={nextView}
         onSave={() => saveData(player)}
       />
-      <LeavingBar leaving={leaving} />
+      <LeavingBar leaving={leaving} onStay={close} />
       {isIn ? (
         <>
           <Rail {...{ court, player, alone }} {...controls} />

@@ -49,7 +49,8 @@ export class Leaving {
   }
 }
 
-export function LeavingBar({ leaving }: { leaving: Leaving }) {
+/** @param onStay Called when the player stays: the keyboard goes back to the field. */
+export function LeavingBar({ leaving, onStay }: { leaving: Leaving; onStay: () => void }) {
   const state = leaving.state.value;
   if (!state) return null;
   return (
@@ -58,7 +59,14 @@ export function LeavingBar({ leaving }: { leaving: Leaving }) {
       <button class="button small" type="button" {...pressing(() => leaving.go())}>
         {t("leaving.go")}
       </button>
-      <button class="button quiet small" type="button" {...pressing(() => leaving.end())}>
+      <button
+        class="button quiet small"
+        type="button"
+        {...pressing(() => {
+          leaving.end();
+          onStay();
+        })}
+      >
         {t("leaving.stay")}
       </button>
     </div>
