@@ -107,7 +107,7 @@ def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
     found = packages_beside(tmp_path, {"mcap-0.1": "Name: mcap\nVersion: 0.1"})
     wrong = [finding for finding in found if finding[1] == Status.PROBLEM]
     assert [finding[0] for finding in wrong] == ["mcap"]
-    assert "0.1 is installed, wanted is" in wrong[0][2]
+    assert "0.1 is installed, but " in wrong[0][2]
     assert wrong[0][3].startswith('pip install "mcap')
 
 
@@ -228,7 +228,7 @@ def test_the_link_to_a_court(
     here = doctor.court_port("127.0.0.1", port, "main")
     assert (here.status, render(here.found)) == (Status.OK, "court main runs here")
     other = look(capsys, tmp_path, "--connect", court.address, "--court", "other")
-    assert "there is main" in other["court other"]["found"]
+    assert "There is main" in other["court other"]["found"]
 
 
 def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> None:
