@@ -19,7 +19,7 @@ from lacoc_client.doctor.link import link
 from lacoc_client.doctor.machine import Status
 from lacoc_shared.command import cli
 from lacoc_shared.contest.invitation import Access
-from lacoc_shared.words import render
+from lacoc_shared.words import render, say
 
 
 @pytest.fixture
@@ -124,7 +124,7 @@ def test_packages_that_are_not_there(tmp_path: Path) -> None:
         'pip install "no-such-thing>=2"',
     ]
     assert by_name["no-engine"][0] == Status.NOTE
-    assert "hold no match" in by_name["no-engine"][1]
+    assert "run a match" in by_name["no-engine"][1]
 
 
 def test_ports_that_are_taken(
@@ -179,7 +179,7 @@ def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path:
 def test_a_court_that_stands_still() -> None:
     """It sends its last frame 50 times a second while its disk is full: that is no match."""
     with CourtStub() as court:
-        court.trouble = "The record m-1 can't be written: No space left on device."
+        court.trouble = say("plain.text", text="The record m-1 can't be written.")
         access = Access(court="main", connect=court.address)
         found = {one.about: one for one in (each.in_words() for each in link(access, 0.5))}
     assert found["frames of main"].status is Status.PROBLEM
