@@ -37,6 +37,7 @@ from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.record.files import record_paths
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render
 
 P = Phase
 BACK_IN = {P.PLAYING: P.HALTED, P.COUNTDOWN: P.HALTED}
@@ -260,7 +261,7 @@ class _Trial:
         if verdict.kind is Kind.SAME:
             figures.verified += 1
         else:
-            figures.not_same.append(verdict.text)
+            figures.not_same.append(render(verdict.said))
 
 
 def _controllers(session: Session, name: str, court: Court) -> list[Controller]:

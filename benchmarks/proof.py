@@ -35,6 +35,7 @@ from lacoc_server.world.world import World
 from lacoc_shared.codec import encode
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
+from lacoc_shared.words import render
 
 _WHAT = ("honest", "forged", "time", "fingerprint", "verdicts", "forge")
 """The last three are run under the other arithmetic."""
@@ -104,7 +105,7 @@ def forge(paths: Sequence[Path], count: int, seed: int) -> Forged:
             kinds[name.partition(",")[0]] += 1
             found = prover.verdict(record)
             if isinstance(found, Verdict) and found.same:
-                passed.append(f"{name}: {found.text}")
+                passed.append(f"{name}: {render(found.said)}")
     return Forged(count, passed, dict(kinds))
 
 
@@ -173,7 +174,7 @@ def _verdict(path: Path) -> dict[str, Any]:
         "name": path.name,
         "kind": verdict.kind.value,
         "distance": verdict.distance,
-        "text": verdict.text,
+        "text": render(verdict.said),
     }
 
 

@@ -19,7 +19,7 @@ from lacoc_client.doctor.link import link
 from lacoc_client.doctor.machine import Status
 from lacoc_shared.command import cli
 from lacoc_shared.contest.invitation import Access
-from lacoc_shared.words import render
+from lacoc_shared.words import render, say
 
 
 @pytest.fixture
@@ -107,7 +107,7 @@ def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
     found = packages_beside(tmp_path, {"mcap-0.1": "Name: mcap\nVersion: 0.1"})
     wrong = [finding for finding in found if finding[1] == Status.PROBLEM]
     assert [finding[0] for finding in wrong] == ["mcap"]
-    assert "0.1 is installed, wanted is" in wrong[0][2]
+    assert "0.1 is installed, but " in wrong[0][2]
     assert wrong[0][3].startswith('pip install "mcap')
 
 
@@ -124,7 +124,7 @@ def test_packages_that_are_not_there(tmp_path: Path) -> None:
         'pip install "no-such-thing>=2"',
     ]
     assert by_name["no-engine"][0] == Status.NOTE
-    assert "hold no match" in by_name["no-engine"][1]
+    assert "run a match" in by_name["no-engine"][1]
 
 
 def test_ports_that_are_taken(
@@ -179,7 +179,7 @@ def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path:
 def test_a_court_that_stands_still() -> None:
     """It sends its last frame 50 times a second while its disk is full: that is no match."""
     with CourtStub() as court:
-        court.trouble = "The record m-1 can't be written: No space left on device."
+        court.trouble = say("plain.text", text="The record m-1 can't be written.")
         access = Access(court="main", connect=court.address)
         found = {one.about: one for one in (each.in_words() for each in link(access, 0.5))}
     assert found["frames of main"].status is Status.PROBLEM
@@ -228,7 +228,7 @@ def test_the_link_to_a_court(
     here = doctor.court_port("127.0.0.1", port, "main")
     assert (here.status, render(here.found)) == (Status.OK, "court main runs here")
     other = look(capsys, tmp_path, "--connect", court.address, "--court", "other")
-    assert "there is main" in other["court other"]["found"]
+    assert "There is main" in other["court other"]["found"]
 
 
 def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> None:

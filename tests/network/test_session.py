@@ -83,7 +83,7 @@ def test_another_program_at_the_address_is_said() -> None:
 
 def test_an_unknown_name_is_said_at_once() -> None:
     """Before any waiting: ".invalid" is never resolved."""
-    with pytest.raises(UserError, match=r"'court\.invalid' is not known"):
+    with pytest.raises(UserError, match=r"court\.invalid.* is not known"):
         open_client(["court.invalid:7447"], timeout_s=30)
 
 

@@ -131,7 +131,7 @@ def test_a_court_needs_keys_for_tls_and_tls_for_keys(keyed: KeyedCourt, tmp_path
         open_court(["tls/127.0.0.1:0"])
     contest = keyed_file(tmp_path)
     contest.write_text(contest.read_text().replace('"127.0.0.1:0"', '"tcp/127.0.0.1:0"'))
-    with pytest.raises(UserError, match=r"has keys.*write tls/127"):
+    with pytest.raises(UserError, match=r"has keys.*Write tls/127"):
         contests.load(contest)
 
 

@@ -97,7 +97,7 @@ def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: P
     assert len(set(made_by)) == 2
     *_, verdict = verify(record)
     assert isinstance(verdict, Verdict)
-    assert verdict.kind is Kind.OTHER_ARITHMETIC, verdict.text
+    assert verdict.kind is Kind.OTHER_ARITHMETIC, render(verdict.said)
 
 
 def test_settings_that_were_changed_count_from_the_next_match(contest: Path, folder: Path) -> None:

@@ -165,7 +165,7 @@ def test_nothing_of_a_record_can_be_changed_unseen(
     else:
         beat, saved = record.snapshots[-1]
         record.snapshots[-1] = beat, saved[:-1] + bytes([saved[-1] ^ 1])
-    assert verdict(record).text == f"beat {beat} differs: {words}"
+    assert render(verdict(record).said) == f"beat {beat} differs: {words}"
 
 
 def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
@@ -210,7 +210,7 @@ def test_a_changed_result_is_named(tmp_path: Path) -> None:
     record = Record.read(tmp_path / "m.mcap")
     assert record.result is not None
     record.result = msgspec.structs.replace(record.result, scores=(36, 0))
-    assert verdict(record).text == f"beat {record.last_beat} differs: the result"
+    assert render(verdict(record).said) == f"beat {record.last_beat} differs: the result"
 
 
 def test_another_mujoco_is_refused(live: tuple[Path, list[Beat]]) -> None:

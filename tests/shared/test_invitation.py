@@ -75,7 +75,7 @@ def test_an_invitation_is_for_one_role(tmp_path: Path) -> None:
     assert entrance.spectator(left, *nothing) == WATCH
     with pytest.raises(UserError, match="an invitation for the referee, not for a contestant"):
         entrance.seat(referee, *nothing, None, None)
-    with pytest.raises(UserError, match="for the seat, not for a referee"):
+    with pytest.raises(UserError, match="for the contestant, not for a referee"):
         entrance.referee(left, *nothing, None)
 
 

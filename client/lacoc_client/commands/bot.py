@@ -99,7 +99,7 @@ def bot_command(
         player = BotPlayer(controller, ground, name)
         for hint in patience.until(controller.join):
             screen.show(hint)
-        screen.show(f"{name} holds seat {access.seat} of court {access.court}.")
+        screen.show(say("bot.holds", bot=name, seat=access.seat, court=access.court))
         try:
             _play(controller, player, stopping, max(_GONE_S, wait or 0.0))
         finally:
@@ -129,7 +129,7 @@ def _play(
         if frame is not None:
             player.see(frame)
         for refused in controller.take_refused():
-            screen.show(f"Key {refused.key} was refused: {render(refused.why)}.")
+            screen.show(say("bot.refused", key=refused.key, why=refused.why))
         for event in controller.view.take_events():
             if event.kind in ("phase", "result"):
                 screen.show(event.said)

@@ -51,9 +51,9 @@ def show_page(home: Home, path: str, browser: bool) -> None:
 
     def ready() -> None:
         shown = browser and open_browser(stack.enter_context(unseen(address)))
-        # Always printed: the browser may open where nobody sees it.
-        screen.show(f"{'Opened' if shown else 'Open'} {address}")
-        screen.note("Keep this running while you are there; Ctrl-C ends it.")
+        # Said in any case: a browser may open in a place where nobody looks.
+        screen.show(say("web.opened", url=address) if shown else say("web.open", url=address))
+        screen.note(say("web.keep-running"))
 
     with stack:
         server.run(home, opened, ready)

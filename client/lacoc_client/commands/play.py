@@ -100,7 +100,7 @@ def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:
     """
     found = [] if gaits else gaits_in(Path())
     if found:
-        screen.note(f"Taken from this folder: {', '.join(path.name for path in found)}.")
+        screen.note(say("play.taken", files=[path.name for path in found]))
     for remark in [] if gaits else remarks(Path(), found):
         screen.warn(remark)
     files = OwnFiles(robot, gaits)
@@ -153,12 +153,23 @@ def _greet(controller: Controller, team: str, greeting: Text | None) -> None:
     screen.show(
         greeting
         or Text.assemble(
-            (team, "bold"), f" holds seat {controller.seat} of court {sheet.court}: {sheet.title}."
+            (
+                render(
+                    say(
+                        "play.holds",
+                        team=team,
+                        seat=controller.seat,
+                        court=sheet.court,
+                        title=sheet.title,
+                    )
+                ),
+                "bold",
+            )
         )
     )
     screen.show(Group(keys_table(controller), Text()))
     keys = sheet.seats[controller.index].keys
     if not any(keys[level] for level in sheet.levels):
-        levels = " and ".join("AB"[level] for level in sheet.levels)
+        levels = ["AB"[level] for level in sheet.levels]
         wanted = "Loco-data" if Level.POSTURE in sheet.levels else "LocoTra-data"
-        screen.warn(f"No key will move your robot: level {levels} is open. Bring a {wanted} file.")
+        screen.warn(say("play.no-key", levels=levels, file=wanted))

@@ -329,7 +329,9 @@ def _log_line(event: Event, sheet: Sheet) -> Text:
 
 
 def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
-    table = Table("no.", "clock", "kind", "seat", "what")
+    table = screen.table(
+        say("fact.number"), say("fact.clock"), say("fact.kind"), say("fact.seat"), say("fact.what")
+    )
     for event in events:
         plain = event_dict(event, sheet)
         table.add_row(
@@ -347,33 +349,43 @@ def _show_reply(reply: DecisionReply) -> None:
     said = render(reply.said)
     text = f"{said[:1].upper()}{said[1:]}"
     if reply.event is None:
-        screen.show("Dry run: nothing is done. This is what would be done:")
+        screen.show(say("referee.dry-run"))
         screen.show(f"  {text}")
         for change in reply.changes:
             screen.show(f"  {render(change)}")
         if not reply.changes:
-            screen.show("  No other event changes.")
-        screen.show(f"Score then: {score}")
+            screen.show(say("referee.no-change"))
+        screen.show(say("referee.score-then", score=score))
         return
-    screen.show(f"{text} (event {reply.event}, beat {reply.beat})")
+    screen.show(say("referee.done", what=text, event=reply.event, beat=reply.beat))
     for change in reply.changes:
         screen.show(f"  {render(change)}")
-    screen.show(f"Score: {score}")
+    screen.show(say("referee.score", score=score))
 
 
 def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:
     names = words.teams(sheet)
-    left = " left" if sheet.duration_s else " played"
-    hint = words.phase_hint(frame, sheet)
+    clock, hint = words.match_clock(frame, sheet), words.phase_hint(frame, sheet) or None
+    if sheet.duration_s:
+        time_left = say("referee.left", clock=clock, hint=hint)
+    else:
+        time_left = say("referee.played", clock=clock, hint=hint)
+    match = say("referee.match", title=sheet.title, court=sheet.court, match=sheet.match)
     screen.show(
         Text.assemble(
-            (f"{sheet.title}, court {sheet.court}, match {sheet.match}: ", "bold"),
-            (Phase(frame.phase).name, "bold cyan"),
-            f", {words.match_clock(frame, sheet)}{left}" + (f" ({hint})" if hint else ""),
+            (render(match), "bold"),
+            (words.phase_name(Phase(frame.phase)), "bold cyan"),
+            render(time_left),
         )
     )
-    speed = f"{health.real_time_factor:.2f} of real time, {health.slow_beats} slow beats"
-    screen.show(f"The court runs at {speed}, the latest by {health.worst_late_ms:.0f} ms.")
+    screen.show(
+        say(
+            "referee.speed",
+            factor=health.real_time_factor,
+            slow=health.slow_beats,
+            worst_ms=health.worst_late_ms,
+        )
+    )
     if health.record_trouble is not None:
         screen.warn(health.record_trouble)
     if health.verdict is not None and health.verdict.advice:
@@ -381,31 +393,44 @@ def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:
             Text(render(say("event.advised", reasons=health.verdict.advice)), "bold yellow")
         )
     if health.input_delay_ms:
-        screen.show(f"Links are equalised: keys take effect after {health.input_delay_ms} ms.")
+        screen.show(say("referee.equalised", ms=health.input_delay_ms))
     for why, count in health.dropped.items():
-        screen.show(f"  dropped {count}: {counted(why)}")
-    seats = Table("seat", "team", "score", "ready", "key", "link", "refused")
+        screen.show(say("referee.dropped", count=count, why=why))
+    seats = screen.table(
+        say("fact.seat"),
+        say("fact.team"),
+        say("fact.score"),
+        say("fact.ready"),
+        say("fact.key"),
+        say("fact.link"),
+        say("fact.refused"),
+    )
+    yes, no = render(say("word.yes")), render(say("word.no"))
     for index, (seat, link) in enumerate(zip(frame.seats, health.seats, strict=True)):
-        ready = "yes" if seat.flags & SeatFlag.READY else "no"
+        ready = yes if seat.flags & SeatFlag.READY else no
         team = Text(names[index] if sheet.seats[index].team else "-")
         row = (link.id, team, str(seat.score), ready)
         refused = ", ".join(f"{count} {counted(why)}" for why, count in link.refused.items())
         seats.add_row(*row, words.standing_key(seat, sheet, index), _link(link), refused)
     screen.show(seats)
-    decisions = Table("decision", "legal", "why not")
+    decisions = screen.table(say("fact.decision"), say("fact.legal"), say("fact.why-not"))
     for name, why_not in health.decisions.items():
-        legal = Text("no", "dim") if why_not else Text("yes", "bold green")
+        legal = Text(no, "dim") if why_not else Text(yes, "bold green")
         decisions.add_row(name, legal, Text(render(why_not or "")))
     screen.show(decisions)
 
 
 def _link(link: SeatHealth) -> str:
     if not link.joined:
-        return "nobody"
+        return render(say("link.nobody"))
     if link.heard_ms is None:
-        return "not heard yet"
-    heard = f"{link.commands_hz:.0f} commands/s, heard {link.heard_ms:.0f} ms ago"
-    if link.round_trip_p50_ms is None or link.round_trip_p95_ms is None:
-        return heard
-    trip = f"round trip {link.round_trip_p50_ms:.0f} ms, 95 % {link.round_trip_p95_ms:.0f} ms"
-    return f"{heard}; {trip}" + (f", {link.late} late" if link.late else "")
+        return render(say("link.not-heard"))
+    heard = say(
+        "link.heard",
+        hz=link.commands_hz,
+        ms=link.heard_ms,
+        p50_ms=link.round_trip_p50_ms,
+        p95_ms=link.round_trip_p95_ms,
+        late=link.late or None,
+    )
+    return render(heard)

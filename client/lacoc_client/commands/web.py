@@ -104,7 +104,7 @@ def web_command(
         else:
             _tell(home, address)
             if exporter is not None:
-                screen.note(f"Metrics at {exporter.url}")
+                screen.note(say("command.metrics-at", where=exporter.url))
         if not built:
             screen.warn(render(NOT_BUILT))
         log.start(json)
@@ -132,9 +132,9 @@ def _key(plan: Contest | None, key: str | None) -> str:
 
 
 def _tell(home: Home, address: str) -> None:
-    screen.show(f"Pages of {', '.join(home.courts)}:")
-    screen.show(f"  spectators: {address}/watch")
-    screen.show(f"  broadcast: {address}/overlay")
-    screen.show(f"  recordings: {address}/replay")
-    screen.show(f"  contestants: {address}/play#key={home.key}")
-    screen.show(f"  referee: {address}/referee#key={home.key}")
+    screen.show(say("web.pages", courts=[*home.courts]))
+    screen.show(say("web.spectators", url=f"{address}/watch"))
+    screen.show(say("web.broadcast", url=f"{address}/overlay"))
+    screen.show(say("web.recordings", url=f"{address}/replay"))
+    screen.show(say("web.contestants", url=f"{address}/play#key={home.key}"))
+    screen.show(say("web.referee", url=f"{address}/referee#key={home.key}"))

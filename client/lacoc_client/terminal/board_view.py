@@ -15,6 +15,7 @@ from lacoc_shared.command import screen
 from lacoc_shared.messages import Event, Frame, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render, say
 
 _ROWS = (10, 34)
 _SIDE_MIN = 30
@@ -76,11 +77,15 @@ class BoardView:
 def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
     """Return the score, line by line."""
     phase = Phase(frame.phase)
-    left = "left" if sheet.duration_s else "played"
+    left = render(say("terminal.left") if sheet.duration_s else say("terminal.played"))
     lines = [
-        Text(f"{sheet.title}, match {sheet.match}", style="bold", no_wrap=True),
+        Text(
+            render(say("terminal.match", title=sheet.title, match=sheet.match)),
+            style="bold",
+            no_wrap=True,
+        ),
         Text.assemble(
-            (f" {phase.name} ", PHASE_STYLES.get(phase, "")),
+            (f" {words.phase_name(phase)} ", PHASE_STYLES.get(phase, "")),
             (f" {words.match_clock(frame, sheet)}", "bold"),
             (f" {left}", "dim"),
         ),

@@ -9,7 +9,7 @@ from lacoc_client.spectator import Spectator
 from lacoc_client.terminal import words
 from lacoc_shared.messages import Event, Frame, Sheet
 from lacoc_shared.seat import Phase
-from lacoc_shared.words import render
+from lacoc_shared.words import render, say
 
 PHASE_STYLES = {
     Phase.LOBBY: "black on white",
@@ -45,7 +45,7 @@ class LineView:
         if banner:
             return Text(banner, style="bold white on red", no_wrap=True)
         if view.frame is None:
-            return Text("Waiting for the first frame ...", style="dim")
+            return Text(render(say("terminal.waiting-frame")), style="dim")
         line = status_line(view.frame, view.sheet)
         hint = words.phase_hint(view.frame, view.sheet) or self._last
         line.append(f"  {hint}", style="dim")
@@ -57,7 +57,7 @@ def status_line(frame: Frame, sheet: Sheet) -> Text:
     """Return a line of phase, clock, teams and score."""
     phase = Phase(frame.phase)
     line = Text.assemble(
-        (f" {phase.name} ", PHASE_STYLES.get(phase, "")),
+        (f" {words.phase_name(phase)} ", PHASE_STYLES.get(phase, "")),
         (f" {words.match_clock(frame, sheet)} ", "bold"),
     )
     names = words.teams(sheet)

@@ -23,7 +23,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export.kinematics import joints_per_seat
 from lacoc_shared.record.export.pos_data import PosData
 from lacoc_shared.seat import BEAT_S, RESTART_KEY, Phase, SeatFlag
-from lacoc_shared.words import render, say
+from lacoc_shared.words import Phrase, render, say
 
 POS_DATA = "Pos-data.txt"
 
@@ -32,8 +32,8 @@ _LOOK_S = 0.01
 _DRAW_S = 0.1
 _SAID_S = 5.0
 _GONE_S = 120.0
-_HELP = "0-9 move   Tab level   x restart   r ready   z save and leave   q leave"
-_LEVEL_NAMES = {Level.POSTURE: "A postures", Level.LOCOMOTION: "B locomotion"}
+_LEVEL_NAMES = {Level.POSTURE: "a", Level.LOCOMOTION: "b"}
+"""Names of the levels in the table, below `level-name.`."""
 
 
 class TerminalPlay:
@@ -95,7 +95,7 @@ class TerminalPlay:
             self._see(frame)
         for refused in controller.take_refused():
             key = "x" if refused.key == RESTART_KEY else str(refused.key)
-            self._say(f"[{key}] refused: {render(refused.why)}.")
+            self._say(say("terminal.refused", key=key, why=refused.why))
         for text in self._keys.take_said():
             self._say(text)
         lines = [
@@ -128,37 +128,37 @@ class TerminalPlay:
             elif key in ("z", "q"):
                 self._leaving, self._saving = True, key == "z"
             else:
-                self._say(f"[{key}] does nothing.")
+                self._say(say("terminal.nothing", key=key))
         except UserError as error:
-            self._say(str(error))
+            self._say(error.phrase)
 
     def _press_arrow(self, key: str) -> None:
         if self._level is Level.LOCOMOTION:
             self._controller.press(self._level, _ARROWS[key])
         else:
-            self._say("Arrows are for level B; Tab changes the level.")
+            self._say(say("terminal.arrows"))
 
     def _change_level(self) -> None:
         """Change to the next open level; that alone sends nothing (rules 3)."""
         levels = [Level(level) for level in self._view.sheet.levels]
         if levels == [self._level]:
-            self._say(f"This arena opens level {_LEVEL_NAMES[self._level]} only.")
+            self._say(say("terminal.only-level", level=_LEVEL_NAMES[self._level]))
             return
         following = levels.index(self._level) + 1 if self._level in levels else 0
         self._level = levels[following % len(levels)]
-        self._say(f"Level {_LEVEL_NAMES[self._level]}: press a digit.")
+        self._say(say("terminal.level", level=_LEVEL_NAMES[self._level]))
 
     def _toggle_ready(self) -> None:
         frame = self._view.frame
         seat = None if frame is None else frame.seats[self._controller.index]
         is_ready = seat is not None and bool(seat.flags & SeatFlag.READY)
         self._controller.ready(not is_ready)
-        self._say("You are not ready after all." if is_ready else "You are ready.")
+        self._say(say("terminal.not-ready") if is_ready else say("terminal.ready"))
 
     def _tell_about_views(self) -> None:
         if not self._view_asked:
             self._view_asked = True
-            self._say("The terminal has no views; 'lacoc watch --board' shows the field.")
+            self._say(say("terminal.no-views"))
 
     def _see(self, frame: Frame) -> None:
         if frame.phase == Phase.PLAYING:
@@ -172,8 +172,8 @@ class TerminalPlay:
             self._data, self._data_match = PosData(self._controller.index, joints), frame.match
         self._data.add(frame)
 
-    def _say(self, text: str) -> None:
-        self._said.append(text)
+    def _say(self, what: Phrase | str) -> None:
+        self._said.append(render(what))
 
     def _check_end(self) -> None:
         """Check whether the seat is lost, or a script and its match are over.
@@ -194,19 +194,23 @@ class TerminalPlay:
     def _draw(self, now_s: float) -> RenderableType:
         controller, frame, sheet = self._controller, self._view.frame, self._view.sheet
         if frame is None:
-            return Text("Waiting for the court ...", style="dim")
+            return Text(render(say("terminal.waiting")), style="dim")
         seat = frame.seats[controller.index]
         second = Text()
         for level in map(Level, sheet.levels):
             style = "bold reverse" if level is self._level else "dim"
-            second.append(f" {_LEVEL_NAMES[level]} ", style)
+            second.append(
+                f" {render(say('terminal.level-name', level=_LEVEL_NAMES[level]))} ", style
+            )
         if frame.poses:
             second.append(f"  {words.standing_key(seat, sheet, controller.index)}", "bold")
         if controller.round_trip_ms is not None:
-            second.append(f"  round trip {controller.round_trip_ms:.0f} ms", "dim")
+            trip = say("terminal.round-trip", ms=controller.round_trip_ms)
+            second.append(f"  {render(trip)}", "dim")
         health = self._view.health
         if health is not None and health.input_delay_ms:
-            second.append(f"  equalised: {health.input_delay_ms} ms", "dim")
+            delay = say("terminal.equalised", ms=health.input_delay_ms)
+            second.append(f"  {render(delay)}", "dim")
         if len(sheet.seats) == 1:
             second.append(words.place(frame, sheet, controller.seat))
         first = status_line(frame, sheet)
@@ -228,8 +232,8 @@ class TerminalPlay:
         seat = frame.seats[controller.index]
         state = words.seat_state(seat) or words.phase_hint(frame, self._view.sheet)
         if frame.phase == Phase.LOBBY and not seat.flags & SeatFlag.READY:
-            state = "press r when you are ready"
-        return Text(state, "cyan") if state else Text(_HELP, "dim")
+            state = render(say("terminal.press-r"))
+        return Text(state, "cyan") if state else Text(render(say("terminal.help")), "dim")
 
     def _leave(self) -> None:
         """Give the seat up, and write Pos-data.txt if the contestant asked for it."""
@@ -238,19 +242,19 @@ class TerminalPlay:
             try:
                 said = controller.leave()
                 told = said if self._view.sheet.duration_s else None
-                screen.note(f"You have left. {render(told or '')}".rstrip())
+                screen.note(say("terminal.left-seat", told=told))
             except UserError as error:
-                screen.note(str(error))
+                screen.note(error.phrase)
         if not self._saving:
             return
         if self._data is None:
-            screen.warn(f"No {POS_DATA}: your robot has not stood on the field yet.")
+            screen.warn(say("terminal.no-pos-data", file=POS_DATA))
             return
         path = self._folder / POS_DATA
         kept = save(path, self._data.text().encode())
         if kept is not None:
-            screen.note(f"{path} was there: it is {kept} now.")
-        screen.note(f"{path} written: the way of your robot.")
+            screen.note(say("command.kept", path=str(path), kept=str(kept)))
+        screen.note(say("terminal.pos-data", path=str(path)))
 
 
 def keys_table(controller: Controller) -> Table:
@@ -260,15 +264,18 @@ def keys_table(controller: Controller) -> Table:
     table = Table(show_header=False, box=None, padding=(0, 2))
     for level in map(Level, sheet.levels):
         digits = seat.keys[level]
-        what = "one posture each" if level is Level.POSTURE else "walk, until the next key"
-        shown = " ".join(map(str, digits)) or "none in your files"
-        table.add_row(Text(shown, "bold"), f"level {_LEVEL_NAMES[level]}: {what}")
-    if Level.LOCOMOTION in sheet.levels:
-        table.add_row(Text("↑ ← → ↓", "bold"), "2 1 3 0 of level B")
-    if len(sheet.levels) > 1:
-        table.add_row(Text("Tab", "bold"), "change the level")
-    table.add_row(Text("x", "bold"), "restart: back to the start place")
-    table.add_row(Text("r", "bold"), "ready, or not ready after all")
-    table.add_row(Text("z", "bold"), f"leave, and write {POS_DATA}")
-    table.add_row(Text("q", "bold"), "leave (Ctrl-C too)")
+        shown = " ".join(map(str, digits)) or render(say("terminal.no-keys"))
+        what = say("terminal.keys-a") if level is Level.POSTURE else say("terminal.keys-b")
+        table.add_row(Text(shown, "bold"), render(what))
+    others = [
+        ("↑ ← → ↓", say("terminal.keys-arrows"), Level.LOCOMOTION in sheet.levels),
+        ("Tab", say("terminal.keys-tab"), len(sheet.levels) > 1),
+        ("x", say("terminal.keys-x"), True),
+        ("r", say("terminal.keys-r"), True),
+        ("z", say("terminal.keys-z", file=POS_DATA), True),
+        ("q", say("terminal.keys-q"), True),
+    ]
+    for key, what, there in others:
+        if there:
+            table.add_row(Text(key, "bold"), render(what))
     return table

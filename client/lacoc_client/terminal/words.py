@@ -5,17 +5,12 @@ from lacoc_shared.command.log import log_clock
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Event, Frame, SeatFrame, Sheet
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S, SILENT_AFTER_S, Phase, SeatFlag
+from lacoc_shared.words import Phrase, render, say
 
-_PHASES = {
-    Phase.CREATED: "the court opens",
-    Phase.LOBBY: "waiting for the teams",
-    Phase.READY: "ready, waiting for the start",
-    Phase.COUNTDOWN: "starts in {countdown_s:.0f} s",
-    Phase.HALTED: "halted; the referee resumes it",
-    Phase.FINISHED: "over; the referee confirms the result",
-    Phase.OFFICIAL: "the result is official",
-    Phase.VOID: "the match is void",
-}
+
+def phase_name(phase: Phase) -> str:
+    """Name a phase: "PLAYING"."""
+    return render(say("terminal.phase", phase=phase.name.lower()))
 
 
 def clock(ticks: int) -> str:
@@ -43,9 +38,26 @@ def _shown_ticks(clock_ticks: int, sheet: Sheet) -> int:
 def phase_hint(frame: Frame, sheet: Sheet) -> str:
     """Say what a phase other than PLAYING means, and in the lobby who is missing."""
     if frame.phase == Phase.LOBBY:
-        return "; ".join(_missing(frame, sheet)) or _PHASES[Phase.LOBBY]
-    countdown_s = frame.countdown_beats * BEAT_S
-    return _PHASES.get(Phase(frame.phase), "").format(countdown_s=-(-countdown_s // 1))
+        missing = map(render, _missing(frame, sheet))
+        return "; ".join(missing) or render(say("hint.lobby"))
+    match frame.phase:
+        case Phase.CREATED:
+            hint = say("hint.created")
+        case Phase.READY:
+            hint = say("hint.ready")
+        case Phase.COUNTDOWN:
+            hint = say("hint.countdown", seconds=-(-frame.countdown_beats * BEAT_S // 1))
+        case Phase.HALTED:
+            hint = say("hint.halted")
+        case Phase.FINISHED:
+            hint = say("hint.finished")
+        case Phase.OFFICIAL:
+            hint = say("hint.official")
+        case Phase.VOID:
+            hint = say("hint.void")
+        case _:
+            return ""
+    return render(hint)
 
 
 def score(frame: Frame) -> str:
@@ -59,12 +71,17 @@ def teams(sheet: Sheet) -> list[str]:
 
 
 def standing_key(seat: SeatFrame, sheet: Sheet, index: int) -> str:
-    """Say what a robot does: "B key 2, posture 1/4"."""
-    text = f"{'AB'[seat.level]} key {seat.key}"
+    """What a robot does: "B key 2, posture 1/4"."""
     counts = sheet.seats[index].postures
-    if seat.level == Level.LOCOMOTION and seat.key < len(counts) and counts[seat.key] > 1:
-        text += f", posture {seat.posture + 1}/{counts[seat.key]}"
-    return text
+    several = seat.level == Level.LOCOMOTION and seat.key < len(counts) and counts[seat.key] > 1
+    key = say(
+        "terminal.standing-key",
+        level="AB"[seat.level],
+        key=seat.key,
+        posture=seat.posture + 1 if several else None,
+        of=counts[seat.key] if several else None,
+    )
+    return render(key)
 
 
 def place(frame: Frame, sheet: Sheet, seat: str) -> str:
@@ -74,33 +91,34 @@ def place(frame: Frame, sheet: Sheet, seat: str) -> str:
         return ""
     # Adding zero turns a rounded -0.00 into 0.00.
     x_m, y_m = (round(pose[name], 2) + 0.0 for name in ("x_m", "y_m"))
-    return f"  x {x_m:.2f} m  y {y_m:.2f} m  heading {pose['heading_deg']:.0f}°"
+    deg = round(pose["heading_deg"]) + 0.0
+    return render(say("terminal.place", x_m=x_m, y_m=y_m, heading_deg=deg))
 
 
 def seat_state(seat: SeatFrame) -> str:
     """Say why a seat's keys do nothing now, or that it is silent; "" if all is well."""
     flags = SeatFlag(seat.flags)
     if SeatFlag.FROZEN in flags:
-        return f"frozen by the referee for {_wait_s(seat)} s"
+        return render(say("terminal.frozen", seconds=_wait_s(seat)))
     if seat.locked_ticks:
-        return f"restarted: keys again in {_wait_s(seat)} s"
-    return "not heard: it stands" if SeatFlag.SILENT in flags else ""
+        return render(say("terminal.restarted", seconds=_wait_s(seat)))
+    return render(say("terminal.not-heard")) if SeatFlag.SILENT in flags else ""
 
 
 def link(silent_s: float) -> str:
     """Return a banner if no frame comes; "" while they do."""
     if silent_s < SILENT_AFTER_S:
         return ""
-    return f"No word from the court for {silent_s:.0f} s - trying again"
+    return render(say("terminal.no-word", seconds=silent_s))
 
 
-def _missing(frame: Frame, sheet: Sheet) -> list[str]:
+def _missing(frame: Frame, sheet: Sheet) -> list[Phrase]:
     missing = []
     for info, seat in zip(sheet.seats, frame.seats, strict=False):
         if not seat.flags & SeatFlag.JOINED:
-            missing.append(f"waiting for {info.id} to join")
+            missing.append(say("hint.not-joined", seat=info.id))
         elif not seat.flags & SeatFlag.READY:
-            missing.append(f"{info.team or info.id} has not said ready")
+            missing.append(say("hint.not-ready", team=info.team or info.id))
     return missing
 
 

@@ -17,7 +17,7 @@ from lacoc_shared.contest.file import Court
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import say
+from lacoc_shared.words import render, say
 
 app = typer.Typer(
     help="Write, check and show the contest file: courts, addresses, tokens, limits.",
@@ -99,8 +99,8 @@ def init(
     finally:
         os.umask(before)
     if kept is not None:
-        screen.note(f"{file} was there: it is {kept} now.")
-    screen.note(f"{file} written. Next: lacoc serve --contest {file}")
+        screen.note(say("command.kept", path=str(file), kept=str(kept)))
+    screen.note(say("contest.written", file=str(file)))
 
 
 @app.command()
@@ -110,8 +110,8 @@ def check(file: _FileToRead = _DEFAULT) -> None:
     Limits.of(contest.limits)
     for name, court in contest.courts.items():
         _check_court(name, court)
-    courts = ", ".join(f"{name} ({court.arena})" for name, court in contest.courts.items())
-    screen.show(f"{file} is right. Courts: {courts}.")
+    courts = [f"{name} ({court.arena})" for name, court in contest.courts.items()]
+    screen.show(say("contest.right", file=str(file), courts=courts))
 
 
 @app.command()
@@ -146,17 +146,15 @@ def keys(
 
     made = make_keys(file, host or (), renew)
     if made.kept is not None:
-        screen.note(f"The old keys are in {made.kept}; their invitations are no longer valid.")
+        screen.note(say("contest.old-keys", folder=str(made.kept)))
     elif made.handed_out_hold:
-        screen.note("The contest had keys: invitations that were handed out stay valid.")
-    screen.show(f"Keys of {', '.join(made.hosts)}, valid until {made.ends}: {made.folder.path}")
+        screen.note(say("contest.keys-hold"))
+    folder = str(made.folder.path)
+    screen.show(say("contest.keys", hosts=made.hosts, day=str(made.ends), folder=folder))
     for access in made.invitations:
         screen.show(f"  {made.folder.invitation(access.user)}")
     starts = [f"lacoc serve --contest {file} --court {name}" for name in contests.load(file).courts]
-    screen.note(
-        "Hand each person their invitation, and nothing else of that folder. Next: "
-        f"{', and '.join(starts)}"
-    )
+    screen.note(say("contest.hand-out", commands=starts))
 
 
 @app.command()
@@ -184,12 +182,14 @@ def show(
         return
     for name, by_person in lines.items():
         for person, line in by_person.items():
-            screen.show(Text(f"# court {name}, {person}", style="dim"))
-            screen.stdout.print(line, markup=False, soft_wrap=True)  # so that it can be copied
+            screen.show(
+                Text(render(say("contest.for-whom", court=name, person=person)), style="dim")
+            )
+            screen.stdout.print(line, markup=False, soft_wrap=True)  # to be copied whole
     if contest.keys:
-        screen.note(f"The invitations are in {contest.keys.invitations}.")
+        screen.note(say("contest.invitations", folder=str(contest.keys.invitations)))
     if any("/HOST:" in line for by_person in lines.values() for line in by_person.values()):
-        screen.note("HOST is the court's machine: give --host, or 'connect' in the contest file.")
+        screen.note(say("contest.host"))
 
 
 def _check_court(name: str, court: Court) -> None:

@@ -78,11 +78,11 @@ def demo_command(
             result = _follow(court, needed, quiet=show_live)
         screen.show(f"\n{result}")
         record = court.record(recordings)
-        screen.show(f"Record: {record}")
+        screen.show(say("demo.record", file=str(record)))
         if _lacoc("replay", "verify", str(record)).wait() != 0:
             raise UserError(say("demo.not-same"))
         if in_browser and sys.stdout.isatty():
-            screen.note("The page shows the result and the way to its replay; Ctrl-C ends it.")
+            screen.note(say("demo.page"))
             with suppress(KeyboardInterrupt):
                 threading.Event().wait()
 
@@ -97,7 +97,7 @@ def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> 
         raise UserError(say("demo.no-pages"))
     opened = json.loads(line)
     if opened["built"]:
-        screen.show(f"Watch at {opened['url']}/watch")
+        screen.show(say("demo.watch", url=f"{opened['url']}/watch"))
     return bool(opened["shown"])
 
 

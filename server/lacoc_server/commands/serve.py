@@ -95,10 +95,10 @@ def serve_command(
     left = None if fresh else unfinished(folder, name, loaded)
     levels = {*loaded.match.open_levels}
     if left is not None:
-        levels |= {*left.match.rules.open_levels}  # an unfinished match may need more levels
-        screen.note(f"Going on with match {left.match.setup.match_id}. --fresh opens a new one.")
+        levels |= {*left.match.rules.open_levels}  # the match that is on has the last word
+        screen.note(say("serve.goes-on", match=left.match.setup.match_id))
         if left.match.setup.settings != loaded.settings:
-            screen.note("It keeps the settings that it was opened with; the next has the new ones.")
+            screen.note(say("serve.old-settings"))
         if left.cut:
             screen.note(left.cut)
         if left.other_arithmetic:
@@ -180,10 +180,6 @@ def _check_seats(name: str, entry: contests.Court, arena: Arena) -> None:
         )
 
 
-def _names(seats: set[str]) -> str:
-    return ", ".join(sorted(seats)) or "no seat"
-
-
 def _open_doors(
     name: str,
     entry: contests.Court,
@@ -202,15 +198,15 @@ def _open_doors(
             opened["referee"] = entry.referee.token
         screen.print_json(opened)
         return
-    screen.show(f"Court {name} is open at {', '.join(locators)}: match {match_id}.")
+    screen.show(say("serve.open", court=name, at=locators, match=match_id))
     if metrics is not None:
-        screen.note(f"Metrics at {metrics}")
+        screen.note(say("command.metrics-at", where=metrics))
     if made_here:
         open_court = contests.Court(
             arena=entry.arena, listen=locators, seat=entry.seat, referee=entry.referee
         )
         for who, line in entrances.join_lines(name, open_court).items():
-            screen.show(f"  {who}: {line}")
+            screen.show(say("serve.enter", who=who, command=line))
 
 
 def _stop_on_signal() -> list[int]:

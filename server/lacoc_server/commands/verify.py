@@ -12,6 +12,7 @@ from lacoc_server.world import arithmetic
 from lacoc_shared.command import options, screen
 from lacoc_shared.record.files import record_paths
 from lacoc_shared.record.reader import Record
+from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer()
 
@@ -85,20 +86,24 @@ def _told(record: Record, verdict: Verdict) -> dict[str, Any]:
         "differs_at": verdict.differs_at,
         "distance": verdict.distance,
         "worst_section": verdict.worst,
-        "text": verdict.text,
+        "text": render(verdict.said),
         "cut": record.cut,
         "arithmetic": {"record": record.header.arithmetic, "here": dict(arithmetic.here())},
     }
 
 
 def _lines(record: Record, verdict: Verdict) -> list[str]:
-    counts = f"{verdict.beats} beats, {verdict.frames} frames, {verdict.sections} sections"
-    lines = [f"{verdict.text}: {counts}."]
+    lines: list[Phrase | str | None] = [
+        say(
+            "verdict.line",
+            verdict=verdict.said,
+            beats=verdict.beats,
+            frames=verdict.frames,
+            sections=verdict.sections,
+        )
+    ]
     if verdict.kind is not Kind.SAME:
         there = record.headers[-1].arithmetic
         lines.append(other_arithmetic(there, arithmetic.here()))
-    if record.lost:
-        lines.append(f"A part of the record is lost, and was not verified. {record.cut}")
-    else:
-        lines.append(record.cut)
-    return [line for line in lines if line]
+    lines.append(say("verdict.lost", cut=record.cut) if record.lost else record.cut)
+    return [render(line) for line in lines if line]

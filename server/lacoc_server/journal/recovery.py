@@ -16,7 +16,7 @@ from lacoc_shared.record.files import is_held
 from lacoc_shared.record.matches import MatchName, court_matches, is_over
 from lacoc_shared.record.reader import NoMatch, Record
 from lacoc_shared.seat import Phase
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 """Phases in which the court halts a match after a restart."""
@@ -40,11 +40,10 @@ class Unfinished:
     health: HealthVerdict | None
     """The verdict until the court was killed."""
     cut: str
-    """Where the record ends, as a sentence."""
-    other_arithmetic: str = ""
-    """Sentences on how far, and why, this machine's arithmetic differs from the recording
-    machine's; "" if it does not.
-    """
+    """Where its record ends, in words."""
+    other_arithmetic: Phrase | None = None
+    """That and how this machine computes otherwise than the one that recorded it; None if it does
+    not."""
 
     @property
     def inputs(self) -> list[Input]:
@@ -135,14 +134,11 @@ def _as_left(record: Record, resumed: Resumed, segment: int) -> Unfinished:
     )
 
 
-def _other_arithmetic(record: Record, distance: float | None) -> str:
+def _other_arithmetic(record: Record, distance: float | None) -> Phrase | None:
     if distance is None:
-        return ""
+        return None
     why = other_arithmetic(record.headers[-1].arithmetic, arithmetic.here())
-    return (
-        "The match goes on with another arithmetic, from its newest snapshot: what follows it in "
-        f"the record is {distance:.1e} m or rad from what this machine computes. {why}"
-    ).strip()
+    return say("resume.other-arithmetic", distance=f"{distance:.1e}", why=why)
 
 
 def _last_seq(record: Record, seat: int) -> int:

@@ -122,10 +122,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
         physics = world
     verdict = conclude(record.headers, judge.beats, judge.frames, [judge.difference], findings)
     if not verdict.same:
-        raise UserError(
-            f"{verdict.text.capitalize()}: the record is damaged, or this is not the software "
-            f"that wrote it ({_versions(record)})."
-        )
+        raise UserError(say("resume.differs", verdict=verdict.said, versions=_versions(record)))
     match.take_up(physics, World)
     return Resumed(match, None if verdict.kind is Kind.SAME else verdict.distance)
 

@@ -7,6 +7,7 @@ from enum import StrEnum
 from lacoc_server.journal.section import BOUND, Difference, Finding
 from lacoc_server.world import arithmetic
 from lacoc_shared.record.schema import Header
+from lacoc_shared.words import Phrase, say
 
 _ORDER = (
     "its frame is missing",
@@ -45,9 +46,9 @@ class Verdict:
     frames: int
     """Number of frames compared."""
     sections: int
-    """Number of sections simulated again."""
-    text: str
-    """The verdict as a sentence."""
+    """Sections that were simulated again."""
+    said: Phrase
+    """The verdict, for people."""
     differs_at: int | None = None
     """First beat that differs; None: no beat does."""
     distance: float = 0.0
@@ -93,25 +94,30 @@ def conclude(
     if found:
         first = min(difference.beat for difference in found)
         names = {name for difference in found if difference.beat == first for name in difference[1]}
-        text = f"beat {first} differs: {', '.join(sorted(names, key=_rank))}"
-        return Verdict(Kind.DIFFERS, beats, frames, len(findings), text, first)
+        ranked = sorted(names, key=_rank)
+        said = say("verdict.differs", beat=first, differs=ranked)
+        return Verdict(Kind.DIFFERS, beats, frames, len(findings), said, first)
     others = [finding for finding in findings if finding.bits is not None]
     if not others and other_model is None:
-        return Verdict(Kind.SAME, beats, frames, len(findings), "same, bit for bit")
+        return Verdict(Kind.SAME, beats, frames, len(findings), say("verdict.same"))
     worst = max(others, key=lambda finding: finding.distance, default=None)
-    text = "same match, other arithmetic"
+    said = say("verdict.other-arithmetic")
     if worst is not None:
-        text += (
-            f" (in {len(others)} of {len(findings)} sections; the farthest, beats "
-            f"{worst.first_beat} to {worst.last_beat}, is {worst.distance:.1e} m or rad from the "
-            f"record, at most {bound:g} may be)"
+        said = say(
+            "verdict.other-arithmetic-in",
+            others=len(others),
+            sections=len(findings),
+            first=worst.first_beat,
+            last=worst.last_beat,
+            distance=f"{worst.distance:.1e}",
+            bound=f"{bound:g}",
         )
     return Verdict(
         Kind.OTHER_ARITHMETIC,
         beats,
         frames,
         len(findings),
-        text,
+        said,
         distance=worst.distance if worst else 0.0,
         worst=(worst.first_beat, worst.last_beat) if worst else None,
     )
@@ -128,17 +134,17 @@ def may_differ(headers: Sequence[Header], finding: Finding) -> bool:
     )
 
 
-def other_arithmetic(record: Mapping[str, str], here: Mapping[str, str]) -> str:
-    """Describe how the arithmetic of two machines differs; "" if it does not."""
+def other_arithmetic(record: Mapping[str, str], here: Mapping[str, str]) -> Phrase | None:
+    """Say how two arithmetics differ; None if they do not."""
     if not record:
-        return "The record does not say with which arithmetic it was made."
+        return say("verdict.no-arithmetic")
     if arithmetic.same(record, here):
-        return ""
+        return None
     there, this = (
         ", ".join(of[name] for name in ("processor", "libc", "system") if name in of)
         for of in (record, here)
     )
-    return f"It was recorded on {there}; this is {this}. Their C libraries compute other last bits."
+    return say("verdict.machines", there=there, here=this)
 
 
 def _rank(name: str) -> tuple[int, str]:
