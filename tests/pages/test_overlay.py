@@ -169,7 +169,7 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
     show.sees(".opening", "Waiting for left to join")
     referee = playing(venue)
     referee.phase(Phase.FINISHED)
-    show.sees(".result .next", "the referee confirms")
+    show.sees(".result .next", "The referee is confirming")
     box = show.find(".result").bounding_box()
     assert box is not None
     assert box["x"] + box["width"] / 2 == pytest.approx(SOURCE["width"] / 2, abs=4)

@@ -361,7 +361,7 @@ def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
     expect(dialog).to_contain_text("Choose a reason first")
     expect(dialog.locator("[type=submit]")).to_be_disabled()
     dialog.locator("label.chip", has_text="other").click()
-    expect(dialog).to_contain_text("Say the reason in words")
+    expect(dialog).to_contain_text("Write the reason in words")
     expect(dialog.locator("[type=submit]")).to_be_disabled()
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
@@ -421,7 +421,7 @@ def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> Non
     )
     answer = page.locator(".answer")
     expect(answer).to_contain_text("No answer")
-    expect(answer).to_contain_text("look under Events whether it was done")
+    expect(answer).to_contain_text("Check under Events whether it was done")
     expect(page.locator(".toast.no")).to_have_count(0)
     expect(dialog).to_have_count(0)
     log_has(page, "Referee Kim: +3 for Ants. Reason: rule")
@@ -548,18 +548,18 @@ def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
     """Interface 8: one acts, the other watches until they take over."""
     first, second = at_the_desk(referee(), "Kim"), referee()
     enter(second, "Sato")
-    expect(second.locator(".acting.other")).to_contain_text("Kim acts as referee")
-    assert why(group(second, "Declare void")) == "Kim acts now: take over first"
+    expect(second.locator(".acting.other")).to_contain_text("Kim is the referee")
+    assert why(group(second, "Declare void")) == "Kim is the referee now: take over first"
     second.locator(".acting").get_by_role("button", name="Take over").click()
     second.get_by_role("dialog").get_by_role("button", name="Take over").click()
     expect(second.locator(".acting.mine")).to_be_visible()
-    expect(first.locator(".acting.other")).to_contain_text("Sato acts as referee")
+    expect(first.locator(".acting.other")).to_contain_text("Sato is the referee")
     group(second, "Declare void").click()
     confirm(second, "network")
     log_has(first, "Referee Sato: the match is void. Reason: network")
-    assert why(group(first, "Next match")) == "Sato acts now: take over first"
+    assert why(group(first, "Next match")) == "Sato is the referee now: take over first"
     second.close()  # nobody acts: no question is asked
-    expect(first.locator(".acting.other")).to_contain_text("Nobody acts")
+    expect(first.locator(".acting.other")).to_contain_text("There is no referee now")
     first.locator(".acting").get_by_role("button", name="Take over").click()
     expect(first.locator(".acting.mine")).to_be_visible()
 

@@ -339,7 +339,7 @@ def test_files_of_this_machine(
     show.drop(flags.with_name("a-discs.mcap"))
     show.has_scores(18, 18)
     show.page.get_by_role("button", name="Copy the address").click()
-    show.sees(".toast", "others need the file")
+    show.sees(".toast", "give others the file")
     show.page.get_by_role("link", name="Other recordings").click()
     show.sees(".recordings")
     show.find("input[type=file]").set_input_files(flags)
@@ -401,7 +401,7 @@ def test_the_parts_of_a_crashed_match_are_joined(
     assert numbers == [event.number for event in joined.events]
 
     show.drop(first)
-    show.sees(".notes", "stops at beat 699 without an end")
+    show.sees(".notes", "stops at beat 699: it was never closed")
     show.opened()
     assert show.ends[1] == Record.read([first]).last_beat
     show.drop(second)
@@ -493,7 +493,7 @@ def test_without_the_servers_list(
     page = open_page()
     page.route("**/recordings", lambda route: route.abort())
     show = Player(page, library, drawn=False)
-    show.sees(".chooser", "The server's list can't be had")
+    show.sees(".chooser", "The server's list can't be loaded")
     show.drop(flags)
     show.opened()
 
