@@ -66,7 +66,7 @@ def test_a_stranger_enters_a_court_with_keys(tmp_path: Path) -> None:
         with zenoh.open(config) as stranger:
             (error,) = ask(stranger, b"no join")
             assert error is not None
-            assert decode(error, Refusal).reason
+            assert decode(error, Refusal).why
         with pytest.raises(zenoh.ZError):
             zenoh.open(of_page(court.address, "main.left", "x" * 40, credentials.ca))
 
