@@ -141,7 +141,7 @@ ENGLISH = re.compile(r"[A-Za-z']{2,} [A-Za-z']{2,}")
 
 @pytest.fixture(scope="module")
 def node() -> str:
-    """A Node that reads TypeScript: the one of the group `web`."""
+    """Return a Node that reads TypeScript: that of the group `web`."""
     found = shutil.which("node", path=str(Path(sys.executable).parent)) or shutil.which("node")
     if found is None:
         pytest.skip("no Node: pip install --group web")
@@ -189,7 +189,7 @@ def stage_in(phase: Phase, arena: str = "othello") -> Stage:
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 @pytest.mark.parametrize("phase", list(P)[1:], ids=lambda phase: phase.name)
 def test_legality_of_every_decision_in_every_phase(node: str, phase: Phase, arena: str) -> None:
-    """Why a decision is not legal, as the referee's page shows it beside each button."""
+    """The referee's page shows beside each button why a decision is not legal."""
     check(node, stage_in(phase, arena).match.legality().values())
 
 
@@ -263,7 +263,7 @@ def heard(stage: Stage, decision: d.Decision, reason: str) -> Iterator[str]:
 
 
 def test_every_decision_and_its_refusals(node: str) -> None:
-    """What the court replies to each, and what stands in the log with and without a reason."""
+    """Return the court's reply to each decision, and its log entry with and without a reason."""
     texts = [
         text
         for phase, decision in decisions()

@@ -35,7 +35,7 @@ PIXELS = """async (png) => {
 
 
 def alphas(page: Page, blank: Page) -> dict[str, float]:
-    """How opaque the page is: at its edge, in its middle, and what share of it."""
+    """Return how opaque the page is: at its edge, in its middle, and over its area."""
     png = base64.b64encode(page.screenshot(omit_background=True)).decode()
     found: dict[str, float] = blank.evaluate(PIXELS, png)
     return found

@@ -122,7 +122,7 @@ def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: P
 
 
 def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
-    """What misses the frame of the files would make the browser leave the page."""
+    """A file dropped beside the file area does not make the browser leave the page."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     sample = sample_gait_files("hexapod")
@@ -147,7 +147,7 @@ def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
 
 
 def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """A folder can't be read: the page says so, and takes what was dropped with it."""
+    """The page says that a folder can't be read, and takes the files dropped with it."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     folder = tmp_path / "gaits"
@@ -216,7 +216,7 @@ def test_tabs_of_one_browser_have_their_own_files(
 
 @pytest.mark.long
 def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
-    """The tab's address may lead to another court later: there it sits down anew."""
+    """If the tab's address later leads to another court, the page joins there again."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     wish = {"court": "side", "seat": "left", "token": "x", "name": "Ants"}
@@ -263,7 +263,7 @@ def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
 @pytest.fixture
 def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
-    """Where the page of a `lacoc play` is that was told everything."""
+    """Return the address of a `lacoc play` that got all options."""
     court = venue.court()
     sample = sample_gait_files("hexapod").locomotion
     assert sample is not None
@@ -487,7 +487,7 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
 
 @pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None:
-    """Banner and grey keys while the link is lost; then all goes on by itself."""
+    """While the link is lost, a banner shows and keys are grey; then the page goes on."""
     court = venue.court("--seconds", "120")
     web = venue.web()
     page = sit(venue.url)
@@ -543,7 +543,7 @@ def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
 
 
 def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: Sit) -> None:
-    """A stranger can tell who won, and what comes next; the seat stays."""
+    """The page shows who won and what comes next; the seat stays."""
     page = seated(venue, sit, "--seconds", "1")
     other = playing(venue, page)
     page.sees(".result h1", "A draw")
@@ -658,7 +658,7 @@ def test_pos_data_is_of_the_seat_that_is_held(venue: Venue, sit: Sit, tmp_path: 
 
 
 def stood_on(page: PageClient, beats: int) -> None:
-    """Wait until the court has gone on for so long."""
+    """Wait until the court has gone on for a time."""
     page.wait(lambda: page.frame)
     assert page.frame is not None
     until = page.frame.beat + beats
@@ -682,7 +682,7 @@ def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
 
 @pytest.mark.long
 def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
-    """Practice may run all day: the page keeps so many rows, and says where they begin."""
+    """In a long practice the page keeps a limited number of rows, and says where they begin."""
     frames = list(walk(random.Random(0), (12, 18)))
     whole = PosData(1, (12, 18))
     for frame in frames:

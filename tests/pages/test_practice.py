@@ -56,7 +56,7 @@ def practise_in(tmp_path: Path, built_pages: Path, sit: Sit) -> Iterator[Practis
 
 
 def lessons(page: Contestant, *keys: int) -> None:
-    """Press keys when they are shown as the next ones, each when the one before stands."""
+    """Press each key when the page shows it as the next one."""
     for key in keys:
         page.sees(".steps li.now", str(key))
         page.press(str(key))

@@ -1,4 +1,4 @@
-"""/replay: recordings in the browser, held against what Python reads in them."""
+"""/replay: recordings in the browser, compared with what Python reads."""
 
 from bisect import bisect_right
 from collections.abc import Iterator
@@ -272,7 +272,7 @@ def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> N
 def test_the_servers_list_and_the_address(
     library: Venue, open_page: OpenPage, console: Any
 ) -> None:
-    """A recording is a link; a moment of it can be given to others; the way back is Back."""
+    """A recording has a link, and so has a moment of it; Back returns to the list."""
     console.expect("404")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     expect(show.find(".recordings b")).to_have_count(2, timeout=WAIT_MS)
@@ -414,7 +414,7 @@ def test_the_parts_of_a_crashed_match_are_joined(
 def test_damage(
     library: Venue, record: Record, flags: Path, open_page: OpenPage, tmp_path: Path
 ) -> None:
-    """What can be had is played, and the page says what is wrong."""
+    """The readable part is played, and the page says what is wrong."""
     whole = write_segments(record, tmp_path / "parts")[1]
     data = bytearray(whole.read_bytes())
     half = len(data) // 2
