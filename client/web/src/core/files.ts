@@ -1,4 +1,4 @@
-/** A contestant's files: told apart by what is in them, and kept for this tab. */
+/** A contestant's files: recognised by their content, and kept for this tab. */
 
 import { computed } from "@preact/signals";
 import { Refused } from "./connection";
@@ -10,7 +10,7 @@ import type { SentFile } from "./wire";
 export const SLOTS = ["robot", "postures", "locomotion"] as const;
 export type Slot = (typeof SLOTS)[number];
 
-/** Of all files together: a join is one message, and those are at most 64 KiB long. */
+/** Limit for all files together: a join is one message of at most 64 KiB. */
 export const MOST_BYTES = 62 * 1024;
 
 /** A key of level B has no more postures (docs/rules.md 2). */
@@ -63,7 +63,7 @@ export function chosenFiles(): Record<Slot, SentFile | null> {
   return { robot: sent("robot"), postures: sent("postures"), locomotion: sent("locomotion") };
 }
 
-/** Refuse files that are too large together: so long a message would only cost the connection. */
+/** Refuse files that are too large together: the gateway would close the connection. */
 export function checkSizes(files: readonly (SentFile | null)[]): void {
   const bytes = files.reduce((sum, file) => sum + (file?.data.length ?? 0), 0);
   if (bytes <= MOST_BYTES) return;
