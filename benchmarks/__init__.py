@@ -1,1 +1,1 @@
-"""What the software costs, as ratios against a bare baseline in the same run."""
+"""Benchmarks: the cost of the software as ratios against a bare baseline in the same run."""

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.courts`: many courts at once on one machine; who is late?
+"""`python -m benchmarks.courts`: many courts on one machine, and how many beats are late.
 
 Each court is `lacoc serve` in PLAYING, with both seats held and keys pressed by one process
 for all. The same time a bare sleeper, which wakes 50 times a second and does nothing, shows how

@@ -75,7 +75,7 @@ def flood(rounds: int) -> dict[str, Any]:
 
 
 class _Plan:
-    """Quiet and flooded rounds by turns, told by the court's own loop."""
+    """Quiet and flooded rounds in turns, counted by the court's own loop."""
 
     def __init__(self, court: MeasuredCourt, flooder: "_Other", rounds: int) -> None:
         self._court, self._flooder = court, flooder
@@ -135,7 +135,7 @@ def _controller(words: list[str]) -> tuple[Any, Controller]:
 
 
 def _commands() -> Callable[[], str]:
-    """Gives the newest word that came through the standard input, without waiting."""
+    """Returns the newest word from the standard input, without waiting."""
     os.set_blocking(sys.stdin.fileno(), False)
     words: list[str] = ["quiet"]
 
@@ -148,7 +148,7 @@ def _commands() -> Callable[[], str]:
 
 
 def flooder(words: list[str]) -> dict[str, Any]:
-    """Join a seat; when told, send new sealed commands at the rate, and say how many."""
+    """Join a seat; on request send new sealed commands at the rate, and report their number."""
     session, controller = _controller(words)
     joined = controller._joined
     assert joined is not None

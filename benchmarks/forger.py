@@ -186,7 +186,7 @@ def _input_moved(copy: _Copy) -> None:
 
 
 def _angle(copy: _Copy) -> None:
-    """Change an angle of a posture that a contestant used, so that servos are told otherwise."""
+    """Change an angle of a posture that a contestant used, so that servos get another command."""
     beat, at = copy.input(JoinSeat)
     join = copy.record.inputs[beat][at]
     assert isinstance(join, JoinSeat)
@@ -221,7 +221,7 @@ def _angle(copy: _Copy) -> None:
 
 
 def _commanded(record: Record) -> tuple[Any, ...]:
-    """What a record's servos are told, up to the first beat that the match has otherwise."""
+    """Return the commanded angles of a record, up to the first beat where the match differs."""
     try:
         judge = Judge(record, None, {})
         steps = [step for section in judge.sections() for step in section.steps]

@@ -324,7 +324,7 @@ def _mails(take: Callable[[], Any]) -> Iterator[Any]:
 def _controls(
     sessions: dict[str, Session], honest: list[_Honest], people: dict[str, Access]
 ) -> set[tuple[int, int, int]]:
-    """The same commands and decisions, from those who may; returns the commands."""
+    """Send the same commands and decisions with the right credentials; returns the commands."""
     door = sessions["left"].publisher(KEYS.command("left"))
     first = honest[0].pressed[-1][0] + 1
     for seq in range(first, first + CONTROLS):

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.kills`: a court is killed at random moments of all phases, and goes on.
+"""`python -m benchmarks.kills`: kill a court at random moments of all phases; it must go on.
 
 Each match of a real court with two controllers and a referee is killed (SIGKILL) once in every
 phase or oftener, at a random moment, and started again on the same records. Counted: in which
@@ -50,7 +50,7 @@ WAIT_S = 30.0
 
 @dataclass
 class Figures:
-    """What is counted over all kills."""
+    """Counts over all kills."""
 
     kills: int = 0
     back: Counter[str] = field(default_factory=Counter)

@@ -73,7 +73,7 @@ class Candidate(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What became of a candidate."""
+    """The result for a candidate."""
 
     candidate: Candidate
     is_robot: bool
@@ -196,7 +196,7 @@ def search(robots: int, steps: int, jobs: int, seed: int = 0) -> Iterator[Found]
 
 
 def main() -> None:
-    """Search, and say what was found; ends with 1 if there was a leap."""
+    """Search and report; exits with 1 if a robot leapt."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.leaps", description=__doc__)
     parser.add_argument("--robots", type=int, default=2000, help="robots at random")
     parser.add_argument("--steps", type=int, default=2000, help="changes of the best")

@@ -51,11 +51,11 @@ class MeasuredCourt(Court):
 
     @property
     def phase(self) -> Phase:
-        """Of the match that is on."""
+        """Return the phase of the current match."""
         return self._journal.match.phase
 
     def told(self) -> dict[str, Any]:
-        """The beats since this was last asked."""
+        """Return the beats since the last call."""
         told = {
             "wall_s": self.wall_s,
             "slow_beats": self._pace.slow_beats,

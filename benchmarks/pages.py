@@ -136,7 +136,7 @@ def _drawing(browser: Browser, address: str, arena: str) -> dict[str, float]:
 
 
 def _loading(browser: Browser) -> dict[str, int]:
-    """What /play asks for until the scene can be drawn, packed as a web server would."""
+    """Return the files that /play loads before it can draw, compressed as a web server would."""
     loaded: dict[str, bytes] = {}
 
     def note(response: Response) -> None:

@@ -1,4 +1,4 @@
-"""Both seats of many courts, held by one process as cheaply as the project's controller allows.
+"""One process that holds both seats of many courts, at the least cost of our controller.
 
 The first line on standard input names the courts. All are joined and started; then each line
 is answered with the health of each court and the keys that were pressed and applied there.
@@ -57,7 +57,7 @@ class _Player:
                 self.pressed += 1
 
     def told(self) -> dict[str, Any]:
-        """What the court said last of itself."""
+        """Return the newest health message of the court."""
         view = self._controllers[0].view
         assert view.health is not None
         assert view.frame is not None

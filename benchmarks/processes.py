@@ -1,4 +1,4 @@
-"""What is measured runs as it does at a venue: each part a process of its own."""
+"""Processes under measurement: each part runs separately, as at a venue."""
 
 import json
 import os
@@ -19,7 +19,7 @@ _END_S = 30
 
 @contextmanager
 def started(module: str, *words: str, quiet: bool = False) -> Iterator[subprocess.Popen[str]]:
-    """A process that is asked to end when it is no longer needed.
+    """Start a process; ask it to end when it is no longer needed.
 
     Args:
         module: runs as `python -m`.
@@ -67,7 +67,7 @@ def hush(process: subprocess.Popen[str]) -> None:
 
 
 def ask(process: subprocess.Popen[str], word: str) -> Any:
-    """Say a word to a process, and wait for what it says to it."""
+    """Send a word to a process and wait for its answer."""
     assert process.stdin is not None
     process.stdin.write(f"{word}\n")
     process.stdin.flush()

@@ -1,4 +1,4 @@
-"""What a record proves: honest matches under two arithmetics, forgeries, and how long it takes.
+"""What a record proves: honest matches under two arithmetics, forgeries, and the time it takes.
 
 python -m benchmarks.proof honest --matches 40 --seconds 180
 python -m benchmarks.proof forged --forgeries 1000
@@ -52,7 +52,7 @@ class Prover:
         self._findings: dict[bytes, Finding] = {}
 
     def verdict(self, record: Record) -> Verdict | str:
-        """Verify a record; returns the verdict, or why no match can be made of it."""
+        """Verify a record; returns the verdict, or why it can't be verified."""
         try:
             judge = Judge(record, None, dict(record.snapshots))
             findings = [self._simulate(section) for section in judge.sections()]
@@ -75,7 +75,7 @@ class Prover:
 
 @dataclass(frozen=True)
 class Forged:
-    """What became of forgeries."""
+    """Counts of forgeries by their result."""
 
     tried: int
     passed: list[str]

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.random_kills`: whatever runs is killed at any moment, and all goes on.
+"""`python -m benchmarks.random_kills`: kill any process at any moment; all must go on.
 
 A court, a gateway, two bots and a referee, each a process of its own over plain TCP, as a
 contest runs them. Every second or so one of them is killed (SIGKILL) and started again at once.
@@ -63,7 +63,7 @@ def main() -> None:
 def run(
     folder: Path, seconds: float, chance: random.Random, cores: Path | None = None
 ) -> dict[str, object]:
-    """Kill for so long, and verify what was recorded.
+    """Kill processes for a time, and verify the records.
 
     Args:
         folder: an empty folder.

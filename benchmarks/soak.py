@@ -50,7 +50,7 @@ _SILENT_S = 60.0
 
 
 class Look(NamedTuple):
-    """What a process holds."""
+    """The resources of a process."""
 
     at_s: float
     memory_bytes: int
@@ -64,7 +64,7 @@ class Look(NamedTuple):
 
 @dataclass
 class Figures:
-    """What came of a run."""
+    """The results of a run."""
 
     minutes: float
     matches: int
@@ -91,7 +91,7 @@ class Figures:
         return slope * (looks[-1].at_s - looks[0].at_s) / first
 
     def left_over(self, process: str) -> dict[str, int]:
-        """What a process has more at the end than when it was warm."""
+        """Return the resources that a process has gained since it was warm."""
         warm = [look for look in self.looks[process] if look.at_s <= self.warm_s]
         last = self.looks[process][-1]
         before = {name: max(getattr(look, name) for look in warm) for name in Look._fields[2:]}
@@ -100,7 +100,7 @@ class Figures:
 
     @property
     def held(self) -> bool:
-        """Whether nothing grew, was left over, or differs.
+        """Return whether nothing grew, was left over, or differs.
 
         Of the visitors' processes only what is left over counts: each stands for thousands of
         programs that would have ended.
@@ -264,7 +264,7 @@ class _Run:
             self._looks[name].append(_look(process, at_s))
 
     def _let_go(self) -> None:
-        """Give what belongs to those who have gone its time to end."""
+        """Wait until the threads and sockets of visitors who have left have ended."""
         end_s = time.monotonic() + _LEFT_S
         while time.monotonic() < end_s:
             self._view.poll()

@@ -125,7 +125,7 @@ def test_practice_match() -> None:
 
 @pytest.mark.parametrize("name", ["othello", "flag-strike"])
 def test_seats_of_the_games(name: str) -> None:
-    """Rules 4: left and right, blue and orange, told apart by pattern too."""
+    """Rules 4: left is blue and right is orange; their patterns differ too."""
     seats = arena.load(name).seats
     assert [(seat.id, seat.colour, seat.pattern) for seat in seats] == [
         ("left", "#0072b2", "plain"),
@@ -292,7 +292,7 @@ def test_unknown_arena() -> None:
 
 
 def test_unreadable_file(tmp_path: Path) -> None:
-    """A file that is no TOML: the message names it."""
+    """When a file is not valid TOML, the message names it."""
     for name in ("rules.py", "field.py", "bots.py"):
         (tmp_path / name).touch()
     (tmp_path / "arena.toml").write_text("title =")

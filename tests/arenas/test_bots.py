@@ -354,7 +354,7 @@ def test_bots_are_pure(name: str) -> None:
 
 
 def test_planner_leaves_the_corner_that_would_lose() -> None:
-    """Workshop 5-2 rule 4: all four corners end the match, so who is behind leaves the last."""
+    """Workshop 5-2 rule 4: four corners end the match, so a bot that is behind leaves the last."""
     ground = arena.load("flag-strike")
     sheet = make_sheet(ground)
     game = ground.game

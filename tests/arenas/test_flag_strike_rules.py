@@ -135,7 +135,7 @@ def test_corner_edge(x_m: float, inside: bool) -> None:
 
 
 def test_corner_is_nowhere_for_no_number() -> None:
-    """Rules 6 corners: a position that is no number is in no corner."""
+    """Rules 6 corners: a position that is not a number is in no corner."""
     assert GAME.corner_at(math.nan, 0.8) == NO_CORNER
 
 
@@ -164,7 +164,7 @@ def test_own_corner_is_no_event() -> None:
 
 
 def test_both_come_in_one_tick() -> None:
-    """Rules 6 corners: both in one tick: it stays, whoever holds it."""
+    """Rules 6 corners: if both robots come in within one tick, the corner stays as it was."""
     for owner in (NEUTRAL, LEFT, RIGHT):
         before = GAME.set(START, 1, owner)
         after, events = tick(before, view(CORNERS[1]), view(CORNERS[1]))
@@ -198,7 +198,7 @@ def test_start_inside_a_corner_takes_nothing() -> None:
 
 
 def test_corner_points_are_a_setting() -> None:
-    """Rules 6 corners: it counts 5 points while held, or what the file says."""
+    """Rules 6 corners: a held corner counts 5 points, or the number in the arena file."""
     game = arena.load("flag-strike", {"game": {"corner_points": 7}}).game
     after, events = tick(game.start(), view(CORNERS[0]), game=game)
     assert game.score(after) == (7, 0)

@@ -211,7 +211,7 @@ def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
     ],
 )
 def test_between_and_outside_the_discs(x_m: float, y_m: float) -> None:
-    """Rules 5 entering: between two discs, outside the board and nowhere at all is no cell."""
+    """Rules 5 entering: a place between two discs, outside the board or nowhere is no cell."""
     assert GAME.cell_at(x_m, y_m) == NO_CELL
 
 
@@ -233,7 +233,7 @@ def test_entered_cell_becomes_the_last_whatever_happens() -> None:
 
 
 def test_nothing_happens_on_the_last_cell() -> None:
-    """Rules 5 entering: leaving a disc for a gap and coming back is no entering."""
+    """Rules 5 entering: leaving a disc for a gap and coming back does not count as entering."""
     before = state(board("......", "......", "......", "R....."), "c0r2")
     for where in (GAP, "c0r2"):
         after, events = tick(before, where, "c5r0")

@@ -119,7 +119,7 @@ def test_the_guide_names_all_that_a_game_has() -> None:
 
 
 def test_the_key_of_the_guide_s_bot_is_one(race: Path) -> None:
-    """The second bot on the page, as it stands there."""
+    """The second bot on the page works exactly as printed."""
     (turner,) = re.findall(r"```python\n(from lacoc_arenas.bot.*?)^```", GUIDE, re.M | re.S)
     bots = race / "bots.py"
     bots.write_text(turner + "\nBOTS = {'turner': turner}\n")
@@ -206,7 +206,7 @@ def test_a_wrong_arena_is_told_in_one_sentence(race: Path, case: str) -> None:
     ],
 )
 def test_a_wrong_answer_in_a_match_is_told(race: Path, was: str, now: str, says: str) -> None:
-    """What only a tick shows is told in that tick."""
+    """A mistake that only a tick can show is reported in that tick."""
     text = (race / "rules.py").read_text()
     assert text.count(was) == 1
     (race / "rules.py").write_text(text.replace(was, now))
@@ -215,7 +215,7 @@ def test_a_wrong_answer_in_a_match_is_told(race: Path, was: str, now: str, says:
 
 
 def test_a_referee_s_wrong_state_stays_a_value_error(race: Path) -> None:
-    """The rules refuse it in words; it is no mistake of the arena."""
+    """The rules refuse it with a sentence; it is not reported as a mistake of the arena."""
     game = arena.load(str(race)).game
     with pytest.raises(NoSuchState, match="neutral, left or right"):
         game.set(game.start(), 0, 3)

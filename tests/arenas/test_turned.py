@@ -21,7 +21,7 @@ SWAPPED = {NEUTRAL: NEUTRAL, LEFT: RIGHT, RIGHT: LEFT, 3: 3}
 
 
 def opposites(game: AnyGame) -> list[int]:
-    """For each marker the one that stands where it is when the field is turned."""
+    """Return for each marker the one at its place after the field is turned."""
     at = {(marker.x_m, marker.y_m): index for index, marker in enumerate(game.markers)}
     return [at[-marker.x_m, -marker.y_m] for marker in game.markers]
 

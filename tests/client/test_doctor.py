@@ -24,7 +24,7 @@ from lacoc_shared.words import render, say
 
 @pytest.fixture
 def taken() -> Iterator[int]:
-    """A port at which something listens that is no court and no gateway."""
+    """Yield a port with a listener that is neither a court nor a gateway."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         listener.listen()
@@ -41,7 +41,7 @@ def free() -> int:
 def look(
     capsys: pytest.CaptureFixture[str], folder: Path, *words: str
 ) -> dict[str, dict[str, Any]]:
-    """What it finds, by what it is about; the exit code says whether there is a problem."""
+    """Return the findings by subject; the exit code says whether there is a problem."""
     always = ("--json", "--seconds", "0.4", "--recordings", str(folder))
     with pytest.raises(SystemExit) as ended:
         cli.main(["doctor", *always, *words])
@@ -81,7 +81,7 @@ def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
 
 
 def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
-    """What a Python finds that has other packages installed before this one's."""
+    """Return the findings of a Python that has other packages before this one's."""
     for name, text in metadata.items():
         (folder / f"{name}.dist-info").mkdir()
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
@@ -163,7 +163,7 @@ def test_a_file_where_the_records_should_go(
 
 
 def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """A court runs there, but not the one of the contest file: that one could not start."""
+    """Another court than the contest file's has the port, so the contest's court can't start."""
     with CourtStub() as court:
         port = int(court.address.rpartition(":")[2])
         text = Path(contest(tmp_path, port)).read_text().replace("court.main", "court.hall")
@@ -177,7 +177,7 @@ def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path:
 
 
 def test_a_court_that_stands_still() -> None:
-    """It sends its last frame 50 times a second while its disk is full: that is no match."""
+    """A court with a full disk repeats its last frame; doctor sees that it stands still."""
     with CourtStub() as court:
         court.trouble = say("plain.text", text="The record m-1 can't be written.")
         access = Access(court="main", connect=court.address)
@@ -189,7 +189,7 @@ def test_a_court_that_stands_still() -> None:
 
 
 def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Each has a link to look at; one that is not there hides nothing of the others."""
+    """Each court's link is checked; a missing court does not hide the others."""
     with CourtStub() as court:
         text = Path(contest(tmp_path, int(court.address.rpartition(":")[2]))).read_text()
         port = free()
@@ -232,7 +232,7 @@ def test_the_link_to_a_court(
 
 
 def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> None:
-    """A port that a court with keys has is no problem to the organiser who has its keys."""
+    """An organiser with the keys sees no problem when a court with keys has the port."""
     with KeyedCourt(keyed_file(tmp_path)) as court:
         port = int(court.address.rpartition(":")[2])
         credentials = court.people["spectators"].credentials

@@ -70,7 +70,7 @@ def test_time_stands_still_while_the_match_is_halted() -> None:
 
 @pytest.mark.parametrize("line", ["hello", "-1.5 2", "nan 2", "1e999.0 3", "2 up down jump", "²"])
 def test_a_wrong_line_is_left_out_and_named(line: str) -> None:
-    """What is wrong is said with the number of the line; the rest is played."""
+    """The message names the number of the wrong line; the rest is played."""
     script = script_of("1")
 
     assert script.add(line).startswith("Line 2 is left out: ")

@@ -94,7 +94,7 @@ def test_the_referee_has_every_decision(
 def test_ready_for_a_contestant_who_cannot(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Rules 4: `ready` for a seat; status shows the links and what is legal, log what was."""
+    """Rules 4: `ready` works for a seat; status shows links and legal decisions, log the events."""
     court = open_court("--arena", "othello")
     referee = Referee(court, capsys)
     person = court.start(

@@ -83,7 +83,7 @@ def test_nothing_listens_unasked(open_court: OpenCourt) -> None:
 
 
 def test_a_port_that_is_taken(capsys: pytest.CaptureFixture[str]) -> None:
-    """One sentence and exit code 2; nothing of the court is opened."""
+    """The command prints one sentence and exits with 2; it opens no court."""
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()

@@ -108,7 +108,7 @@ def test_a_frame_in_words(heading_deg: float) -> None:
 
 @pytest.mark.parametrize("changes", [{"poses": b""}, {"scene": bytes(8)}, {"markers": b""}])
 def test_a_frame_of_another_scene_is_put_into_words_too(changes: dict[str, bytes]) -> None:
-    """Before READY there are no robots; between two scenes sheet and frame may not fit."""
+    """The text works without robots before READY, and while sheet and frame do not match."""
     sheet = make_sheet("othello")
     poses = pose(0.0, 0.0, 0.0) * 2
     plain = frame_dict(make_frame(sheet, **({"poses": poses} | changes)), sheet)
@@ -189,7 +189,7 @@ def test_robots_are_arrows_with_their_letters() -> None:
 
 
 def test_flags_show_their_points_and_then_who_struck_them() -> None:
-    """Markers too small for a shape are told by a character."""
+    """A marker too small for a shape is shown by a character."""
     sheet = make_sheet("flag-strike")
     field = Field(0.0, 0.0, 1.0, 1.0)
     standing = "\n".join(draw(make_frame(sheet), sheet, field, 24))

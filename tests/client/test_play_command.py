@@ -133,7 +133,7 @@ def test_the_terminal_is_as_before_however_one_leaves(
 def test_a_court_that_is_gone_is_said_and_comes_back(
     started: tuple[CourtProcess, Terminal],
 ) -> None:
-    """A red banner while no frame comes; the match goes on after it."""
+    """A red banner shows while no frame comes; then the match goes on."""
     court, terminal = started
     watch = court.start("watch", "--json", "--hz", "0", *court.where())
     assert watch.stdout is not None
@@ -260,7 +260,7 @@ def test_a_wrong_start_is_one_clear_message(
     changes: dict[str, str],
     expected: str,
 ) -> None:
-    """What is wrong, exit code 2, nothing else."""
+    """The command prints only what is wrong, and exits with 2."""
     code, said = piped(tmp_path, "", *command, *_where(quiet_court, changes))
 
     assert code == 2, said

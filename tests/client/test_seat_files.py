@@ -67,7 +67,7 @@ def test_files_saved_in_one_moment_go_by_their_names(tmp_path: Path) -> None:
 
 
 def test_sequences_that_are_older_than_their_postures_are_told(tmp_path: Path) -> None:
-    """Workshop 4-1: who edits Loco-data.xlsx and plays level B hears that nothing changed there."""
+    """Workshop 4-1: a player who edits Loco-data.xlsx is told that level B has not changed."""
     table = write(tmp_path / "Loco-data.xlsx", b"", 1000)
     sequences = write(tmp_path / "LocoTra-data.txt", b"", 1000)
     assert remarks(tmp_path, [table, sequences]) == []
@@ -99,7 +99,7 @@ def test_a_robot_brings_the_gait_beside_it() -> None:
 
 
 def test_each_file_goes_to_its_level(tmp_path: Path) -> None:
-    """What a file is for is seen in it, not in its name; text goes as it is."""
+    """The content of a file decides its level, not its name; text is sent unchanged."""
     first = write(tmp_path / "b.txt", LOCOMOTION)
     second = write(tmp_path / "a.txt", POSTURES)
 
@@ -187,7 +187,7 @@ def test_level_b_is_never_made_against_what_there_is() -> None:
 
 
 def test_files_that_are_saved_again_are_read_again(tmp_path: Path) -> None:
-    """A student who edits a gait beside practice sees it there; a wrong one costs nothing."""
+    """A gait edited during practice shows up there; a wrong one changes nothing."""
     write(tmp_path / "LocoTra-data.txt", LOCOMOTION)
     own = OwnFiles(folder=tmp_path)
     assert not own.look()

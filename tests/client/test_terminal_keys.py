@@ -1,4 +1,4 @@
-"""What a terminal sends, as names of keys."""
+"""The bytes that a terminal sends become names of keys."""
 
 import pytest
 from hypothesis import given

@@ -26,7 +26,7 @@ def coming(*errors: UserError) -> Callable[[], str]:
 
 
 def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
-    """Each new reason is told; the same one is told once."""
+    """Each new reason is printed once."""
     errors = (NotConnected("No link."), NotConnected("No link."), NoCourt("None."), NotNow("Soon."))
     assert Patience(60.0).until(coming(*errors)) == "there"
     assert capsys.readouterr().err.splitlines() == [

@@ -21,7 +21,7 @@ _MEMORY_BYTES = 4 << 30
 
 
 def main() -> None:
-    """Feed every target and say what became of it."""
+    """Feed every target and print the results."""
     parser = argparse.ArgumentParser(prog="python tests/fuzz", description=__doc__)
     parser.add_argument("--packets", type=int, default=1_000_000)
     parser.add_argument("--files", type=int, default=100_000)

@@ -21,7 +21,7 @@ class Hang(BaseException):
 
 @dataclass
 class Figures:
-    """What became of a target's inputs."""
+    """Counts of a target's inputs by their result."""
 
     name: str
     inputs: int = 0
@@ -40,7 +40,7 @@ class Figures:
 
 
 def feed(target: Target, count: int, seed: int) -> Iterator[Figures]:
-    """Give a target so many inputs.
+    """Feed a number of inputs to a target.
 
     Yields:
         The figures so far, now and then, and at the end.

@@ -51,7 +51,7 @@ _BEATS_A_MATCH = 1500
 
 
 class StateChanged(AssertionError):
-    """Something had an effect that nobody with a right to it had sent."""
+    """A message without the right to it had an effect."""
 
 
 class _Request:

@@ -52,7 +52,7 @@ def write(folder: str, name: str, data: bytes) -> None:
 
 
 def write_packets() -> None:
-    """What arrives at a court, at a client, at a gateway."""
+    """Write packets that arrive at a court, a client and a gateway."""
     made = {
         "commands": doors.command_seeds(),
         "requests": doors.request_seeds(),
@@ -194,7 +194,7 @@ def _play(journal: Journal) -> None:
 
 
 def write_found() -> None:
-    """What was found, and bombs that were tried."""
+    """Write inputs that once caused a failure, and decompression bombs."""
     write("robot", "found-long-hex-in-list", b"name = [0x" + b"f" * 5000 + b"]\n")
     write("robot", "found-deep-in-list", b"name = [{" + b"a." * 3000 + b"a = 1}]\n")
     write("robot", "found-dotted-key", b"a." * 15000 + b"a = 1\n")

@@ -1,4 +1,4 @@
-"""What eats bytes from outside, each as a function that lets only the documented errors pass."""
+"""The code that reads bytes from outside, as functions that pass only documented errors."""
 
 import os
 import tempfile

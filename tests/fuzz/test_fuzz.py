@@ -58,7 +58,7 @@ def test_good_packets_get_in() -> None:
 
 
 def test_a_change_of_state_would_be_seen() -> None:
-    """The watch over the doors is awake: a command that nobody had sealed would be found out."""
+    """The check of the doors works: it detects a command that takes effect without a seal."""
     court = Doors()
     court.beat()
     forged = command(0, 99, 1, 9)  # whoever has the secret can, but neither seat has sent it

@@ -82,7 +82,7 @@ def test_check_shows_right_files_beside_wrong_ones(lacoc, folder):
 
 @pytest.mark.parametrize("kind", ["Loco-data.txt", "Loco-data.xlsx"])
 def test_check_notes_labels_that_are_exchanged(lacoc, tmp_path, workshop, kind):
-    """Rules 2: no refusal, the legend may be absent; but legs called otherwise are told."""
+    """Rules 2: the legend may be absent, but a note names legs with other labels."""
     exchanged = ("L,F", "R,C", "R,B", "L,B", "L,C", "R,F")
     write = write_workbook if kind.endswith("xlsx") else write_gait
     (tmp_path / kind).write_bytes(write(workshop, exchanged))
@@ -160,7 +160,7 @@ KINDS = ("Loco-data.txt", "LocoTra-data.txt", "Loco-data.xlsx")
 @pytest.mark.parametrize("source", KINDS)
 @pytest.mark.parametrize("target", KINDS)
 def test_any_of_the_three_becomes_any_other(lacoc, folder, workshop, source, target):
-    """`convert A B`: the kind of B is told by its name; the sample's keys by default."""
+    """`convert A B`: the name of B decides its kind; keys are the sample's by default."""
     (folder / "out").mkdir()
     written = folder / "out" / target
     code, out, err = lacoc("gait", "convert", folder / source, written)

@@ -118,7 +118,7 @@ def test_postures_to_locomotion_and_back(table):
 
 @given(st.one_of(st.binary(), st.text().map(str.encode), st.text("01 \t\n,.-4Key\"'\0NumofPsure")))
 def test_any_bytes_are_read_or_refused(data):
-    """Rules 2: bytes that are no gait raise FileRefused with a mistake, and nothing else."""
+    """Rules 2: bytes that are not a gait raise only FileRefused, with a mistake."""
     assert mistakes_of(read_gait, data if isinstance(data, bytes) else data.encode()) != []
 
 
@@ -150,7 +150,7 @@ def test_a_damaged_text_is_read_or_refused(table, encoding, edits):
 @settings(patient)
 @given(st.binary(max_size=200), st.sampled_from([b"", b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1"]))
 def test_any_bytes_are_no_workbook(data, start):
-    """Rules 2: bytes that are no workbook raise FileRefused, and nothing else."""
+    """Rules 2: bytes that are not a workbook raise only FileRefused."""
     with pytest.raises(FileRefused):
         read_workbook(start + data, "x")
 

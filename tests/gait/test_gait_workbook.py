@@ -170,7 +170,7 @@ def test_sequences_are_not_for_workbooks():
 
 
 def test_a_workbook_is_not_told_to_be_a_text_file(sample):
-    """Rules 2: what begins LocoTra-data is no advice for a cell of a workbook."""
+    """Rules 2: a message about a workbook cell gives no advice for text files."""
     mistakes = refused(edited(sample, A1="Number"))
     assert mistakes[0][5:] == ('"Number"', '"Num of Posture" and their number (Loco-data)')
 
@@ -284,7 +284,7 @@ def test_a_row_far_below_costs_nothing(sample):
 
 
 def test_a_file_is_told_by_its_content(tmp_path, sample, workshop, legs):
-    """Rules 2: text and workbooks are told apart by what is in them, not by their names."""
+    """Rules 2: the content decides whether a file is a text or a workbook, not its name."""
     locomotion = to_locomotion(workshop, SAMPLE_KEYS)
     for name, data, table in (
         ("Loco-data.xlsx", sample, workshop),

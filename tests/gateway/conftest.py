@@ -15,7 +15,7 @@ from venue import Venue
 
 @pytest.fixture
 def venue(tmp_path: Path) -> Iterator[Venue]:
-    """A contest; nothing of it runs yet."""
+    """Make a contest whose courts do not run yet."""
     with ExitStack() as stack:
         yield Venue(tmp_path, stack)
 

@@ -189,7 +189,7 @@ class PageClient:
 
 
 class SleepyPage:
-    """A page that reads only when it is told to, with little room in between."""
+    """A page that reads only on request, with a small buffer."""
 
     def __init__(self, url: str) -> None:
         parts = urlsplit(url)

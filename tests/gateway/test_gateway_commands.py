@@ -118,7 +118,7 @@ def browse(folder: Path, home: Path) -> tuple[Lacoc, str, str]:
 
 @pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="reads /proc")
 def test_the_key_stands_in_no_command_line(tmp_path: Path) -> None:
-    """Other users of a machine see what its browsers are told to open: a file they can't read."""
+    """Other users see only a file they can't read on the browser's command line."""
     play, key, opened = browse(tmp_path, tmp_path)
     try:
         titles = b""
@@ -151,7 +151,7 @@ def test_without_a_home_the_page_opens_all_the_same(tmp_path: Path) -> None:
 
 
 def test_play_needs_no_seat_to_open(tmp_path: Path, stack: ExitStack) -> None:
-    """What is not said is asked for by the page, also where no court runs yet."""
+    """The page asks for missing values, even before a court runs."""
     play = Command(tmp_path, "play", "--connect", "tcp/127.0.0.1:1")
     with PageClient(play.url, play.key) as page:
         expected = {"seat": "", "name": "", "has_token": False}

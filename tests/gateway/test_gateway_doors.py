@@ -107,7 +107,7 @@ def test_a_page_of_another_site_gets_no_socket(open_venue: Venue, origin: str) -
 
 
 def test_the_own_page_gets_a_socket(open_venue: Venue) -> None:
-    """Same origin, and no origin at all: a program that is no browser."""
+    """A page of the same origin connects, and so does a program without an origin."""
     origin = f"http://127.0.0.1:{open_venue.web_port}"
     with PageClient(open_venue.url, origin=origin) as page:
         assert page.welcome["court"] == "main"
@@ -251,7 +251,7 @@ def test_the_overlay_may_be_embedded(open_venue: Venue) -> None:
 
 @pytest.fixture(scope="module")
 def records(open_venue: Venue) -> Iterator[Path]:
-    """Recordings of the open venue's folder, and something beside it that nobody may have."""
+    """Make recordings in the venue's folder, and a secret file outside it."""
     folder = open_venue.folder / "recordings"
     (folder / "first match.mcap").write_bytes(b"first")
     os.utime(folder / "first match.mcap", (1_700_000_000, 1_700_000_000))
@@ -303,7 +303,7 @@ def test_no_path_leads_out(open_venue: Venue, records: Path, path: str) -> None:
 
 
 def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
-    """They hear why; those who watch are not disturbed, and a place that gets free is given."""
+    """They are told why; other pages are not disturbed, and a free place is given away."""
     venue.court()
     venue.web("--viewers", "2")
     first, second = venue.page(), venue.page()
@@ -325,7 +325,7 @@ def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
 
 
 def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
-    """Who has the key gets in however many watch; who drops the key counts as one who watches."""
+    """Pages with the key can always connect; a page without the key counts as a viewer."""
     venue.court()
     venue.web("--viewers", "1")
     venue.page()

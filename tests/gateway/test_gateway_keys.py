@@ -41,7 +41,7 @@ def test_a_wrong_token_is_said_in_a_field(keyed: Venue) -> None:
 
 
 def test_wrong_tokens_delay_no_decision(keyed: Venue) -> None:
-    """Pages that try them wait for each other; who sits at the desk, or comes back, does not."""
+    """Pages that try tokens wait for each other; a referee who is in, or returns, does not wait."""
     referee = keyed.referee()
     wrong = [keyed.page(keyed.key) for _ in range(12)]
     tried = {page: [page.send("enter", token=WRONG, by="x") for _ in range(8)] for page in wrong}

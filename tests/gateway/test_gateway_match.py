@@ -97,7 +97,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
 
 
 def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
-    """A cable that was pulled closes no connection: who is not heard is not spoken for."""
+    """A pulled cable closes no connection; the gateway still stops repeating the command."""
     venue.court()
     venue.web()
     left, _, referee = started(venue)
@@ -129,7 +129,7 @@ def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
 
 
 def test_a_newer_page_takes_the_seat(venue: Venue) -> None:
-    """The newest join wins; the older page is told, and can't steer."""
+    """The newest join wins; the older page gets a message and can't steer."""
     venue.court()
     venue.web()
     first = venue.contestant("left")
@@ -143,7 +143,7 @@ def test_a_newer_page_takes_the_seat(venue: Venue) -> None:
 
 
 def test_one_referee_acts_until_another_takes_over(venue: Venue) -> None:
-    """One acts, the others watch; who acts stands in the record."""
+    """One page acts and the others watch; the record has the referee's name."""
     venue.court()
     venue.web()
     venue.contestant("left")
@@ -168,7 +168,7 @@ def test_one_referee_acts_until_another_takes_over(venue: Venue) -> None:
 
 
 def test_a_killed_court_comes_back(venue: Venue) -> None:
-    """Every page says what it waits for and goes on by itself; seats are held again."""
+    """Every page says what it waits for and goes on by itself; seats are taken back."""
     court = venue.court()
     venue.web()
     left, _, referee = started(venue)
@@ -266,7 +266,7 @@ def test_a_restarted_gateway_knows_its_pages_again(venue: Venue) -> None:
 
 
 def test_a_gateway_ends_cleanly(venue: Venue) -> None:
-    """Ctrl-C: pages are told to come again, the exit code is 0."""
+    """On Ctrl-C pages are asked to connect again later, and the exit code is 0."""
     venue.court()
     web = venue.web()
     page = venue.contestant("left")

@@ -22,7 +22,7 @@ def scrape(url: str) -> dict[str, float]:
 
 
 def test_a_scrape_and_the_log_of_a_gateway(venue: Venue) -> None:
-    """Who watches and what they get; who sat down, was refused and went; no token anywhere."""
+    """Metrics count viewers and frames; the log has joins, refusals and leaves, and no token."""
     court = venue.court()
     web = venue.web("--metrics", "127.0.0.1:0", "--viewers", "1")
     url = web.opened["metrics"]

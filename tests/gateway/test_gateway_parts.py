@@ -131,7 +131,7 @@ def test_a_message_is_a_websocket_frame(size: int) -> None:
 
 
 class Wire:
-    """A socket that takes what it is told to take."""
+    """A socket that accepts a given number of messages."""
 
     def __init__(self) -> None:
         self.written: list[bytes] = []
@@ -146,7 +146,7 @@ class Wire:
 
 
 def test_a_viewer_has_one_slot() -> None:
-    """While a page does not keep up, the newest frame takes the place of the one before."""
+    """While a page is too slow, a newer frame replaces the one before."""
     socket = Wire()
     viewer = Viewer(socket)  # type: ignore[arg-type]
     viewer.rate(50)
@@ -168,7 +168,7 @@ def test_a_viewer_has_one_slot() -> None:
     [(50, 500), (25, 250), (10, 100), (1, 10), (0, 10), (-3, 10), (1e9, 500), (float("nan"), 500)],
 )
 def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
-    """Evenly, also with jitter; what is no rate is the nearest that is one."""
+    """Frames are spaced evenly, also with jitter; an invalid rate becomes the nearest valid one."""
     socket = Wire()
     viewer = Viewer(socket)  # type: ignore[arg-type]
     viewer.rate(hz)
@@ -218,7 +218,7 @@ def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:
 
 
 def test_a_log_that_begins_again() -> None:
-    """What is sent again is not new; where it differs, what came before it stays true."""
+    """Repeated events are not new; if one differs, the events before it stay valid."""
     log: EventLog[str] = EventLog()
     assert [log.add(event(n, "old"), f"old {n}") for n in (1, 2, 3)] == [True] * 3
     assert [log.add(event(n, "old"), "again") for n in (1, 2, 3)] == [False] * 3
@@ -232,7 +232,7 @@ def test_a_log_that_begins_again() -> None:
 
 
 def test_a_log_is_held_against_what_the_court_says() -> None:
-    """Numbers begin at 1, without a gap; what came after the court said so is no difference."""
+    """Numbers begin at 1 without a gap; events after the court's report are no difference."""
     log: EventLog[str] = EventLog()
     assert not log.differs(1, 0, 0)
     assert log.differs(1, 500, 3)
@@ -245,7 +245,7 @@ def test_a_log_is_held_against_what_the_court_says() -> None:
 
 
 def test_the_courts_list_stands_for_the_log() -> None:
-    """What was known of it is no news; what the court does not know was another match's."""
+    """Known events of the list are not new; events not in the list belong to another match."""
     log: EventLog[str] = EventLog()
     for number in (4, 5):
         log.add(event(number, "a"), f"live {number}")

@@ -96,7 +96,7 @@ def keyed(tmp_path: Path) -> Iterator[KeyedVenue]:
 
 
 def titles(where: Path) -> bytes:
-    """What everybody on this machine can read of the processes that run in a folder."""
+    """Return the process titles in a folder, which everybody on this machine can read."""
     found = b""
     for process in Path("/proc").glob("[0-9]*"):
         try:

@@ -46,7 +46,7 @@ referee.token = "the token of the referee"
 
 
 class Pair(NamedTuple):
-    """What became of the keys that both pressed upon one frame."""
+    """When the two keys that answer one frame took effect."""
 
     seen: int
     beats: tuple[int, int]

@@ -69,7 +69,7 @@ class SlowLink:
         self._do(self._flowing.set)
 
     def cut(self) -> None:
-        """Break all connections and refuse new ones; what was on its way is lost."""
+        """Break all connections and refuse new ones; data on its way is lost."""
         self._do(self._cut)
 
     def mend(self) -> None:

@@ -99,7 +99,7 @@ def test_a_join_that_the_match_refuses_makes_no_session(court: CourtStub, sessio
 
 
 def test_an_unknown_seat_and_an_unknown_court_are_named(session: Session) -> None:
-    """What was found, and what there is."""
+    """The message names what was found and what exists."""
     with pytest.raises(UserError, match=r'no seat "middle". It has left and right'):
         Controller(session, "main", "middle", "t", "Blue")
     with pytest.raises(UserError, match=r'no court "mian" at .* There is main'):
@@ -123,7 +123,7 @@ def test_a_key_is_applied_once_and_its_round_trip_is_known(
 
 
 def test_a_refused_key_is_said_in_a_sentence(court: CourtStub, session: Session) -> None:
-    """A refused command while playing: said on the screen, the match goes on."""
+    """A command refused in play is shown on the screen, and the match goes on."""
     one = held(session)
     one.press(1, 9)
     until(lambda: one.poll(time.monotonic()) and court.keys())
@@ -135,7 +135,7 @@ def test_a_refused_key_is_said_in_a_sentence(court: CourtStub, session: Session)
 
 
 def test_ready_and_leave(court: CourtStub, session: Session) -> None:
-    """Requests with the session's seal; after leaving, keys are no longer sent."""
+    """Requests carry the session's seal; after leaving no keys are sent."""
     one = held(session)
     one.ready()
     one.ready(False)
@@ -149,7 +149,7 @@ def test_ready_and_leave(court: CourtStub, session: Session) -> None:
 def test_a_new_window_takes_over_and_the_old_one_knows(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
-    """The same token in another window: it goes on with the numbers, the old one is told."""
+    """With the same token a new window continues the numbers, and the old one gets a message."""
     old = held(session)
     old.press(1, 2)
     until(lambda: court.keys() == [(1, 2)])
@@ -182,7 +182,7 @@ def test_one_health_of_another_session_is_not_believed(court: CourtStub, session
 
 
 def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session) -> None:
-    """What only can't be done now is told apart from what is wrong; by the reply, not by words."""
+    """The reply's field, not its words, says whether a request may succeed later."""
     one = controller(session)
     court.trouble = FULL_DISK
     with pytest.raises(NotNow, match="Make room"):
@@ -202,7 +202,7 @@ def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session)
 
 @pytest.mark.parametrize("seat", ["", "a//b", "le?ft", "#"])
 def test_a_seat_that_is_no_key_is_said(court: CourtStub, session: Session, seat: str) -> None:
-    """What stands in an invitation is looked up before it becomes part of a key expression."""
+    """A seat in an invitation is checked before it becomes part of a key expression."""
     with pytest.raises(UserError, match=r"has no seat .* It has left and right"):
         Controller(session, "main", seat, "t", "Blue")
 
@@ -262,7 +262,7 @@ def test_a_controller_that_stops_is_silent_and_heard_again(
 def test_no_seat_is_lost_for_what_its_program_did_not_hear(
     court: CourtStub, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Events and sheets that did not come are asked for beside the command that is repeated.
+    """The program asks for missed events and sheets while it repeats its command.
 
     An answer takes nearly a second here, and who is silent for one stands.
     """

@@ -22,7 +22,7 @@ def request(decision: d.Decision, token: str = "whistle", by: str = "Kubota") ->
 
 
 def test_a_decision_becomes_an_input() -> None:
-    """Rules 4: each decision with who and reason."""
+    """Rules 4: each decision has the referee's name and the reason."""
     taken = DecisionDesk(HASHES).decision("adjust", request(d.Adjust("left", -2)))
     assert taken == Decide("Kubota", "foul", d.Adjust("left", -2))
 
@@ -55,7 +55,7 @@ def test_a_decision_becomes_an_input() -> None:
 def test_a_request_is_refused_with_its_reason(
     name: str, payload: bytes, code: str, why: str
 ) -> None:
-    """The answer says what was found and, where it helps, all that there is."""
+    """The answer says what was found and, if useful, all valid values."""
     desk = DecisionDesk(HASHES)
     refusal = desk.decision(name, payload)
     assert isinstance(refusal, Refusal)
@@ -64,7 +64,7 @@ def test_a_request_is_refused_with_its_reason(
 
 
 def test_a_decision_that_is_not_read_is_told_all_there_are() -> None:
-    """A program's author sees what was wrong, and each decision with its arguments."""
+    """The answer says what was wrong, and lists each decision with its arguments."""
     refusal = DecisionDesk(HASHES).decision("halt", request(d.Start()))
     assert isinstance(refusal, Refusal)
     words = render(refusal.why)
@@ -91,7 +91,7 @@ def test_a_reason_is_a_text_or_one_of_the_pages(reason: Phrase | str, taken: boo
 
 
 def test_a_wrong_token_learns_nothing() -> None:
-    """What exists is told to referees only."""
+    """Only referees learn which values exist."""
     refusal = DecisionDesk(HASHES).decision("x", encode({"token": "guess", "decision": 3}))
     assert refusal == Refusal(say("refused.no-referee-token"))
 

@@ -1,4 +1,4 @@
-"""Two who press upon the same frame, one of them far away, at a real court with a real network."""
+"""Two controllers answer the same frame, one of them far away, at a real court."""
 
 from pathlib import Path
 
@@ -34,7 +34,7 @@ def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) 
 
 @pytest.mark.slow
 def test_without_the_setting_the_near_one_is_first(tmp_path: Path) -> None:
-    """Nothing is held and nothing is late; the court shows both links all the same."""
+    """No key is held and none is late; the court still shows both links."""
     played = play(tmp_path, "none", *FAR, warm_s=3, seconds=4)
     fast, slow = played.health.seats
     assert played.health.input_delay_ms == 0

@@ -195,7 +195,7 @@ def test_a_seat_without_a_token_is_closed() -> None:
 
 
 def test_joins_can_not_flood_the_reading_of_files() -> None:
-    """A join may cost a lot, so even the right token gets only so many of them a second."""
+    """A join is expensive, so even the right token may join only a few times a second."""
     inbox = make()
     inbox.beat(10.0, [[], []])
     answers = [inbox.join(LEFT, join_bytes()) for _ in range(50)]
@@ -404,7 +404,7 @@ def test_rubbish_of_others_takes_nothing_of_what_a_seat_may_send() -> None:
 
 
 def test_an_overheard_command_does_not_keep_a_seat_alive() -> None:
-    """Rules 3: silent is whose controller is gone, whatever others send again of it."""
+    """Rules 3: a seat whose controller is gone is silent, even if others repeat its commands."""
     inbox = make()
     joined = take_seat(inbox)
     newest = b""
@@ -439,7 +439,7 @@ def test_a_controller_that_gets_no_frames_is_not_believed_for_long() -> None:
 
 
 def test_silence_is_what_the_match_does_not_know_yet() -> None:
-    """A new match, or one that a contestant left and came back to, is told how it is now."""
+    """A new match, or one that a contestant has rejoined, learns which seats are silent now."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.commands(5.0, [[], []], (False, False)) == [SilentSeat(LEFT)]
@@ -498,7 +498,7 @@ def test_a_late_beat_makes_nobody_silent() -> None:
 
 
 def test_ready_and_leave_are_proven_by_the_session() -> None:
-    """The token travels once; after that the session's secret proves who asks."""
+    """The token travels once; after that the session's secret proves the sender."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.ready(LEFT, request(joined, "ready")) == ReadySeat(LEFT, True)
@@ -549,7 +549,7 @@ def test_a_restarted_court_knows_its_seats() -> None:
 
 
 def test_a_seat_that_was_silent_at_the_kill_is_silent_until_it_is_heard() -> None:
-    """The record says so, and a restart of the court is no sign of life."""
+    """The record says that it is silent, and a restart of the court is no sign of life."""
     after = make(last_seqs={"left": 41}, joined=("left",))
     for now_s in (100.0, 100.5, 105.0):
         assert after.commands(now_s, [[], []], (True, False)) == []

@@ -44,7 +44,7 @@ class Clock:
         self.links.begin(self.now_s, match, self.beat)
 
     def sign(self, seat: int, lag: int) -> None:
-        """A sign of life, from one who saw a frame `lag` beats ago."""
+        """Make a sign of life that names the frame of `lag` beats ago."""
         self.links.heard(seat, Command(7, 0, 1, 2, 1, self.beat - lag, b""))
 
     def key(self, seat: int, lag: int, match: int = 1) -> None:
@@ -121,7 +121,7 @@ def test_the_same_frame_again_is_no_new_round_trip() -> None:
 
 
 def test_a_link_that_is_not_heard_is_not_known() -> None:
-    """Old round trips say nothing of a new link."""
+    """Old round trips do not count for a new link."""
     clock = warm(5, 5)
     for _ in range(WINDOW_BEATS + MEASURE_BEATS):
         clock.begin()
@@ -145,7 +145,7 @@ def test_a_frame_that_was_not_there_can_not_have_been_seen() -> None:
 
 
 def test_both_links_get_the_delay_of_the_slower() -> None:
-    """What was done upon the same frame takes effect in the same beat."""
+    """Keys that answer the same frame take effect in the same beat."""
     clock = warm(1, 12)
     assert clock.links.delay_ms == 240
     for _ in range(40):
@@ -184,7 +184,7 @@ def test_the_delay_is_capped_and_who_is_slower_is_late() -> None:
 
 
 def test_the_delay_follows_seldom_and_falls_only_by_much() -> None:
-    """Those who saw the same frame have the same delay, also while it changes."""
+    """Both seats have the same delay for the same frame, also while it changes."""
     clock = warm(1, 12)
     clock.run(WARM + WINDOW_BEATS, 1, 11)
     assert clock.links.delay_ms == 240
@@ -198,7 +198,7 @@ def test_the_delay_follows_seldom_and_falls_only_by_much() -> None:
 
 
 def test_an_old_frame_gains_no_more_than_two_beats() -> None:
-    """Who presses upon an older frame than it had is held for its own p95, and called late."""
+    """A key that names an older frame is held for its seat's own p95, and counts as late."""
     clock = warm(2, 12)
     for claim in (2, 5, 12, 200):
         clock.begin()
@@ -236,7 +236,7 @@ def test_a_key_of_the_match_before_is_held_as_a_new_one() -> None:
 
 
 def test_a_stall_of_the_court_delays_both_alike() -> None:
-    """What counts is when a frame went out, not how fast the beats after it are."""
+    """The time at which a frame was sent counts, not the pace of the beats after it."""
     clock = warm(1, 12)
     clock.run(20, 1, 12)
     clock.now_s += 0.1

@@ -1,4 +1,4 @@
-"""What docs/protocol.md says of Zenoh itself, tried with Zenoh and nothing of ours."""
+"""A program with only Zenoh works as docs/protocol.md says."""
 
 import base64
 import hashlib
@@ -66,7 +66,7 @@ def test_a_stranger_enters_a_court_with_keys(tmp_path: Path) -> None:
         with zenoh.open(config) as stranger:
             (error,) = ask(stranger, b"no join")
             assert error is not None
-            assert decode(error, Refusal).reason
+            assert decode(error, Refusal).why
         with pytest.raises(zenoh.ZError):
             zenoh.open(of_page(court.address, "main.left", "x" * 40, credentials.ca))
 
@@ -86,7 +86,7 @@ def test_what_comes_back(court: Session, stranger: zenoh.Session) -> None:
 
 
 def test_a_join_that_is_too_long_is_dropped(court: Session, stranger: zenoh.Session) -> None:
-    """It is no refusal: the court never sees it."""
+    """A payload that is too large gets no refusal: the court never sees it."""
     desk = court.desk(JOIN, 4)
     assert ask(stranger, bytes(JOIN_MAX_BYTES), 0.3) == [b"Timeout"]
     assert desk.take() is not None

@@ -1,4 +1,4 @@
-"""What each user of a court with keys can do, and that nobody can do more."""
+"""Each user of a court with keys has exactly its rights."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -46,7 +46,7 @@ def passed(session: Session) -> None:
 
 
 def heard(court: KeyedCourt) -> int:
-    """How much the court was asked or told: what it took in and what it refused."""
+    """Return how many messages the court accepted and refused."""
     refused = sum(sum(reasons.values()) for reasons in court.refused.values())
     told = [item for item in court.inputs if not isinstance(item, SilentSeat)]
     return len(told) + refused + sum(court.network.dropped.values())

@@ -67,13 +67,13 @@ def test_both_ways_are_delayed_and_order_is_kept(echo: str) -> None:
 
 
 def test_a_lost_packet_comes_late(echo: str) -> None:
-    """Loss is what TCP makes of it."""
+    """A lost packet becomes a delay, as with TCP."""
     with SlowLink(echo, loss=1.0) as link, connect(link) as client:
         assert round_trip_s(client) >= 2 * SlowLink.RESEND_S
 
 
 def test_a_stalled_link_keeps_what_was_sent(echo: str) -> None:
-    """Nothing comes, nobody is told, and nothing is lost."""
+    """A paused link delivers nothing, closes nothing, and loses nothing."""
     with SlowLink(echo) as link, connect(link) as client:
         assert round_trip_s(client) < 5
         link.stall()

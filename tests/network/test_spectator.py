@@ -156,7 +156,7 @@ def test_a_court_that_makes_no_sense_is_a_sentence(court: CourtStub, session: Se
 
 
 def test_a_court_that_comes_back_with_another_version(court: CourtStub, session: Session) -> None:
-    """What it sends makes no sense to those who stayed connected; its sheet tells them why."""
+    """Clients can't decode its messages; its sheet tells them that its version differs."""
     spectator = Spectator(session, "main")
     assert spectator.wait_frame(1.0)
     court.in_a_beat(lambda: court.show(court.scene, protocol=99))
@@ -199,7 +199,7 @@ def test_nobody_but_the_court_sends_frames(
 
 
 def test_the_referee_decides(court: CourtStub, session: Session) -> None:
-    """Rules 4: each decision with who, reason and a reply."""
+    """Rules 4: each decision has a referee, a reason and a reply."""
     reply = RefereeClient(session, "main", WHISTLE).decide(d.Start(), "all ready", "Kubota")
     assert reply.said == say("decision.start", seconds=3)
     assert court.inputs == [Decide("Kubota", "all ready", d.Start())]

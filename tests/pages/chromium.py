@@ -63,7 +63,7 @@ def find_chromium() -> str:
 
 
 def build_pages() -> Path:
-    """The folder of the built pages, built anew if they are older than their source.
+    """Return the folder of the built pages; build them again if their source is newer.
 
     Raises:
         RuntimeError: if they can't be built.

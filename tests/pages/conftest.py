@@ -55,7 +55,7 @@ def built_pages() -> Path:
 
 
 class Console:
-    """What pages say in their consoles that they should not."""
+    """Collects unexpected messages of the pages' consoles."""
 
     def __init__(self) -> None:
         self.errors: list[str] = []
@@ -126,7 +126,7 @@ def page(open_page: OpenPage) -> Page:
 
 @pytest.fixture
 def venue(tmp_path: Path, built_pages: Path) -> Iterator[Venue]:
-    """A contest with its court and gateway; nothing of it runs yet."""
+    """Make a contest with court and gateway that do not run yet."""
     with ExitStack() as stack:
         yield Venue(tmp_path, stack)
 

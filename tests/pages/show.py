@@ -63,7 +63,7 @@ class Show:
         )
 
     def moves(self) -> None:
-        """Wait until time goes on in the picture."""
+        """Wait until the time in the picture moves."""
         beat = self.view("drawnBeat")
         self.until(lambda: self.view("drawnBeat") != beat, "the picture stands still")
 

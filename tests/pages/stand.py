@@ -58,7 +58,7 @@ class Stand:
         self._address = address
 
     def open(self, match: str, frames: int = 3, **options: object) -> None:
-        """Show a match; wait until so many pictures were drawn."""
+        """Show a match; wait until a number of pictures were drawn."""
         words = "&".join(f"{name}={value}" for name, value in options.items())
         self.page.goto(f"{self._address}/index.html?match={match}&{words}")
         self.page.wait_for_selector("body[data-ready]")
@@ -75,7 +75,7 @@ class Stand:
         self.page.wait_for_function("(beat) => __lacoc.view.drawnBeat === beat", arg=beat)
 
     def next_frames(self, count: int = 2) -> None:
-        """Wait until so many more pictures were drawn."""
+        """Wait until a number of further pictures were drawn."""
         now = self.view("drawnFrames")
         self.page.wait_for_function(f"__lacoc.view.drawnFrames > {now + count}")
 

@@ -1,4 +1,4 @@
-"""What a page says across its top while it has to wait: the gateway's own reasons, in words."""
+"""While a page waits, its banner shows the gateway's reason."""
 
 import re
 import time
@@ -77,7 +77,7 @@ def test_a_full_hall_is_said_and_not_stormed(
 
 
 def test_a_court_of_another_version_is_said(venue: Venue, open_page: OpenPage) -> None:
-    """Nothing of it is shown as this version's, it is logged once, and the page recovers."""
+    """Data of another version is not shown; it is logged once, and the page recovers."""
     with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
         web = venue.web()
         page = venue.page()

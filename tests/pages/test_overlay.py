@@ -35,7 +35,7 @@ PIXELS = """async (png) => {
 
 
 def alphas(page: Page, blank: Page) -> dict[str, float]:
-    """How opaque the page is: at its edge, in its middle, and what share of it."""
+    """Return how opaque the page is: at its edge, in its middle, and over its area."""
     png = base64.b64encode(page.screenshot(omit_background=True)).decode()
     found: dict[str, float] = blank.evaluate(PIXELS, png)
     return found
@@ -169,7 +169,7 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
     show.sees(".opening", "Waiting for left to join")
     referee = playing(venue)
     referee.phase(Phase.FINISHED)
-    show.sees(".result .next", "the referee confirms")
+    show.sees(".result .next", "The referee is confirming")
     box = show.find(".result").bounding_box()
     assert box is not None
     assert box["x"] + box["width"] / 2 == pytest.approx(SOURCE["width"] / 2, abs=4)

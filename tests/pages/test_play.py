@@ -59,7 +59,7 @@ def playing(venue: Venue, page: Contestant) -> PageClient:
 def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """The card shows every mistake of a file, the token only for this tab."""
     page = opened(venue, sit)
-    page.sees(".safety", "'lacoc play' is safer")
+    page.sees(".safety", "'lacoc play' on your own computer is safer")
     page.page.click("button[type=submit]")
     page.sees("#join-name-error", "1 to 24 characters")
     page.join("not-the-token")
@@ -86,7 +86,7 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
     page.find("input[type=file]").set_input_files(bad)
     page.page.click("button[type=submit]")
     page.stands("seated")
-    page.is_told("Press Ready when you are")
+    page.is_told("Press Ready when you are ready")
     kept: dict[str, str] = page.page.evaluate("({...localStorage})")
     assert TOKENS["left"] not in json.dumps(kept)
     assert json.loads(kept["lacoc.team"]) == "Ants"
@@ -115,14 +115,14 @@ def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: P
     page.find("input[type=file]").set_input_files([tmp_path / name for name in files])
     for slot, name in (("Robot", "c.toml"), ("Level A", "a.txt"), ("Level B", "b.txt")):
         page.sees(f".files li:has-text('{slot}')", name)
-    page.page.click("[aria-label='Take c.toml away']")
+    page.page.click("[aria-label='Remove c.toml']")
     page.sees(".files li:has-text('Robot')", "the contest's")
     page.join(TOKENS["left"])
     page.stands("seated")
 
 
 def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
-    """What misses the frame of the files would make the browser leave the page."""
+    """A file dropped beside the file area does not make the browser leave the page."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     sample = sample_gait_files("hexapod")
@@ -131,7 +131,7 @@ def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
     page.sees(".files li:has-text('Robot')", "mine.toml")
     page.sees(".files li:has-text('Level B')", "mine.txt")
     page.misses(".files.over")
-    page.find("[aria-label='Take mine.toml away']").click()
+    page.find("[aria-label='Remove mine.toml']").click()
     page.join(TOKENS["left"])
     page.stands("seated")
 
@@ -147,7 +147,7 @@ def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
 
 
 def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """A folder can't be read: the page says so, and takes what was dropped with it."""
+    """The page says that a folder can't be read, and takes the files dropped with it."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     folder = tmp_path / "gaits"
@@ -155,7 +155,7 @@ def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path
     mine = tmp_path / "mine.toml"
     mine.write_text("name = 'My robot'")
     drag_in(page.page, folder, mine)
-    page.is_toasted("gaits can't be read. Folders can't be dropped: drop the files in them.")
+    page.is_toasted("gaits can't be read. If it is a folder, drop the files in it instead.")
     page.sees(".files li:has-text('Robot')", "mine.toml")
 
 
@@ -167,12 +167,12 @@ def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path)
     mine.write_text("name = 'My robot'")
     drag_in(page.page, mine)
     page.sees("dialog .files li:has-text('Robot')", "mine.toml")
-    page.page.click("[aria-label='Take mine.toml away']")
+    page.page.click("[aria-label='Remove mine.toml']")
     page.press("Escape")
     page.misses("dialog")
     other = playing(venue, page)
     drag_in(page.page, mine)
-    page.is_toasted("Files are chosen before a match.")
+    page.is_toasted("Choose files before a match.")
     page.misses("dialog")
     page.press("2")
     page.key_stands(2)
@@ -216,7 +216,7 @@ def test_tabs_of_one_browser_have_their_own_files(
 
 @pytest.mark.long
 def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
-    """The tab's address may lead to another court later: there it sits down anew."""
+    """If the tab's address later leads to another court, the page joins there again."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     wish = {"court": "side", "seat": "left", "token": "x", "name": "Ants"}
@@ -263,7 +263,7 @@ def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
 @pytest.fixture
 def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
-    """Where the page of a `lacoc play` is that was told everything."""
+    """Return the address of a `lacoc play` that got all options."""
     court = venue.court()
     sample = sample_gait_files("hexapod").locomotion
     assert sample is not None
@@ -280,7 +280,7 @@ def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     page = seated(venue, sit)
     page.sees(".foot dd[data-link]:not([data-link=''])", "ms")
-    page.sees(".foot", "equalised")
+    page.sees(".foot", "equal for both")
 
 
 def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: Sit) -> None:
@@ -318,7 +318,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.page.click("button.ready")
     page.is_told("You are ready. Waiting for the right seat")
     page.page.click(".ready.said button")
-    page.is_told("Press Ready when you are")
+    page.is_told("Press Ready when you are ready")
     other = playing(venue, page)
     page.is_told("Walk over discs")
 
@@ -335,7 +335,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.press("7")
     page.is_toasted("[7] Your gait file has no such key")
     page.press("Tab")
-    page.is_toasted("This arena opens level B only")
+    page.is_toasted("In this arena only level B is open")
     page.press("ArrowLeft")
     page.key_stands(1)
     page.press("Numpad3")
@@ -353,7 +353,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.key_stands(3)
 
     page.press("x")
-    page.is_told("Restarted: keys again in")
+    page.is_told("Restarted: your keys work again in")
     page.key_stands(0)
     page.sees(".restart", "in ")
     page.press("2")
@@ -487,7 +487,7 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
 
 @pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None:
-    """Banner and grey keys while the link is lost; then all goes on by itself."""
+    """While the link is lost, a banner shows and keys are grey; then the page goes on."""
     court = venue.court("--seconds", "120")
     web = venue.web()
     page = sit(venue.url)
@@ -506,14 +506,14 @@ def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None
     page.misses(".banner")
     page.misses(".pad.off")
     page.phase(Phase.HALTED)
-    page.is_told("Halted: the referee resumes it")
+    page.is_told("Halted. Please wait until the referee resumes")
     other.close()
 
     console.expect("WebSocket connection")
     web.kill()
     page.sees(".banner", "The connection is lost.")
     page.sees(".pad.off")
-    page.is_told("No link to the court")
+    page.is_told("No connection to the court")
     venue.web()
     page.stands("seated")
     page.misses(".banner")
@@ -543,11 +543,11 @@ def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
 
 
 def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: Sit) -> None:
-    """A stranger can tell who won, and what comes next; the seat stays."""
+    """The page shows who won and what comes next; the seat stays."""
     page = seated(venue, sit, "--seconds", "1")
     other = playing(venue, page)
     page.sees(".result h1", "A draw")
-    page.sees(".result", "The referee confirms the result")
+    page.sees(".result", "The referee is confirming the result")
     referee = venue.referee()
     referee.ask("take_over")
     decision = {"type": "adjust", "seat": "left", "points": 3}
@@ -577,7 +577,7 @@ def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: S
     replay.sees(".score-bug .team", "Ants")
     referee.ask("decide", decision={"type": "next"}, reason="")
     page.phase(Phase.LOBBY)
-    page.is_told("Press Ready when you are")
+    page.is_told("Press Ready when you are ready")
     page.misses(".result")
     other.close()
 
@@ -658,7 +658,7 @@ def test_pos_data_is_of_the_seat_that_is_held(venue: Venue, sit: Sit, tmp_path: 
 
 
 def stood_on(page: PageClient, beats: int) -> None:
-    """Wait until the court has gone on for so long."""
+    """Wait until the court has gone on for a time."""
     page.wait(lambda: page.frame)
     assert page.frame is not None
     until = page.frame.beat + beats
@@ -682,14 +682,14 @@ def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
 
 @pytest.mark.long
 def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
-    """Practice may run all day: the page keeps so many rows, and says where they begin."""
+    """In a long practice the page keeps a limited number of rows, and says where they begin."""
     frames = list(walk(random.Random(0), (12, 18)))
     whole = PosData(1, (12, 18))
     for frame in frames:
         whole.add(frame)
     header, *rows = whole.text().splitlines()
     venue.web()
-    for locale, says in (("en-GB", "keeps the newest hour"), ("ja-JP", "最新の 1 時間")):
+    for locale, says in (("en-GB", "keeps only the last hour"), ("ja-JP", "最新の 1 時間")):
         page = sit(venue.url, locale=locale)
         page.open(key=venue.key)
         page.until("Boolean(window.__lacoc?.posData)")

@@ -56,7 +56,7 @@ def practise_in(tmp_path: Path, built_pages: Path, sit: Sit) -> Iterator[Practis
 
 
 def lessons(page: Contestant, *keys: int) -> None:
-    """Press keys when they are shown as the next ones, each when the one before stands."""
+    """Press each key when the page shows it as the next one."""
     for key in keys:
         page.sees(".steps li.now", str(key))
         page.press(str(key))
@@ -74,7 +74,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     lessons(page, 1, 2, 3, 4)
     page.sees(".lesson", "Well done")
     lessons(page, 1, 2, 3, 4)
-    page.sees(".lesson", "walks back")
+    page.sees(".lesson", "to walk back")
     assert page.find(".pressed kbd").all_inner_texts() == [*"12341234"]
     page.until("Number(document.querySelectorAll('.figures dd')[1].firstChild.data) > 0.04")
     assert abs(page.number(".figures dd")) < 30  # it walks straight on, along the field's y
@@ -84,7 +84,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     page.press("ArrowUp")
     page.key_stands(2)
     page.sees(".stands", "B 2: posture")
-    page.sees(".lesson", "Walk where you like")
+    page.sees(".lesson", "Walk anywhere")
     page.until("Number(document.querySelectorAll('.figures dd')[2].firstChild.data) > 2")
     page.press("x")
     page.key_stands(0)
@@ -203,7 +203,7 @@ def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_pat
     page.key_stands(4)
 
     (tmp_path / "LocoTra-data.txt").write_text("2\n1\n45\n")
-    page.sees(".changed.wrong", "LocoTra-data.txt has changed, and can't be used.")
+    page.sees(".changed.wrong", "LocoTra-data.txt has changed and can't be used.")
     page.sees(".changed li", "LocoTra-data.txt, row 2, column 1")
 
 

@@ -1,4 +1,4 @@
-"""The referee's page against a real court and gateway: what a referee does, and is told."""
+"""The referee's page against a real court and gateway: actions and messages."""
 
 import re
 from collections.abc import Callable
@@ -59,7 +59,7 @@ def enter(page: Page, name: str = "Kim", token: str = REFEREE) -> None:
 
 
 def at_the_desk(page: Page, name: str = "Kim") -> Page:
-    """Enter as the one who acts."""
+    """Enter as the acting referee."""
     enter(page, name)
     expect(page.locator(".acting.mine")).to_be_visible()
     return page
@@ -135,7 +135,7 @@ def to_playing(page: Page, venue: Venue) -> None:
 
 @pytest.mark.long
 def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
-    """Beyond the contest's limits: the reasons beside the result, in the log, in both languages."""
+    """Beyond a limit, the reasons are beside the result and in the log, in both languages."""
     wanted = "[health]\nreal_time_factor = 2.0\n"  # no court can
     venue.contest.write_text(wanted + venue.contest.read_text())
     venue.court("--seconds", "2")
@@ -242,7 +242,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
 
 @pytest.mark.long
 def test_declaring_a_winner_ends_a_halted_match(court: Venue, referee: Referee) -> None:
-    """Rules 4, `declare`: the referee's word stands beside what was computed."""
+    """Rules 4, `declare`: the referee's decision is shown beside the computed result."""
     page = at_the_desk(referee())
     to_playing(page, court)
     page.keyboard.press("Control+Enter")
@@ -355,14 +355,14 @@ def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
 
 
 def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
-    """What needs a reason can't be confirmed without one; Escape lets all be."""
+    """A decision that needs a reason can't be confirmed without one; Escape cancels."""
     page = at_the_desk(referee())
     group(page, "Declare void").click()
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text("Choose a reason first")
     expect(dialog.locator("[type=submit]")).to_be_disabled()
     dialog.locator("label.chip", has_text="other").click()
-    expect(dialog).to_contain_text("Say the reason in words")
+    expect(dialog).to_contain_text("Write the reason in words")
     expect(dialog.locator("[type=submit]")).to_be_disabled()
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
@@ -371,7 +371,7 @@ def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> None:
-    """Key by key, also where what stands there so far is no number or ends with a zero."""
+    """A number can be typed key by key, even if the text so far is no number or ends with 0."""
     page = at_the_desk(referee())
     to_playing(page, court)
     group(page, "Halt").click()
@@ -400,7 +400,7 @@ def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> Non
 
 @pytest.mark.long
 def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> None:
-    """Nobody knows whether it was done: that is no "no", and the dialog does not offer it again."""
+    """A missing answer is not shown as "no", and the dialog does not offer the decision again."""
     page = at_the_desk(referee())
     to_playing(page, court)
     group(page, "Halt").click()
@@ -422,7 +422,7 @@ def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> Non
     )
     answer = page.locator(".answer")
     expect(answer).to_contain_text("No answer")
-    expect(answer).to_contain_text("look under Events whether it was done")
+    expect(answer).to_contain_text("Check under Events whether it was done")
     expect(page.locator(".toast.no")).to_have_count(0)
     expect(dialog).to_have_count(0)
     log_has(page, "Referee Kim: +3 points for Ants. Reason: rule")
@@ -475,7 +475,7 @@ def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
 
 
 def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
-    """However it is left, a keyboard goes on where it was."""
+    """After a dialog closes, the keyboard focus is where it was."""
     page = at_the_desk(referee())
     void = group(page, "Declare void")
     dialog = page.get_by_role("dialog")
@@ -539,18 +539,18 @@ def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
     """Interface 8: one acts, the other watches until they take over."""
     first, second = at_the_desk(referee(), "Kim"), referee()
     enter(second, "Sato")
-    expect(second.locator(".acting.other")).to_contain_text("Kim acts as referee")
-    assert why(group(second, "Declare void")) == "Kim acts now: take over first"
+    expect(second.locator(".acting.other")).to_contain_text("Kim is the referee")
+    assert why(group(second, "Declare void")) == "Kim is the referee now: take over first"
     second.locator(".acting").get_by_role("button", name="Take over").click()
     second.get_by_role("dialog").get_by_role("button", name="Take over").click()
     expect(second.locator(".acting.mine")).to_be_visible()
-    expect(first.locator(".acting.other")).to_contain_text("Sato acts as referee")
+    expect(first.locator(".acting.other")).to_contain_text("Sato is the referee")
     group(second, "Declare void").click()
     confirm(second, "network")
     log_has(first, "Referee Sato: the match is void. Reason: network")
-    assert why(group(first, "Next match")) == "Sato acts now: take over first"
+    assert why(group(first, "Next match")) == "Sato is the referee now: take over first"
     second.close()  # nobody acts: no question is asked
-    expect(first.locator(".acting.other")).to_contain_text("Nobody acts")
+    expect(first.locator(".acting.other")).to_contain_text("There is no referee now")
     first.locator(".acting").get_by_role("button", name="Take over").click()
     expect(first.locator(".acting.mine")).to_be_visible()
 
@@ -568,7 +568,7 @@ def test_a_reload_goes_on(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_a_court_that_was_killed(venue: Venue, referee: Referee, console: Any) -> None:
-    """It is never shown as live, nothing can be decided; when it comes back, the desk goes on."""
+    """A lost court is not shown as live and takes no decision; later the desk goes on."""
     console.expect("WebSocket")  # the gateway is killed too
     court, web = venue.court(), venue.web()
     page = at_the_desk(referee())

@@ -1,4 +1,4 @@
-"""/replay: recordings in the browser, held against what Python reads in them."""
+"""/replay: recordings in the browser, compared with what Python reads."""
 
 from bisect import bisect_right
 from collections.abc import Iterator
@@ -273,7 +273,7 @@ def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> N
 def test_the_servers_list_and_the_address(
     library: Venue, open_page: OpenPage, console: Any
 ) -> None:
-    """A recording is a link; a moment of it can be given to others; the way back is Back."""
+    """A recording has a link, and so has a moment of it; Back returns to the list."""
     console.expect("404")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     expect(show.find(".recordings b")).to_have_count(2, timeout=WAIT_MS)
@@ -340,7 +340,7 @@ def test_files_of_this_machine(
     show.drop(flags.with_name("a-discs.mcap"))
     show.has_scores(18, 18)
     show.page.get_by_role("button", name="Copy the address").click()
-    show.sees(".toast", "others need the file")
+    show.sees(".toast", "give others the file")
     show.page.get_by_role("link", name="Other recordings").click()
     show.sees(".recordings")
     show.find("input[type=file]").set_input_files(flags)
@@ -402,7 +402,7 @@ def test_the_parts_of_a_crashed_match_are_joined(
     assert numbers == [event.number for event in joined.events]
 
     show.drop(first)
-    show.sees(".notes", "stops at beat 699 without an end")
+    show.sees(".notes", "stops at beat 699: it was never closed")
     show.opened()
     assert show.ends[1] == Record.read([first]).last_beat
     show.drop(second)
@@ -415,7 +415,7 @@ def test_the_parts_of_a_crashed_match_are_joined(
 def test_damage(
     library: Venue, record: Record, flags: Path, open_page: OpenPage, tmp_path: Path
 ) -> None:
-    """What can be had is played, and the page says what is wrong."""
+    """The readable part is played, and the page says what is wrong."""
     whole = write_segments(record, tmp_path / "parts")[1]
     data = bytearray(whole.read_bytes())
     half = len(data) // 2
@@ -494,7 +494,7 @@ def test_without_the_servers_list(
     page = open_page()
     page.route("**/recordings", lambda route: route.abort())
     show = Player(page, library, drawn=False)
-    show.sees(".chooser", "The server's list can't be had")
+    show.sees(".chooser", "The server's list can't be loaded")
     show.drop(flags)
     show.opened()
 

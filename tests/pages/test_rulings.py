@@ -29,7 +29,7 @@ console.log(JSON.stringify({
 
 
 def shown(stage: Stage) -> dict[str, Any]:
-    """What the page makes of a match's events."""
+    """The page shows the referee's rulings from a match's events."""
     node = shutil.which("node", path=str(Path(sys.executable).parent)) or shutil.which("node")
     if node is None:
         pytest.skip("no Node: pip install --group web")

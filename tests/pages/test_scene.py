@@ -54,7 +54,7 @@ def stand(page: Page, address: str) -> Stand:
 
 
 class Recorded:
-    """What the stand shows, read in Python."""
+    """The stand's picture and state, read in Python."""
 
     def __init__(self, site: Path, arena: str) -> None:
         data = msgspec.msgpack.decode((site / f"{arena}.bin").read_bytes())

@@ -90,7 +90,7 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     show.sees(".result h1", "Bees wins")
     show.sees(".result", "Decided by the referee")
     show.sees(".result .side.won", "Bees")
-    show.sees(".result .next", "the referee opens the next match")
+    show.sees(".result .next", "The referee opens the next match")
     show.page.get_by_role("button", name="Look at the field").click()
     show.misses(".result")
     assert "18 : 18" in show.page.title()
@@ -119,7 +119,7 @@ def test_a_team_is_shown_in_its_own_look(venue: Venue, open_page: OpenPage) -> N
 
 @pytest.mark.long
 def test_the_winner_is_whom_the_referee_says(venue: Venue, open_page: OpenPage) -> None:
-    """Rules 4: who was declared in a halt has won, before and after it is official."""
+    """Rules 4: a winner declared in a halt has won, before and after the result is official."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -170,7 +170,7 @@ def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: Any) -> None:
-    """What stands still is never shown as live; the page says what it waits for and recovers."""
+    """A picture that stands still is not shown as live; the page says what it waits for."""
     console.expect("WebSocket|ERR_CONNECTION")
     court, web = venue.court(), venue.web()
     decide(playing(venue), "two", type="adjust", seat="left", points=2)
@@ -250,7 +250,7 @@ def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
-    """The page says so, and goes on saying it while it asks again and again."""
+    """The page shows the refusal, and keeps showing it while it asks again."""
     venue.court()
     venue.web()
     page = open_page()
@@ -347,7 +347,7 @@ def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_news_are_read_aloud_once(venue: Venue, open_page: OpenPage) -> None:
-    """An event stands in the log too, but a screen reader is told of it in one place."""
+    """An event is also in the log, but a screen reader announces it only once."""
     venue.court()
     venue.web()
     referee = playing(venue)

@@ -58,7 +58,7 @@ def test_the_image_installs_what_a_court_needs() -> None:
 
 
 def test_the_services_hang_together() -> None:
-    """Every service runs the image; the port that is opened is the one that is connected to."""
+    """Every service runs the image; clients connect to the port that is opened."""
     assert {service["image"] for service in SERVICES.values()} == {"lacoc"}
     assert SERVICES["court"]["ports"] == [f"{PORT}:{PORT}"]
     assert SERVICES["web"]["ports"] == [f"{WEB_PORT}:{WEB_PORT}"]
@@ -75,7 +75,7 @@ def test_the_composition_plays(tmp_path: Path) -> None:
     port, web_port = free_port(), free_port()
 
     def here(text: str) -> str:
-        """What a container sees, as this machine has it."""
+        """Return this machine's view of a container's folder."""
         text = text.replace("/contest/", f"{tmp_path}/").replace("court:", "127.0.0.1:")
         return text.replace(PORT, port).replace(WEB_PORT, web_port)
 
@@ -142,7 +142,7 @@ def wait_until_healthy(check: list[str], timeout_s: float = 60) -> None:
 
 
 def wait_for(lines: "queue.Queue[str]", word: str, timeout_s: float) -> list[str]:
-    """Everything that was said until a word."""
+    """Return all output up to a word."""
     heard: list[str] = []
     until_s = time.monotonic() + timeout_s
     while not heard or word not in heard[-1]:

@@ -55,7 +55,7 @@ def test_every_option_and_argument_has_help(name: str) -> None:
 def test_help_is_shown_as_it_is_written(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Help runs, and no words are lost: square brackets are not taken for styles."""
+    """Help runs and loses no words: square brackets are not read as styles."""
     monkeypatch.setenv("COLUMNS", "100")
     with pytest.raises(SystemExit) as stop:
         cli.main([*name.split()[1:], "--help"])

@@ -98,7 +98,7 @@ def test_nothing_of_the_machine_it_was_made_on_is_in_it() -> None:
 
 
 def test_no_library_is_copied_in() -> None:
-    """What others made is installed, not kept here: no vendored folders, binaries or bundles."""
+    """The repository has no vendored folders, binaries or bundles."""
     folders = {"vendor", "third_party", "node_modules", "site-packages", "_vendor"}
     suffixes = {".whl", ".so", ".dll", ".dylib", ".jar", ".exe", ".egg"}
     found = [

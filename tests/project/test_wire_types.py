@@ -1,4 +1,4 @@
-"""What the pages have of the Python code is what that code says."""
+"""The pages' generated types and constants match the Python code."""
 
 import runpy
 from pathlib import Path

@@ -55,7 +55,7 @@ class Environment:
 
 
 def try_pages(env: Environment) -> None:
-    """The pages are in what was installed, and need no Node."""
+    """The install contains the pages, and they need no Node."""
     command = [str(env.bin / "lacoc"), "web", "--json", "--connect", "tcp/127.0.0.1:1"]
     with subprocess.Popen(
         command, cwd=env.folder, env={**os.environ, "PATH": str(env.bin)}, stdout=subprocess.PIPE
@@ -79,7 +79,7 @@ def fetch(url: str) -> str:
 
 
 def try_both(env: Environment) -> None:
-    """What must work with and without MuJoCo."""
+    """Check what must work with and without MuJoCo."""
     try_pages(env)
     env.run("lacoc", "--version")
     assert "practice" in env.run("lacoc", "--help").stdout

@@ -1,4 +1,4 @@
-"""What comes out of a record can be read by the programs it is made for."""
+"""The programs that an export is made for can read it."""
 
 import csv
 import io
@@ -229,7 +229,7 @@ def test_foxglove_shows_the_board_as_it_changes(record: Record) -> None:
 
 
 def test_a_marker_is_drawn_in_its_state(record: Record, scene: Scene) -> None:
-    """The colours of both states differ, and the board shows the one that holds."""
+    """The colours of both states differ, and the board shows the current one."""
     geoms = tuple(
         msgspec.structs.replace(geom, rgba=(0.1 * geom.state, 0, 0, 1.0))
         if geom.marker >= 0
@@ -261,7 +261,7 @@ def test_info(tmp_path: Path, write_match: WriteMatch) -> None:
 
 
 def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
-    """It says where the record stops and that there is no result."""
+    """The export says where the record stops and that there is no result."""
     path = write_match(tmp_path)
     path.write_bytes(path.read_bytes()[:-2500])
     words = CliRunner().invoke(app, ["info", str(path)])
@@ -290,7 +290,7 @@ def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> 
 
 
 def test_export_writes_what_is_asked(tmp_path: Path, write_match: WriteMatch) -> None:
-    """Only that; and if one of it can't be had, nothing."""
+    """Only the chosen outputs are written; if one is impossible, none is."""
     path, out = write_match(tmp_path), tmp_path / "out"
     args = ["export", str(path), "--out", str(out), "--pos-data", "left"]
     done = CliRunner().invoke(app, args)
@@ -303,7 +303,7 @@ def test_export_writes_what_is_asked(tmp_path: Path, write_match: WriteMatch) ->
 def test_export_of_a_match_that_never_began(
     tmp_path: Path, header: MakeHeader, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What there is is written; of the rest it says why there is none."""
+    """The available outputs are written; for the others the command says why they are missing."""
     RecordWriter(tmp_path, header()).close()
     path, out = tmp_path / "m.000.live.mcap", tmp_path / "out"
     done = CliRunner().invoke(app, ["export", str(path), "--out", str(out)])
@@ -314,7 +314,7 @@ def test_export_of_a_match_that_never_began(
 
 
 def test_the_command_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`lacoc replay` is an entry point; a file that is no record is one clear line, exit code 2."""
+    """`lacoc replay` is an entry point; for a wrong file it prints one line and exits with 2."""
     assert cli.main(["replay", "info", str(tmp_path / "none.mcap")]) == 2
     assert "There is no record" in capsys.readouterr().err
 
@@ -322,7 +322,7 @@ def test_the_command_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 def test_names_in_a_hostile_record_lead_nowhere(
     tmp_path: Path, header: MakeHeader, frame: MakeFrame, sheet: Sheet, scene: Scene
 ) -> None:
-    """What match and seats are called is the record's to say, where files go is not."""
+    """A record decides the names of match and seats, but not where files are written."""
     writer = RecordWriter(tmp_path, header(match_id="aaaaaaaaaa"))
     writer.sheet(0, sheet)
     writer.scene(0, scene)

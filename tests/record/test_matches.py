@@ -1,4 +1,4 @@
-"""What a court calls its matches, and which of a folder are its own."""
+"""A court's names for its matches, and which records in a folder are its own."""
 
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
@@ -23,7 +23,7 @@ from lacoc_shared.record.writer import RecordWriter
     ],
 )
 def test_a_name_is_read_as_it_was_made(match_id: str, court: str, number: int) -> None:
-    """Whatever a court's name has of hyphens and digits, and however many matches it held."""
+    """Names work with any hyphens and digits in a court's name, and any number of matches."""
     name = MatchName("20260501-100000", number, court)
     assert str(name) == match_id
     assert MatchName.parse(match_id) == name

@@ -54,7 +54,7 @@ def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) 
 def test_packing_that_was_interrupted_is_repeated(
     tmp_path: Path, write_segments: WriteSegments
 ) -> None:
-    """A half-written packed file is no record; a finished one is kept and its segments go."""
+    """A half-written packed file is no record; a finished one replaces its segments."""
     first, second = write_segments(tmp_path)
     record, data = Record.read(first), second.read_bytes()
     (tmp_path / "m.mcap.part").write_bytes(b"half")
@@ -152,7 +152,7 @@ def test_what_is_packed_is_held(
 def test_what_is_being_written_is_not_packed(
     tmp_path: Path, write_match: WriteMatch, header: Callable[..., Header]
 ) -> None:
-    """A court has it: all segments stay, and there is no packed file."""
+    """While a court holds the match, all segments stay and there is no packed file."""
     write_match(tmp_path, close=False)
     writer = RecordWriter(tmp_path, header(segment=1, first_beat=40))
     segments = files.segment_paths(tmp_path, "m")

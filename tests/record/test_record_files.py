@@ -49,7 +49,7 @@ def packed(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) ->
 
 
 def test_a_key_of_an_older_record_was_not_held() -> None:
-    """What the court did not write down then has its default."""
+    """A field missing from an old record has its default."""
     older = codec.encode(["key", 0, 14, 1, 2])
     assert codec.decode(older, Input) == KeySeat(0, 14, 1, 2, seen=0, held=0, late=0)  # type: ignore[arg-type]
 
@@ -122,7 +122,7 @@ def test_a_segment_cut_anywhere_gives_every_whole_message(
 
 
 def test_a_packed_file_cut_anywhere_is_read_or_refused(tmp_path: Path, packed: Path) -> None:
-    """A download that broke off: no bytes of it raise anything but UserError."""
+    """A record that is cut anywhere raises only UserError."""
     data = packed.read_bytes()
     path = tmp_path / "m.mcap"
     for size in range(0, len(data), 7):
@@ -150,7 +150,7 @@ def test_a_wrong_byte_anywhere_is_read_or_refused(
 
 
 def test_a_damaged_closed_file_says_so(tmp_path: Path, segment: Path) -> None:
-    """What is before the damage is had; it is not taken for a short match, and stays as it is."""
+    """The part before the damage is read; the record is not changed or taken for a short match."""
     data = bytearray(segment.read_bytes())
     at = data.index(codec.encode(KeySeat(0, 24, 1, 2)))  # what entered at beat 23
     data[at] ^= 0xFF
@@ -170,7 +170,7 @@ def test_a_damaged_closed_file_says_so(tmp_path: Path, segment: Path) -> None:
 def test_a_missing_segment_is_told(
     tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """What is before it is had, and what is behind it is not taken for the same."""
+    """The part before the missing segment is read; the part after it is not joined to it."""
     write_match(tmp_path, close=False)
     late = RecordWriter(tmp_path, header(segment=2, first_beat=60))
     late.frame(60, codec.encode(frame(60)))
@@ -188,7 +188,7 @@ def test_a_missing_segment_is_told(
 def test_a_segment_without_a_header_holds_nothing(
     size: int, tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """A court that was killed while it opened the file: the next one goes on behind it."""
+    """If a court was killed while it opened the file, the next one goes on with a new segment."""
     first = write_match(tmp_path, close=False)
     empty = tmp_path / "m.001.live.mcap"
     empty.write_bytes(first.read_bytes()[:size])
@@ -249,7 +249,7 @@ for beat in range(10**9):
 def test_kill_9_loses_nothing_that_was_answered(
     tmp_path: Path, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """docs/architecture.md: every beat that the victim told of is in its file."""
+    """docs/architecture.md: every beat that the killed court told anybody is in its file."""
     victim = subprocess.Popen(
         [
             sys.executable,
@@ -277,7 +277,7 @@ def test_kill_9_loses_nothing_that_was_answered(
 def test_a_restarted_court_goes_on_in_a_new_segment(
     tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """What the killed court had of a beat that it did not finish does not count."""
+    """Messages of a beat that the killed court did not finish do not count."""
     write_match(tmp_path, close=False)
     second = RecordWriter(tmp_path, header(segment=1, first_beat=33))
     second.input(33, KeySeat(1, 99, 1, 0))
@@ -336,7 +336,7 @@ def test_a_record_is_never_overwritten(tmp_path: Path, header: MakeHeader) -> No
 
 
 def test_a_full_disk_loses_nothing(tmp_path: Path, header: MakeHeader, frame: MakeFrame) -> None:
-    """What the disk does not take waits in memory until it could be written; `flush` says so."""
+    """Data that the disk refuses waits in memory until it is written; `flush` reports it."""
     resource = pytest.importorskip("resource")
     unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
     writer = RecordWriter(tmp_path, header())
@@ -438,7 +438,7 @@ def test_many_inputs_in_a_beat_are_read_in_linear_time(header: MakeHeader, tmp_p
 def test_a_damaged_time_ends_what_is_read(
     header: MakeHeader, frame: MakeFrame, tmp_path: Path
 ) -> None:
-    """A flipped bit in a time is no match of a thousand years, which a restarted court replays."""
+    """A flipped bit in a time does not make a restarted court replay a thousand years."""
     writer = RecordWriter(tmp_path, header())
     for beat in (0, 1, 2**36 // BEATS_PER_S):
         writer.frame(beat, codec.encode(frame(0)))

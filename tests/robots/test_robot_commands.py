@@ -51,7 +51,7 @@ def test_check_names_every_mistake(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_mistakes_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """--json prints every mistake as `gait check --json` does; a right robot has none."""
+    """--json prints every mistake as `gait check --json` does; a correct robot has none."""
     file = tmp_path / "mine.toml"
     file.write_text(HEXAPOD.replace("kp = 20.0", "kp = nan").replace('"Hexapod"', "6"))
     assert lacoc("robot", "check", "--json", str(file)) == 2
@@ -129,6 +129,6 @@ def test_export_without_mujoco(
 
 
 def test_nothing_there(capsys: pytest.CaptureFixture[str]) -> None:
-    """A name that is no robot's: one line, exit code 2."""
+    """For an unknown robot the command prints one line and exits with 2."""
     assert lacoc("robot", "check", "centipede") == 2
     assert "'centipede'" in capsys.readouterr().err

@@ -111,7 +111,7 @@ def test_what_may_be_left_out() -> None:
     ],
 )  # fmt: skip
 def test_one_mistake(old: str, new: str, field: str, found: str) -> None:
-    """Rules 2: a mistake is named with its place, and with what was found there."""
+    """Rules 2: a mistake has its place and says what was found there."""
     places = {(m.field, found in m.found) for m in mistakes_of(changed(old, new))}
     assert (field, True) in places
 
@@ -231,7 +231,7 @@ def test_on_the_edge_of_a_range() -> None:
 
 
 def test_no_mistake_of_a_mistake() -> None:
-    """What follows from an unreadable number is no mistake of its own."""
+    """An unreadable number gives one mistake, not further ones that follow from it."""
     text = re.sub(r"(?s)posture_deg = \[.*?\n\]", f"posture_deg = {['nan'] * 18}", HEXAPOD)
     text = text.replace("height_m = 0.055", "height_m = 0.5").replace("'nan'", "nan", 17)
     assert {mistake.field for mistake in mistakes_of(text)} == {"start.posture_deg"}
@@ -241,7 +241,7 @@ def test_no_mistake_of_a_mistake() -> None:
 
 
 def test_broken_toml_names_the_line() -> None:
-    """What is no TOML is refused with the line where reading stopped."""
+    """A file that is not TOML is refused with the line where reading stopped."""
     (mistake,) = mistakes_of("name = 'a'\n[body\n")
     assert mistake.row == 2
 
@@ -270,12 +270,12 @@ def test_broken_toml_names_the_line() -> None:
     ],
 )
 def test_hostile_bytes(data: bytes, found: str) -> None:
-    """Bytes that are no robot file are a mistake like any other."""
+    """Bytes that are not a robot file give a mistake like any other."""
     assert any(found in mistake.found for mistake in mistakes_of(data))
 
 
 def test_mistakes_are_safe_to_print() -> None:
-    """A file can't write to the terminal of whoever checks it."""
+    """A file can't send control characters to the terminal of the person who checks it."""
     for mistake in mistakes_of('"\\u001b[2J" = 1\nname = "\\u001b[31m"\n'):
         assert str(mistake).isprintable()
 

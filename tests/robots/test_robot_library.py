@@ -36,7 +36,7 @@ def test_folder_of_a_third_party(third_party: Path) -> None:
 
 
 def test_single_file(third_party: Path) -> None:
-    """A .toml file stands for itself, and the gait files beside it are its own."""
+    """A .toml file is a robot by itself, with the gait files beside it."""
     mine = third_party.joinpath("robot.toml").rename(third_party / "mine.toml")
     assert find_robot(str(mine))[0] == "mine.toml"
     assert sample_gait_files(str(mine)).postures is not None
@@ -44,7 +44,7 @@ def test_single_file(third_party: Path) -> None:
 
 @pytest.mark.parametrize("name", ["no-such", "no/such.toml", "."])
 def test_nothing_there(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is not there is one sentence that names it."""
+    """A missing robot gives one sentence that names it."""
     monkeypatch.chdir(tmp_path)
     with pytest.raises(UserError, match=r"no-such|such\.toml|robot\.toml"):
         find_robot(name)

@@ -143,7 +143,7 @@ def test_accent_legs_look_different(hexapod: RobotSpec, compile_world: Compile) 
 
 @pytest.mark.parametrize("colour", [(0, 0, 0), (1, 1, 1), (0.2, 0.4, 0.9), (1, 0.6, 0)])
 def test_accent_of_any_colour(colour: tuple[float, float, float]) -> None:
-    """The accent is told apart from any team's colour."""
+    """The accent differs visibly from any team's colour."""
     accent = accent_colour((*colour, 1.0))
     assert math.dist(accent[:3], colour) > 0.4
     assert accent[3] == 1.0

@@ -121,7 +121,7 @@ def test_what_is_told(stood: Stood, words: list[str]) -> None:
 
 
 def test_the_posture_of_key_0() -> None:
-    """The first of its sequence; the start posture where a file has none; each posture once."""
+    """It is the first of key 0's sequence, or the start posture without key 0; each only once."""
     first, other, start = (0.1,) * 12, (0.2,) * 12, (0.3,) * 12
     gait = Gait(PostureTable({0: first, 1: other}), LocomotionTable(((first, other), (other,))))
     assert standing_postures(gait, (B, A), start) == {first: [A, B]}
@@ -162,7 +162,7 @@ def test_commands_say_the_same(leaper: Path) -> None:
 
 
 def test_a_gait_is_checked_for_a_robot(leaper: Path) -> None:
-    """Its legs count, and --legs beside it is one too many."""
+    """The robot's legs count, and --legs together with a robot is refused."""
     gait_file = str(leaper / "Loco-data.txt")
     run = CliRunner().invoke
     assert run(gait_app, ["check", gait_file, "--robot", "hexapod"]).exit_code == 0

@@ -1,4 +1,4 @@
-"""A court, someone who watches it, and a referee; contestants come and get lost."""
+"""A court, a spectator and a referee; contestants join and get lost."""
 
 import signal
 import subprocess
@@ -23,7 +23,7 @@ LATE_BEATS = 10
 
 
 class Hall:
-    """A court, someone who watches it, and a referee; contestants come as processes."""
+    """A court, a spectator and a referee; contestants are processes."""
 
     def __init__(self, folder: Path, stack: ExitStack, host: str = "127.0.0.1") -> None:
         self.folder = folder

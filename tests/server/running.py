@@ -1,4 +1,4 @@
-"""A contest's court as a process, and those who wait for what it does."""
+"""A contest's court as a process, and clients that wait for its actions."""
 
 import json
 import socket
@@ -105,7 +105,7 @@ class Party:
 
     @property
     def view(self) -> Spectator:
-        """What one of them sees."""
+        """Return the view of one client."""
         return self.left.view
 
     @property
@@ -119,7 +119,7 @@ class Party:
 
     @property
     def trouble(self) -> str:
-        """What the court says of the disk of its record."""
+        """Return what the court reports about the disk of its record."""
         return "" if self.view.health is None else self.view.health.record_trouble
 
     def until(self, true: Callable[[], bool]) -> None:
@@ -144,7 +144,7 @@ class Party:
 
 @contextmanager
 def party(contest: Path) -> Iterator[Party]:
-    """Those who belong to a contest's court, which runs."""
+    """Connect the clients of a contest's running court."""
     _, court = load(contest).court()
     with open_client([court.address()]) as session:
         yield Party(session, contest)

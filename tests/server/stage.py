@@ -191,7 +191,7 @@ class Stage:
         return self.beats[-1]
 
     def send(self, item: Input) -> Outcome:
-        """One beat with one input; what became of it."""
+        """Run one beat with one input; returns its effect."""
         return self.beat(item).outcomes[0]
 
     def decide(self, decision: d.Decision, reason: str = "agreed") -> Any:
@@ -282,5 +282,5 @@ def _fields(struct: Any) -> dict[str, Any]:
 
 
 def after(event: Event) -> str:
-    """Of a phase event: the phase that begins."""
+    """Return the phase that a phase event begins."""
     return str(event.data["after"])

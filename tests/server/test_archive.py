@@ -26,7 +26,7 @@ HEADER = Header(
 
 
 def said(folder: Path, writer: RecordWriter) -> list[str]:
-    """What the log has once a match's record is put away."""
+    """Return the log after a match's record is closed."""
     with capture_logs() as lines:
         archive = Archive(folder, "main", CourtLog("main"))
         archive.take(MATCH, writer)

@@ -1,4 +1,4 @@
-"""A bot in a file, as somebody writes it: its mistakes are told with the line they are in."""
+"""A user's bot in a file: its mistakes are reported with their line."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from lacoc_shared.gait.tables import Level
 
 
 def play(folder: Path, text: str) -> Any:
-    """What a bot file makes of the first frame."""
+    """Return the key that a bot file chooses for the first frame."""
     path = folder / "my_bot.py"
     path.write_text(HEAD + text, encoding="utf-8")
     stage = Stage("othello")

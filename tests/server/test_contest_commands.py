@@ -114,7 +114,7 @@ def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
 def test_a_court_says_where_it_is_open_and_not_that_its_match_is_new(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The match may be one that goes on after a restart: said a line before."""
+    """The match may be one that goes on after a restart; an earlier line says so."""
     entry = contests.throwaway("othello").courts["main"]
     at = ("tcp/127.0.0.1:7447",)
     serve._open_doors("main", entry, "m-1", at, metrics=None, made_here=False, json=False)

@@ -30,7 +30,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def certificate(path: Path) -> dict[str, Any]:
-    """What Python's own TLS makes of a certificate."""
+    """Return a certificate as Python's own TLS reads it."""
     return ssl._ssl._test_decode_cert(str(path))  # type: ignore[attr-defined, no-any-return]
 
 
@@ -94,7 +94,7 @@ def test_twice_keeps_what_was_handed_out(file: Path) -> None:
 
 
 def test_two_contests_of_one_folder_have_keys_of_their_own(file: Path) -> None:
-    """The second takes nothing of the first, and a third contest of a taken name is refused."""
+    """The second contest does not touch the first one's keys; a taken name is refused."""
     run("keys", str(file), "--host", "one.example")
     first = contests.load(file).keys
     assert first is not None

@@ -1,4 +1,4 @@
-"""What a court says in its log beside the events of its match."""
+"""The lines of a court's log other than the events of its match."""
 
 import msgspec
 import pytest

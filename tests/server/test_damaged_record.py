@@ -103,7 +103,7 @@ def verdict(path: Path) -> Verdict:
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.83, 0.999])
 def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder: Path) -> None:
-    """It verifies up to there, and a court goes on from there."""
+    """The record verifies up to the cut, and a court goes on from there."""
     path = segment(folder, left_behind[: round(share * len(left_behind))])
     found = verdict(path)
     assert found.kind is Kind.SAME
@@ -144,7 +144,7 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder:
 
 @pytest.mark.parametrize("size", [0, 4, 900])
 def test_an_empty_last_segment_is_passed_over(size: int, left_behind: bytes, folder: Path) -> None:
-    """A court was killed while it started again: the next one goes on all the same."""
+    """After a court was killed while it started again, the next one still goes on."""
     segment(folder, left_behind)
     segment(folder, left_behind[:size], 1)
     left = unfinished(folder, "main", OTHELLO)
@@ -159,7 +159,7 @@ def test_an_empty_first_segment_is_no_match(left_behind: bytes, folder: Path) ->
 
 
 def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
-    """Nobody goes on with a match of which a part is missing; what is before it can be had."""
+    """No court goes on with a match that lacks a segment; the part before it can be read."""
     first = segment(folder, left_behind)
     header = msgspec.structs.replace(Record.read(first).header, segment=2, first_beat=200)
     RecordWriter(folder, header).leave()

@@ -92,7 +92,7 @@ def is_given(those: Party, reason: str) -> bool:
 
 @pytest.mark.parametrize("disk_of", [limited, small])
 def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: Path) -> None:
-    """Nobody is told what is not recorded; with room again the match goes on, halted."""
+    """The court publishes nothing unrecorded; with room again the match is halted and goes on."""
     contest = write_contest(tmp_path / "contest.toml")
     seen: dict[int, bytes] = {}
     with ExitStack() as stack:
@@ -159,12 +159,12 @@ runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 
 
 def sync(flag: Path, what: str) -> list[str]:
-    """What stands before a court's command."""
+    """Return the prefix of a court's command line."""
     return [sys.executable, "-c", SYNC, str(flag), what]
 
 
 def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -> None:
-    """The referee hears of it, and may go on: everybody but a power cut has the record."""
+    """The referee is told and may resume: only a power cut could lose a part of the record."""
     contest, broken = write_contest(tmp_path / "contest.toml"), tmp_path / "broken"
     before = sync(broken, "fails")
     with served(contest, tmp_path / "recordings", before=before), party(contest) as those:
@@ -217,7 +217,7 @@ def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
 
 
 def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) -> None:
-    """That match is over all the same; the next start goes on with the one after it."""
+    """That match is still over; the next start goes on with the one after it."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     slow = tmp_path / "slow"
     slow.touch()

@@ -19,7 +19,7 @@ RUN_S = 24.0
 
 
 class Walk(NamedTuple):
-    """What came of a walk."""
+    """The result of a walk."""
 
     forward_mm_s: float
     turn_deg_s: float

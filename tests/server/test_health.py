@@ -1,4 +1,4 @@
-"""How well a match was held: what is measured, what it says, and that it stands in the record."""
+"""Health verdict: measurements, advice, and its place in the record."""
 
 import json
 from collections import Counter
@@ -169,7 +169,7 @@ def test_repeats_of_a_match_that_is_often_halted() -> None:
 
 
 def test_who_left_is_missed_by_nobody() -> None:
-    """Rules 4: the robot of who leaves in play stands; that is no fault of a link."""
+    """Rules 4: if a team leaves in play, its robot stands, and its link has no fault."""
     held = Held()
     held.seconds(2)
     expected = held.left.expected
@@ -194,7 +194,7 @@ def test_silences() -> None:
 
 
 def test_refusals_of_this_match() -> None:
-    """What the doors refused since it began, and what the rules refused."""
+    """The verdict counts refusals of the doors and of the rules since the match began."""
     held = Held()
     held.beat()
     held.refused.update({"flood": 3, "bad-seal": 1})
@@ -212,7 +212,7 @@ def test_faults_of_physics() -> None:
 
 
 def test_a_killed_court_goes_on_counting() -> None:
-    """What was measured before the kill counts too."""
+    """Measurements from before the kill count too."""
     first = Held()
     first.beat()
     first.beat(SilentSeat(LEFT))
@@ -253,7 +253,7 @@ LINK = GOOD.seats[0]
     ids=["factor", "slow", "worst", "faults", "resumptions", "silent", "repeats"],
 )
 def test_each_limit_has_its_phrase(held: dict[str, object], why: Phrase) -> None:
-    """Below a contest's limits the referee is told "replay advised", and why."""
+    """Beyond a contest's limits the referee is told "replay advised", and why."""
     verdict = msgspec.structs.replace(GOOD, **held)
     assert list(advice(GOOD, HealthLimits())) == []
     assert list(advice(verdict, HealthLimits())) == [why]
@@ -274,7 +274,7 @@ def test_advice_is_an_event_of_the_match() -> None:
 
 @pytest.mark.slow
 def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
-    """It stands beside the result, not in it: `replay verify` simulates no wall clock."""
+    """The verdict is beside the result, not in it, because `replay verify` has no wall clock."""
     match = Match(setup("othello", QUICK), World)
     health = MatchHealth(match, HealthLimits(), [Door(0, {})] * 2)
     journal = Journal(match, tmp_path, measure=health.measure)

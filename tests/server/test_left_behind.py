@@ -1,4 +1,4 @@
-"""Which match a court goes on with: its own, and only one that it did not end."""
+"""A court goes on only with its own match, and only if it did not end it."""
 
 import os
 import signal
@@ -39,7 +39,7 @@ LATER = "20260501-100500"
 def held(
     folder: Path, court: str = "main", opened: str = TEN, number: int = 1, arena: str = "othello"
 ) -> Journal:
-    """A match of a court in PLAYING, or in READY where nobody has to start it."""
+    """Leave a match of a court in PLAYING, or in READY if nobody has to start it."""
     made = msgspec.structs.replace(
         setup(arena, QUICK), match_id=f"{opened}-{court}-{number:03d}", court=court, match=number
     )
@@ -164,7 +164,7 @@ def test_a_match_that_went_on_loses_nothing_to_a_packer(tmp_path: Path) -> None:
 
 
 def test_a_match_that_a_court_took_up_is_not_taken_up_twice(tmp_path: Path) -> None:
-    """Its first segment is held by nobody, its second by the running court."""
+    """Nobody holds its first segment, and the running court holds its second."""
     killed(tmp_path)
     left = unfinished(tmp_path, "main", OTHELLO)
     assert left is not None
@@ -242,7 +242,7 @@ def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
 
 
 def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
-    """What it could not pack then is packed when its next match ends, or when it starts again."""
+    """The record is packed when the next match ends or when the court starts again."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     flag = tmp_path / "flag"
     with ExitStack() as stack:

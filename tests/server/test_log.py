@@ -343,7 +343,7 @@ def test_answers(at: Phase, item: Input, answer: Done | Refusal) -> None:
 
 
 def test_answers_about_empty_seats() -> None:
-    """Rules 4: seats are taken in LOBBY; who comes later plays in the next match."""
+    """Rules 4: seats are taken in LOBBY; a later contestant plays in the next match."""
     stage = Stage(overrides=QUICK)
     nobody = Refusal(say("refused.nobody-joined", seat="right"))
     assert stage.send(ReadySeat(RIGHT, True)) == nobody

@@ -145,7 +145,7 @@ def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
 
 
 def test_a_pulled_cable(hall: Hall) -> None:
-    """Nothing comes through and nobody is told; in again, and also after the link was given up."""
+    """A silent link is noticed, and the seat comes back, also after the connection was closed."""
     with SlowLink(hall.court.address()) as link:
         hall.bot("left", link.address)
         hall.bot("right")
@@ -164,7 +164,7 @@ def test_a_pulled_cable(hall: Hall) -> None:
 
 @pytest.mark.long
 def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
-    """A bad link drives all the same: late, and never taken for lost."""
+    """Keys over a bad link still work: they are late, but the seat never counts as lost."""
     with SlowLink(hall.court.address(), delay_s=0.05, jitter_s=0.04, loss=0.03) as link:
         hall.bot("left", link.address)
         hall.bot("right")
@@ -186,7 +186,7 @@ def test_a_real_cable(tmp_path: Path) -> None:
 
 
 def frames_of(hall: Hall) -> int:
-    """How many frames of so many beats a spectator gets."""
+    """Return how many frames a spectator gets in a number of beats."""
     first, frames = hall.frame.beat, 0
     while hall.frame.beat < first + WATCHED_BEATS:
         frames += hall.view.wait_frame(WAIT_S) is not None

@@ -333,7 +333,7 @@ seats = st.sampled_from([LEFT, RIGHT])
 
 
 def _beat_of_inputs() -> st.SearchStrategy[list[Input]]:
-    """What may arrive in one beat: for each seat an [x], a digit, silence."""
+    """Draw the inputs of one beat: for each seat an [x], a digit, silence."""
 
     def of(seat: int) -> st.SearchStrategy[list[Input]]:
         return st.tuples(
@@ -422,7 +422,7 @@ def test_scores_and_board_are_in_every_frame() -> None:
 
 
 def test_a_touch_is_recorded_only_where_there_is_one() -> None:
-    """Design, "Record": what the rules saw beside the poses, in the ticks that have it."""
+    """Touches are recorded beside the poses, only in ticks with a touch."""
     script = Script(touches={3: {RIGHT: (4, 9)}})
     stage = playing("flag-strike", script, ticks=4)
     stage.beat(key(LEFT, X))

@@ -1,4 +1,4 @@
-"""From one match of a court to the next: who sits there, with what, and who is heard."""
+"""From one match of a court to the next: seats, files, and which seats are heard."""
 
 import errno
 import os
@@ -37,7 +37,7 @@ WHISTLE = "the token of the referee"
 
 
 class Room(NamedTuple):
-    """A court and those who are connected to it."""
+    """A court and its connected clients."""
 
     sessions: tuple[Session, Session]
     referee: RefereeClient
@@ -134,7 +134,7 @@ def test_who_joins_when_a_match_is_over_sits_in_the_next(room: Room) -> None:
 
 
 def test_who_was_silent_before_is_silent_in_the_next_match(room: Room) -> None:
-    """Rules 3: a dead controller is not taken for a living one because a match opens."""
+    """Rules 3: a dead controller does not count as alive when a match opens."""
     left, right = room.controller(0), room.controller(1)
     left.join()
     right.join()  # and is not heard from then on

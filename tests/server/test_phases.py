@@ -123,7 +123,7 @@ def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
 
 
 def test_an_empty_seat_is_nothing_but_empty() -> None:
-    """Rules 4: who leaves in LOBBY leaves no ready, silence or name behind."""
+    """Rules 4: a team that leaves in LOBBY leaves no ready, silence or name behind."""
     stage = Stage().to(P.LOBBY)
     stage.beat(ReadySeat(LEFT, True), SilentSeat(LEFT))
     assert stage.frame.seats[LEFT].flags == SeatFlag.JOINED | SeatFlag.READY | SeatFlag.SILENT
@@ -293,7 +293,7 @@ def test_a_fault_halts_before_the_tick() -> None:
 
 
 def test_a_fault_in_ready_goes_back_to_lobby() -> None:
-    """Rules 4: without physics there is no READY; both say it again."""
+    """Rules 4: without physics there is no READY; both teams say ready again."""
     stage = Stage(script=Script(faults={5: Fault(LEFT, say("fault.contacts"))})).to_ready()
     stage.until(P.LOBBY, at_most=10)
     assert not any(seat.flags & SeatFlag.READY for seat in stage.frame.seats)
@@ -427,7 +427,7 @@ def test_a_match_that_nobody_judges_ends_when_nobody_is_heard(halted: bool) -> N
 
 
 def test_who_comes_back_is_heard() -> None:
-    """Rules 3: a match with somebody there goes on, though all had been silent."""
+    """Rules 3: after all were silent, a match goes on as soon as somebody is back."""
     stage = Stage(overrides=READY).to_ready()
     stage.until(P.PLAYING)
     stage.beat(LeaveSeat(LEFT), SilentSeat(RIGHT))
@@ -449,7 +449,7 @@ def test_a_match_may_wait_for_ever(match: dict[str, object]) -> None:
 
 
 def test_a_practice_outlives_a_coffee_break() -> None:
-    """Rules 4, practice: a quarter of an hour without a word, and it ends."""
+    """Rules 4, practice: it ends after a quarter of an hour without a sign of life."""
     stage = Stage("practice").to_playing()
     stage.beat(SilentSeat(LEFT))
     for _ in range(14 * 60 * 50):
@@ -473,7 +473,7 @@ def test_a_match_with_a_referee_goes_on_though_everybody_has_left() -> None:
 
 
 def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
-    """Rules 4: refused with the reason; the match that goes on is the same."""
+    """Rules 4: an illegal decision is refused with the reason and does not change the match."""
     stage, twin = Stage().to(P.READY), Stage().to(P.READY)
     assert isinstance(stage.decide(d.Resume()), Refusal)
     twin.beat()

@@ -101,7 +101,7 @@ def test_each_segment_says_what_made_it() -> None:
 
 
 def test_the_first_difference_is_told_with_all_of_its_beat() -> None:
-    """In the order of a frame, whoever found them."""
+    """Differences are reported in the order of a frame, whichever check found them."""
     findings = [
         Finding(1, 9, Difference(7, ("state hash", "poses"))),
         Finding(10, 19, Difference(12, ("poses",))),
@@ -231,7 +231,7 @@ def test_the_command_tells_the_verdict(paths: Sequence[Path]) -> None:
 def test_a_record_that_lost_a_part_is_not_proven(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What can be read is verified, and the rest is told: no program may take it for the same."""
+    """The readable part is verified, and the lost part is reported, also to programs."""
     monkeypatch.setattr("lacoc_shared.record.pack.Writer", partial(Writer, chunk_size=20_000))
     path = play(tmp_path, 0, 2.0)
     data = bytearray(path.read_bytes())

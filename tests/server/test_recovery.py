@@ -40,7 +40,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
-    """Kill -9 in PLAYING: the match comes back HALTED with seats, clock and robots, and goes on."""
+    """After kill -9 in PLAYING the match is HALTED with seats, clock and robots, and goes on."""
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
         those = stack.enter_context(party(contest))
@@ -101,7 +101,7 @@ def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: P
 
 
 def test_settings_that_were_changed_count_from_the_next_match(contest: Path, folder: Path) -> None:
-    """The match that goes on is the one that was begun; the file's word is for those after it."""
+    """The current match keeps its settings; changes in the file count from the next one."""
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
         those = stack.enter_context(party(contest))
@@ -126,7 +126,7 @@ def test_settings_that_were_changed_count_from_the_next_match(contest: Path, fol
 
 
 def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> None:
-    """What was measured before the kill counts; the referee is told "replay advised"."""
+    """Measurements from before the kill count; the referee is told "replay advised"."""
     lasts(contest, 4)
     contest.write_text("health.resumptions = 0\n" + contest.read_text())
     with ExitStack() as stack:

@@ -174,7 +174,7 @@ BAD_ARGUMENTS: list[tuple[d.Decision, Phase, str]] = [
 
 @pytest.mark.parametrize(("decision", "phase", "code"), BAD_ARGUMENTS)
 def test_wrong_arguments(decision: d.Decision, phase: Phase, code: str) -> None:
-    """Rules 4: refused with what was found and what there is; nothing changes."""
+    """Rules 4: the refusal says what was found and which values exist; nothing changes."""
     stage, twin = stage_in(phase), stage_in(phase)
     assert refused(stage, decision).code == code
     twin.beat()
@@ -182,7 +182,7 @@ def test_wrong_arguments(decision: d.Decision, phase: Phase, code: str) -> None:
 
 
 def test_a_decision_is_an_event_with_who_beat_and_reason() -> None:
-    """Rules 4: each decision with who, beat, reason, and a reply with the scores."""
+    """Rules 4: each decision has a referee, a beat, a reason, and a reply with the scores."""
     stage = stage_in(P.PLAYING)
     beat = stage.beat(decide(d.Adjust("right", -2), "pushed the table", by="Takeda"))
     (reply,) = beat.outcomes
@@ -203,7 +203,7 @@ def test_a_decision_is_an_event_with_who_beat_and_reason() -> None:
 
 
 def test_ready_for_a_seat() -> None:
-    """Rules 4, `ready`: in the place of a contestant who cannot."""
+    """Rules 4, `ready`: the referee says it for a contestant who can't."""
     stage = Stage()
     stage.beat(join(LEFT), join(RIGHT))
     assert "nobody" not in render(stage.match.legality()["start"] or "")
@@ -336,7 +336,7 @@ def test_set_in_a_game_without_a_board() -> None:
 
 
 def test_clock_moves_the_end() -> None:
-    """Rules 4, `clock` ±s: an offset to the ticks played; the end comes so much sooner or later."""
+    """Rules 4, `clock` ±s: an offset to the played ticks moves the end by as much."""
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
     done(stage, d.Clock(10.0))
@@ -399,7 +399,7 @@ def test_what_changes_the_winner_is_told() -> None:
 
 
 def test_abort_is_void() -> None:
-    """Rules 4, `abort` (VOID): nobody wins; what was computed is kept."""
+    """Rules 4, `abort` (VOID): nobody wins; the computed result is kept."""
     stage = stage_in(P.PLAYING)
     done(stage, d.Abort())
     result = stage.beats[-1].result
@@ -467,7 +467,7 @@ def test_two_decisions_of_one_beat_are_taken_in_the_order_they_came() -> None:
 
 
 def test_ready_can_be_taken_back_after_the_referee_gave_it() -> None:
-    """Rules 4: back to LOBBY when one takes ready back, whoever said it."""
+    """Rules 4: the match is back in LOBBY when a team takes ready back, whoever said it."""
     stage = Stage()
     stage.beat(join(LEFT), join(RIGHT))
     done(stage, d.Ready("left"))
@@ -483,7 +483,7 @@ def test_less_than_a_tick_is_no_decision(decision: d.Decision) -> None:
 
 
 def test_a_decision_stands_in_the_log_before_what_follows() -> None:
-    """Rules 4: who decided comes first, then the phase and the result it led to."""
+    """Rules 4: the decision comes first, then the phase and the result that follow from it."""
     stage = stage_in(P.HALTED)
     stage.decide(d.Declare("left"))
     assert [event.kind for event in stage.beats[-1].events] == ["decision", "phase", "result"]

@@ -190,7 +190,7 @@ def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
 def test_a_record_of_protocol_1_is_read_and_verified(
     live: tuple[Path, list[Beat]], tmp_path: Path
 ) -> None:
-    """Its sentences are English; everything else of it is compared."""
+    """Its sentences are English; everything else in it is compared."""
     path = as_protocol_1(Record.read(live[0]), live[0], tmp_path)
     record = Record.read(path)
     first = Record.read(live[0]).events[0]

@@ -117,7 +117,7 @@ def test_a_record_is_never_overwritten(tmp_path: Path) -> None:
 
 
 def handed_in(folder: Path, locomotion: bytes | None) -> Path:
-    """What a student handed in."""
+    """Return the files that a student handed in."""
     folder.mkdir()
     if locomotion is not None:
         (folder / "LocoTra-data.txt").write_bytes(locomotion)

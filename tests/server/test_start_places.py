@@ -13,7 +13,7 @@ from lacoc_shared.words import render
 
 
 def straying(*ticks: int, by_m: float = 0.06, seat: int = LEFT) -> Stage:
-    """A match whose robot leaves its start by so much in some ticks after the robots are built."""
+    """Make a match whose robot moves from its start by a distance some ticks after it is built."""
     x_m, y_m = start(Stage("flag-strike"), seat)
     poses = {tick: {seat: (x_m, y_m + by_m)} for tick in ticks}
     return Stage("flag-strike", QUICK, script=Script(poses=poses))
@@ -32,7 +32,7 @@ def strayed(stage: Stage) -> list[Event]:
 
 
 def test_who_leaves_its_start_place_before_play_is_put_back() -> None:
-    """Everybody is told in the beat in which it is seen; the next beat finds it at its start."""
+    """An event says so in the same beat; in the next beat the robot is at its start."""
     stage = straying(3).to_ready()
     stage.run(2)
     assert from_start_m(stage) > 0.05
@@ -57,7 +57,7 @@ def test_a_step_within_the_place_is_none() -> None:
 
 
 def test_who_leaves_again_and_again_is_not_ready() -> None:
-    """The third time takes its ready back; who says ready again begins anew."""
+    """The third time its team is not ready; after it says ready again, the count begins at 0."""
     assert MOST_STRAYS == 3
     stage = straying(3, 6, 9).to_ready()
     stage.run(9)

@@ -111,7 +111,7 @@ def _touching(stage: Stage) -> int:
 
 
 def claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], int]]:
-    """What the game gave: (seat, kind, marker, also, tick), in an order of no seat's."""
+    """Return the game's claims (seat, kind, marker, also, tick), in an order that ignores seats."""
     return sorted(
         (e.seat, e.kind, e.data["marker"], tuple(sorted(e.data["also"])), e.clock_ticks)
         for e in stage.events
@@ -120,7 +120,7 @@ def claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], int]]:
 
 
 def _opposite(stage: Stage) -> dict[str, str]:
-    """For each marker the one on the other side of the field."""
+    """Return for each marker its partner on the other side of the field."""
     markers = stage.match.game.markers
     at = {(round(m.x_m, 6) + 0.0, round(m.y_m, 6) + 0.0): m.name for m in markers}
     return {m.name: at[round(-m.x_m, 6) + 0.0, round(-m.y_m, 6) + 0.0] for m in markers}

@@ -248,7 +248,7 @@ def test_a_match_may_turn_out_to_have_been_over() -> None:
 
 
 def test_what_turned_out_to_be_over_stays_over() -> None:
-    """Rules 4, take-back: a later take-back begins with what an earlier one had made."""
+    """Rules 4, take-back: a later take-back starts from the result of an earlier one."""
     stage = flag_strike({**ALL_FOUR, 35: {RIGHT: CORNERS[0]}})
     put = stage.decide(d.Set("flag0", "right")).event
     take_back(stage, event(stage, "capture", "corner0").number)
@@ -282,7 +282,7 @@ def test_over_in_the_tick_in_which_time_is_up() -> None:
 
 
 def test_time_is_never_up_in_a_match_without_end() -> None:
-    """Rules 4: a duration of 0 is no end; what was over goes on without the event."""
+    """Rules 4: a match with duration 0 has no time limit; without its last event it goes on."""
     endless = {"match": {"duration_s": 0.0, "countdown_s": 0.02}}
     stage = play(Stage("flag-strike", endless, script=Script(poses=dict(ALL_FOUR))), 100)
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
@@ -291,7 +291,7 @@ def test_time_is_never_up_in_a_match_without_end() -> None:
 
 
 def test_a_declared_end_stays() -> None:
-    """Rules 4: the referee's own word is taken back by another word, not by a fold."""
+    """Rules 4: only another decision replaces a declared end, not a take-back."""
     stage = flag_strike(ALL_FOUR)
     stage.decide(d.Declare("right"))
     take_back(stage, event(stage, "capture", "corner3").number)
@@ -394,7 +394,7 @@ def test_ticks_that_nothing_can_be_taken_back_from_are_not_kept(arena: str) -> N
 
 
 def test_the_first_event_of_a_match_is_taken_back_as_exactly_as_any() -> None:
-    """Rules 4, take-back: what was not kept before the first event is not missed after it."""
+    """Rules 4, take-back: the first event of a match can be taken back exactly."""
     late = {tick + 3000: step for tick, step in CHAIN.items()}
     stage, twin = othello(late, ticks=3100), othello({3030: CHAIN[30]}, ticks=3100)
     reply = take_back(stage, event(stage, "flip", "c3r2").number)

@@ -1,4 +1,4 @@
-"""What a court that was killed and started again says of its tokens is true."""
+"""A court that was killed and started again reports its tokens correctly."""
 
 import json
 import subprocess
@@ -82,7 +82,7 @@ def test_another_arenas_match_is_not_gone_on_with(tmp_path: Path) -> None:
 
 
 def test_a_token_that_was_replaced_in_the_contest_file_opens_nothing(tmp_path: Path) -> None:
-    """Docs, security: a lost token gets another; the match that goes on knows that one alone."""
+    """docs/security.md: after a lost token is replaced, the match accepts only the new one."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     name, court = load(contest).court()
     with served(contest, folder) as process, party(contest):

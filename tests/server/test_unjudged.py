@@ -1,4 +1,4 @@
-"""A court whose match no referee judges: it goes on by itself (rules 4, start = "ready")."""
+"""A match without a referee goes on by itself (rules 4, start = "ready")."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -120,7 +120,7 @@ class Held:
 
 @pytest.mark.parametrize("arena", ["practice", "othello"])
 def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena: str) -> None:
-    """Rules 4, start = "ready": there is no referee who could resume it; until then it waits."""
+    """Rules 4, start = "ready": without a referee, the match waits until a contestant is back."""
     held = Held(arena, tmp_path, {"match": {"start": "ready", "countdown_s": 0.02}})
     held.begin()
     held.kill()

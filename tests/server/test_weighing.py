@@ -61,7 +61,7 @@ def test_a_robot_is_tried_once() -> None:
 
 
 def test_wrong_files_are_told_without_a_trial() -> None:
-    """Mistakes of files are all that is told of them, at once."""
+    """Files with mistakes are reported at once, without a trial."""
     with Weighing(admission()) as weighing, pytest.raises(FileRefused, match="mass_kg"):
         weighing(changed(b"mass_kg = 0.125", b"mass_kg = 125"))
 

@@ -88,7 +88,7 @@ def test_the_digest_tells_every_difference_and_never_forgets_it() -> None:
 
 
 def test_save_and_load_at_any_tick() -> None:
-    """Design, "Record": a restored state goes on bit for bit (mjSTATE_INTEGRATION)."""
+    """A restored state goes on bit for bit (mjSTATE_INTEGRATION)."""
     it = world()
     saved, digests, poses = [], [], []
     angles = list(commands(120))
@@ -231,7 +231,7 @@ def test_mujocos_silent_reset_is_caught(
 
 @pytest.mark.parametrize("seat", [LEFT, RIGHT])
 def test_a_command_that_is_no_number(seat: int) -> None:
-    """Physics 6.1: MuJoCo replaces it without a word; here it is a fault."""
+    """A command that is not a number is a fault here; MuJoCo would replace it silently."""
     it = world()
     run(it, 5)
     before = it.save()
@@ -251,7 +251,7 @@ def test_a_fault_of_no_seat() -> None:
 
 
 def test_a_fault_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Design, "Failure policy": the referee is told; nothing else is disturbed."""
+    """The referee is told of a fault; nothing else is disturbed."""
     monkeypatch.chdir(tmp_path)
     it = world()
     it.data.qvel[0] = math.nan

@@ -1,4 +1,4 @@
-"""How much may pass: so many at once, so many a second in the long run."""
+"""An allowance limits the size of a burst and the rate in the long run."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,7 +7,7 @@ from lacoc_shared.network.allowance import Allowance
 
 
 def test_a_burst_then_the_rate() -> None:
-    """What is not used does not add up beyond the burst; a clock that starts late gives no more."""
+    """Unused allowance does not exceed the burst; a clock that starts late gives no more."""
     allowance = Allowance(2.0, 5)
     assert allowance.take(7, 1000.0) == 5
     assert allowance.take(1, 1000.4) == 0

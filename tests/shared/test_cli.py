@@ -161,7 +161,7 @@ def test_a_wrong_command_suggests_the_nearest(lacoc: Lacoc) -> None:
 
 @pytest.mark.parametrize("args", [("serve",), ("serve", "--court", "x"), ("serve", "--help")])
 def test_a_missing_extra_is_one_line(lacoc: Lacoc, args: tuple[str, ...]) -> None:
-    """A command that needs MuJoCo says so in one line, whatever was asked of it."""
+    """A command that needs MuJoCo says so in one line, with any arguments."""
     code, out, err = lacoc(*args)
 
     assert (code, out) == (2, "")
@@ -178,7 +178,7 @@ def test_a_missing_extra_found_late_is_the_same_line(lacoc: Lacoc) -> None:
 
 
 def test_a_user_error_is_one_line_and_code_2(lacoc: Lacoc) -> None:
-    """The sentence as it is, on standard error; square brackets are no markup."""
+    """The sentence goes to standard error unchanged; square brackets are not markup."""
     assert lacoc("fails", "user") == (
         2,
         "",
@@ -256,7 +256,7 @@ def test_the_shell_completes(words: str, expected: str) -> None:
 
 @pytest.mark.slow
 def test_a_reader_who_has_gone_is_no_error() -> None:
-    """`lacoc ... | head -1` ends without a word."""
+    """`lacoc ... | head -1` ends without an error message."""
     reader, writer = os.pipe()
     os.close(reader)
     try:
@@ -275,7 +275,7 @@ def test_a_reader_who_has_gone_is_no_error() -> None:
 
 @pytest.mark.slow
 def test_no_colours_in_a_pipe() -> None:
-    """What a program reads has no escape sequences."""
+    """Output to a program has no escape sequences."""
     done = subprocess.run(
         [sys.executable, "-m", "lacoc_shared", "contest", "check", "none.toml"],
         capture_output=True,

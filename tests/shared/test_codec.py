@@ -49,7 +49,7 @@ def test_a_payload_is_msgpack_for_anybody() -> None:
     ids=["empty", "no msgpack", "cut", "more", "type", "field", "shape", "no UTF-8", "deep"],
 )
 def test_what_is_not_the_message_is_refused(data: bytes, words: str) -> None:
-    """One error, which says what was found, whatever the bytes are."""
+    """Any wrong bytes raise one error, which says what was found."""
     with pytest.raises(BadMessage, match=f"(?i){words}"):
         decode(data, Refusal)
 

@@ -1,4 +1,4 @@
-"""The contest file and who goes before whom: command line, environment, file, default."""
+"""The contest file, and the order of sources: command line, environment, file, default."""
 
 from pathlib import Path
 from typing import Annotated
@@ -235,7 +235,7 @@ def test_access_without_a_file(file: Path) -> None:
 
 
 def test_access_from_a_file(file: Path) -> None:
-    """The file fills what was not given; what was given goes before it."""
+    """The file fills in missing options; given options take precedence."""
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 

@@ -81,7 +81,7 @@ def test_an_invitation_is_for_one_role(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("place", range(5))
 def test_an_invitation_stands_alone(tmp_path: Path, place: int) -> None:
-    """What else says court, address, seat or token might say another one."""
+    """No other option for court, address, seat or token may be given with an invitation."""
     others = [None] * 5
     others[place] = "x"  # type: ignore[call-overload]
     with pytest.raises(UserError, match="leave --contest"):

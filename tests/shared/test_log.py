@@ -96,7 +96,7 @@ sys.stdin.readline()
 
 @pytest.mark.slow
 def test_a_pipe_that_nobody_reads_holds_nothing() -> None:
-    """A beat logs and goes on; when somebody reads again, what was lost is said."""
+    """A beat logs without waiting; when somebody reads again, a line says how many were lost."""
     with subprocess.Popen(
         [sys.executable, "-c", NOBODY_READS],
         stdin=subprocess.PIPE,

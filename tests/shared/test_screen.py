@@ -1,4 +1,4 @@
-"""What the command line prints for people and for programs."""
+"""The output of the command line for people and for programs."""
 
 import io
 import json
@@ -80,7 +80,7 @@ def test_a_name_that_is_no_text_becomes_text() -> None:
 
 @pytest.mark.parametrize("encoding", ["utf-8", "cp932", "cp1252", "ascii"])
 def test_every_character_can_be_shown(encoding: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the terminal lacks is written as a number, also in a table; JSON reads back whole."""
+    """A character that the terminal lacks is written as a number; JSON reads back unchanged."""
     stream = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
     monkeypatch.setattr(sys, "stdout", stream)
     names = ["Möwe", "六足 🤖", "a\N{NO-BREAK SPACE}b", NOT_UTF_8]

@@ -183,7 +183,7 @@ SENDERS = [
 
 
 def test_every_say_in_the_source_has_a_code_and_its_values() -> None:
-    """`say` checks nothing when a match runs, so that a wrong word never stops it; this does."""
+    """This test checks every call of `say`, because `say` itself checks nothing in a match."""
     wrong = []
     for file in SENDERS:
         if "say(" not in (text := file.read_text("utf-8")):

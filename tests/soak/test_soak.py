@@ -1,4 +1,4 @@
-"""Five minutes of matches with visitors who come and go; `make soak` has the hour."""
+"""Five minutes of matches with visitors that come and go; `make soak` runs an hour."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-/** What the page's address says. */
+/** The parts of the page's address. */
 
 import { tab } from "./storage";
 

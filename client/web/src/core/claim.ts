@@ -1,4 +1,4 @@
-/** A page's claim to a seat: how it stands, and what each event makes of it. Pure. */
+/** A page's claim to a seat: its state, and how each event changes it. Pure. */
 
 import type { Refused } from "./connection";
 import type { Phrase } from "./phrase";
@@ -13,7 +13,7 @@ export interface Wish {
 }
 
 /**
- * How a claim stands.
+ * The state of a claim.
  *
  * - `none`: nobody wants a seat.
  * - `joining`: a person asked for a seat and does not have it yet; a refusal is shown at once.
@@ -51,13 +51,13 @@ export type ClaimEvent =
   | { is: "kept" };
 
 /**
- * What the page has to do.
+ * Actions that the page must take.
  *
  * - `ask`: send the join.
  * - `begin`: the controller is new; the seat is held from now on.
  * - `rest`: wait a moment before the next request.
  * - `drop`: the gateway gave up the older hold, too; no seat is held.
- * - `renew`: give the seat up without a word; it is asked for again because it is wanted still.
+ * - `renew`: give the seat up silently; the page then asks for it again.
  * - `release`: give the seat up.
  * - `clear`: forget the keys that were pressed.
  */
@@ -71,7 +71,7 @@ export interface Claim {
   readonly wish: Wish | null;
   /** What was wanted before, for "join again". */
   readonly lastWish: Wish | null;
-  /** Requests that failed since the last grant, without a word on when to try again. */
+  /** Requests that failed since the last grant, without an answer that says when to try again. */
   readonly tries: number;
   /** Why the last join was refused; null once a person asks again. */
   readonly refusal: Refused | null;
@@ -120,7 +120,7 @@ const WITH_WISH: Row = {
   taken: ["lost"],
 };
 
-/** State by event: the next state, then what to do. What is not here changes nothing. */
+/** State by event: the next state, then the actions. An event that is not here changes nothing. */
 export const TRANSITIONS: Readonly<Record<ClaimState, Row>> = {
   none: WITHOUT_WISH,
   joining: {
@@ -228,7 +228,7 @@ function triggerOf(claim: Claim, event: ClaimEvent): Trigger | null {
   }
 }
 
-/** What the claim remembers after an event that leads to `state`. */
+/** The data of the claim after an event that leads to `state`. */
 function remembered(claim: Claim, event: ClaimEvent, state: ClaimState): Partial<Claim> {
   if (event.is === "join") return { wish: event.wish, tries: 0, refusal: null, why: null };
   if (WANTS.has(state)) return event.is === "granted" ? { wish: event.wish, why: null } : {};

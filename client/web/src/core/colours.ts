@@ -6,7 +6,7 @@ import type { Match } from "./match";
 import { remembered } from "./settings";
 import type { Sheet } from "./wire";
 
-/** Of each seat; null: as the arena has them. */
+/** The colour of each seat; null: the arena's own. */
 const PALETTES = {
   arena: null,
   // Told apart with every kind of colour blindness (Okabe and Ito, "Color Universal Design").

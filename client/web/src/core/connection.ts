@@ -39,7 +39,7 @@ export class Refused extends Error {
 /** The answer is missing, here or at the gateway: nobody here knows whether it was done. */
 export class Unanswered extends Refused {}
 
-/** How the socket is. */
+/** The state of the socket. */
 export interface SocketState {
   open: boolean;
   /** Counts those since the page was greeted last: a gateway may open and send it away. */
@@ -57,7 +57,7 @@ const RETRY_FIRST_MS = 250;
 const RETRY_MOST_MS = 3000;
 /** How much later a page comes again that was sent away with `TRY_LATER`. */
 const LATER_MS = 10_000;
-/** A gateway sends frames or at least a link message every second: so long a silence is a break. */
+/** A gateway sends a frame or a link message every second: a longer silence means a break. */
 const SILENCE_MS = 5000;
 const LOOK_MS = 1000;
 
@@ -129,7 +129,7 @@ export class Connection {
     } catch (error) {
       refused = (error as Refused).why;
     }
-    // What broke meanwhile was not refused.
+    // A connection that broke meanwhile was not refused.
     if (socket === this.socket) this.state.value = { open: true, attempt, refused };
   }
 
@@ -149,7 +149,7 @@ export class Connection {
     setTimeout(() => this.open(), wait);
   }
 
-  /** A socket can be dead without a word, such as behind a cable that was pulled. */
+  /** A socket can be dead without an event, for example after a cable was pulled. */
   private look(): void {
     const socket = this.socket;
     if (!socket || performance.now() - this.heardMs < SILENCE_MS) return;

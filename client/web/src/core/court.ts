@@ -1,4 +1,4 @@
-/** What a page knows of a court: signals that its parts draw from. */
+/** The page's knowledge of a court, as signals that its parts draw from. */
 
 import { type ReadonlySignal, signal } from "@preact/signals";
 import { runKey, setting, socketUrl } from "./address";
@@ -42,13 +42,13 @@ export class Court implements Match {
   readonly link = signal<Link | null>(null);
   readonly seat = signal<HeldSeat | null>(null);
   readonly referee = signal<RefereeState | null>(null);
-  /** The files on this machine; null until the gateway has told of any. */
+  /** The files on this machine; null until the gateway has sent them. */
   readonly ownFiles = signal<OwnFiles | null>(null);
   /** Frames that came in the last second. */
   readonly framesHz = signal(0);
-  /** Whether there ever was a frame: does not change with each. */
+  /** True once there was a frame; does not change with each frame. */
   readonly begun = part(this, () => true, false);
-  /** Whether what is shown is what is now. */
+  /** True if the picture is live. */
   readonly live = signal(false);
   /** The gateway speaks another version: only loading the page again helps. */
   readonly outdated = signal(false);

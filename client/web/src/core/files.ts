@@ -1,4 +1,4 @@
-/** A contestant's files: told apart by what is in them, and kept for this tab. */
+/** A contestant's files: recognised by their content, and kept for this tab. */
 
 import { computed } from "@preact/signals";
 import { Refused } from "./connection";
@@ -59,7 +59,7 @@ export function chosenFiles(): Record<Slot, SentFile | null> {
   return { robot: sent("robot"), postures: sent("postures"), locomotion: sent("locomotion") };
 }
 
-/** Refuse files that are too large together: so long a message would only cost the connection. */
+/** Refuse files that are too large together: the gateway would close the connection. */
 export function checkSizes(files: readonly (SentFile | null)[]): void {
   const bytes = files.reduce((sum, file) => sum + (file?.data.length ?? 0), 0);
   if (bytes <= MOST_BYTES) return;

@@ -33,7 +33,7 @@ const OTHERS: Record<string, Pressed> = {
 
 const IME_KEY_CODE = 229;
 
-/** What a key does; null if it is none of ours, or meant for the browser. */
+/** The action of a key; null if it is not one of ours, or meant for the browser. */
 export function readKey(event: KeyboardEvent): Pressed | null {
   if (event.ctrlKey || event.altKey || event.metaKey) return null;
   const digit = /^(?:Digit|Numpad)([0-9])$/.exec(event.code)?.[1];

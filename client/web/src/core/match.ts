@@ -1,4 +1,4 @@
-/** What a page shows of a match, live or from a recording, as signals. */
+/** The data that a page shows of a match, live or recorded, as signals. */
 
 import { computed, type ReadonlySignal } from "@preact/signals";
 import type { Moment } from "./timeline";

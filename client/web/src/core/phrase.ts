@@ -1,4 +1,4 @@
-/** What programs say: a code and its values. `i18n/render.ts` puts it into words. */
+/** A phrase that programs send: a code and its values. `i18n/render.ts` puts it into words. */
 
 export interface Phrase {
   code: string;

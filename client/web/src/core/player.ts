@@ -20,7 +20,7 @@ import { type RefusedKey, SentKeys } from "./sent_keys";
 import { tab } from "./storage";
 import { type Frame, type HeldSeat, Phase, SeatFlag, type SeatFrame } from "./wire";
 
-/** What the page shows of its claim to a seat. */
+/** The state of the claim to a seat, as the page shows it. */
 export type Standing = "watching" | "outside" | "joining" | "seated" | "lost" | "left";
 
 /** What the player has to say: words of the court, or a key that it refused. */
@@ -67,7 +67,7 @@ export class Player {
   private readonly greeted = signal(false);
   private readonly chosenLevel = signal<number | null>(null);
   private heeded: HeldSeat | null = null;
-  /** Sequence numbers begin anew with a new controller. */
+  /** Sequence numbers restart with a new controller. */
   private sent = new SentKeys();
   private isFresh = true;
   private readonly posData = new PosDataLog();
@@ -124,7 +124,7 @@ export class Player {
     this.tell({ is: "join", wish });
   }
 
-  /** Bring the chosen files anew; the court says what becomes of them. */
+  /** Send the chosen files again; the court answers whether it takes them. */
   rejoin(): void {
     // A match keeps the files that it began with. Nobody minds when one of practice ends: the
     // next opens at once.

@@ -11,7 +11,7 @@ import { BEAT_S, type Frame, Phase, ROOT_FLOATS, type Sheet, sameBytes } from ".
 const FLOAT_BYTES = 4;
 const DEGREES = 180 / Math.PI;
 
-/** What one page keeps: of longer practice the newest hour. */
+/** The number of rows that a page keeps: the newest hour. */
 const MOST_ROWS = 3600 / BEAT_S;
 const FIRST_ROWS = 1024;
 /** A whole file as one text would be tens of megabytes. */
@@ -128,7 +128,7 @@ export class PosData {
   }
 }
 
-/** Collects the rows of the seat that is held; each match, seat and robot begins anew. */
+/** Collects the rows of the seat that is held; a new match, seat or robot starts a new list. */
 export class PosDataLog {
   /** null before the first frame with robots. */
   current: PosData | null = null;

@@ -31,7 +31,7 @@ export interface Since<T> {
   value: T;
 }
 
-/** What is wrong with a record that can be played all the same. */
+/** A fault of a record that can still be played. */
 export type Note =
   | { what: "cut"; file: string; beat: number }
   | { what: "damaged"; file: string; beat: number }
@@ -78,7 +78,7 @@ export class Unplayable extends Error {
 }
 
 const MAGIC = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a];
-/** A larger chunk is no record's: a damaged size must not take all memory. */
+/** No record has a larger chunk; a damaged size must not take all memory. */
 const CHUNK_MOST_BYTES = 1 << 28;
 
 interface FrameBytes {
@@ -88,7 +88,7 @@ interface FrameBytes {
   phase: number;
 }
 
-/** What one header begins: a court that was started again writes another segment. */
+/** A segment begins with a header; a court that is started again writes another one. */
 interface Segment {
   file: string;
   header: Header;
@@ -162,7 +162,7 @@ function readFile({ name, data }: RecordFile): Segment[] {
     }
   } catch (error) {
     if (error instanceof Unplayable) throw error;
-    // What is not understood: a file that was finished is damaged, another one stops here.
+    // Unreadable: a finished file is damaged here, and an unfinished one ends here.
     broken = endsAsMcap(data);
   }
   const last = segments.at(-1);
@@ -224,7 +224,7 @@ function readEvent(data: Uint8Array): Event {
   return text === undefined ? event : { ...event, said: { code: "plain.text", values: { text } } };
 }
 
-/** By number; of one that is there twice (a packed file beside its segments) the fuller one. */
+/** Sort by number; keep the fuller of two equal ones (a packed file and its segments). */
 function inOrder(segments: Segment[]): Segment[] {
   const found = new Map<string, Segment>();
   for (const segment of segments) {
@@ -235,7 +235,7 @@ function inOrder(segments: Segment[]): Segment[] {
   return [...found.values()].sort((one, other) => one.header.segment - other.header.segment);
 }
 
-/** What a segment holds from the next one's first beat on was never answered: it does not count. */
+/** Drop a segment's messages from the next one's first beat on: nobody got them. */
 function join(segments: readonly Segment[]): Omit<Segment, "file" | "header" | "note"> {
   const all: ReturnType<typeof join> = {
     events: [],

@@ -1,4 +1,4 @@
-/** Reads records beside the page, which goes on drawing meanwhile. */
+/** Reads records in a worker, so that the page goes on drawing. */
 
 import { type MatchRecord, type RecordFile, readRecord, Unplayable, type Why } from "./record";
 

@@ -28,7 +28,7 @@ export interface Summary {
   seats: string[];
 }
 
-/** It could not be had: the name of a message `replay.bad.…`, and what belongs into its holes. */
+/** A record can't be read: the name of a message `replay.bad.…`, and its values. */
 export class BadRecord extends Error {
   constructor(
     readonly why: string,
@@ -92,7 +92,7 @@ export async function dropped(files: readonly File[]): Promise<RecordFile[]> {
   }
 }
 
-/** Read a match, beside the page; rejects with `BadRecord`. */
+/** Read a match in a worker; rejects with `BadRecord`. */
 export function readBeside(files: RecordFile[]): Promise<MatchRecord> {
   const worker = new Worker(new URL("./record.worker.ts", import.meta.url), { type: "module" });
   const answer = new Promise<MatchRecord>((resolve, reject) => {

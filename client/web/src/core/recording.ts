@@ -97,7 +97,7 @@ class FrameStore {
   }
 }
 
-/** What was valid at a beat; before the first of them that one, so that there is a picture. */
+/** The value at a beat; before the first value, that one, so that there is a picture. */
 export function newest<T>(since: readonly Since<T>[], beat: number): T | null {
   return (since.findLast((one) => one.beat <= beat) ?? since[0])?.value ?? null;
 }

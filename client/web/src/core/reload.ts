@@ -1,4 +1,4 @@
-/** Takes the page anew: after the server was updated, parts of the old one can't be loaded. */
+/** Reloads the page: after an update of the server, parts of the old one can't be loaded. */
 
 const RETRY_MS = 3000;
 
@@ -9,7 +9,7 @@ export async function reloadWhenServed(): Promise<void> {
   if (waiting) return;
   waiting = true;
   for (;;) {
-    // First of all wait: a page that can't be had must not be asked for without end.
+    // Wait first, so that a page that can't be loaded is not requested in a loop.
     await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
     try {
       const answer = await fetch(location.pathname, { cache: "no-store" });

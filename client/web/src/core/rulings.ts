@@ -1,4 +1,4 @@
-/** What a referee did to the score and the winner, and how long was played: from the events alone. */
+/** The referee's changes to score and winner, and the time played, from the events alone. */
 
 import type { Decision, Event } from "./wire";
 

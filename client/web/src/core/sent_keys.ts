@@ -1,11 +1,11 @@
-/** Keys on their way: from the press to the frame that shows what became of it. Pure. */
+/** Keys on their way: from the press to the frame that shows the result. Pure. */
 
 import type { SeatFrame } from "./wire";
 
 /** So many keys are remembered. */
 const REMEMBERED = 64;
 
-/** What is told of a key that the court refused. */
+/** The message about a key that the court refused. */
 export interface RefusedKey {
   /** The court's number of the reason. */
   refused: number;
@@ -23,7 +23,7 @@ export class SentKeys {
   /**
    * Take in the court's reply to a key: the key has this number.
    *
-   * @returns How long the key took [ms]; null if no frame has shown it yet.
+   * @returns The time that the key took [ms]; null if no frame has shown it yet.
    */
   add(seq: number, key: number, atMs: number): number | null {
     this.sent.set(seq, { key, atMs });
@@ -35,7 +35,7 @@ export class SentKeys {
   /**
    * Take in the seat as a frame has it.
    *
-   * @returns How long the newest key took [ms]; null if the frame shows no key that is new.
+   * @returns The time that the newest key took [ms]; null if the frame shows no key that is new.
    */
   see(seat: SeatFrame, nowMs: number): number | null {
     const seq = Math.max(seat.applied_seq, seat.refused_seq);

@@ -1,7 +1,7 @@
-/** What is kept over a reload. A browser may forbid that: then it is kept until the page is closed. */
+/** Data that survives a reload. If a browser forbids that, it is kept until the page closes. */
 
 class Kept {
-  /** What this page has kept itself: right also where the browser keeps nothing. */
+  /** The page's own copy: right even if the browser stores nothing. */
   private readonly here = new Map<string, string | null>();
 
   /** @param storage Gives the browser's; throws where it is forbidden. */

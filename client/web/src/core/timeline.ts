@@ -31,15 +31,15 @@ const SPARE_MS = 6;
 const WINDOW_MS = 2500;
 /** One arrival is kept in each: a burst counts once, with its newest frame. */
 const BUCKET_MS = 40;
-/** Slopes are taken over so many kept arrivals. */
+/** Number of kept arrivals over which slopes are computed. */
 const SPAN = 12;
-/** After so long a silence the court's phase is unknown. */
+/** After a silence of this length the court's phase is unknown. */
 const GAP_MS = 400;
-/** What is shown is put right at once if it is this far off, else gently. */
+/** A larger error of the shown time is corrected at once, a smaller one gradually. */
 const SNAP_MS = 250;
 const GENTLE_PER_MS = 1 / 300;
 const GENTLE_MOST = 0.15;
-/** Frames are kept for so much longer than the delay. */
+/** Frames are kept for this time longer than the delay. */
 const KEEP_MS = 1000;
 
 interface Arrival {
@@ -99,7 +99,7 @@ export class Timeline {
     if (drop) this.frames.splice(0, drop);
   }
 
-  /** What to show now; null before the first frame. */
+  /** The state to show now; null before the first frame. */
   sample(nowMs: number): Moment | null {
     const first = this.frames[0];
     const newest = this.newest;
@@ -206,7 +206,7 @@ export class Track {
     return this.frames[this.frames.length - 1]?.beat ?? 0;
   }
 
-  /** What was at a beat, kept within the recording; null if it has no frames. */
+  /** The state at a beat, limited to the recording; null if it has no frames. */
   sampleAt(beat: number): Moment | null {
     if (!this.frames.length) return null;
     return momentAt(this.frames, Math.min(this.lastBeat, Math.max(this.firstBeat, beat)));

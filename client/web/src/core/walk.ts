@@ -1,4 +1,4 @@
-/** How far and how fast a robot walks: what a student watches while a gait is tried out. */
+/** How far and how fast a robot walks, for a student who tries out a gait. */
 
 import { places } from "./poses";
 import { BEATS_PER_S, type Event, type Frame, type Sheet } from "./wire";
@@ -13,7 +13,7 @@ export interface Walk {
   speedMps: number;
 }
 
-/** A body sways with each step: its way is taken between points so far apart. */
+/** A body sways with each step, so its path is measured between points this far apart. */
 const STEP_M = 0.01;
 const WINDOW_BEATS = BEATS_PER_S;
 

@@ -18,7 +18,7 @@ import {
 
 export * from "./wire.gen";
 
-/** What the gateway says first. */
+/** The gateway's first message. */
 export interface Welcome {
   protocol: number;
   version: string;
@@ -46,7 +46,7 @@ export interface OwnFiles {
   locomotion: string;
   /** Grows whenever they are saved again. */
   version: number;
-  /** The version with which this page's seat was joined; null where this is not told now. */
+  /** The version with which this page joined its seat; null if this message does not say. */
   used: number | null;
   /** The files that the newest version changed. */
   changed: string[];
@@ -62,7 +62,7 @@ export interface Link {
   silent_s: number;
   /** Why it is not connected. */
   why: Phrase | null;
-  /** Another number: the log of events begins anew, and all of it follows. */
+  /** A new number means that a new log of events begins; all its events follow. */
   log: number;
 }
 

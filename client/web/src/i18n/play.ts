@@ -29,38 +29,38 @@ export const play = {
   "join.going": ["Joining …", "参加しています…"],
   "join.again": ["Join again", "もう一度参加する"],
   "join.safety": [
-    "At the venue's pages a seat is protected by its token alone. On your own computer 'lacoc play' is safer.",
+    "On the venue's pages only its token protects a seat. 'lacoc play' on your own computer is safer.",
     "会場のページでは、席を守るのはトークンだけです。自分のパソコンの「lacoc play」の方が安全です。",
   ],
   "join.waits": [
-    "You sit down as soon as the court answers.",
+    "You get your seat as soon as the court answers.",
     "コートが応答しだい、席に着きます。",
   ],
   "join.refused": ["You could not join", "参加できませんでした"],
-  "watching.title": ["This link may only watch", "このリンクでは観戦だけできます"],
+  "watching.title": ["With this link you can only watch", "このリンクでは観戦だけできます"],
   "watching.text": [
-    "To play, open the address with its key: it ends with #key=… and stands where 'lacoc play' or 'lacoc web' was started. At the venue the organiser has it.",
+    "To play, open the address that ends with #key=…. 'lacoc play' or 'lacoc web' printed it when it started. At the venue ask the organiser.",
     "参加するには、末尾に #key=… が付いたアドレスを開いてください。「lacoc play」または「lacoc web」を起動した画面に表示されています。会場では主催者に尋ねてください。",
   ],
   "watching.practice": [
-    "To practise, start 'lacoc practice': it opens this page with its key.",
+    "To practise, start 'lacoc practice'. It opens this page with its key.",
     "練習するには「lacoc practice」を起動してください。鍵の付いたこのページが開きます。",
   ],
   "watching.watch": ["Watch the match", "試合を観戦する"],
-  "lost.title": ["Your seat is lost", "席を失いました"],
+  "lost.title": ["You have lost your seat", "席を失いました"],
   "left.title": ["You have left", "退出しました"],
   "left.text": [
     "Your robot stands. You can come back with the same token.",
     "ロボットは停止しています。同じトークンで戻れます。",
   ],
-  "left.practice": ["That was your practice.", "練習を終了しました。"],
+  "left.practice": ["Your practice has ended.", "練習を終了しました。"],
   "left.practiceAgain": ["Practise again", "もう一度練習する"],
 
   // Files
   "files.title": ["Your files", "ファイル"],
   "files.drop": [
     "Drop your robot and gait files here, or",
-    "ロボットファイルと歩容ファイルをここにドロップ、または",
+    "ロボットファイルと歩容ファイルをここにドロップするか、",
   ],
   "files.pick": ["choose files", "ファイルを選ぶ"],
   "files.robot": ["Robot", "ロボット"],
@@ -73,15 +73,15 @@ export const play = {
   "files.made": ["made from {name}", "{name} から作成"],
   "files.sequences": ["Keys of level B", "レベル B のキー"],
   "files.sequencesHint": [
-    "The postures that each key runs through, one after another. Key 1 is also ←, 2 ↑, 3 →.",
+    "Each key runs through these postures, one after another. Key 1 is also ←, 2 is ↑, 3 is →.",
     "各キーで順に取る姿勢の番号です。1 は ←、2 は ↑、3 は → でも操作できます。",
   ],
   "files.sequence": ["Postures of key {digit}", "キー {digit} の姿勢"],
   "files.newKey": ["another key", "キーを追加"],
-  "files.sampleSequences": ["As in the sample again", "サンプルに戻す"],
-  "files.changed": ["On your disk: {names} has changed.", "{names} が変更されました。"],
+  "files.sampleSequences": ["Back to the sample", "サンプルに戻す"],
+  "files.changed": ["On your disk, {names} has changed.", "{names} が変更されました。"],
   "files.changedWrong": [
-    "On your disk: {names} has changed, and can't be used.",
+    "On your disk, {names} has changed and can't be used.",
     "{names} が変更されましたが、このままでは使えません。",
   ],
   "files.mistake": [
@@ -89,27 +89,30 @@ export const play = {
     "{file}・{row} 行 {column} 列：{found}（正しい値：{expected}）",
   ],
   "files.useNew": ["Use it now", "今すぐ使う"],
-  "files.remove": ["Take {name} away", "{name} を外す"],
-  "files.tooLarge": ["{name} is too large for a gait or a robot.", "{name} は大きすぎます。"],
+  "files.remove": ["Remove {name}", "{name} を外す"],
+  "files.tooLarge": [
+    "{name} is too large for a gait or a robot.",
+    "{name} は歩容やロボットのファイルとしては大きすぎます。",
+  ],
   "files.unreadable": [
-    "{name} can't be read. Folders can't be dropped: drop the files in them.",
+    "{name} can't be read. If it is a folder, drop the files in it instead.",
     "{name} を読み込めません。フォルダーではなく、中のファイルをドロップしてください。",
   ],
-  "files.notNow": ["Files are chosen before a match.", "ファイルは試合の前に選びます。"],
+  "files.notNow": ["Choose files before a match.", "ファイルは試合の前に選びます。"],
   "files.change": ["Change files", "ファイルを変更"],
   "files.use": ["Use these files", "このファイルを使う"],
   "files.changeText": [
-    "With other files you are asked again whether you are ready. A match that is on keeps the files that it began with.",
+    "After you change files, say ready again. A match in progress keeps the files that it began with.",
     "ファイルを変えると、準備完了をもう一度押す必要があります。進行中の試合は、開始時のファイルのまま続きます。",
   ],
   "files.noKey": [
-    "No key will move your robot: bring a {file} file.",
+    "No key will move your robot. Add a {file} file.",
     "どのキーでもロボットは動きません。{file} ファイルを用意してください。",
   ],
 
   // What to do next
-  "next.wait": ["The court opens …", "コートを準備しています…"],
-  "next.ready": ["Press Ready when you are", "準備ができたら「準備完了」を押してください"],
+  "next.wait": ["The court is opening …", "コートを準備しています…"],
+  "next.ready": ["Press Ready when you are ready", "準備ができたら「準備完了」を押してください"],
   "next.joining": [
     "You are ready. Waiting for the {seat} seat",
     "準備完了です。{seat}の席の参加を待っています",
@@ -127,28 +130,31 @@ export const play = {
   "next.flag-strike": ["Take corners, knock flags down", "コーナーを獲得し、フラッグを倒そう"],
   "next.steer": ["Steer with the keys", "キーでロボットを動かそう"],
   "next.ahead": ["You lead by {points}. {goal}", "{points} 点リード。{goal}"],
-  "next.behind": ["{points} behind. {goal}", "{points} 点ビハインド。{goal}"],
+  "next.behind": ["You are behind by {points}. {goal}", "{points} 点ビハインド。{goal}"],
   "next.locked": [
-    "Restarted: keys again in {seconds} s",
+    "Restarted: your keys work again in {seconds} s",
     "再スタート：あと {seconds} 秒でキーが使えます",
   ],
   "next.frozen": ["Frozen by the referee for {seconds} s", "審判により停止中：あと {seconds} 秒"],
   "next.silent": [
-    "You were not heard: your robot stands until your next key",
+    "The court lost contact with you: press a key to move again",
     "通信が途切れたため停止中。キーを押すと動きます",
   ],
   "next.halted": [
-    "Halted: the referee resumes it. Keep your seat",
+    "Halted. Please wait until the referee resumes the match",
     "中断中です。審判が再開するまで、そのままお待ちください",
   ],
-  "next.finished": ["Over. The referee confirms the result", "終了。審判が結果を確認しています"],
+  "next.finished": [
+    "The match is over. The referee is confirming the result",
+    "試合終了。審判が結果を確認しています",
+  ],
   "next.official": [
     "Wait here: you play in the next match too",
     "このままお待ちください。次の試合にも参加します",
   ],
-  "next.practice": ["Practice begins …", "練習を始めます…"],
+  "next.practice": ["Practice is starting …", "練習を始めます…"],
   "next.lost": [
-    "No link to the court: your robot stands until it is back",
+    "No connection to the court: your robot stands until it is back",
     "コートとつながっていません。つながるまでロボットは停止します",
   ],
   "next.rejoin": ["Taking your seat again …", "席に戻っています…"],
@@ -165,7 +171,7 @@ export const play = {
   "pad.levelB": ["B locomotion", "B 移動動作"],
   "pad.only": ["Level {level}", "レベル {level}"],
   "pad.tab": [
-    "Tab changes the level; that alone moves nothing",
+    "Tab changes the level (the robot does not move)",
     "Tab でレベルを切り替え（それだけでは動きません）",
   ],
   "pad.posture": ["posture", "姿勢"],
@@ -191,7 +197,7 @@ export const play = {
   "views.chase": ["behind the robot", "ロボットの後ろ"],
   "views.label": ["The field in 3D", "フィールドの 3D 表示"],
   "field.label": [
-    "Field. Digits steer, Tab changes the level, Space the view, x restarts, z leaves (in a match: hold it). Escape goes on to the buttons.",
+    "Field. Digits steer, Tab changes the level, Space changes the view, x restarts, z leaves (hold it in a match). Escape moves to the buttons.",
     "フィールド。数字で操作、Tab でレベル、スペースで視点、x で再スタート、z で退出（試合中は長押し）。Esc でボタンへ移動。",
   ],
 
@@ -199,7 +205,7 @@ export const play = {
   "leaving.hold": ["Hold z to leave the match", "退出するには z を長押し"],
   "leaving.go": ["Leave now", "今すぐ退出"],
   "leaving.stay": ["Stay", "続ける"],
-  "leave.title": ["Leave?", "退出しますか"],
+  "leave.title": ["Leave?", "退出しますか？"],
   "leave.match": [
     "Your robot will stand. The seat stays yours, and you can come back.",
     "ロボットは停止します。席はそのまま残り、戻ることができます。",
@@ -215,11 +221,11 @@ export const play = {
     "Pos-data.txt には、このページを読み込んだ {time} 以降の軌跡を保存します。",
   ],
   "leave.dataRecord": [
-    "The record of the match has all of it.",
+    "The record of the match has the whole path.",
     "試合の記録には最初からすべて残っています。",
   ],
   "leave.dataNewest": [
-    "Pos-data.txt, the path of your robot, is saved from {time} on: this page keeps the newest hour.",
+    "Pos-data.txt, the path of your robot, is saved from {time} on, because this page keeps only the last hour.",
     "Pos-data.txt には {time} 以降の軌跡を保存します（このページに残るのは最新の 1 時間です）。",
   ],
   "leave.noData": [
@@ -241,19 +247,16 @@ export const play = {
     "矢印キーはレベル B 用です。Tab で切り替えます",
   ],
   "toast.oneLevel": [
-    "This arena opens level {level} only",
+    "In this arena only level {level} is open",
     "この競技ではレベル {level} だけが使えます",
   ],
   "toast.level": ["Level {level}: press a digit", "レベル {level}：数字を押してください"],
 
   // Over the field
   "focus.steer": ["Click here to steer", "クリックして操作を続ける"],
-  "focus.why": [
-    "The keyboard is with another window",
-    "キーボード入力が別のウィンドウに向いています",
-  ],
+  "focus.why": ["Another window has the keyboard", "キーボード入力が別のウィンドウに向いています"],
   "ime.on": [
-    "A Japanese input method is on. Keys still steer; if one does not, turn it off (半角/全角).",
+    "A Japanese input method is on. Keys still steer. If a key does not work, turn it off (半角/全角).",
     "日本語入力がオンです。キー操作はできますが、効かないときは「半角/全角」でオフにしてください。",
   ],
   "count.go": ["Go!", "スタート！"],
@@ -272,12 +275,12 @@ export const play = {
   ],
   "foot.link": ["Link", "通信"],
   "foot.linkHint": [
-    "The court's own measure: from a frame to your answer to it",
+    "Measured by the court: from a frame to your answer to it",
     "コートが測った、画面を送ってから応答が届くまでの時間",
   ],
-  "foot.equal": ["equalised: {count} ms", "両者そろえて {count} ms"],
+  "foot.equal": ["equal for both: {count} ms", "両者同じ：{count} ms"],
   "foot.equalHint": [
-    "What you do upon a picture takes effect so much later, for both of you",
+    "Time from a picture until a key pressed in response takes effect, the same for both of you",
     "画面を見て押したキーが効くまでの時間（両者同じ）",
   ],
   "foot.frames": ["Frames", "フレーム"],
@@ -288,7 +291,7 @@ export const play = {
   "foot.settings": ["Settings", "設定"],
   "keytest.title": ["Key test", "キーのテスト"],
   "keytest.hint": [
-    "Click here and press keys: nothing is sent.",
+    "Click here and press keys. Nothing is sent.",
     "ここをクリックしてキーを押してください（送信されません）。",
   ],
   "keytest.digit": ["digit {digit}", "数字 {digit}"],
@@ -304,22 +307,22 @@ export const play = {
   // Practice
   "coach.title": ["First steps", "はじめの一歩"],
   "coach.forward": [
-    "Slowly press 1, 2, 3, 4, one after another. It walks.",
+    "Slowly press 1, 2, 3, 4, one after another. The robot walks.",
     "1、2、3、4 をゆっくり順番に押してみよう。ロボットが歩きます。",
   ],
   "coach.again": ["Well done. Go on: 1, 2, 3, 4 …", "いいね。続けて 1、2、3、4…"],
-  "coach.back": ["4, 3, 2, 1 walks back.", "4、3、2、1 で後ろへ歩きます。"],
-  "coach.turn": ["5, 6, 7, 8 turns right.", "5、6、7、8 で右へ回ります。"],
+  "coach.back": ["Press 4, 3, 2, 1 to walk back.", "4、3、2、1 で後ろへ歩きます。"],
+  "coach.turn": ["Press 5, 6, 7, 8 to turn right.", "5、6、7、8 で右へ回ります。"],
   "coach.level": [
-    "Now press Tab for level B, then 2: one key walks by itself.",
+    "Now press Tab for level B, then 2. One key is enough to keep walking.",
     "次は Tab でレベル B に切り替えて 2。キー 1 つで歩き続けます。",
   ],
   "coach.free": [
-    "Walk where you like: x puts it back, z saves where it went.",
-    "自由に歩かせよう。x でスタート位置へ、z で軌跡を保存。",
+    "Walk anywhere. x puts the robot back at its start, z saves its path.",
+    "自由に歩かせよう。x でスタート位置へ戻り、z で軌跡を保存します。",
   ],
   "coach.own": [
-    "Your own gait is loaded: press its keys and see where it goes.",
+    "Your own gait is loaded. Press its keys and see where the robot goes.",
     "自分の歩容が読み込まれています。キーを押して動きを確かめよう。",
   ],
   "coach.pressed": ["Pressed", "押したキー"],

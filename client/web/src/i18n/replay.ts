@@ -1,20 +1,20 @@
 /** Messages of recordings: English, Japanese. */
 export const replay = {
   "replay.title": ["Replays", "リプレイ"],
-  "replay.choose": ["Open a recording of this machine", "この端末の記録ファイルを開く"],
+  "replay.choose": ["Open a recording on this machine", "この端末の記録ファイルを開く"],
   "replay.dropHint": [
-    "or drop .mcap files anywhere on this page; several parts of one match together",
+    "or drop .mcap files anywhere on this page. If a match has several parts, drop them together",
     "または .mcap ファイルをこのページにドロップ（1 試合が複数に分かれている場合はまとめて）",
   ],
   "replay.drop": ["Drop to play", "ドロップして再生"],
-  "replay.onServer": ["Recordings of the server", "サーバーの記録"],
+  "replay.onServer": ["Recordings on the server", "サーバーの記録"],
   "replay.noneYet": [
     "No match was recorded here yet. A match appears here once its result is official.",
     "記録された試合はまだありません。結果が確定した試合がここに表示されます。",
   ],
   "replay.where": ["court {court}, match {number}", "コート {court}・第 {number} 試合"],
   "replay.noList": [
-    "The server's list can't be had; files of this machine can be opened all the same.",
+    "The server's list can't be loaded. You can still open files on this machine.",
     "サーバーの一覧を取得できません。この端末のファイルは開けます。",
   ],
   "replay.loading": ["Loading {name} …", "{name} を読み込んでいます…"],
@@ -34,16 +34,16 @@ export const replay = {
   "replay.share": ["Copy the address of this moment", "この場面の URL をコピー"],
   "replay.shared": ["The address of this moment is copied", "この場面の URL をコピーしました"],
   "replay.notShared": [
-    "Recordings of this machine have no address: others need the file",
+    "Recordings on this machine have no address: give others the file",
     "この端末のファイルには URL がありません。共有するにはファイルを渡してください",
   ],
   "replay.transport": ["Playback", "再生操作"],
   "replay.noteCut": [
-    "{file} stops at beat {beat} without an end: it was never closed, or not copied whole. What is there is shown.",
+    "{file} stops at beat {beat}: it was never closed, or not copied completely. The part that exists is shown.",
     "{file} はビート {beat} で途切れています（記録が終了していないか、コピーが不完全です）。残っている部分を再生します。",
   ],
   "replay.noteDamaged": [
-    "{file} is damaged after beat {beat}: what comes before is shown. Copy it again from where it was made.",
+    "{file} is damaged after beat {beat}. The part before that is shown. Copy the file again from where it was recorded.",
     "{file} はビート {beat} より後が壊れています。それより前を再生します。元の場所からコピーし直してください。",
   ],
   "replay.noteGap": [
@@ -52,11 +52,11 @@ export const replay = {
   ],
   "replay.noteHide": ["Hide", "閉じる"],
   "replay.bad.notMcap": [
-    "{name} is not a LACOC record: it is no MCAP file. Choose the .mcap of a match.",
+    "{name} is not a LACOC record, because it is not an MCAP file. Choose the .mcap of a match.",
     "{name} は LACOC の記録ではありません（MCAP ファイルではありません）。試合の .mcap を選んでください。",
   ],
   "replay.bad.notLacoc": [
-    "{name} is an MCAP file, but not a LACOC record. Choose the .mcap of a match (one that was exported for Foxglove can't be read back).",
+    "{name} is an MCAP file, but not a LACOC record. Choose the .mcap of a match (a file exported for Foxglove can't be read here).",
     "{name} は MCAP ファイルですが、LACOC の記録ではありません。試合の .mcap を選んでください（Foxglove 用に書き出したものは読み込めません）。",
   ],
   "replay.bad.format": [
@@ -64,27 +64,27 @@ export const replay = {
     "{name} の形式は {format} ですが、このページが読めるのは形式 {ours} です。記録した版の LACOC（{version}）で開いてください。",
   ],
   "replay.bad.noHeader": [
-    "There is no match in {name}: a record begins with its header, and none was written.",
+    "{name} contains no match. A record begins with a header, and this file has none.",
     "{name} に試合がありません（記録の先頭にあるはずのヘッダーがありません）。",
   ],
   "replay.bad.otherMatch": [
-    "{name} belongs to match {match}, another file to {other}. Choose the files of one match.",
+    "{name} belongs to match {match}, but another file belongs to {other}. Choose the files of one match.",
     "{name} は試合 {match} のもの、ほかのファイルは {other} のものです。1 つの試合のファイルだけを選んでください。",
   ],
   "replay.bad.nothing": [
-    "{name} has no picture of the match: it stops before the first one.",
+    "{name} has no picture of the match. It stops before the first one.",
     "{name} には試合の映像がありません（最初の 1 枚より前で途切れています）。",
   ],
   "replay.bad.missing": [
-    "The server has no recording {name} (any more).",
+    "The server does not have the recording {name}, or no longer has it.",
     "サーバーに記録 {name} がありません。",
   ],
   "replay.bad.unreachable": [
-    "The server does not answer. Try again, or open a file of this machine.",
+    "The server does not answer. Try again, or open a file on this machine.",
     "サーバーが応答しません。もう一度試すか、この端末のファイルを開いてください。",
   ],
   "replay.bad.unreadable": [
-    "{name} can't be read. Folders can't be dropped: drop the files in them.",
+    "{name} can't be read. If it is a folder, drop the files in it instead.",
     "{name} を読み込めません。フォルダーではなく、中のファイルをドロップしてください。",
   ],
   "replay.bad.fault": [

@@ -1,7 +1,7 @@
-/** Messages of those who look on, live and on a stream: English, Japanese. */
+/** Messages for spectators, live and on a stream: English, Japanese. */
 export const watch = {
   "watch.title": ["Watch", "観戦"],
-  "watch.view": ["The match in three dimensions", "試合の 3D 映像"],
+  "watch.view": ["The match in 3D", "試合の 3D 映像"],
   "watch.court": ["Court", "コート"],
   "watch.match": ["match {number}", "第 {number} 試合"],
   "watch.panel": ["Field and events", "フィールドとイベント"],
@@ -34,11 +34,11 @@ export const watch = {
   "opening.ready": ["ready", "準備完了"],
   "countdown.go": ["GO!", "スタート！"],
   "game.othello": [
-    "Walk from your own disc onto the next: it turns to your colour. Most discs win.",
+    "Walk from your own disc onto the next one. It turns to your colour. The team with more discs wins.",
     "自分のディスクから隣のディスクへ歩くと自分の色に変わります。ディスクの多いチームの勝ちです。",
   ],
   "game.flag-strike": [
-    "Flags and corners give points; all four corners end the match. Most points win.",
+    "Flags and corners give points. All four corners end the match. The team with more points wins.",
     "フラッグとコーナーで得点します。四隅をすべて取ると試合終了。得点の多いチームの勝ちです。",
   ],
   "result.title": ["Result", "試合結果"],
@@ -63,6 +63,6 @@ export const watch = {
   "result.state.down": ["down", "倒れた状態"],
   "result.struck": ["Taken back: {what}", "取り消し：{what}"],
   "result.replay": ["Watch the replay", "リプレイを見る"],
-  "result.next": ["Next: the referee opens the next match", "次の試合は審判が始めます"],
+  "result.next": ["The referee opens the next match", "次の試合は審判が始めます"],
   "result.close": ["Look at the field", "フィールドを見る"],
 } as const satisfies Record<string, readonly [string, string]>;

@@ -143,7 +143,7 @@ function Shortcuts({ onClose }: { onClose: () => void }) {
   );
 }
 
-/** The state stands in the tab's title too. */
+/** The tab's title shows the state too. */
 function useTitle(): void {
   useSignalEffect(() => {
     const phase = t(`phase.${desk.phase.value}` as "phase.0");

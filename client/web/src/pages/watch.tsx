@@ -36,7 +36,7 @@ const panel = remembered("watch.panel", innerWidth >= WIDE_PX);
 const number = part(court, (frame) => frame.match, null as number | null);
 /** The match whose result was put away. */
 const putAway = signal<number | null>(null);
-/** After the end of a match its last picture is no old news. */
+/** After the end of a match its last picture does not count as old. */
 const isStale = computed(() => court.begun.value && !court.live.value && !isOver(court));
 const title = computed(() => {
   const sheet = court.sheet.value;
@@ -172,7 +172,7 @@ function Panel() {
   );
 }
 
-/** Before the first frame; what is waited for stands in the banner. */
+/** Shown before the first frame; the banner says what the page waits for. */
 function Waiting() {
   return (
     <div class="waiting">

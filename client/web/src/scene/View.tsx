@@ -31,11 +31,11 @@ interface Props {
   inset?: Inset;
   /** A click on the field; with it, what can be clicked is marked under the pointer. */
   onPick?: (hit: Hit) => void;
-  /** For those who cannot see it. */
+  /** The label for screen readers. */
   label?: string;
 }
 
-/** Of all views of the page, the oldest first; `view` is the first of them. */
+/** All views of the page, the oldest first; `view` is the first of them. */
 interface Hooks {
   view?: ViewHook;
   views?: ViewHook[];

@@ -103,7 +103,7 @@ class Bake {
   private readonly position: BufferAttribute;
   private readonly colour: BufferAttribute;
   private readonly index: BufferAttribute;
-  /** Of patterned pieces: place on the shape [m], its half sizes [m], pattern and partner. */
+  /** For patterned pieces: place on the shape [m], its half sizes [m], pattern and partner. */
   private readonly pattern: {
     at: BufferAttribute;
     half: BufferAttribute;
@@ -184,7 +184,7 @@ class Bake {
     }
     if (this.isReordered) this.index.needsUpdate = true;
     this.isReordered = false;
-    // What the index has behind the last piece is of no use any more.
+    // Entries of the index after the last piece are no longer valid.
     this.order.length = this.pieces;
   }
 

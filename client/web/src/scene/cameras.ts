@@ -149,7 +149,7 @@ export interface Aim {
   model: Model;
   aspect: number;
   frame: Frame2d;
-  /** Of the page: whose robot is chased. */
+  /** The seat whose robot the camera follows. */
   seat: number;
 }
 

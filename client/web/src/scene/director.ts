@@ -10,7 +10,7 @@ import { type Aim, FOV_RAD, fit, isCalm, type Rig, type Shot } from "./cameras";
 
 /** No shot is shorter, or the eye gets lost. */
 const LEAST_MS = 4200;
-/** The whole field again after this long: who leads is seen there. */
+/** Show the whole field again after this time: it shows who leads. */
 const CLOSE_MOST_MS = 8500;
 const WIDE_LEAST_MS = 8000;
 /** Robots nearer than this are worth a look, and until they are farther apart than that. */
@@ -30,7 +30,7 @@ type Scene =
 
 /** Something happened on the drawn field. */
 export interface Action {
-  /** Of the robot that did it. */
+  /** The seat of the robot that did it. */
   seat: number;
 }
 
@@ -42,7 +42,7 @@ export class Director {
 
   constructor(private readonly rig: Rig) {}
 
-  /** What to show now; a new key is a new shot. */
+  /** The shot to show now; a new key is a new shot. */
   shoot(aim: Aim, actions: readonly Action[], nowMs: number): { key: string; shot: Shot } {
     if (isCalm.matches) return { key: "auto", shot: this.rig.aim("arena", aim, nowMs) };
     this.choose(aim, actions, nowMs);

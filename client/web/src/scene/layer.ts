@@ -1,4 +1,4 @@
-/** What draws things that change together, whatever draws them. */
+/** The interface of renderers of shapes that change together. */
 
 import type { Matrix4 } from "three";
 import type { Rgb } from "./palette";
@@ -7,12 +7,12 @@ import type { Shape } from "./shapes";
 /** How one piece is coloured. */
 export interface Paint {
   colour: Rgb;
-  /** Of `PATTERNS`. */
+  /** Index into `PATTERNS`. */
   pattern: number;
   period_m: number;
 }
 
-/** Pieces that change together: filled anew from `clear` to `done` whenever one of them does. */
+/** Pieces that change together: refilled from `clear` to `done` when one of them changes. */
 export interface Layer {
   /** Make room for `most` pieces of a shape, with this pattern or another that is not plain. */
   reserve(shape: Shape, pattern: number, most: number): void;

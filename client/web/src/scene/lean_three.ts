@@ -1,6 +1,6 @@
 import type { Plugin } from "vite";
 
-/** What three can do and this front end never asks it for; each is some bytes to every player. */
+/** Features of three that this front end does not use; leaving them out saves download. */
 const UNUSED_SHADERS =
   "backgroundCube cube equirect linedashed meshlambert meshmatcap meshnormal meshphong meshtoon " +
   "points sprite shadow";

@@ -4,9 +4,9 @@ import { Matrix4, Vector3 } from "three";
 import type { MarkerInfo, Scene } from "../core/wire";
 
 export const CHANGE_MS = 420;
-/** What has its middle higher stands; such a thing falls, all else turns over. */
+/** A shape whose middle is higher than this falls over; all others turn over. */
 const TALL_M = 0.05;
-/** A disc is lifted by so much of its radius, or it would cut the floor. */
+/** Share of its radius by which a disc is lifted, so that it does not cut the floor. */
 const LIFT = 1.05;
 const QUARTER = Math.PI / 2;
 
@@ -25,7 +25,7 @@ interface Change {
   sinceMs: number;
 }
 
-/** What is known of a marker's shapes in one state. */
+/** Data of a marker's shapes in one state. */
 interface Form {
   tall: boolean;
   /** Where the shapes' middle is from the marker's own point. */
@@ -34,7 +34,7 @@ interface Form {
 }
 
 export class MarkerMotion {
-  /** Whether anything has to be drawn anew. */
+  /** True if anything must be redrawn. */
   stale = false;
   private states: readonly number[] = [];
   private readonly changes = new Map<number, Change>();
@@ -50,7 +50,7 @@ export class MarkerMotion {
     this.matrices = markers.map(() => new Matrix4());
   }
 
-  /** Whether shapes of a marker stand up in its first state. */
+  /** True if shapes of a marker stand upright in its first state. */
   isTall(marker: number): boolean {
     return this.forms[marker]?.get(0)?.tall ?? false;
   }
@@ -58,7 +58,7 @@ export class MarkerMotion {
   /**
    * Follow the states.
    *
-   * @param animate Whether a change is shown as a movement; not after a leap in time.
+   * @param animate True: show a change as a movement; false after a jump in time.
    * @returns Markers that changed.
    */
   follow(states: readonly number[], nowMs: number, animate: boolean): number[] {
@@ -82,7 +82,7 @@ export class MarkerMotion {
     return changed;
   }
 
-  /** Whether a marker is on its way to another state. */
+  /** True while a marker moves to another state. */
   get moving(): boolean {
     return this.changes.size > 0;
   }

@@ -8,7 +8,7 @@ import {
   type WebGLProgramParametersWithUniforms,
 } from "three";
 
-/** Of each instance or corner: kind of pattern (palette.ts), and its period [m]. */
+/** For each instance or corner: kind of pattern (palette.ts), and its period [m]. */
 const VERTEX_HEAD = `
 attribute vec2 pattern;
 attribute vec3 patternColour;

@@ -1,4 +1,4 @@
-/** What a view draws: a sheet, its scene, and where everything is at a moment. */
+/** The input of a view: a sheet, its scene, and all positions at a moment. */
 
 import { ForwardKinematics, jointsPerSeat } from "../core/fk";
 import type { Moment } from "../core/timeline";

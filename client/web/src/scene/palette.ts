@@ -69,7 +69,7 @@ export function markerColour(state: number, own: Rgb, tall: boolean): Rgb {
   return tall ? own : NEUTRAL;
 }
 
-/** A robot's colour, told apart when it cannot be steered. */
+/** A robot's colour; it differs while the robot can't be steered. */
 export function afflicted(colour: Rgb, flags: number): Rgb {
   if (flags & SeatFlag.FROZEN) return mix(colour, FROZEN, 0.62);
   if (flags & SeatFlag.SILENT && flags & SeatFlag.JOINED) return mix(colour, SILENT, 0.8);
@@ -80,7 +80,7 @@ export function afflicted(colour: Rgb, flags: number): Rgb {
  * For each geom the seat whose colour it takes; -1: none.
  *
  * Of a marker that somebody has, those shapes that look different in its other states: a flag's
- * pole is the same whoever struck it.
+ * pole is the same for both teams.
  */
 export function teamGeoms(scene: Scene, sheet: Sheet): number[] {
   return scene.geoms.map((geom) => {
@@ -91,7 +91,7 @@ export function teamGeoms(scene: Scene, sheet: Sheet): number[] {
   });
 }
 
-/** Whether a marker's shape looks the same in another of its states: a flag's pole. */
+/** True if a shape looks the same in another state of its marker, as a flag's pole does. */
 export function isSame(scene: Scene, geom: SceneGeom): boolean {
   return scene.geoms.some(
     (other) =>

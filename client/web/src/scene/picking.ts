@@ -1,4 +1,4 @@
-/** What a click points at. */
+/** Finds the thing that a click points at. */
 
 import { FOV_RAD, toView, type ViewAxes } from "./cameras";
 import type { Model } from "./model";
@@ -31,7 +31,7 @@ export function project(
   return { u: right / (depth * tan * aspect), v: up / (depth * tan), depth };
 }
 
-/** What is at a place in the picture; null beside the floor. */
+/** Find the thing at a place in the picture; null outside the floor. */
 export function pick(
   model: Model,
   view: ViewAxes,
@@ -52,7 +52,7 @@ export function pick(
   return marker === null ? at : { ...at, marker };
 }
 
-/** What is at a place on the floor, as seen from straight above. */
+/** Find the thing at a place on the floor, seen from straight above. */
 export function pickFlat(model: Model, x_m: number, y_m: number): Hit {
   const at = { x_m, y_m };
   for (const [seat, robot] of model.robots.entries()) {

@@ -108,7 +108,7 @@ function pieceOf(
   };
 }
 
-/** What makes a robot of boxes and rods look like one: a lid, eyes in front, dark joints. */
+/** Details that make boxes and rods look like a robot: a lid, eyes in front, dark joints. */
 function detailsOf({ scene }: Model): Piece[] {
   const found: Piece[] = [];
   const add = (body: number, type: string, size: Size, pos: Size, colour: Rgb) => {
@@ -138,7 +138,7 @@ function detailsOf({ scene }: Model): Piece[] {
   return found;
 }
 
-/** Round the foot of what stands a spot in its colour: seen from above it is a line otherwise. */
+/** A coloured spot round the foot of an upright shape, to make it visible from above. */
 function feetOf({ sheet }: Model, markers: readonly Piece[]): Piece[] {
   return markers
     .filter(({ pattern }) => pattern === PATTERNS.edge)

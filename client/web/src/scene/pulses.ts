@@ -1,4 +1,4 @@
-/** Rings of light that spread from a marker in the colour of who took it. */
+/** Rings of light that spread from a marker in the colour of the team that took it. */
 
 import {
   AdditiveBlending,

@@ -1,4 +1,4 @@
-/** How finely to draw: as finely as this machine can, at an even pace. */
+/** Chooses the best quality that this machine can draw at an even rate. */
 
 import { browser } from "../core/storage";
 
@@ -6,7 +6,7 @@ export type Fineness = "low" | "high";
 
 /** A page feels slow beyond this. */
 const SLOW_MS = 50;
-/** A verdict needs so many frames; the first ones are spent on compiling. */
+/** Frames needed for a verdict; the first ones are slow because shaders compile. */
 const WINDOW = 60;
 const WARM_UP = 20;
 const KEPT = "lacoc.fineness";
@@ -17,7 +17,7 @@ export class FrameTimes {
   private count = 0;
   private lastMs = Number.NaN;
 
-  /** Note a frame; a pause, as of a hidden tab, is no frame time. */
+  /** Note a frame; a pause, as in a hidden tab, does not count as a frame time. */
   note(nowMs: number): void {
     const sinceMs = nowMs - this.lastMs;
     this.lastMs = nowMs;
@@ -49,7 +49,7 @@ export class FrameTimes {
   }
 }
 
-/** Whether what draws is a processor, not a graphics card. */
+/** True if a processor draws, not a graphics card. */
 export function drawsInSoftware(gl: WebGL2RenderingContext): boolean {
   return /swiftshader|llvmpipe|software|basic render/i.test(rendererName(gl));
 }
@@ -60,7 +60,7 @@ export function rendererName(gl: WebGL2RenderingContext): string {
 }
 
 /**
- * What to begin with where nothing was chosen; a slow machine is remembered by its card.
+ * Return the quality to begin with if none was chosen; slow cards are remembered.
  *
  * @param canvas Of no other use; "none" if it can't have WebGL.
  */
@@ -78,7 +78,7 @@ export function rememberSlow(gl: WebGL2RenderingContext): void {
   browser.write(KEPT, rendererName(gl));
 }
 
-/** Whether frames take too long for what is drawn. */
+/** True if frames take too long at this quality. */
 export function tooSlow(times: FrameTimes): boolean {
   return times.full && times.p95Ms > SLOW_MS;
 }

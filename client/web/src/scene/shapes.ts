@@ -24,7 +24,7 @@ export interface Shape {
 
 const FLAT_M = 0.003;
 const PLATE_CORNERS = 24;
-/** Of a robot's boxes: rounded, so that the light plays on them. */
+/** A robot's boxes have rounded edges, which reflect the light. */
 const ROUND_M = 0.012;
 
 /** The shape of a geom; sizes are MuJoCo's half sizes, z is up. */

@@ -36,7 +36,7 @@ import { EYE, type Piece, piecesOf } from "./pieces";
 import { Pulses } from "./pulses";
 import type { Fineness } from "./quality";
 
-/** What is pointed at: a ring is drawn round it. */
+/** The thing under the pointer: a ring is drawn round it. */
 export interface Ring {
   x: number;
   y: number;
@@ -158,7 +158,7 @@ export class Stage {
     this.model = model;
     const { scene, sheet } = model;
     this.motion = new MarkerMotion(scene, sheet.markers);
-    // What lies on top is drawn first: what it covers is not drawn at all.
+    // The top layer is drawn first, so the shapes that it covers need not be drawn.
     this.layers = {
       still: this.layer({ roughness: 0.75, metalness: 0.05 }, 2),
       markers: this.layer({ roughness: 0.42, metalness: 0.08 }, 1),
@@ -199,7 +199,7 @@ export class Stage {
     this.world.add(mesh);
   }
 
-  /** Where there are no real shadows: a soft dark spot, or robots would float. */
+  /** A soft dark spot in place of real shadows, so that robots do not seem to float. */
   private blob(seat: number): void {
     if (this.fine) return;
     const geometry = new RingGeometry(0.001, 1, 16, 2);
@@ -234,7 +234,7 @@ export class Stage {
     this.sun.target.position.set(field.x, field.y, 0);
   }
 
-  /** Whether markers are on their way to another state. */
+  /** True while markers move to another state. */
   get moving(): boolean {
     return this.motion?.moving ?? false;
   }
@@ -250,7 +250,7 @@ export class Stage {
   /**
    * Draw the model as it is now.
    *
-   * @param animate Whether changed markers move, or are there at once.
+   * @param animate True: changed markers move; false: they change at once.
    * @returns Markers that changed.
    */
   draw(view: ViewAxes, nowMs: number, animate: boolean, ring: Ring | null): number[] {

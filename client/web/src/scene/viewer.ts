@@ -34,7 +34,7 @@ export interface Options {
   onPick: ((hit: Hit) => void) | null;
 }
 
-/** What tests look at: `window.__lacoc.view`. */
+/** Data for tests: `window.__lacoc.view`. */
 export interface ViewHook {
   readonly fps: number;
   readonly frameMsP95: number;
@@ -46,7 +46,7 @@ export interface ViewHook {
   /** "low", "high", or "map" where nothing is drawn in three dimensions. */
   readonly quality: string;
   readonly eye: [number, number, number] | null;
-  /** Whether a disc is turning over or a flag is falling. */
+  /** True while a disc turns over or a flag falls. */
   readonly moving: boolean;
   bodyPos(name: string): [number, number, number] | null;
   marker(index: number): number;
@@ -173,7 +173,7 @@ export class Viewer {
 
   // Building
 
-  /** How finely to draw; null where there is no WebGL. */
+  /** The quality of the picture; null without WebGL. */
   private fineness(): Fineness | null {
     const { quality } = this.options;
     // A look at the card first: smooth edges can't be taken back from a context that has them.

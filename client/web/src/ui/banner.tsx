@@ -5,7 +5,7 @@ import type { Court } from "../core/court";
 import { Phase } from "../core/wire";
 import { said, t } from "../i18n";
 
-/** What the page waits for, in words; "" while all is well. */
+/** A sentence that says what the page waits for; "" if it waits for nothing. */
 export function waitsFor(court: Court): string {
   const { open, attempt, refused } = court.connection.state.value;
   if (refused) return said(refused);
@@ -22,7 +22,7 @@ export function waitsFor(court: Court): string {
   return court.begun.value && !court.live.value ? t("link.stale") : "";
 }
 
-/** Whether the last thing that was shown is the end of a match: nothing is missing then. */
+/** True if the last thing shown is the end of a match: then nothing is missing. */
 export function isOver(court: Court): boolean {
   const phase = court.frame.value?.phase;
   return phase === Phase.OFFICIAL || phase === Phase.VOID;

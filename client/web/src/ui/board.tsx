@@ -145,7 +145,7 @@ function lookOf(seat: number): string {
   return `seat-look-${seat}`;
 }
 
-/** A flag's own colour says what it is worth; null for what is no flag. */
+/** The colour of a flag, which shows its points; null for other markers. */
 function clothOf(scene: Scene | null, marker: number): string | null {
   const cloth = scene?.geoms.find(
     (geom) => geom.marker === marker && geom.state === 0 && geom.type === "box",
@@ -155,7 +155,7 @@ function clothOf(scene: Scene | null, marker: number): string | null {
   return `rgb(${red} ${green} ${blue})`;
 }
 
-/** Whether dark letters are read better on a colour "rgb(r g b)". */
+/** True if dark letters are easier to read on a colour "rgb(r g b)". */
 function isLight(colour: string): boolean {
   const [red = 0, green = 0, blue = 0] = colour.match(/\d+/g)?.map(Number) ?? [];
   return 0.299 * red + 0.587 * green + 0.114 * blue > 140;

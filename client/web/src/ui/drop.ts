@@ -35,7 +35,7 @@ export function useDrop(dragging: Signal<boolean>, take: (files: readonly File[]
   }, []);
 }
 
-/** Not so a word that is dragged into a field. */
+/** False for a word that is dragged into a field. */
 function bringsFiles(event: DragEvent): boolean {
   return event.dataTransfer?.types.includes("Files") ?? false;
 }

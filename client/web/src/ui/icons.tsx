@@ -38,7 +38,7 @@ export function Icon({ name }: { name: IconName }) {
 interface ButtonProps {
   name: IconName;
   label: string;
-  /** What else the pointer is told, such as the key for it; else the label. */
+  /** The tooltip, such as the key for the button; without it, the label. */
   title?: string;
   /** Whether what it opens is open. */
   expanded?: boolean;

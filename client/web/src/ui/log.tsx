@@ -12,9 +12,9 @@ interface Props {
   most?: number;
   /** Only these. */
   only?: (event: Event) => boolean;
-  /** What stands behind an event, such as a button. */
+  /** Shown after an event, such as a button. */
   extra?: (event: Event) => ComponentChildren;
-  /** Whether another part of the page tells what is new: a screen reader should hear it once. */
+  /** Another part of the page announces new events: a screen reader should hear them once. */
   toldElsewhere?: boolean;
 }
 

@@ -1,4 +1,4 @@
-/** Before play: who meets whom, who is still missing, what the game is; then the countdown. */
+/** Before play: the teams, who is still missing, the game; then the countdown. */
 
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
@@ -10,10 +10,10 @@ import { SeatMark } from "./score";
 import "./opening.css";
 
 const WAITING = new Set<number>([Phase.CREATED, Phase.LOBBY, Phase.READY]);
-/** "Go" stands for so long. */
+/** How long "Go" is shown. */
 const GO_TICKS = 0.9 * BEATS_PER_S;
 
-/** Whether the card is there: it stands low in the picture. */
+/** True if the card is shown, low in the picture. */
 export function useOpening(match: Match): boolean {
   const phase = useMemo(() => phaseOf(match), [match]).value;
   const seats = match.sheet.value?.seats.length ?? 0;

@@ -79,7 +79,7 @@ function title(sheet: Sheet, winner: string | null): string {
   return t("hint.wins", { team: team(sheet, index) });
 }
 
-/** Whose word the result is: the rules', the referee's, and whether it is final. */
+/** Who decided the result, the rules or the referee, and whether it is final. */
 export function Kicker({ match }: { match: Match }) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
   const kicker =
@@ -133,7 +133,7 @@ export function Explained({ match }: { match: Match }) {
   );
 }
 
-/** Whether the winner is another than by the rules. */
+/** True if the winner differs from the winner by the rules. */
 function isDeclared(match: Match): boolean {
   return byRules(match.events.value) !== winnerOf(match);
 }

@@ -1,4 +1,4 @@
-/** The score bug: who plays, the score, the clock and the phase; the same on every page. */
+/** The score bug: the teams, the score, the clock and the phase; the same on every page. */
 
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
@@ -101,7 +101,7 @@ export function PhaseWord({ match }: { match: Match }) {
   );
 }
 
-/** What the phase means and what comes next, in a sentence. */
+/** A sentence: what the phase means and what comes next. */
 export function Hint({ match }: { match: Match }) {
   const text = useMemo(() => computed(() => hint(match)), [match]).value;
   return <span class="hint">{text}</span>;

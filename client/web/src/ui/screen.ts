@@ -1,4 +1,4 @@
-/** What a page knows of the screen that it is on. */
+/** Facts about the screen that a page is on. */
 
 import { signal } from "@preact/signals";
 

@@ -1,4 +1,4 @@
-/** What just happened, across the lower part of the picture, in the colour of who did it. */
+/** The newest event, across the lower part of the picture, in the colour of its team. */
 
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
@@ -71,7 +71,7 @@ function Third({ match, event }: { match: Match; event: Event }) {
   );
 }
 
-/** What a game's event says, short; what has no short form, as the court said it. */
+/** A short text for a game's event; without a short form, the court's own words. */
 export function sentence(match: Match, event: Event): string {
   const sheet = match.sheet.peek();
   const { marker, also } = event.data as { marker?: string; also?: string[] };

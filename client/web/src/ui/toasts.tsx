@@ -16,7 +16,7 @@ const MOST = 4;
 const toasts = signal<Toast[]>([]);
 let lastId = 0;
 
-/** Say something; the same text again only starts its time anew. */
+/** Show a text; the same text again only restarts its time. */
 export function toast(text: string, tone: Tone = "plain"): void {
   const id = ++lastId;
   const others = toasts.value.filter((one) => one.text !== text);

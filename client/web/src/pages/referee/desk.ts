@@ -1,4 +1,4 @@
-/** The referee's desk: who sits at it, which decisions are open, and what became of each. */
+/** The referee's desk: the acting referee, the legal decisions, and their answers. */
 
 import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Refused, Unanswered } from "../../core/connection";
@@ -21,7 +21,7 @@ import type { Draft } from "./drafts";
 const TOKEN = "lacoc-referee";
 const RETRY_MS = 1500;
 
-/** The newest word of the court on a decision: done, refused, or not heard. */
+/** The court's newest answer to a decision: done, refused, or no answer. */
 export interface Answer {
   tone: "yes" | "no" | "plain";
   text: string;
@@ -29,9 +29,9 @@ export interface Answer {
   atMs: number;
 }
 
-/** An older word is no news any more. */
+/** An older answer is not shown any more. */
 export const ANSWER_MS = 20_000;
-/** A phase that comes so soon after the word belongs to it; a later one leaves it behind. */
+/** A phase within this time belongs to the answer; a later phase hides the answer. */
 const BELONGS_MS = 1500;
 
 /** A decision that begins, stops or goes on with play: taken without a question. */
@@ -41,7 +41,7 @@ export type Step = "start" | "halt" | "resume";
 const SECOND_CLICK_MS = 700;
 
 export class Desk {
-  /** Whether the court has taken this page's token. */
+  /** True if the court has accepted this page's token. */
   readonly entered = signal(false);
   readonly busy = signal(false);
   /** Why entering failed; "" if it did not. */

@@ -1,4 +1,4 @@
-/** How the court is: a verdict in a word, and the numbers behind it. */
+/** The health of the court: a verdict in one word, and its numbers. */
 
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";

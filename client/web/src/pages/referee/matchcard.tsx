@@ -111,7 +111,7 @@ function WhyHalted({ desk }: { desk: Desk }) {
   return cause ? <p class="why-halted">{said(cause.said)}</p> : null;
 }
 
-/** What stands before the court's words. */
+/** The label before the court's answer. */
 const ANSWERED = {
   yes: ["✓", "referee.done"],
   no: ["✕", "referee.no"],

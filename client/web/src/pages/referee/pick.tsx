@@ -30,7 +30,7 @@ const HEIGHT_PX = 260;
 
 export function PickPopover({ desk, picked, onClose }: Props) {
   const element = useRef<HTMLDivElement>(null);
-  // Before anything is drawn: who is quick presses Escape at once.
+  // Before anything is drawn, because a quick user may press Escape at once.
   useLayoutEffect(() => {
     const before = document.activeElement;
     element.current?.querySelector<HTMLElement>("button:not([aria-disabled])")?.focus();

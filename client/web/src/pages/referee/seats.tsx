@@ -161,7 +161,7 @@ function tripText(link: SeatHealth): string {
   return t("seatLink.tripMs", { p50: Math.round(p50), p95: Math.round(p95) });
 }
 
-/** What a robot does: "B 2 · posture 1/4"; "" before it stands. */
+/** What a robot does: "B 2 · posture 1/4"; "" before it is on the field. */
 function keyText(frame: Frame, sheet: Sheet, index: number): string {
   const seat = frame.seats[index];
   if (!seat || !frame.poses.length) return "";

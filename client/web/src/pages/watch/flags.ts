@@ -1,4 +1,4 @@
-/** What the address of a page that shows a match asks for. */
+/** The options in the address of a page that shows a match. */
 
 import { setting } from "../../core/address";
 import type { Quality } from "../../core/settings";
@@ -15,7 +15,7 @@ export function cameraOfAddress(): CameraName {
   return CAMERAS.includes(wanted) ? wanted : "auto";
 }
 
-/** How finely to draw, by the address; null: it says nothing. */
+/** The quality in the address; null: none is given. */
 export function qualityOfAddress(): Quality | null {
   return QUALITIES.find((name) => name === setting("q")) ?? null;
 }
