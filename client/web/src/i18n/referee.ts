@@ -154,7 +154,7 @@ export const referee = {
   "ask.reason": ["Reason (goes into the record)", "理由（記録に残ります）"],
   "ask.words": ["In words", "補足"],
   "ask.needReason": ["Choose a reason first", "先に理由を選んでください"],
-  "ask.needWords": ["Say the reason in words", "理由を入力してください"],
+  "ask.needWords": ["Write the reason in words", "理由を入力してください"],
   "reason.other": ["other", "その他"],
   "pick.state.neutral": ["neutral", "無所属"],
   "pick.state.down": ["down", "倒す"],
