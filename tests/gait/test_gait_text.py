@@ -280,7 +280,7 @@ def test_what_stands_below_the_legend_is_said():
     ],
 )
 def test_a_legend_that_contradicts_the_columns_is_said(was, now, said):
-    """The columns count; a contestant who thinks otherwise finds out before the match."""
+    """The columns count; a legend that contradicts them is reported before the match."""
     notes: list[Phrase] = []
     assert was in FIGURE_4_1
     text = FIGURE_4_1.replace(was, now)
