@@ -10,7 +10,7 @@ import { JOIN_MAX_BYTES, MAX_POSTURES_PER_KEY, type SentFile } from "./wire";
 export const SLOTS = ["robot", "postures", "locomotion"] as const;
 export type Slot = (typeof SLOTS)[number];
 
-/** Of all files together: a join is one message, with a name and a token besides. */
+/** Limit for all files together: a join is one message, which also has a name and a token. */
 export const MOST_BYTES = JOIN_MAX_BYTES - 2 * 1024;
 
 interface Kept {
