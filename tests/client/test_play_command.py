@@ -141,7 +141,7 @@ def test_a_court_that_is_gone_is_said_and_comes_back(
     assert any('"PLAYING."' in line for line in lines)
     os.kill(court.process.pid, signal.SIGSTOP)
     try:
-        terminal.sees("No word from the court for 1 s - trying again")
+        terminal.sees("No answer from the court for 1 s - trying again")
         assert any('{"type":"link","silent_s":1' in line for line in lines)
     finally:
         os.kill(court.process.pid, signal.SIGCONT)
