@@ -1,8 +1,8 @@
 /**
  * Layers for machines without a graphics card: a whole layer is one mesh in world coordinates.
  *
- * What draws by software (SwiftShader) starts anew for every instance, at some 50 us each; 190 of
- * them cost more than all their pixels. To move and to light some thousand corners here takes a
+ * Drawn by software (SwiftShader), a picture of one mesh costs less processor time than one of 190
+ * instances; docs/gateway.md has the figures. Moving and lighting some thousand corners here takes a
  * fraction of a millisecond.
  */
 
