@@ -12,13 +12,10 @@ from lacoc_arenas.bot import BotFactory, Brain, Key
 from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import RESTART_KEY
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
-_A_BRAIN = "a function that takes a frame and returns a Key or None"
-_A_KEY = (
-    "a Key(level, key) with Level.POSTURE or Level.LOCOMOTION and a key from 0 to 9 "
-    f"({RESTART_KEY} for [x]), or None for no new key"
-)
+_A_BRAIN = say("expected.brain")
+_A_KEY = say("expected.key", restart=RESTART_KEY)
 
 
 def checked(name: str, bot: BotFactory) -> BotFactory:
@@ -84,7 +81,7 @@ def _is_key(found: object) -> bool:
     )
 
 
-def _gave_back(name: str, function: object, found: object, expected: str) -> UserError:
+def _gave_back(name: str, function: object, found: object, expected: Phrase) -> UserError:
     shown = printable(repr(found), 80)
     place = _place(function)
     return UserError(say("bot.returned", bot=name, place=place, found=shown, expected=expected))

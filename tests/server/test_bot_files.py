@@ -54,7 +54,7 @@ def test_what_is_a_key(tmp_path: Path, returns: str, expected: Key | None) -> No
 )
 def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
     """It is refused in a sentence, before it is recorded or sent."""
-    with pytest.raises(UserError, match=r"my_bot\.py, line 5\) returned .*Expected a Key\(level"):
+    with pytest.raises(UserError, match=r"my_bot\.py:5\) returned .*Expected a Key\(level"):
         play(tmp_path, brain(returns))
 
 
@@ -63,18 +63,18 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
     [
         (
             "def bot(sheet):\n    return None\n",
-            r"line 4\) can't be called: .* 2 were given\. Expected",
+            r"py:4\) can't be called: .* 2 were given\. Expected",
         ),
         (
             "def bot(sheet, seat):\n    def brain():\n        pass\n    return brain\n",
-            r"line 5\) can't be called: .* brain\(frame\)\.",
+            r"py:5\) can't be called: .* brain\(frame\)\.",
         ),
-        ("def bot(sheet, seat):\n    return 2\n", r"line 4\) returned 2\. Expected a function"),
-        ("def bot(sheet, seat):\n    return sheet.team\n", r"line 5\): AttributeError: .*'team'"),
-        (brain("frame.seats[7]"), r"line 6\): IndexError: "),
-        (brain("Level(frame.seats)"), r"line 6\): ValueError: "),
-        ("import no_such_package\n", r"line 4\): ModuleNotFoundError: .*no_such_package"),
-        ("def bot(sheet, seat)\n", r"line 4\): SyntaxError: expected ':'"),
+        ("def bot(sheet, seat):\n    return 2\n", r"py:4\) returned 2\. Expected a function"),
+        ("def bot(sheet, seat):\n    return sheet.team\n", r"py:5\): AttributeError: .*'team'"),
+        (brain("frame.seats[7]"), r"py:6\): IndexError: "),
+        (brain("Level(frame.seats)"), r"py:6\): ValueError: "),
+        ("import no_such_package\n", r"py:4\): ModuleNotFoundError: .*no_such_package"),
+        ("def bot(sheet, seat)\n", r"py:4\): SyntaxError: expected ':'"),
     ],
 )
 def test_the_line_of_a_mistake(tmp_path: Path, text: str, says: str) -> None:

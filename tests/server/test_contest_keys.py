@@ -121,7 +121,7 @@ def test_every_court_is_named_that_can_be_started_next(file: Path) -> None:
     second = text[text.index("[court.main]") :].replace("court.main", "court.two")
     file.write_text(text + second.replace(":7447", ":7448"))
     said = " ".join(run("keys", str(file), "--host", "one.example").split())
-    assert "contest.toml --court main, and lacoc serve --contest " in said
+    assert "contest.toml --court main and lacoc serve --contest " in said
     assert said.endswith("contest.toml --court two")
 
 

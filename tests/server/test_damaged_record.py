@@ -186,7 +186,7 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
         (lambda data, at: data.replace(*other_model(data)), "damaged, or this is not the software"),
         (
             lambda data, at: with_header(data, at, setup=setup_of("/home/a/game")),
-            "was played in arena '/home/a/game', and this court is to play 'othello'",
+            'was played in arena "/home/a/game", and this court plays "othello"',
         ),
     ],
 )

@@ -9,7 +9,7 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake
-from lacoc_shared.words import say
+from lacoc_shared.words import render, say
 
 HEXAPOD = join(0)
 
@@ -78,7 +78,7 @@ def test_angles_out_of_the_robots_own_range() -> None:
     far = edited(HEXAPOD.postures, "40", "45.5")
     (mistake,) = mistakes_of(narrow, far)
     assert (mistake.file, mistake.found) == ("Loco-data.txt", "45.5")
-    assert "-45" in mistake.expected
+    assert "-45" in render(mistake.expected)
     weigh_in(HEXAPOD.robot, far, None)
 
 
@@ -110,5 +110,5 @@ def test_a_legend_that_contradicts_the_columns_is_told_with_the_join() -> None:
     assert HEXAPOD.postures is not None
     exchanged = HEXAPOD.postures.data.replace(b"R,F", b"x").replace(b"L,F", b"R,F")
     (note,) = weigh_in(HEXAPOD.robot, SentFile("mine.txt", exchanged), None).notes
-    assert "the legend says R,F, and joint 5 is a joint of leg L,F" in note
+    assert "the legend says R,F, and joint 5 is a joint of leg L,F" in render(note)
     assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, HEXAPOD.locomotion).notes == ()

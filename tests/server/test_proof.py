@@ -103,10 +103,10 @@ def test_each_segment_says_what_made_it() -> None:
 def test_the_first_difference_is_told_with_all_of_its_beat() -> None:
     """Differences are reported in the order of a frame, whichever check found them."""
     findings = [
-        Finding(1, 9, Difference(7, ("state hash", "poses"))),
+        Finding(1, 9, Difference(7, ("state-hash", "poses"))),
         Finding(10, 19, Difference(12, ("poses",))),
     ]
-    judged = [Difference(7, ("its events", "seats"))]
+    judged = [Difference(7, ("events", "seats"))]
     found = conclude([header()], 20, 20, judged, findings)
     assert render(found.said) == "beat 7 differs: seats, poses, state hash, its events"
 

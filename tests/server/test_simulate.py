@@ -78,7 +78,7 @@ def test_ghosts_of_both_seats_play_their_match_again(tmp_path: Path) -> None:
 def test_a_match_without_end_is_refused() -> None:
     """A headless match of practice would never end: the sentence says what to give."""
     ground = arenas.load("practice")
-    with pytest.raises(UserError, match="no end of its own: give --seconds"):
+    with pytest.raises(UserError, match="of practice has no time limit: give --seconds"):
         simulate(setup("practice"), [player(ground, 0, next(iter(ground.bots)))])
 
 

@@ -39,9 +39,9 @@ _FRAME = (
     "board",
     "poses",
     "scene",
-    "state hash",
+    "state-hash",
 )
-"""Names of the fields of a frame, in its order."""
+"""Names of the fields of a frame (`differs.*`), in its order."""
 _SCENE_BOUND = 1e-9
 """Most by which a drawn length [m] may differ in a model built on another kind of machine."""
 
@@ -233,7 +233,7 @@ class Judge:
             if not isinstance(physics, RecordedPhysics):
                 self.section = None
                 if number in self._snapshots:
-                    differs.append("the snapshot")
+                    differs.append("snapshot")
             elif (step := physics.take()) is not None and self.section is not None:
                 self.section.steps.append(step)
         self.beats = number + 1
@@ -273,7 +273,7 @@ class Judge:
             return None, None
         if models in ([], [world.model_hash]) and scene in (None, world.scene):
             return None, None
-        self.other_model = self.other_model or Difference(beat, ("the model",))
+        self.other_model = self.other_model or Difference(beat, ("model",))
         return scene, str(models[0]) if models else None
 
     def _differences(self, number: int, beat: Beat) -> Iterator[str]:
@@ -285,35 +285,35 @@ class Judge:
             event.data.get("model", match.physics.model_hash) != match.physics.model_hash
             for event in events
         ):
-            yield "the model"
+            yield "model"
         if recorded is not None and encode(beat.frame) != recorded:
             yield from _frame_differences(decode(recorded, Frame), beat.frame)
         happened = beat.ticked or beat.events or beat.sheet_changed or number in record.inputs
         if recorded is None and happened:
-            yield "its frame is missing"
+            yield "frame-missing"
         if not same_events(record.header, events, beat.events):
-            yield "its events"
+            yield "events"
         if beat.touch != record.touches.get(number):
-            yield "what the robots touched"
+            yield "touches"
         sheet = self._sheets.get(number)
         if (sheet or beat.sheet_changed) and not _same_sheet(sheet, match.sheet()):
-            yield "the sheet"
+            yield "sheet"
         scene = self._scenes.get(number)
         if scene or match.physics.scene_hash != self._scene:
             self._scene = match.physics.scene_hash
             if scene != match.physics.scene:
-                yield "the scene"
+                yield "scene-message"
         self._result = beat.result or self._result
 
     def _differs_at_the_end(self, last: int) -> Iterator[str]:
         """Name what differs between the whole judged match and its record."""
         record = self._record
         if not _same_result(record, self._result, last):
-            yield "the result"
+            yield "result"
         if any(number != last + 1 or not record.cut for number in self._events):
-            yield "events of no beat"
+            yield "events-of-no-beat"
         if len(self._frames) != len(record.frames):
-            yield "two frames of one beat"
+            yield "two-frames"
 
 
 @contextmanager

@@ -34,6 +34,7 @@ class Difference(NamedTuple):
 
     beat: int
     what: tuple[str, ...]
+    """Names of what differs (`differs.*`)."""
 
 
 @dataclass(frozen=True)
@@ -153,7 +154,7 @@ def simulate(section: Section, worlds: Worlds, bound: float = BOUND) -> Finding:
     try:
         world = worlds.at_start(section)
     except ValueError:
-        found.differ(section.first_beat - 1, "the snapshot", far=True)
+        found.differ(section.first_beat - 1, "snapshot", far=True)
         return found
     before = digest = section.digest
     for step in section.steps:
@@ -174,7 +175,7 @@ def _step(step: Step, before: bytes, world: World, found: Finding, bound: float)
         fault = world.step(step.angles)
         ticked = fault is None
         if fault != step.fault:
-            found.differ(step.beat, "a stop of physics", far=True)
+            found.differ(step.beat, "stop", far=True)
     if step.poses is not None:
         poses = world.poses()
         if poses != step.poses:
@@ -182,10 +183,10 @@ def _step(step: Step, before: bytes, world: World, found: Finding, bound: float)
             found.distance = max(found.distance, apart)
             found.differ(step.beat, "poses", far=apart > bound + _ROUNDING)
         if world.digest != step.digest or (not ticked and step.digest != before):
-            found.differ(step.beat, "state hash", far=not ticked and step.digest != before)
+            found.differ(step.beat, "state-hash", far=not ticked and step.digest != before)
     if step.touched is not None and tuple(world.touched()) != step.touched:
         possible = _possible(step.touched, world, bound)
-        found.differ(step.beat, "what the robots touched", far=not possible)
+        found.differ(step.beat, "touches", far=not possible)
 
 
 def _end(
@@ -198,13 +199,13 @@ def _end(
     if world.save() != saved:
         apart = world.apart(saved)
         found.distance = max(found.distance, apart)
-        found.differ(step.beat, "the snapshot", far=apart > bound)
+        found.differ(step.beat, "snapshot", far=apart > bound)
     if found.beyond is not None:
         return
     chained = world.follows(saved, before) or step.angles is None
     world.load(saved)
     if not chained or step.digest != saved[:8]:
-        found.differ(step.beat, "state hash", far=True)
+        found.differ(step.beat, "state-hash", far=True)
     elif step.poses != world.poses():
         found.differ(step.beat, "poses", far=True)
 

@@ -10,7 +10,7 @@ from lacoc_shared.record.schema import Header
 from lacoc_shared.words import Phrase, say
 
 _ORDER = (
-    "its frame is missing",
+    "frame-missing",
     "match",
     "beat",
     "phase",
@@ -20,7 +20,7 @@ _ORDER = (
     "board",
     "poses",
     "scene",
-    "state hash",
+    "state-hash",
 )
 """Order in which a beat's differences are listed; all others come after them."""
 
