@@ -213,7 +213,7 @@ def test_what_is_no_number(cell):
         ),
         pytest.param(
             loco([posture() + "\t\tforward", posture("1 Key")]),
-            [(2, 21, '"forward"', "nothing after the 18 angles (3 for each of 6 legs)")],
+            [(2, 21, '"forward"', "nothing after 18 angles (3 for each of 6 legs)")],
             id="a remark beside the angles",
         ),
         pytest.param(

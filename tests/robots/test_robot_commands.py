@@ -73,7 +73,7 @@ def test_a_robot_file_that_is_not_utf_8(
     (mistake,) = json.loads(capsys.readouterr().out)["mistakes"]
     assert (mistake["found"], mistake["expected"]) == (
         "bytes that are not text in UTF-8",
-        "save it as UTF-8",
+        "a TOML file saved as UTF-8",
     )
 
 
@@ -84,7 +84,7 @@ def test_an_integer_of_many_digits(tmp_path: Path, capsys: pytest.CaptureFixture
     assert lacoc("robot", "check", "--json", str(file)) == 2
     (mistake,) = json.loads(capsys.readouterr().out)["mistakes"]
     assert mistake["found"] == "a number with too many digits"
-    assert mistake["expected"] == "write it with at most 15 digits"
+    assert mistake["expected"] == "a number of at most 15 digits"
     assert HEXAPOD.splitlines()[mistake["row"] - 1].startswith("kp = ")
 
 
@@ -131,4 +131,6 @@ def test_export_without_mujoco(
 def test_nothing_there(capsys: pytest.CaptureFixture[str]) -> None:
     """For an unknown robot the command prints one line and exits with 2."""
     assert lacoc("robot", "check", "centipede") == 2
-    assert "'centipede'" in capsys.readouterr().err
+    printed = capsys.readouterr()
+    assert printed.err.count("\n") == 1
+    assert 'There is no robot "centipede"' in printed.err

@@ -249,7 +249,7 @@ def test_broken_toml_names_the_line() -> None:
 @pytest.mark.parametrize(
     ("data", "found"),
     [
-        (b"name = '\xff'", "no text"),
+        (b"name = '\xff'", "bytes that are not text"),
         (b"a = " + b"[" * 5000, "too deep"),
         (b"a = 1" + b"0" * 5000, "digits"),
         (b"name = [0x" + b"f" * 5000 + b"]", "digits"),
