@@ -156,7 +156,7 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
     refused = later()
     assert isinstance(refused, Refusal)
     assert [mistake.found for mistake in refused.mistakes] == ["a leap"]
-    assert refusals(inbox) == {"bad files": 1}
+    assert refusals(inbox) == {"bad-files": 1}
 
 
 @pytest.mark.parametrize(
