@@ -79,7 +79,7 @@ def test_the_referee_has_every_decision(
     tried = referee.decide("take-back", str(taken["event"]), "--dry-run")
     assert (tried["event"], tried["scores"]) == (None, [17, 18])
     assert referee.decide("take-back", str(taken["event"]))["scores"] == [17, 18]
-    assert referee.decide("clock", "0.5")["text"] == "+0.5 s to play."
+    assert referee.decide("clock", "0.5")["text"] == "0.5 seconds more to play."
     referee.decide("resume")
     referee.decide("halt")
     assert "Go" not in referee.refused("official")
@@ -222,7 +222,7 @@ def test_a_bot_ends_when_its_seat_is_taken(open_court: OpenCourt) -> None:
     out, _ = first.communicate(timeout=30)
 
     assert first.returncode == 2
-    assert "joined again from another window or machine" in out
+    assert "The seat is lost: joined from another window or computer." in out
 
 
 def test_a_bot_says_that_its_court_is_silent(open_court: OpenCourt) -> None:

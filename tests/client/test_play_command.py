@@ -97,7 +97,7 @@ def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Pa
     terminal.press("3")
     terminal.sees("[3] refused: your robot was restarted a moment ago")
     terminal.press("r")
-    terminal.sees("The match is on (PLAYING).")
+    terminal.sees("This is not possible now: the match is being played.")
     terminal.press("z")
     terminal.sees("You have left.", "Pos-data.1.txt", "Pos-data.txt written")
 
@@ -245,10 +245,10 @@ def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
     [
         ({"token": "not-the-token-of-it"}, "token"),
         ({"seat": "middle"}, 'has no seat "middle". It has left and right.'),
-        ({"court": "centre"}, "There is no court 'centre' at"),
+        ({"court": "centre"}, 'There is no court "centre" at'),
         ({"connect": "tcp/127.0.0.1:1"}, "Nobody listens at tcp/127.0.0.1:1."),
         ({"connect": "my court"}, '"my court" is not an address.'),
-        ({"name": "x" * 25}, "1-24"),
+        ({"name": "x" * 25}, "1 to 24 printable characters"),
         ({"robot": "centipede"}, "centipede"),
         ({"contest": "missing.toml"}, "missing.toml"),
     ],

@@ -1,7 +1,8 @@
 """Makes the seeds of tests/fuzz/corpus: `python tests/fuzz/make_corpus.py`.
 
 Small and good inputs, from the samples and from a short match; and under the name `found-...`
-what once crashed, hung or filled the memory, or would have.
+what once crashed, hung or filled the memory, or would have. Records named `...-protocol-1` were
+made by an older version, which sent sentences; no program can make them again.
 """
 
 import io
@@ -40,6 +41,7 @@ from lacoc_shared.messages import (  # noqa: E402
 )
 from lacoc_shared.mistakes import Mistake  # noqa: E402
 from lacoc_shared.record.pack import pack  # noqa: E402
+from lacoc_shared.words import say  # noqa: E402
 
 CORPUS = HERE / "corpus"
 
@@ -73,16 +75,20 @@ def write_packets() -> None:
         decisions=stage.match.legality(),
     )  # fmt: skip
     mistake = Mistake(file="a.txt", found="x", expected="an angle", row=1, column=2, leg="R,F")
-    reply = DecisionReply(beat=7, event=3, text="done", scores=(1, 2), changes=("a flip",))
+    stays = say("note.seat-stays")
+    reply = DecisionReply(
+        beat=7, event=3, said=say("decision.adjust", points=3, team="Ants"), scores=(1, 2),
+        changes=(say("change.appears", kind="flip", marker="c0r0"),),
+    )  # fmt: skip
     made |= {
         "message-frame": [encode(stage.frame), encode(Stage("othello").beat().frame)],
         "message-event": [encode(event) for event in stage.events[:6]],
         "message-sheet": [encode(stage.match.sheet())],
         "message-scene": [encode(msgspec.structs.replace(scene, geoms=scene.geoms[:6]))],
         "message-health": [encode(health)],
-        "message-joined": [encode(Joined(session=1, secret=bytes(16), last_seq=4, notes=("a",)))],
-        "message-done": [encode(Done("The seat stays yours."))],
-        "message-refusal": [encode(Refusal("no", (mistake, mistake)))],
+        "message-joined": [encode(Joined(session=1, secret=bytes(16), last_seq=4, notes=(stays,)))],
+        "message-done": [encode(Done(stays))],
+        "message-refusal": [encode(Refusal(say("refused.mistakes", count=2), (mistake, mistake)))],
         "message-decisionreply": [encode(reply)],
     }
     for folder, seeds in made.items():
