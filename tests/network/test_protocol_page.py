@@ -15,6 +15,7 @@ from lacoc_shared.codec import decode, encode
 from lacoc_shared.keyspace import JOIN_MAX_BYTES, Keys
 from lacoc_shared.messages import Refusal
 from lacoc_shared.network.session import Session, open_court
+from lacoc_shared.words import say
 
 PAGE = (Path(__file__).parents[2] / "docs" / "protocol.md").read_text(encoding="utf-8")
 JOIN = Keys("main").request("left", "join")
@@ -81,8 +82,9 @@ def test_what_comes_back(court: Session, stranger: zenoh.Session) -> None:
     replies = stranger.get(JOIN, payload=b"y", timeout=10.0)
     while (request := desk.take()) is None:
         pass
-    request.refuse(encode(Refusal("no")))
-    assert [r.err and r.err.payload.to_bytes() for r in replies] == [encode(Refusal("no"))]
+    refusal = encode(Refusal(say("refused.left", seat="left")))
+    request.refuse(refusal)
+    assert [r.err and r.err.payload.to_bytes() for r in replies] == [refusal]
 
 
 def test_a_join_that_is_too_long_is_dropped(court: Session, stranger: zenoh.Session) -> None:
