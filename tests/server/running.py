@@ -18,6 +18,7 @@ from lacoc_shared.decisions import Decision, Start
 from lacoc_shared.messages import Frame
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import render
 
 WAIT_S = 60.0
 
@@ -120,7 +121,8 @@ class Party:
     @property
     def trouble(self) -> str:
         """Return what the court reports about the disk of its record."""
-        return "" if self.view.health is None else self.view.health.record_trouble
+        trouble = None if self.view.health is None else self.view.health.record_trouble
+        return render(trouble) if trouble else ""
 
     def until(self, true: Callable[[], bool]) -> None:
         """Let them do their work until something is true."""

@@ -10,6 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
+import msgspec
 import pytest
 from running import WAIT_S, Party, party, served, write_contest
 
@@ -22,6 +23,7 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEATS_PER_S, SILENT_AFTER_S, Phase
+from lacoc_shared.words import Phrase, render
 
 pytestmark = pytest.mark.slow
 
@@ -87,7 +89,8 @@ def read(folder: Path) -> Record:
 
 def is_given(those: Party, reason: str) -> bool:
     """Whether a decision has this reason; an event comes after the frame of its beat."""
-    return any(reason in event.data.get("reason", "") for event in those.view.events)
+    given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
+    return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
 
 @pytest.mark.parametrize("disk_of", [limited, small])

@@ -29,6 +29,7 @@ from lacoc_shared.messages import SeatFrame, SentFile, Sheet
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase, SeatFlag
+from lacoc_shared.words import say
 
 pytestmark = pytest.mark.slow
 
@@ -114,7 +115,7 @@ def test_the_next_match_takes_the_files_that_were_sent_in_this_one(room: Room) -
     """Rules 4: a match keeps the files that it began with; what is sent meanwhile is not lost."""
     playing(room)
     left = room.controller(0, "quadruped")
-    assert "the next takes your new ones" in "".join(left.join())
+    assert left.join() == (say("note.files-next-match"),)
     assert sheet(left, 1).seats[0].robot == "Hexapod"
     room.decide(Abort())
     room.decide(Next())
@@ -127,7 +128,7 @@ def test_who_joins_when_a_match_is_over_sits_in_the_next(room: Room) -> None:
     left, right = room.controller(0), room.controller(1)
     left.join()
     room.decide(Abort())
-    assert "you play in the next" in "".join(right.join())
+    assert right.join() == (say("note.next-match"),)
     room.decide(Next())
     assert [seat.team for seat in sheet(right, 2).seats] == ["Team left", "Team right"]
     right.ready()

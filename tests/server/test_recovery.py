@@ -87,8 +87,8 @@ def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: P
         those.reach(Phase.HALTED)
         if those.frame.clock_ticks == seen.clock_ticks:
             assert (those.frame.poses, those.frame.digest) == (seen.poses, seen.digest)
-        words = "the court was started again, with another arithmetic"
-        those.until(lambda: any(words in event.text for event in those.view.events))
+        words = "the court was started again on a machine that calculates differently"
+        those.until(lambda: any(words in render(event.said) for event in those.view.events))
         those.decide(Resume(), Phase.PLAYING)
         began = those.frame.clock_ticks
         those.until(lambda: those.frame.clock_ticks > began + 30)
