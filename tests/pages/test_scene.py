@@ -229,7 +229,8 @@ def test_the_picture_is_there(stand: Stand, site: Path, arena: str) -> None:
     assert picture.shape == (450, 800, 3)
     assert np.median(picture) > 20
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 100
-    least = 0.03 if arena == "othello" else 0.001
+    # A far robot has some 350 of 360,000 pixels in its colour, and nothing else has that colour.
+    least = 0.03 if arena == "othello" else 0.0005
     assert share_of(picture, BLUE, 45) > least
     assert share_of(picture, ORANGE, 45) > least
 
