@@ -205,7 +205,7 @@ def test_after_a_leap_in_time_nothing_moves(stand: Stand, site: Path) -> None:
 
 
 def test_without_webgl_the_field_is_drawn_from_above(stand: Stand, site: Path) -> None:
-    """Interface 9.5: no WebGL at all: a 2D top view from the same frames."""
+    """Without WebGL a page shows a 2D top view from the same frames."""
     stand.page.add_init_script(
         """const get = HTMLCanvasElement.prototype.getContext;
         HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
@@ -222,7 +222,7 @@ def test_without_webgl_the_field_is_drawn_from_above(stand: Stand, site: Path) -
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_the_picture_is_there(stand: Stand, site: Path, arena: str) -> None:
-    """Interface 9.6: not black, and both team colours are in it, at 800 x 450, low quality."""
+    """The picture is not black, and both team colours are in it, at 800 x 450, low quality."""
     last = Recorded(site, arena).frames[-1]
     stand.open(f"{arena}.bin", speed=0, beat=last.beat, q="low", labels=0)
     picture = stand.pixels()
