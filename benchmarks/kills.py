@@ -41,7 +41,7 @@ from lacoc_shared.words import render
 
 P = Phase
 BACK_IN = {P.PLAYING: P.HALTED, P.COUNTDOWN: P.HALTED}
-"""Design, "Record": where a phase comes back; the others as they were."""
+"""Where a phase comes back; the others as they were."""
 PLAN = (P.LOBBY, P.READY, P.COUNTDOWN, P.PLAYING, P.HALTED, P.PLAYING, P.PLAYING, P.FINISHED)
 """In which phases a match is killed, one after another."""
 MOST_DELAY_S = 0.6

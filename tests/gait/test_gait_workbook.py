@@ -247,7 +247,7 @@ def test_what_is_no_workbook(data, found, expected):
 
 
 def test_an_entity_bomb_is_refused(sample):
-    """Design, failure policy: a part that would grow without end when parsed is refused."""
+    """A part that would grow without end when parsed is refused."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     entities = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 20}">' for n in range(1, 12))
@@ -263,7 +263,7 @@ def test_an_entity_bomb_is_refused(sample):
     "content", ["<si/>" * 60_000, "<si><t>a</t></si>" * 30_000], ids=["empty", "strings"]
 )
 def test_more_xml_than_a_table_has_is_refused(sample, content):
-    """Design, failure policy: what is small to unpack may still be long to read."""
+    """What is small to unpack may still be long to read."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
@@ -272,7 +272,7 @@ def test_more_xml_than_a_table_has_is_refused(sample, content):
 
 
 def test_a_row_far_below_costs_nothing(sample):
-    """Design, failure policy: a sheet that says it is the largest there can be is read at once."""
+    """A sheet that says it is the largest there can be is read at once."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     sheet = parts["xl/worksheets/sheet1.xml"]

@@ -155,7 +155,7 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
 
 
 def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> None:
-    """Interface 8: a whole match and each decision through the page, each in the log."""
+    """A whole match and each decision through the page, each in the log."""
     page = at_the_desk(referee())
     # The lobby: all that is missing, and ready in the place of a contestant.
     expect(page.locator(".missing li")).to_have_text(
@@ -322,7 +322,7 @@ def test_the_file_that_a_browser_is_given_leads_to_the_page(
 
 
 def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
-    """Interface 8: only legal decisions enabled, each other one says why not, to every sense."""
+    """Only legal decisions enabled, each other one says why not, to every sense."""
     page = at_the_desk(referee())
     expect(big(page)).to_have_attribute("aria-disabled", "true")
     assert why(big(page)) == (
@@ -536,7 +536,7 @@ def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
 
 
 def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
-    """Interface 8: one acts, the other watches until they take over."""
+    """One acts, the other watches until they take over."""
     first, second = at_the_desk(referee(), "Kim"), referee()
     enter(second, "Sato")
     expect(second.locator(".acting.other")).to_contain_text("Kim is the referee")

@@ -347,7 +347,7 @@ def test_a_lost_context_comes_back(stand: Stand) -> None:
 
 @pytest.mark.long
 def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
-    """Design, "Failure policy": a lost controller's robot is grey on every screen."""
+    """A lost controller's robot is grey on every screen."""
     frame = Recorded(site, "flag-strike").frames[0]
     stand.open("flag-strike.bin", speed=0, beat=frame.beat, q="low", labels=0, camera="top")
     before = share_of(stand.pixels(), BLUE)
@@ -361,7 +361,7 @@ def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
 
 @pytest.mark.long
 def test_in_software_it_begins_coarse(stand: Stand) -> None:
-    """Interface 9.5: without a graphics card low quality is chosen by itself."""
+    """Without a graphics card low quality is chosen by itself."""
     stand.open("othello.bin", speed=0, q="auto")
     assert stand.view("quality") == "low"
     stand.page.evaluate("stand.quality.value = 'high'")

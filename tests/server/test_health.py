@@ -92,7 +92,7 @@ def lost(verdict: HealthVerdict) -> list[object]:
 
 
 def test_a_match_that_is_held_well() -> None:
-    """Design, "Time": 50 beats a second, none late, all repeats: nothing is advised."""
+    """50 beats a second, none late, all repeats: nothing is advised."""
     held = Held()
     held.seconds(4)
     verdict = held.verdict

@@ -319,7 +319,7 @@ def test_each_level_has_its_own_keys() -> None:
 
 
 def test_frames_tell_which_command_was_applied_when() -> None:
-    """Design, "Network": a controller can show its round trip."""
+    """A controller can show its round trip."""
     stage = playing(ticks=3)
     beat = stage.beat(key(LEFT, FORWARD, seq=41))
     stage.run(5)
@@ -362,7 +362,7 @@ def test_the_order_of_arrival_favours_no_seat(inputs: list[Input], mix: random.R
 
 
 def test_the_order_of_a_beat_is_that_of_its_kinds() -> None:
-    """Design, "One beat": requests, silences, decisions, [x], digits, however they arrive."""
+    """Requests, silences, decisions, [x], digits, however they arrive."""
     stage = playing(ticks=2)
     freeze = decide(d.Freeze("right", 1.0))
     inputs = (key(RIGHT, FORWARD), key(LEFT, X), freeze, SilentSeat(RIGHT), join(RIGHT))
@@ -378,7 +378,7 @@ def test_the_order_of_a_beat_is_that_of_its_kinds() -> None:
 
 
 def test_decisions_come_before_keys() -> None:
-    """Design, "One beat": a key in the beat of a halt is too late."""
+    """A key in the beat of a halt is too late."""
     stage = playing(ticks=2)
     beat = stage.beat(key(LEFT, FORWARD), decide(d.Halt()))
     assert isinstance(beat.outcomes[0], Refusal)
@@ -386,7 +386,7 @@ def test_decisions_come_before_keys() -> None:
 
 
 def test_a_key_takes_effect_in_its_tick() -> None:
-    """Design, "One beat": commands, drive, physics, rules, in one beat."""
+    """Commands, drive, physics, rules, in one beat."""
     stage = playing(ticks=2)
     before = at(stage.frame, LEFT)[7:]
     stage.beat(key(LEFT, FORWARD))

@@ -27,7 +27,7 @@ def test_speed() -> None:
 
 
 def test_offset_shifts_the_phase_by_less_than_a_beat() -> None:
-    """Design, "Time": courts on one machine do not wake together, whenever they were started."""
+    """Courts on one machine do not wake together, whenever they were started."""
     for now_s in (0.0, 7.0, 7.011):
         phases = [
             (now_s + Pace(now_s, offset_s=offset_s).wait_s(now_s)) % 0.02
@@ -37,7 +37,7 @@ def test_offset_shifts_the_phase_by_less_than_a_beat() -> None:
 
 
 def test_after_a_stall_at_most_five_beats_come_without_a_pause() -> None:
-    """Design, "Time": it catches up at most 5 beats, and then lets the match run late."""
+    """It catches up at most 5 beats, and then lets the match run late."""
     pace = Pace(0.0)
     pace.begin(0.0)
     now_s = 1.0  # stalled: 49 beats are overdue
@@ -51,7 +51,7 @@ def test_after_a_stall_at_most_five_beats_come_without_a_pause() -> None:
 
 
 def test_slow_beats() -> None:
-    """Design, "Time": a slow beat is one that starts more than 20 ms late."""
+    """A slow beat is one that starts more than 20 ms late."""
     pace = Pace(0.0)
     pace.begin(0.019)
     assert pace.slow_beats == 0
@@ -61,7 +61,7 @@ def test_slow_beats() -> None:
 
 
 def test_real_time_factor() -> None:
-    """Design, "Time": beats of the last seconds per 20 ms of wall time; a stall is forgotten."""
+    """Beats of the last seconds per 20 ms of wall time; a stall is forgotten."""
     pace = Pace(0.0)
     assert pace.real_time_factor == 1.0
     for beat in range(300):

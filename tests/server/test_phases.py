@@ -275,7 +275,7 @@ def test_the_shortest_match_is_one_tick() -> None:
 
 
 def test_a_fault_halts_before_the_tick() -> None:
-    """Design, "Failure policy": the state before the tick, HALTED, which robot and when."""
+    """The state before the tick, HALTED, which robot and when."""
     script = Script(faults={4: Fault(RIGHT, say("fault.velocity"))})
     stage, twin = Stage(script=script).to_playing(), Stage().to_playing()
     stage.until(P.PLAYING)

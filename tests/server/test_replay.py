@@ -98,7 +98,7 @@ def test_a_simulated_match_verifies(arena: str, tmp_path: Path) -> None:
 
 
 def test_a_match_that_goes_on_verifies_up_to_where_it_is(live: tuple[Path, list[Beat]]) -> None:
-    """Design, "Record": a killed court's record gives every whole message."""
+    """A killed court's record gives every whole message."""
     record = Record.read(live[0])
     assert record.cut
     found = verdict(record)
@@ -106,7 +106,7 @@ def test_a_match_that_goes_on_verifies_up_to_where_it_is(live: tuple[Path, list[
 
 
 def test_a_changed_key_is_named(live: tuple[Path, list[Beat]]) -> None:
-    """Design, "Record": verify names the first beat that differs."""
+    """Verify names the first beat that differs."""
     record = Record.read(live[0])
     record.inputs[260] = [
         KeySeat(item.seat, item.seq, item.level, TURN_RIGHT) if isinstance(item, KeySeat) else item
@@ -118,7 +118,7 @@ def test_a_changed_key_is_named(live: tuple[Path, list[Beat]]) -> None:
 
 
 def test_a_missing_input_is_named(live: tuple[Path, list[Beat]]) -> None:
-    """Design, "Record": also where an input was taken out."""
+    """Also where an input was taken out."""
     record = Record.read(live[0])
     del record.inputs[300]
     assert verdict(record).differs_at == 300
@@ -128,7 +128,7 @@ def test_a_missing_input_is_named(live: tuple[Path, list[Beat]]) -> None:
 def test_one_flipped_bit_of_a_pose_is_named(
     beat: int, live: tuple[Path, list[Beat]], tmp_path: Path
 ) -> None:
-    """Design, "Record": one bit in one frame of the file."""
+    """One bit in one frame of the file."""
     path, beats = live
     data = bytearray(path.read_bytes())
     recorded = [at for at, _ in Record.read(path).frames]
@@ -154,7 +154,7 @@ def test_one_flipped_bit_of_a_pose_is_named(
 def test_nothing_of_a_record_can_be_changed_unseen(
     what: str, words: str, live: tuple[Path, list[Beat]]
 ) -> None:
-    """Design, "Record": not only frames are compared, but all that a resumed match is built of."""
+    """Not only frames are compared, but all that a resumed match is built of."""
     record = Record.read(live[0])
     if what == "event":
         event = record.events[-1]
@@ -264,7 +264,7 @@ def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_p
 def test_a_beat_is_whole_or_not_at_all(
     beat: int, live: tuple[Path, list[Beat]], tmp_path: Path
 ) -> None:
-    """Design, "Record": a court killed in the middle of a beat does that beat again.
+    """A court killed in the middle of a beat does that beat again.
 
     Cut after every single message around a beat with inputs, decisions and events.
     """
@@ -300,7 +300,7 @@ def test_restored_from_any_snapshot(snapshot: int, live: tuple[Path, list[Beat]]
 
 
 def test_snapshots_come_every_5_s_of_physics(live: tuple[Path, list[Beat]]) -> None:
-    """Design, "One beat": a full snapshot every 5 s."""
+    """A full snapshot every 5 s."""
     path, beats = live
     ticked = [beat.frame.beat for beat in beats if beat.ticked]
     expected = [ticked[n] for n in range(0, len(ticked), SNAPSHOT_TICKS)]
@@ -308,7 +308,7 @@ def test_snapshots_come_every_5_s_of_physics(live: tuple[Path, list[Beat]]) -> N
 
 
 def test_the_court_goes_on_in_a_new_segment(live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
-    """Design, "Record": killed twice, each time in a beat; the whole verifies, no event is lost."""
+    """Killed twice, each time in a beat; the whole verifies, no event is lost."""
     path, beats = live
     data = path.read_bytes()
     segment = tmp_path / path.name

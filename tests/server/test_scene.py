@@ -33,7 +33,7 @@ def turned_about(it: World, seed: int) -> None:
 @pytest.mark.parametrize("left", ROBOTS)
 @pytest.mark.parametrize("right", ["hexapod", "quadruped"])
 def test_forward_kinematics_from_scene_and_frame(left: str, right: str) -> None:
-    """Design, "Robot and world": scene and frame give every body where MuJoCo has it, to 1e-6 m."""
+    """Scene and frame give every body where MuJoCo has it, to 1e-6 m."""
     entries = [entry(left), entry(right)]
     it = World(arenas.load("flag-strike"), entries)
     scene = decode(encode(it.scene), Scene)

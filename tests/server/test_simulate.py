@@ -65,7 +65,7 @@ def test_it_can_be_watched() -> None:
 
 
 def test_ghosts_of_both_seats_play_their_match_again(tmp_path: Path) -> None:
-    """Design, "The rooms": a ghost is a brain that reads a record; it brings its own files."""
+    """A ghost is a brain that reads a record; it brings its own files."""
     result = play(tmp_path)
     ghosts = [
         player(OTHELLO, n, f"ghost:{tmp_path}/m.mcap:{s}") for n, s in ((0, "left"), (1, "right"))
@@ -100,7 +100,7 @@ def test_files_with_mistakes_are_refused() -> None:
 
 
 def test_a_match_knows_nothing_of_how_it_is_run() -> None:
-    """Design, "The rooms": the headless match is the live one, made from the same setup."""
+    """The headless match is the live one, made from the same setup."""
     match = Match(setup("othello", SHORT), World)
     assert match.duration_ticks == 200
 

@@ -75,7 +75,7 @@ def test_the_same_bits_in_the_same_and_in_a_new_process() -> None:
 
 
 def test_the_digest_tells_every_difference_and_never_forgets_it() -> None:
-    """Design, "Record": a chained hash of the state."""
+    """A chained hash of the state."""
     one, other = world(), world()
     for tick, angles in enumerate(commands(20)):
         one.step(angles)
@@ -134,7 +134,7 @@ def test_flags_and_discs_change_no_bit_of_a_path(arena: str) -> None:
 
 
 def test_the_model_is_compiled_before_the_match() -> None:
-    """Design, "Robot and world": compiled once before a match, never in the loop."""
+    """Compiled once before a match, never in the loop."""
     built: list[Phase] = []
 
     def make(arena: arenas.Arena, entries: Sequence[Entry]) -> World:
