@@ -138,7 +138,7 @@ def test_a_court_that_is_gone_is_said_and_comes_back(
     watch = court.start("watch", "--json", "--hz", "0", *court.where())
     assert watch.stdout is not None
     lines = iter(watch.stdout.readline, "")
-    assert any('"PLAYING."' in line for line in lines)
+    assert any('"Play begins."' in line for line in lines)
     os.kill(court.process.pid, signal.SIGSTOP)
     try:
         terminal.sees("No answer from the court for 1 s - trying again")
@@ -195,7 +195,7 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
     assert sample.postures is not None
     (tmp_path / "Loco-data.txt").write_bytes(sample.postures.data)
     words = ("practice", "--terminal", "--recordings", "kept")
-    code, said = piped(tmp_path, "0.1 1\n0.3 tab 2\n0.1 q\n", *words)
+    code, said = piped(tmp_path, "0.1 1\n0.3 tab 2\n1 q\n", *words)
 
     assert code == 0, said
     assert "Taken from this folder: Loco-data.txt." in said
