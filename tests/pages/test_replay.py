@@ -165,6 +165,7 @@ def test_what_is_shown_is_what_was_played(
     assert sockets == []
 
 
+@pytest.mark.parametrize("slow_screen", [False])  # it asks what was drawn
 def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: OpenPage) -> None:
     """By keys and by buttons; it plays to the end and begins again."""
     show = Player(open_page(viewport=LAPTOP), library, "?file=b-flags.mcap")
