@@ -14,7 +14,7 @@ from court_process import environment
 from lacoc_process import COMMAND
 from show import Show
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.long]
 
 
 @pytest.fixture
