@@ -1,11 +1,11 @@
 """Services that start before their court, or while a killed one is started again."""
 
-import socket
 import threading
 import time
 from collections.abc import Callable
 
 import pytest
+from ports import free_port
 
 from lacoc_client.asking import NoCourt, NotNow, Patience
 from lacoc_shared.command import cli
@@ -49,11 +49,6 @@ def test_who_asks_it_to_end_is_heard() -> None:
     """Ctrl-C, or a service that is stopped."""
     with pytest.raises(KeyboardInterrupt):
         Patience(60.0, stopping=lambda: True).until(coming(NotConnected("No link.")))
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        return int(free.getsockname()[1])
 
 
 def test_a_court_that_is_opened_later_is_found() -> None:

@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import socket
 import subprocess
 from contextlib import ExitStack
 from pathlib import Path
@@ -11,16 +10,10 @@ from pathlib import Path
 from court_process import environment
 from lacoc_process import Lacoc
 from page_client import PageClient
+from ports import free_port
 
 TOKENS = {"left": "l" * 26, "right": "r" * 26}
 REFEREE = "w" * 26
-
-
-def free_port() -> int:
-    """A port that was free a moment ago: for what must come back at the same place."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 class Process:

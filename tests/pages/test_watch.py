@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from chromium import OpenPage
 from playwright.sync_api import expect
+from ports import free_port
 from show import STALE, WAIT_MS, Show, decide, playing, violations
 from stand import pixels_of
-from venue import Venue, free_port
+from venue import Venue
 
 from lacoc_shared.seat import Phase
 

@@ -4,7 +4,6 @@ import json
 import os
 import queue
 import re
-import socket
 import subprocess
 import sys
 import threading
@@ -19,18 +18,13 @@ from typing import Any
 import pytest
 import yaml
 from lacoc_process import Lacoc
+from ports import free_port
 
 ROOT = Path(__file__).parents[2]
 COMPOSE = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text(encoding="utf-8"))
 SERVICES: dict[str, dict[str, Any]] = COMPOSE["services"]
 DOCKERFILE = (ROOT / "docker" / "Dockerfile").read_text(encoding="utf-8")
 PORT, WEB_PORT = "7447", "8080"
-
-
-def free_port() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return str(probe.getsockname()[1])
 
 
 def order() -> list[str]:
@@ -72,7 +66,7 @@ def test_the_services_hang_together() -> None:
 @pytest.mark.slow
 def test_the_composition_plays(tmp_path: Path) -> None:
     """Started in their order, the services come to a match that is being played."""
-    port, web_port = free_port(), free_port()
+    port, web_port = str(free_port()), str(free_port())
 
     def here(text: str) -> str:
         """Return this machine's view of a container's folder."""

@@ -42,8 +42,17 @@ def test_what_no_court_made_is_no_match_name(match_id: str) -> None:
 def test_a_match_that_is_opened_now_has_the_time_in_its_name() -> None:
     """UTC, so that the order of names is the order of matches, also where the clocks change."""
     before = datetime.now(UTC).replace(microsecond=0)
-    opened = datetime.strptime(MatchName.now("main", 1).opened, "%Y%m%d-%H%M%S")
+    opened = datetime.strptime(MatchName.new(None, "main", 1).opened, "%Y%m%d-%H%M%S")
     assert before <= opened.replace(tzinfo=UTC) <= before + timedelta(seconds=60)
+
+
+def test_a_court_that_starts_twice_in_a_second_has_two_matches(tmp_path: Path) -> None:
+    """A supervisor starts a court again at once; its first match is number 1 again."""
+    names = []
+    for ending in ("mcap", "000.live.mcap") * 3:
+        names.append(MatchName.new(tmp_path, "main", 1))
+        (tmp_path / f"{names[-1]}.{ending}").touch()
+    assert names == sorted(set(names))
 
 
 def test_a_court_has_its_own_matches_in_their_order(tmp_path: Path) -> None:

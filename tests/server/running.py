@@ -1,7 +1,6 @@
 """A contest's court as a process, and clients that wait for its actions."""
 
 import json
-import socket
 import subprocess
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -9,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from lacoc_process import started
+from ports import free_port
 
 from lacoc_client.controller import Controller
 from lacoc_client.referee import RefereeClient
@@ -21,13 +21,6 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import render
 
 WAIT_S = 60.0
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 def write_contest(path: Path) -> Path:

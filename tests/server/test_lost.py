@@ -15,8 +15,9 @@ from pathlib import Path
 
 import pytest
 from hall import Hall
+from ports import free_port
 from real_cable import pull_a_real_cable
-from running import WAIT_S, free_port
+from running import WAIT_S
 from slow_link import SlowLink
 
 from lacoc_client.asking import NoAnswer, ask

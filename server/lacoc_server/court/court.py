@@ -220,7 +220,7 @@ class Court:
     def _open(self, number: int) -> Journal:
         settings = self._settings
         setup = Setup(
-            match_id=str(MatchName.now(settings.name, number)),
+            match_id=str(MatchName.new(settings.recordings, settings.name, number)),
             court=settings.name,
             match=number,
             arena=settings.arena.name,

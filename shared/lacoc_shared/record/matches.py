@@ -1,10 +1,11 @@
 """Matches of a court in a folder of records: their names, and which of them are over."""
 
+import glob
 import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from mcap.writer import MCAP0_MAGIC
@@ -31,9 +32,21 @@ class MatchName:
         return f"{self.opened}-{self.court}-{self.number:03d}"
 
     @classmethod
-    def now(cls, court: str, number: int) -> "MatchName":
-        """Name a match that is opened now."""
-        return cls(datetime.now(UTC).strftime("%Y%m%d-%H%M%S"), number, court)
+    def new(cls, folder: Path | None, court: str, number: int) -> "MatchName":
+        """Name a match that is opened now.
+
+        Args:
+            folder: of the court's records. A court that starts twice within a second counts the
+                same match twice; the second gets the next second that is free there.
+            court: the court's name.
+            number: of the match at its court.
+        """
+        opened = datetime.now(UTC)
+        while True:
+            name = cls(opened.strftime("%Y%m%d-%H%M%S"), number, court)
+            if folder is None or not any(folder.glob(f"{glob.escape(str(name))}.*")):
+                return name
+            opened += timedelta(seconds=1)
 
     @classmethod
     def parse(cls, match_id: str) -> "MatchName | None":
