@@ -53,7 +53,11 @@ def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: s
 
 
 @pytest.mark.parametrize(
-    ("locale", "full"), [("en-GB", FULL), ("ja-JP", "すでに 1 ページが接続しています。")]
+    ("locale", "full"),
+    [
+        ("en-GB", FULL),
+        pytest.param("ja-JP", "すでに 1 ページが接続しています。", marks=pytest.mark.long),
+    ],
 )
 def test_a_full_hall_is_said_and_not_stormed(
     venue: Venue, open_page: OpenPage, console: Any, locale: str, full: str

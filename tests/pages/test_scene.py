@@ -174,7 +174,8 @@ def test_a_marker_that_changes_moves_and_ends_in_its_new_state(
     stand.open(f"{arena}.bin", speed=0, beat=before.beat, q="low", camera="top", labels=0)
     assert stand.view(f"marker({index})") == recorded.states(before)[index]
     stand.page.evaluate("(beat) => stand.seek(beat)", after.beat)
-    stand.page.wait_for_function("__lacoc.view.moving")
+    # Asked between two pictures: on a busy machine the next one may be drawn after the movement.
+    stand.page.wait_for_function("__lacoc.view.moving", polling=10)
     stand.page.wait_for_function("!__lacoc.view.moving")
     assert stand.view(f"marker({index})") == recorded.states(after)[index]
     stand.next_frames()

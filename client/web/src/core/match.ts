@@ -46,3 +46,8 @@ export function part<T extends string | number | boolean | null>(
 export function phaseOf(match: Match): ReadonlySignal<number> {
   return part(match, (frame) => frame.phase, Phase.CREATED);
 }
+
+/** The points of all seats, parted by spaces, so that it changes only when they do. */
+export function scoresOf(match: Match): ReadonlySignal<string> {
+  return part(match, (frame) => frame.seats.map((seat) => seat.score).join(" "), "");
+}

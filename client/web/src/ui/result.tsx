@@ -1,8 +1,7 @@
 /** How a match ended: by the rules first, then officially. */
 
-import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
-import { type Match, phaseOf } from "../core/match";
+import { type Match, phaseOf, scoresOf } from "../core/match";
 import type { Phrase } from "../core/phrase";
 import { corrections, decisionOf, declaration, playedBeats } from "../core/rulings";
 import { type Event, Phase, type Sheet } from "../core/wire";
@@ -27,15 +26,11 @@ interface Props {
 /** Nothing until the match is over. */
 export function ResultCard({ match, onClose, withReplay, isLast }: Props) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
-  const scores = useMemo(
-    () => computed(() => match.frame.value?.seats.map((seat) => seat.score).join(" ") ?? ""),
-    [match],
-  ).value;
+  const scores = useMemo(() => scoresOf(match), [match]).value;
   const sheet = match.sheet.value;
-  const frame = match.frame.peek();
   const winner = winnerOf(match);
   const isVoid = phase === Phase.VOID;
-  if (!SHOWN.has(phase) || !sheet || !frame || (!isVoid && winner === null)) return null;
+  if (!SHOWN.has(phase) || !sheet || !scores || (!isVoid && winner === null)) return null;
   return (
     <section class="result" data-phase={phase} aria-label={t("result.title")} aria-live="polite">
       <Kicker match={match} />

@@ -4,7 +4,7 @@ import { type Signal, useComputed, useSignal, useSignalEffect } from "@preact/si
 import type { Ref } from "preact";
 import { useEffect, useMemo } from "preact/hooks";
 import type { Court } from "../../core/court";
-import { phaseOf } from "../../core/match";
+import { phaseOf, scoresOf } from "../../core/match";
 import type { Player } from "../../core/player";
 import { quality } from "../../core/settings";
 import { Phase } from "../../core/wire";
@@ -144,13 +144,13 @@ function Countdown({ court }: { court: Court }) {
 
 function ResultCard({ court, player, onSave }: Props) {
   const phase = useMemo(() => phaseOf(court), [court]).value;
+  const points = useMemo(() => scoresOf(court), [court]).value;
   if (phase < Phase.FINISHED) return null;
   const index = player.index.value;
   const sheet = court.sheet.value;
-  const frame = court.frame.peek();
   const winner = winnerOf(court);
-  if (!sheet || !frame || index < 0) return null;
-  const scores = frame.seats.map((seat) => seat.score);
+  if (!sheet || !points || index < 0) return null;
+  const scores = points.split(" ").map(Number);
   const winnerIndex = sheet.seats.findIndex((seat) => seat.id === winner);
   const isMine = winnerIndex === index;
   const title =
@@ -164,8 +164,8 @@ function ResultCard({ court, player, onSave }: Props) {
             ? t("end.win")
             : t("end.lose", { team: team(sheet, winnerIndex) });
   const [own = 0, other = 0] = winnerIndex === 1 ? scores.toReversed() : scores;
-  const points = own - other; // less than 0: declared, against the score
-  const decided = phase !== Phase.VOID && winnerIndex >= 0 && points > 0;
+  const ahead = own - other; // less than 0: declared, against the score
+  const decided = phase !== Phase.VOID && winnerIndex >= 0 && ahead > 0;
   return (
     <section
       class={`result${isMine && phase !== Phase.VOID ? " won" : ""}`}
@@ -174,7 +174,7 @@ function ResultCard({ court, player, onSave }: Props) {
     >
       <Kicker match={court} />
       <h1>{title}</h1>
-      {decided && <p class="by">{t("end.by", { points })}</p>}
+      {decided && <p class="by">{t("end.by", { points: ahead })}</p>}
       <p class="final">
         <span data-seat="0">{team(sheet, 0)}</span>
         <b>{scores.join(" : ")}</b>

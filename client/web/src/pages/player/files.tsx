@@ -140,7 +140,10 @@ function SlotRow({ slot, files }: { slot: Slot; files: FilesNow }) {
 function Sequences() {
   const keys = sequences.value;
   const change = (digit: number, digits: string) => {
-    const changed = keys.map((old, index) => (index === digit ? digits : old));
+    // Two fields may change before the page is drawn again: what is drawn may be old.
+    const changed = [...sequences.peek()];
+    while (changed.length <= digit) changed.push("");
+    changed[digit] = digits;
     while (changed.length > 1 && !changed.at(-1)) changed.pop();
     sequences.value = changed;
   };
@@ -165,9 +168,7 @@ function Sequences() {
               onChange={(event) => {
                 const typed = digitsOf(event.currentTarget.value);
                 event.currentTarget.value = [...typed].join(" ");
-                if (digit === keys.length) {
-                  if (typed) sequences.value = [...keys, typed];
-                } else change(digit, typed);
+                change(digit, typed);
               }}
             />
           </label>
