@@ -14,7 +14,7 @@ from msgspec.structs import replace
 
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
-from lacoc_server.journal.section import Build, Difference, Section, Step, Worlds
+from lacoc_server.journal.section import FRAME_FIELDS, Build, Difference, Section, Step, Worlds
 from lacoc_server.match.entry import Entry
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.match.physics import Fault, Physics
@@ -29,19 +29,6 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header, Result
 from lacoc_shared.words import say
 
-_FRAME = (
-    "match",
-    "beat",
-    "phase",
-    "countdown",
-    "clock",
-    "seats",
-    "board",
-    "poses",
-    "scene",
-    "state-hash",
-)
-"""Names of the fields of a frame (`differs.*`), in its order."""
 _SCENE_BOUND = 1e-9
 """Most by which a drawn length [m] may differ in a model built on another kind of machine."""
 
@@ -360,7 +347,7 @@ def _frame_differences(recorded: Frame, again: Frame) -> list[str]:
     return [
         name
         for name, old, new in zip(
-            _FRAME,
+            FRAME_FIELDS,
             (getattr(recorded, f) for f in recorded.__struct_fields__),
             (getattr(again, f) for f in again.__struct_fields__),
             strict=True,

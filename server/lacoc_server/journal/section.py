@@ -20,6 +20,20 @@ from lacoc_server.world.world import World
 from lacoc_shared.gait.tables import Posture
 from lacoc_shared.record.schema import Setup
 
+FRAME_FIELDS = (
+    "match",
+    "beat",
+    "phase",
+    "countdown",
+    "clock",
+    "seats",
+    "board",
+    "poses",
+    "scene",
+    "state-hash",
+)
+"""Names of the fields of a frame (`differs.*`), in its order."""
+
 BOUND = 1e-5
 """Largest distance from the record [m, rad] that another arithmetic may reach in a section."""
 

@@ -4,24 +4,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from lacoc_server.journal.section import BOUND, Difference, Finding
+from lacoc_server.journal.section import BOUND, FRAME_FIELDS, Difference, Finding
 from lacoc_server.world import arithmetic
 from lacoc_shared.record.schema import Header
 from lacoc_shared.words import Phrase, say
 
-_ORDER = (
-    "frame-missing",
-    "match",
-    "beat",
-    "phase",
-    "countdown",
-    "clock",
-    "seats",
-    "board",
-    "poses",
-    "scene",
-    "state-hash",
-)
+_ORDER = ("frame-missing", *FRAME_FIELDS)
 """Order in which a beat's differences are listed; all others come after them."""
 
 
