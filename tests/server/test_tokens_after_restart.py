@@ -28,7 +28,10 @@ def serving(folder: Path, arena: str) -> list[str]:
 
 @contextmanager
 def opened(folder: Path, arena: str = "practice") -> Iterator[dict[str, Any]]:
-    """Run a court without a contest file; give what it prints when it opens. It is killed at the end."""
+    """Run a court without a contest file; give what it prints when it opens.
+
+    The court is killed at the end.
+    """
     process = Lacoc(*serving(folder, arena), stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
