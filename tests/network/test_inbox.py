@@ -358,7 +358,7 @@ def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
 
 
 def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
-    """In a flood on one seat, few commands are read and the newest counts; the other seat plays on."""
+    """In a flood on a seat, few commands are read, the newest counts, and the other seat plays on."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     inbox.beat(0.0, [[], []])
