@@ -48,7 +48,7 @@ SLOW = SentFile("slow.txt", b"20 20")
 
 
 class Scales:
-    """Weighs in files by their names and bytes alone, without a check of their content."""
+    """Weighs files in without reading them: it refuses only `WRONG`, and takes long for `SLOW`."""
 
     def __init__(self) -> None:
         self.asked = 0

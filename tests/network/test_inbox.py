@@ -1,4 +1,4 @@
-"""The court's inbox; the tests pass the time."""
+"""The court's inbox; each test passes the time as an argument."""
 
 import secrets
 from collections.abc import Sequence
@@ -189,7 +189,7 @@ def test_a_join_is_refused_with_its_reason(payload: bytes, code: str, why: str) 
 
 
 def test_a_seat_without_a_token_is_closed() -> None:
-    """No token opens a seat that has no token."""
+    """A seat for which no token was made can't be joined."""
     inbox = Inbox(KEYS, SEATS, {}, check_files, secrets.token_bytes)
     assert isinstance(inbox.join(LEFT, join_bytes(token="")), Refusal)
 
@@ -358,7 +358,7 @@ def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
 
 
 def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
-    """In a flood on a seat, few commands are read, the newest counts, and the other seat plays on."""
+    """A flood on a seat is limited, its newest command counts, and the other seat plays on."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     inbox.beat(0.0, [[], []])
@@ -411,7 +411,7 @@ def test_an_overheard_command_does_not_keep_a_seat_alive() -> None:
     for beat in range(1, 1001):
         inbox.links.begin(beat * 0.02, 1, beat)
         sent = []
-        if beat <= 500 and beat % 5 == 0:  # ten a second, each upon the newest frame
+        if beat <= 500 and beat % 5 == 0:  # ten a second, each names the newest frame
             newest = command(joined, 1, match=1, seen=beat - 1)
             sent = [newest]
         taken = inbox.beat(beat * 0.02, [[*sent, newest] if newest else [], []])
@@ -503,7 +503,7 @@ def test_ready_and_leave_are_proven_by_the_session() -> None:
     joined = take_seat(inbox)
     assert inbox.ready(LEFT, request(joined, "ready")) == ReadySeat(LEFT, True)
     assert inbox.ready(LEFT, request(joined, "ready", False, seq=2)) == ReadySeat(LEFT, False)
-    assert isinstance(inbox.ready(LEFT, request(joined, "leave")), Refusal)  # another key
+    assert isinstance(inbox.ready(LEFT, request(joined, "leave")), Refusal)  # sealed for leave
     assert isinstance(inbox.ready(RIGHT, request(joined, "ready", seat=RIGHT)), Refusal)
     assert isinstance(inbox.leave(LEFT, b""), Refusal)
     assert inbox.leave(LEFT, request(joined, "leave", seq=3)) == LeaveSeat(LEFT)

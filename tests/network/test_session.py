@@ -88,12 +88,12 @@ def test_an_unknown_name_is_said_at_once() -> None:
 
 
 def test_requests_are_answered_refused_or_in_vain(router: Session) -> None:
-    """A request without a reply raises NoReply, and one with a late reply raises TooLate."""
+    """A request that nobody gets raises NoReply; one that is not answered in time raises TooLate."""
     desk = router.desk("lacoc/main/sheet", 1)
     with open_client(router.locators()) as client:
 
         def is_late() -> bool:
-            """Ask once; return whether the desk got the request, which needs a while at first."""
+            """Ask once; return whether the desk got it, which needs some tries at first."""
             try:
                 client.ask("lacoc/main/sheet", timeout_s=0.05)
             except NoReply as error:
@@ -116,7 +116,7 @@ def test_a_request_whose_asker_is_gone_can_be_answered(router: Session) -> None:
     with open_client(router.locators()) as client:
 
         def arrives() -> bool:
-            """Ask once; return whether the desk got the request, which needs a while at first."""
+            """Ask once; return whether the desk got it, which needs some tries at first."""
             with pytest.raises(NoReply):
                 client.ask("lacoc/main/sheet", timeout_s=0.02)
             arrived.extend(filter(None, [desk.take()]))

@@ -180,7 +180,7 @@ def test_euler_angles(
     roll_pitch_yaw: tuple[float, float, float],
     forward: tuple[float, float, float] | None,
 ) -> None:
-    """Rules 2: angles are Euler ZYX, and yaw is 0 where the robot faces the field's +y."""
+    """Angles are Euler ZYX, and yaw is 0 where the robot faces the field's +y (rules 2)."""
     quat = np.array([1.0, 0, 0, 0])
     for axis, degrees in turns:  # roll first; each rotation is about an axis of the world
         quat = multiply(_about(axis, degrees), quat)

@@ -206,7 +206,7 @@ def test_a_segment_without_a_header_holds_nothing(
 def test_an_unfinished_segment_ends_where_it_stops_making_sense(
     tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """A segment that ends in zeros, as after a power cut, is read up to the first damage."""
+    """A segment with zeros in it, as after a power cut, is read up to the first of them."""
     path = write_match(tmp_path, close=False)
     with path.open("ab") as file:
         file.write(bytes(4096))
@@ -453,7 +453,7 @@ def test_a_damaged_time_ends_what_is_read(
 
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.8])
 def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: Path) -> None:
-    """If a packed file is damaged, whole chunks before the damage are read."""
+    """A damaged packed file is read up to the damaged chunk, and the message gives its byte."""
     data = bytearray(packed.read_bytes())
     chunks = [at for at, opcode in _records_of(data) if opcode == Opcode.CHUNK]
     at = chunks[int(part * len(chunks))]
@@ -471,7 +471,7 @@ def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: P
 
 
 def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed: Path) -> None:
-    """Half of a packed file can't be read; the message says that it was not copied whole."""
+    """Half of a packed file can't be read, and the message says why that may be."""
     path = tmp_path / "part.mcap"
     data = packed.read_bytes()
     path.write_bytes(data[: len(data) // 2])

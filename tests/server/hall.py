@@ -19,7 +19,7 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
 
 LATE_BEATS = 10
-"""Tolerance: a delayed court catches up by five beats at once; a frame needs a beat or two."""
+"""Tolerance in beats: a late court makes five beats at once, and a frame travels for one or two."""
 
 
 class Hall:

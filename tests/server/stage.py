@@ -28,7 +28,7 @@ LEFT, RIGHT = 0, 1
 A, B = Level.POSTURE, Level.LOCOMOTION
 X = RESTART_KEY
 STAND, TURN_LEFT, FORWARD, TURN_RIGHT = range(4)
-"""Keys of level B in the sample gait (rules 2)."""
+"""Keys of level B in the sample gait: 0, 1, 2 and 3."""
 QUICK = {"match": {"countdown_s": 0.02}}
 """Settings with a countdown of one beat, for tests that are not about the countdown."""
 

@@ -78,7 +78,7 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
     ],
 )
 def test_the_line_of_a_mistake(tmp_path: Path, text: str, says: str) -> None:
-    """A mistake is told in one line, with the last line of the bot's own code that led to it."""
+    """A mistake is reported in one line, with the last line of the bot's own code before it."""
     with pytest.raises(UserError, match=rf"^The bot .*my_bot\.py.*{says}") as refused:
         play(tmp_path, text)
     assert "\n" not in str(refused.value)

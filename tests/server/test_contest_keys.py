@@ -78,7 +78,7 @@ def test_an_invitation_holds_nothing_of_others(file: Path) -> None:
 
 
 def test_twice_keeps_what_was_handed_out(file: Path) -> None:
-    """A second run adds a host to the court's certificate and says that invitations stay valid."""
+    """A second run adds a host to the court's certificate, and all invitations stay valid."""
     run("keys", str(file), "--host", "one.example")
     before = contests.load(file)
     assert before.keys is not None
@@ -94,7 +94,7 @@ def test_twice_keeps_what_was_handed_out(file: Path) -> None:
 
 
 def test_two_contests_of_one_folder_have_keys_of_their_own(file: Path) -> None:
-    """A second contest in the folder gets a key folder of its own; both names taken is an error."""
+    """A second contest in a folder gets a key folder of its own, or an error if no name is free."""
     run("keys", str(file), "--host", "one.example")
     first = contests.load(file).keys
     assert first is not None
@@ -201,9 +201,9 @@ def test_what_lacks_is_asked_for(file: Path) -> None:
 
 @pytest.mark.parametrize("what", ["empty", "no text", "key", "authority"])
 def test_what_is_no_certificate_of_a_court_is_said(file: Path, what: str) -> None:
-    """A damaged certificate of a court is reported with two remedies.
+    """A damaged certificate of a court is reported, and the message names two remedies.
 
-    If the file is deleted and made anew, the invitations stay valid.
+    One is to delete the certificate and make it again: then all invitations stay valid.
     """
     run("keys", str(file), "--host", "x.example")
     keys = contests.load(file).keys

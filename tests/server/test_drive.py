@@ -114,7 +114,7 @@ def test_at_most_one_posture_a_tick() -> None:
 
 @pytest.mark.parametrize("hold_s", [0.02, 0.05, 0.09, 0.2, 0.33])
 def test_time(hold_s: float) -> None:
-    """With "time", the n-th next posture begins n * hold_s after the key, rounded up to a tick."""
+    """With "time", posture n (from 0) begins n * hold_s after the key, rounded up to a tick."""
     it = drive((0.0,), (45.0, -45.0, 30.0), advance="time", hold_s=hold_s)
     expected = [k * 20_000 // round(hold_s * 1e6) % 3 for k in range(400)]
     assert targets(it, it.press(it.begin(B), B, 1), 400) == expected

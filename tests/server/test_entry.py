@@ -54,7 +54,7 @@ def test_a_gait_needs_keys_at_an_open_level() -> None:
 
 
 def test_the_files_are_not_swapped() -> None:
-    """Rules 2: a Loco-data file that is sent as LocoTra-data, and the reverse, is a mistake."""
+    """A Loco-data file that is sent as LocoTra-data is a mistake, and so is the reverse."""
     found = [m.expected for m in mistakes_of(None, HEXAPOD.locomotion, HEXAPOD.postures)]
     assert found == [
         say("gait.loco-data"),
@@ -83,7 +83,7 @@ def test_angles_out_of_the_robots_own_range() -> None:
 
 
 def test_a_range_is_met_exactly() -> None:
-    """An angle at the end of a joint's range is accepted, however degrees round in radians."""
+    """An angle at the end of a joint's range is accepted, in spite of rounding to radians."""
     for end in ("127.8", "124.6", "120.1"):
         robot = edited(HEXAPOD.robot, "range_deg = [-150, 150]", f"range_deg = [-{end}, {end}]")
         gait = edited(HEXAPOD.postures, "40", end)

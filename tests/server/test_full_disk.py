@@ -201,7 +201,7 @@ def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
 
 
 def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
-    """The court sends frames without a pause while the last match's record is written to disk."""
+    """While the last record goes to a slow disk, frames come less than a second apart."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     slow = tmp_path / "slow"
     slow.touch()

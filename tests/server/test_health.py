@@ -277,7 +277,7 @@ def test_advice_is_an_event_of_the_match() -> None:
 
 @pytest.mark.slow
 def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
-    """The record keeps the verdict outside the result, which must follow from the inputs alone."""
+    """The verdict is not part of the result, because the result must follow from the inputs."""
     match = Match(setup("othello", QUICK), World)
     health = MatchHealth(match, HealthLimits(), [Door(0, {})] * 2)
     journal = Journal(match, tmp_path, measure=health.measure)

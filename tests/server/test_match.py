@@ -165,7 +165,7 @@ def test_the_first_free_start_place_is_used(arena: str, taken: int) -> None:
 
 
 def test_a_wide_robot_needs_more_room() -> None:
-    """[x] takes the next place if the robots' radii add up to more than their distance."""
+    """[x] skips a start place if the other robot is nearer to it than both radii together."""
     stage = Stage("flag-strike", QUICK)
     radii = {}
     for robot in ("hexapod", "long-legs"):
@@ -234,7 +234,7 @@ def _postures(stage: Stage, ticks: int) -> list[int]:
 
 @pytest.mark.parametrize("repeat", [True, False])
 def test_whether_sequences_repeat_is_the_arenas_to_say(repeat: bool) -> None:
-    """The arena's setting `repeat` says whether a sequence runs again or once."""
+    """The arena's setting `repeat` says whether a sequence repeats or runs once."""
     walked = _postures(playing(match={"repeat": repeat, "countdown_s": 0.02}), 600)
     assert (max(walked) > 0, 0 in walked[-300:]) == (True, repeat)
 
@@ -319,7 +319,7 @@ def test_each_level_has_its_own_keys() -> None:
 
 
 def test_frames_tell_which_command_was_applied_when() -> None:
-    """A frame has the newest applied command of a seat and its beat."""
+    """A frame has each seat's newest applied command and the beat in which it took effect."""
     stage = playing(ticks=3)
     beat = stage.beat(key(LEFT, FORWARD, seq=41))
     stage.run(5)
@@ -414,7 +414,7 @@ def test_a_frame_has_at_most_320_bytes(arena: str) -> None:
 
 
 def test_scores_and_board_are_in_every_frame() -> None:
-    """Rules 5: after a flip, the frame has the new board and the number of discs as scores."""
+    """Rules 5: after a flip, a frame has the new board, and each score is a number of discs."""
     script = Script(poses={1: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}})
     stage = playing(script=script, ticks=3)
     assert stage.scores == (19, 17)
@@ -422,7 +422,7 @@ def test_scores_and_board_are_in_every_frame() -> None:
 
 
 def test_a_touch_is_recorded_only_where_there_is_one() -> None:
-    """A touch is made only in ticks in which a robot touches a marker or was put on its start."""
+    """A beat has a touch only if a robot touches a marker or was put on a start place."""
     script = Script(touches={3: {RIGHT: (4, 9)}})
     stage = playing("flag-strike", script, ticks=4)
     stage.beat(key(LEFT, X))

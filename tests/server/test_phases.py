@@ -336,7 +336,7 @@ def test_on_resume_each_drive_goes_on_where_it_stopped() -> None:
 
 
 def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
-    """A team that joins again in play keeps its robot until the next match."""
+    """A team that joins again in play with another robot gets that robot in the next match."""
     stage = Stage().to(P.PLAYING)
     assert stage.send(join(LEFT)) == Done()
     changed = stage.send(join(LEFT, robot="quadruped"))
@@ -378,7 +378,7 @@ def test_who_changes_their_mind_in_the_beat_of_start_is_not_begun_without(change
 
 
 def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
-    """Rules 7, workshop 4-4: practice starts when its seat is ready, and ends when it is left."""
+    """Rules 7, workshop 4-4: practice starts by itself, and ends when the contestant leaves."""
     stage = Stage("practice")
     stage.beat(join(LEFT), ReadySeat(LEFT, True))
     stage.run(1)
@@ -391,7 +391,7 @@ def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
 
 
 READY = {"match": {"start": "ready", "countdown_s": 0.1, "unattended_s": 3.0}}
-"""A match without a referee that ends when nobody was heard for 150 beats."""
+"""Settings of a match without a referee that ends when nobody was heard for 150 beats."""
 
 
 @pytest.mark.parametrize("others", [[], [LeaveSeat(RIGHT)]])
@@ -485,7 +485,7 @@ def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
 
 
 def test_silence_and_hearing_are_only_told_once() -> None:
-    """A seat that is reported silent or heard twice in a row has one event of each."""
+    """If a seat is reported as silent or as heard twice in a row, each is logged once."""
     stage = Stage().to(P.PLAYING)
     for item in (SilentSeat(LEFT), SilentSeat(LEFT), HeardSeat(LEFT), HeardSeat(LEFT)):
         stage.beat(item)

@@ -82,7 +82,7 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
 def test_bits_may_differ_only_where_another_arithmetic_recorded(
     made_by: Mapping[str, str], finding: Finding, kind: Kind
 ) -> None:
-    """If a record claims this arithmetic, each bit must match; any other may differ by rounding."""
+    """If a record claims this arithmetic, every bit must match; otherwise rounding may differ."""
     found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
     assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
     assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
@@ -101,7 +101,7 @@ def test_each_segment_says_what_made_it() -> None:
 
 
 def test_the_first_difference_is_told_with_all_of_its_beat() -> None:
-    """The verdict names the first beat that differs, with all its differences in one order."""
+    """The verdict names the first beat that differs, and all differences in that beat."""
     findings = [
         Finding(1, 9, Difference(7, ("state-hash", "poses"))),
         Finding(10, 19, Difference(12, ("poses",))),
@@ -112,7 +112,7 @@ def test_the_first_difference_is_told_with_all_of_its_beat() -> None:
 
 
 def test_a_fingerprint_names_the_machine() -> None:
-    """Two arithmetics are the same if their hashes are; the other fields describe the machine."""
+    """Two arithmetics are the same if their hashes are equal; other fields name the machine."""
     assert arithmetic.same(HERE, {**HERE, "python": "4"})
     assert not arithmetic.same(HERE, THERE)
     assert not arithmetic.same({}, {})

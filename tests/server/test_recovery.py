@@ -72,9 +72,9 @@ def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
 
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: Path) -> None:
-    """On a machine with another arithmetic, a match goes on from its newest state, and it says so.
+    """On a machine with another arithmetic, a killed match goes on, and an event says so.
 
-    Both parts of the record verify.
+    The parts of the record before and after the kill both verify.
     """
     elsewhere = ["env", *(f"{name}={value}" for name, value in OTHER_ARITHMETIC.items())]
     with ExitStack() as stack:
@@ -143,7 +143,7 @@ def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> 
         stack.enter_context(served(contest, folder))
         those.reach(Phase.HALTED)
         those.until(lambda: those.view.health is not before)
-        assert played(those.left) > 50  # what the last second measured died with the court
+        assert played(those.left) > 50  # the measurements of the last second are lost
         those.decide(Resume())
         those.until(lambda: any(event.kind == "advice" for event in those.view.events))
         assert those.phase == Phase.FINISHED

@@ -241,7 +241,7 @@ def go_on(match: Match, beats: list[Beat]) -> None:
     [0.12, 0.73, *(pytest.param(part, marks=pytest.mark.long) for part in (0.31, 0.5, 0.9, 1.0))],
 )
 def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
-    """A cut record verifies to its end, and the match that is resumed from it has the same bits."""
+    """A cut record verifies to its end, and the match resumed from it goes on with equal bits."""
     path, beats = live
     data = path.read_bytes()
     copy = tmp_path / path.name

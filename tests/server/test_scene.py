@@ -42,7 +42,7 @@ def test_forward_kinematics_from_scene_and_frame(left: str, right: str) -> None:
         turned_about(it, seed)
         pos_w, quat_w = kinematics.poses(it.poses())
         assert np.abs(pos_w - it.data.xpos).max() < 1e-6
-        same = np.abs((quat_w * it.data.xquat).sum(-1))  # q and -q are one turn
+        same = np.abs((quat_w * it.data.xquat).sum(-1))  # q and -q are the same rotation
         assert np.abs(same - 1).max() < 1e-6
 
 
@@ -79,7 +79,7 @@ def test_whose_colour() -> None:
 
 
 def test_the_hash_is_of_what_is_drawn() -> None:
-    """The hash of a scene has 8 bytes, and is another one if other robots are drawn."""
+    """The hash of a scene has 8 bytes, and differs if other robots are drawn."""
     ground = arenas.load("othello")
     worlds = [World(ground, e) for e in ([], [entry()] * 2, [entry("quadruped"), entry()])]
     hashes = {it.scene_hash for it in worlds}

@@ -100,7 +100,7 @@ def test_files_with_mistakes_are_refused() -> None:
 
 
 def test_a_match_knows_nothing_of_how_it_is_run() -> None:
-    """A headless match is made from the same kind of setup as a live one."""
+    """`Match` takes the setup of a headless match, as it takes that of a live one."""
     match = Match(setup("othello", SHORT), World)
     assert match.duration_ticks == 200
 

@@ -57,7 +57,7 @@ def test_a_step_within_the_place_is_none() -> None:
 
 
 def test_who_leaves_again_and_again_is_not_ready() -> None:
-    """The third time a robot is put back, its team is not ready; then the count begins again."""
+    """The third time a robot is put back, its team is no longer ready; then the count restarts."""
     assert MOST_STRAYS == 3
     stage = straying(3, 6, 9).to_ready()
     stage.run(9)

@@ -25,7 +25,7 @@ def inputs(keys: Keys, tick: int) -> list[Input]:
 
 
 def robots(stage: Stage) -> np.ndarray:
-    """Return (2, 25) poses and joint angles of both robots, as float64 of MuJoCo."""
+    """Return both robots' poses and joint angles as MuJoCo's float64, in the shape (2, 25)."""
     world = stage.match.physics
     return world.data.qpos[world._pose_qpos].reshape(2, 25).copy()
 
@@ -40,7 +40,7 @@ def turned(poses: np.ndarray) -> np.ndarray:
 
 
 def distance(one: np.ndarray, other: np.ndarray) -> float:
-    """Return the largest difference of two poses; q and -q count as the same rotation."""
+    """Return the largest difference of any number; quaternions q and -q count as equal."""
     sign = np.sign((one[:, 3:7] * other[:, 3:7]).sum(1, keepdims=True))
     other = other.copy()
     other[:, 3:7] *= sign

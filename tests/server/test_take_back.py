@@ -123,7 +123,7 @@ def test_a_capture() -> None:
 
 
 def test_a_strike() -> None:
-    """If a strike is taken back, the flag stands, even if the robot touched it for longer."""
+    """If a strike is taken back, the flag stands, even if the robot touched it in later ticks."""
     on = {tick: {RIGHT: (22,)} for tick in range(10, 20)}  # flag18 has 5 points
     stage = flag_strike({}, on)
     assert stage.scores == (0, 5)
@@ -230,7 +230,7 @@ def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
 
 
 def test_a_match_may_turn_out_to_have_been_over() -> None:
-    """If the match would have ended without the event, it is finished, and later events vanish."""
+    """If a match would have ended without an event, its take-back ends it; later events vanish."""
     walks = dict(ALL_FOUR)
     walks[35] = {RIGHT: CORNERS[0]}
     stage = flag_strike(walks, {60: {RIGHT: (22,)}})
@@ -241,7 +241,7 @@ def test_a_match_may_turn_out_to_have_been_over() -> None:
     assert stage.match.ended == say("over.all-corners", seat="left")
     assert reply.scores == stage.scores == (20, 0)
     assert say("change.vanishes", event=strike, kind="strike", marker="flag18") in reply.changes
-    # And back: without the last corner it was not over, and the strike counts again.
+    # Without the fourth corner the match was not over, so the strike counts again.
     reply = take_back(stage, event(stage, "capture", "corner3").number)
     assert stage.phase is P.HALTED
     assert reply.scores == (15, 5)

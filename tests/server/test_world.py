@@ -212,10 +212,7 @@ def _spoil(name: str, value: float, seat: int, offset: int) -> Callable[[World],
 def test_mujocos_silent_reset_is_caught(
     name: str, value: float, why: Phrase, seat: int, offset: int
 ) -> None:
-    """A bad number in a state is a fault that names the robot, and the state goes back to before.
-
-    docs/facts.md 3.
-    """
+    """A bad number in a state is a fault of its robot, and the tick is undone (docs/facts.md 3)."""
     it, twin = world(), world()
     run(it, 20)
     run(twin, 20)
@@ -365,7 +362,7 @@ def test_a_robot_on_its_back_touches_with_its_legs() -> None:
         it.data.qpos[at + 2] = 0.13
         it.data.qpos[at + 3 : at + 7] = turn / np.linalg.norm(turn)
         if math.dist(it.data.qpos[at : at + 2], (flag.x_m, flag.y_m)) < 0.1:
-            continue  # the body may touch, which `gap_m` knows only upright
+            continue  # the body may touch, and `gaps_m` is right only for an upright body
         (gap,) = gaps_m(it, LEFT, [(flag.x_m, flag.y_m)]).tolist()
         if abs(gap) > 1e-5 and _lower_than_a_pole(it):
             assert (22 in it.touched()[LEFT]) is (gap < 0)
@@ -374,7 +371,7 @@ def test_a_robot_on_its_back_touches_with_its_legs() -> None:
 
 
 def _lower_than_a_pole(it: World) -> bool:
-    it.touched()  # brings the geoms to where they are
+    it.touched()  # updates the positions of the geoms
     geoms = it._robots[LEFT].geoms
     heights = it.data.geom_xpos[geoms, 2]
     reach = it.model.geom_rbound[geoms]

@@ -17,9 +17,9 @@ MOST_GROWTH_HERE = 0.03
 @pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="the kernel's own counts are read")
 def test_nothing_grows_and_nothing_is_left_over() -> None:
-    """After two minutes no process keeps more threads, files or sockets, and all records verify.
+    """No process keeps more threads, files or sockets than when warm, and all records verify.
 
-    The memory of each process but the visitors' stays the same within 3 %.
+    The memory of each process except the visitors' grows by less than 3 %.
     """
     figures = soak(MINUTES, match_s=10.0, speed=2.0, warm_minutes=WARM_MINUTES, visitors_most=5)
     assert figures.same == figures.matches > 0
