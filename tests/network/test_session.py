@@ -88,7 +88,7 @@ def test_an_unknown_name_is_said_at_once() -> None:
 
 
 def test_requests_are_answered_refused_or_in_vain(router: Session) -> None:
-    """A request that nobody gets raises NoReply; one that is not answered in time raises TooLate."""
+    """A request that nobody gets raises NoReply, and one without an answer in time TooLate."""
     desk = router.desk("lacoc/main/sheet", 1)
     with open_client(router.locators()) as client:
 

@@ -64,7 +64,7 @@ COMMANDS = {
                 ])
             if how == "stop":
                 raise KeyboardInterrupt
-            how.encode()  # fails for text with bytes that are not UTF-8
+            how.encode()  # as a message or a file takes it
             raise ZeroDivisionError(how)
     """,
     "many": """
