@@ -315,7 +315,7 @@ def test_a_frame_that_is_not_there_yet_is_refused() -> None:
 
 
 def test_held_keys_obey_the_rules_of_the_beat_in_which_they_take_effect() -> None:
-    """Of held keys that fall due in one beat, the newest [x] counts, and then the newest digit."""
+    """Of held keys that fall due in one beat, the newest [x] and the newest digit take effect."""
     inbox = make(most_delay_ms=400)
     joined = take_seat(inbox)
 
@@ -345,7 +345,7 @@ def test_held_keys_obey_the_rules_of_the_beat_in_which_they_take_effect() -> Non
 
 
 def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
-    """A command for another seat than its session's is refused, and the seat's own takes effect."""
+    """A command for a seat that its session does not hold is refused; the holder's takes effect."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     forged = command(left, 1, seat=RIGHT)
@@ -358,7 +358,7 @@ def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
 
 
 def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
-    """A flood on a seat is limited, its newest command counts, and the other seat plays on."""
+    """A flood on a seat is limited, its newest command takes effect, and the other seat plays on."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     inbox.beat(0.0, [[], []])

@@ -198,7 +198,7 @@ def test_the_delay_follows_seldom_and_falls_only_by_much() -> None:
 
 
 def test_an_old_frame_gains_no_more_than_two_beats() -> None:
-    """A key that names a too old frame gains two beats at most, and counts as late."""
+    """A key that claims to answer an older frame gains at most two beats, and counts as late."""
     clock = warm(2, 12)
     for claim in (2, 5, 12, 200):
         clock.begin()
@@ -211,7 +211,7 @@ def test_an_old_frame_gains_no_more_than_two_beats() -> None:
 
 
 def test_a_link_that_was_never_measured_is_not_believed() -> None:
-    """Without a known round trip, a key that names an old frame gains two beats at most."""
+    """If its seat has no known round trip, a key that names an old frame gains at most two beats."""
     clock = warm(1, 12)
     for _ in range(WINDOW_BEATS + MEASURE_BEATS):
         clock.begin()
@@ -224,7 +224,7 @@ def test_a_link_that_was_never_measured_is_not_believed() -> None:
 
 
 def test_a_key_of_the_match_before_is_held_as_a_new_one() -> None:
-    """A key that names a frame of the last match is held for the whole delay."""
+    """A key that names a frame of the match before is held for the whole delay."""
     clock = warm(1, 12)
     clock.beat = -1
     clock.begin(2)

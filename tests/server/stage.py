@@ -70,7 +70,7 @@ def decide(decision: d.Decision, reason: str = "agreed", by: str = "Kubota") -> 
 
 @dataclass
 class Script:
-    """Where robots are and what they touch, by tick of PLAYING; the first tick is 1."""
+    """A script of where robots are and what they touch, by tick of PLAYING; the first tick is 1."""
 
     poses: dict[int, dict[int, tuple[float, float]]] = field(default_factory=dict)
     """Tick -> seat -> x, y [m]; a robot stays there until the next entry."""

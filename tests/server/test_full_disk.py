@@ -158,7 +158,7 @@ os.fsync = sync
 sys.argv = sys.argv[5:]
 runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 """
-"""Runs the command after it; while a flag file exists, `fsync` fails or takes some seconds."""
+"""A program that runs a command; while a flag file exists, `fsync` fails or takes seconds."""
 
 
 def sync(flag: Path, what: str) -> list[str]:

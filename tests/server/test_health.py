@@ -160,7 +160,7 @@ def test_repeats_that_come_a_little_early_or_late() -> None:
 
 
 def test_repeats_of_a_match_that_is_often_halted() -> None:
-    """A halt loses no repeats: seconds are counted from a resume, and a cut second is left out."""
+    """If a match is often halted, no repeat counts as lost, because only whole seconds count."""
     held = Held()
     for _ in range(6):
         for beat in range(60):

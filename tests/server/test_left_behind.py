@@ -199,7 +199,7 @@ else:
 sys.argv = sys.argv[5:]
 runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 """
-"""Runs the command after it; while a flag file exists, beats or starts of processes fail."""
+"""A program that runs a command; while a flag file exists, beats or new processes fail."""
 
 
 def failing(flag: Path, what: str) -> list[str]:

@@ -35,9 +35,9 @@ from lacoc_shared.words import render
 pytestmark = pytest.mark.slow
 
 LINK_S = 3.0
-"""After this long without a sign, a court or a client may close a connection."""
+"""Zenoh may close a connection after this long without a message [s]."""
 WATCHED_BEATS = 600
-"""Longer than the ten seconds after which a silent connection is closed."""
+"""12 s: longer than a silent connection could stop all others (docs/facts.md 5)."""
 WAITED_MS = 2000.0
 """A court that waits for a frozen watcher is at least this late; a merely busy one is not."""
 

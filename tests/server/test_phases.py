@@ -22,7 +22,7 @@ def steps(events: list[Event]) -> list[tuple[str, str]]:
 
 
 def test_the_table() -> None:
-    """The table of transitions has exactly these pairs of phases."""
+    """The table of transitions has exactly the pairs of phases that this test lists."""
     forward = [(a.name, b.name) for a in TRANSITIONS for b in sorted(TRANSITIONS[a])]
     assert forward == [
         ("CREATED", "LOBBY"),
@@ -47,7 +47,7 @@ def test_the_table() -> None:
 
 
 def test_every_transition_happens() -> None:
-    """Each transition of the table happens in some match."""
+    """Each transition of the table can happen in a match."""
     walked = set()
 
     def walk(stage: Stage) -> None:

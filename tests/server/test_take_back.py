@@ -471,7 +471,7 @@ def test_folding_with_nothing_struck_is_the_match_asplay(arena: str, data: st.Da
 def test_a_fold_leaves_the_history_alone_and_can_be_repeated(
     arena: str, data: st.DataObject
 ) -> None:
-    """A fold does not change the history, and a second fold gives the same result."""
+    """Judging a history without an event does not change it, and gives the same result twice."""
     history = History(GAMES[arena])
     number = 1
     for observation in data.draw(observations(arena)):

@@ -139,7 +139,7 @@ def test_a_command_is_imported_when_it_is_asked_for(lacoc: Lacoc) -> None:
 
 
 def test_groups_and_lazy_groups_nest(lacoc: Lacoc) -> None:
-    """An entry with several commands is a group, and a group may find its own entries."""
+    """A plugin with several commands is a group, and a group may have plugins of its own."""
     assert lacoc("tag", "seek") == (0, "found\n", "")
     assert lacoc("many", "tag", "seek") == (0, "found\n", "")
     assert lacoc("many", "own") == (0, "", "")
