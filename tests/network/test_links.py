@@ -211,7 +211,7 @@ def test_an_old_frame_gains_no_more_than_two_beats() -> None:
 
 
 def test_a_link_that_was_never_measured_is_not_believed() -> None:
-    """If its seat has no known round trip, a key that names an old frame gains at most two beats."""
+    """Without a known round trip, a key that names an old frame gains two beats at most."""
     clock = warm(1, 12)
     for _ in range(WINDOW_BEATS + MEASURE_BEATS):
         clock.begin()

@@ -43,7 +43,7 @@ def refused(access: Access) -> str:
 
 
 def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
-    """An invitation opens the court under each name in its certificate."""
+    """An invitation opens the court at its IP address and at its name; the certificate has both."""
     port = keyed.address.rpartition(":")[2]
     for host in ("127.0.0.1", "localhost"):
         access = msgspec.structs.replace(keyed.people["left"], connect=f"tls/{host}:{port}")

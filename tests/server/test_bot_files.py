@@ -53,7 +53,7 @@ def test_what_is_a_key(tmp_path: Path, returns: str, expected: Key | None) -> No
     ["2", "(1, 2)", "Key(1, 42)", "Key(1, -1)", "Key(2, 1)", "Key('B', 2)", "Key(1, 2.0)"],
 )
 def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
-    """A brain that returns neither a key nor None is refused with a message."""
+    """A brain that returns something else than a key or None is refused with a message."""
     with pytest.raises(UserError, match=r"my_bot\.py:5\) returned .*Expected a Key\(level"):
         play(tmp_path, brain(returns))
 

@@ -123,7 +123,7 @@ def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
 
 
 def test_an_empty_seat_is_nothing_but_empty() -> None:
-    """A team that leaves in LOBBY leaves neither its name nor its ready or silent mark behind."""
+    """When a team leaves in LOBBY, its name and its marks of ready and silent are removed."""
     stage = Stage().to(P.LOBBY)
     stage.beat(ReadySeat(LEFT, True), SilentSeat(LEFT))
     assert stage.frame.seats[LEFT].flags == SeatFlag.JOINED | SeatFlag.READY | SeatFlag.SILENT

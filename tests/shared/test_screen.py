@@ -98,7 +98,7 @@ def test_every_character_can_be_shown(encoding: str, monkeypatch: pytest.MonkeyP
 
 @pytest.mark.skipif(sys.platform == "win32", reason="such names can't exist there")
 def test_no_name_is_a_traceback(tmp_path: Path) -> None:
-    """`lacoc gait check` works if neither the file's name nor the terminal is in UTF-8."""
+    """`lacoc gait check` works with a file's name and a terminal that are not in UTF-8."""
     folder = os.fsencode(tmp_path)
     with open(folder + b"/Bad\x98\x8b.txt", "wb") as file:
         file.write(b"Num of Posture\t1\n0 Key\tM\xc3\xb6we\xc2\xa0\n")
