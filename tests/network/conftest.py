@@ -1,4 +1,4 @@
-"""A running court and connections to it."""
+"""A court for tests, and network sessions that are connected to it."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""A court for tests: real network, real inbox; a match that says yes and counts."""
+"""A court for tests: its network and inbox are real, its match accepts almost everything."""
 
 import secrets
 import threading
@@ -44,15 +44,15 @@ HASHES = {seat: tokens.hash_token(token) for seat, token in TOKENS.items()}
 WHISTLE = "the referee's whistle"
 WRONG = SentFile("mine.txt", b"wrong")
 SLOW = SentFile("slow.txt", b"20 20")
-"""Is weighed in for twenty beats."""
+"""A file whose weighing in takes twenty beats."""
 
 
 class Scales:
-    """Weighs in files without reading them."""
+    """Weighs files in without reading them: it refuses only `WRONG`, and takes long for `SLOW`."""
 
     def __init__(self) -> None:
         self.asked = 0
-        """For the answer to a slow join."""
+        """How many times the answer to a join with `SLOW` was asked for."""
 
     def __call__(self, join: Join) -> Join | None:
         if join.postures == WRONG:
@@ -85,9 +85,9 @@ def make_event(number: int, match: int = 1, text: str = "something") -> Event:
 
 
 class CourtStub:
-    """Beats every 5 ms on a thread of its own; `inputs` is all that entered the match.
+    """A court with a beat every 5 ms on a thread of its own; `inputs` has what entered the match.
 
-    Digit 9 and a team called "Nobody" are refused by its match.
+    Its match refuses digit 9, and a join by a team called "Nobody".
     """
 
     def __init__(
@@ -102,8 +102,7 @@ class CourtStub:
         desk = DecisionDesk([tokens.hash_token(WHISTLE)])
         self.network = CourtNetwork(KEYS, [listen], inbox, desk, protection)
         self.trouble: Phrase | None = None
-        """Why it makes no beat and sends its last one again, as while the disk is full; "": it
-        makes them."""
+        """If set: why no beats pass and the last frame is sent again, as while the disk is full."""
         self.inputs: list[Input] = []
         self.scene = make_scene("empty")
         self.silent = False
@@ -135,13 +134,13 @@ class CourtStub:
         return [(i.seq, i.key) for i in self.inputs if isinstance(i, KeySeat) and i.seat == seat]
 
     def show(self, scene: Scene, **changes: Any) -> None:
-        """Let the match have another scene, and say so."""
+        """Publish another scene, and a sheet that names it."""
         self.scene = scene
         self.network.publish_scene(scene)
         self.network.publish_sheet(make_sheet(scene, **changes))
 
     def in_a_beat(self, what: Callable[[], None]) -> None:
-        """Do something on the court's thread."""
+        """Call a function on the court's thread, after the next beat's inputs."""
         self._todo.append(what)
 
     def _run(self) -> None:
@@ -218,7 +217,7 @@ class CourtStub:
 
 
 def until(condition: Callable[[], object], timeout_s: float = 30.0) -> None:
-    """Wait for something to become true."""
+    """Wait until a condition is true."""
     deadline_s = time.monotonic() + timeout_s
     while not condition():
         assert time.monotonic() < deadline_s, "it did not happen in time"

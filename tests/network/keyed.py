@@ -1,4 +1,4 @@
-"""A contest with keys, and a court for tests that is protected with them."""
+"""A contest file with keys, and a court for tests that uses the keys."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,7 +15,7 @@ from lacoc_shared.network.session import Session, open_client
 
 
 def keyed_file(folder: Path, where: str = "127.0.0.1:0", name: str = "contest") -> Path:
-    """A contest file with keys, of one court with the tokens of the court for tests."""
+    """Write a contest file with keys, for one court with the tokens of `court_stub`."""
     file = folder / f"{name}.toml"
     seats = "".join(f'[court.main.seat.{s}]\ntoken = "{t}"\n' for s, t in TOKENS.items())
     file.write_text(
@@ -27,7 +27,7 @@ def keyed_file(folder: Path, where: str = "127.0.0.1:0", name: str = "contest") 
 
 
 class KeyedCourt(CourtStub):
-    """A court for tests with keys; `people` has the way of each person, at its own port."""
+    """A court for tests with keys; `people` has the address and credentials of each person."""
 
     def __init__(self, file: Path, listen: str = "127.0.0.1:0") -> None:
         contest = contests.load(file)
@@ -39,6 +39,6 @@ class KeyedCourt(CourtStub):
         }
 
     def enter(self, who: str) -> Session:
-        """Open a person's own session."""
+        """Open a network session with a person's credentials."""
         access = self.people[who]
         return open_client([access.connect], credentials=access.credentials)

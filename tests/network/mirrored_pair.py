@@ -1,4 +1,4 @@
-"""Two controllers that press the same key upon the same frame; one of them over a bad network."""
+"""Two controllers press the same key in response to the same frame; one has a slow link."""
 
 import json
 import subprocess
@@ -28,7 +28,7 @@ COURT = "main"
 SEATS = ("left", "right")
 FAST, SLOW = SEATS
 EVERY_BEATS = 17
-"""A key so often; out of step with the signs of life."""
+"""Beats from one key to the next; no multiple of the 5 beats between repeats of a command."""
 _WAIT_S = 60.0
 _TOKENS = {who: f"the token of {who}" for who in (*SEATS, "the referee")}
 _CONTEST = """
@@ -46,34 +46,34 @@ referee.token = "the token of the referee"
 
 
 class Pair(NamedTuple):
-    """When the two keys that answer one frame took effect."""
+    """The two keys that answer one frame."""
 
     seen: int
     beats: tuple[int, int]
-    """In which each took effect, the fast seat's first."""
+    """The beat in which each key took effect, the fast seat's first."""
     late: tuple[int, int]
 
 
 class Played(NamedTuple):
-    """A match of the pair."""
+    """What came of a match between the two controllers."""
 
     pairs: list[Pair]
     lost: int
-    """Frames upon which only one of both pressed: the other's never came."""
+    """Frames that only one key answered, because the other key was lost."""
     health: Health
-    """The court's last."""
+    """The court's last health message."""
     record: Record
 
 
 class _Player(threading.Thread):
-    """Presses upon each frame whose beat is a multiple of `EVERY_BEATS`."""
+    """Presses a key in response to each frame whose beat is a multiple of `EVERY_BEATS`."""
 
     def __init__(self, seat: str, address: str, stopping: threading.Event) -> None:
         super().__init__(name=seat)
         self._stopping = stopping
         self._session = open_client([address], timeout_s=_WAIT_S)
         self.controller = Controller(self._session, COURT, seat, _TOKENS[seat], seat.title())
-        # Every frame, where a controller keeps the newest: two that come at once are two.
+        # A mailbox of its own, because a controller keeps only the newest frame.
         self._frames = self._session.mailbox(Keys(COURT).frame, 1000)
         self.controller.join()
         self.controller.ready()
@@ -100,16 +100,16 @@ def play(
     warm_s: float = 12.0,
     seconds: float = 60.0,
 ) -> Played:
-    """Let the pair play at a court of its own, a process.
+    """Play a match of the two controllers at a court in a process of its own.
 
     Args:
-        folder: for contest and record.
-        input_delay: the contest's.
-        delay_s: of the slow seat's link, one way.
-        jitter_s: of it, one way.
+        folder: for contest file and record.
+        input_delay: the contest's `input_delay`.
+        delay_s: delay of the slow seat's link, one way.
+        jitter_s: jitter of that link, one way.
         most_ms: the contest's `input_delay_max_ms`.
-        warm_s: before the start; links are measured over 10 s.
-        seconds: of play.
+        warm_s: time before the start; links are measured over 10 s.
+        seconds: length of play.
     """
     contest = folder / "contest.toml"
     contest.write_text(_CONTEST.format(input_delay=input_delay, most_ms=most_ms))
@@ -120,7 +120,7 @@ def play(
         stack.callback(court.terminate)
         assert court.stdout is not None
         address = json.loads(court.stdout.readline())["locators"][0]
-        threading.Thread(target=court.stdout.read, daemon=True).start()  # nobody blocks the court
+        threading.Thread(target=court.stdout.read, daemon=True).start()  # so the pipe never fills
         link = stack.enter_context(SlowLink(address, delay_s, jitter_s))
         session = stack.enter_context(open_client([address]))
         players: list[_Player] = []

@@ -1,4 +1,4 @@
-"""A bad network between a program and a court: a TCP proxy that delays, loses, stalls and cuts."""
+"""A bad link between a program and a court: a TCP proxy that delays, loses, stalls and cuts."""
 
 import asyncio
 import random
@@ -8,22 +8,22 @@ from typing import Self
 
 
 class SlowLink:
-    """Stands before a court on a thread of its own; a program connects to `address` instead.
+    """A proxy on a thread of its own; a program connects to its `address` instead of the court's.
 
-    Everything arrives, in its order, as TCP has it: each packet waits `delay_s`, give or take
-    `jitter_s`, in each direction, and none overtakes another. A lost packet is one that is sent
-    again: it, and all behind it, come `RESEND_S` later. The attributes may be changed at any time.
+    As with TCP, everything arrives in order. Each packet is delayed in each direction by `delay_s`,
+    plus or minus `jitter_s`. A lost packet is sent again: it and all packets behind it arrive
+    `RESEND_S` later. The attributes may be changed at any time.
 
     Args:
-        address: the court's, "tcp/HOST:PORT".
-        delay_s: one way; a round trip takes twice as long.
-        jitter_s: one way; at most `delay_s`.
-        loss: part of the packets that are lost, 0-1.
+        address: the court's address, "tcp/HOST:PORT".
+        delay_s: delay one way; a round trip takes twice as long.
+        jitter_s: jitter one way; at most `delay_s`.
+        loss: share of the packets that are lost, 0-1.
         seed: the same seed gives the same jitter and losses.
     """
 
     RESEND_S = 0.2
-    """The least time after which TCP sends a packet again (Linux)."""
+    """The shortest time after which TCP sends a lost packet again (Linux)."""
 
     def __init__(
         self,
@@ -37,7 +37,7 @@ class SlowLink:
         self.jitter_s = jitter_s
         self.loss = loss
         self.address = ""
-        """Where a program connects; the port is free and stays the same."""
+        """Address to which a program connects; its port does not change."""
         host, _, port = address.removeprefix("tcp/").rpartition(":")
         self._court = (host, int(port))
         self._chance = random.Random(seed)
@@ -61,11 +61,11 @@ class SlowLink:
         self._loop.close()
 
     def stall(self) -> None:
-        """Let nothing through, and tell nobody: a pulled cable."""
+        """Let nothing through and close nothing, like a pulled cable."""
         self._do(self._flowing.clear)
 
     def flow(self) -> None:
-        """Let through again, first of all what waited."""
+        """Let data through again, beginning with what has waited."""
         self._do(self._flowing.set)
 
     def cut(self) -> None:
@@ -73,11 +73,11 @@ class SlowLink:
         self._do(self._cut)
 
     def mend(self) -> None:
-        """Take connections again."""
+        """Accept new connections again."""
         self._do(self._mend)
 
     def _do(self, what: Callable[[], None]) -> None:
-        """Do it on the link's thread; it is done when this returns."""
+        """Call a function on the link's thread, and wait until it has returned."""
         done = threading.Event()
         self._loop.call_soon_threadsafe(lambda: (what(), done.set()))
         assert done.wait(10.0)
@@ -121,7 +121,7 @@ class SlowLink:
                     await asyncio.gather(*ways, return_exceptions=True)
             finally:
                 self._hang_up(forth)
-        except (OSError, asyncio.CancelledError):  # one side is not there or has gone, or the test
+        except (OSError, asyncio.CancelledError):  # one side is missing or gone, or the test ends
             pass
         finally:
             self._hang_up(back)
@@ -131,7 +131,7 @@ class SlowLink:
         writer.close()
 
     async def _carry(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        """One direction; ends when its sender has gone and all that came is delivered."""
+        """Carry one direction, until its sender has gone and everything is delivered."""
         under_way: asyncio.Queue[tuple[float, bytes]] = asyncio.Queue()
         delivering = asyncio.ensure_future(self._deliver(under_way, writer))
         try:
@@ -139,7 +139,7 @@ class SlowLink:
             while packet := await reader.read(65_536):
                 due_s = max(due_s, self._loop.time() + self._takes_s())
                 under_way.put_nowait((due_s, packet))
-                await self._flowing.wait()  # then the sender's own buffers fill, as they would
+                await self._flowing.wait()  # while stalled, read nothing: the sender's buffers fill
             await under_way.join()
         finally:
             delivering.cancel()

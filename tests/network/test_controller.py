@@ -1,4 +1,4 @@
-"""A controller at a real court over a real network."""
+"""A controller at a court for tests, over a real network."""
 
 import threading
 import time
@@ -37,7 +37,7 @@ def held(session: Session, seat: str = "left") -> Controller:
 
 
 def test_a_join_travels_with_its_files(court: CourtStub, session: Session) -> None:
-    """The court gets name and files, and answers with notes."""
+    """A join brings the team's name and files to the court, and the reply brings notes."""
     file = SentFile("mine.txt", b"20 20")
     one = controller(session, postures=file)
     assert one.join() == (say("note.next-match"),)
@@ -50,7 +50,7 @@ def test_a_join_travels_with_its_files(court: CourtStub, session: Session) -> No
 def test_a_join_that_takes_long_to_weigh_in_holds_nobody_up(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
-    """Its answer comes when its files are weighed in; beats and the other seat go on meanwhile."""
+    """While a join is weighed in for twenty beats, the other seat can join."""
     one = controller(session, postures=SLOW)
     waiting = threading.Thread(target=one.join)
     waiting.start()
@@ -63,7 +63,7 @@ def test_a_join_that_takes_long_to_weigh_in_holds_nobody_up(
 
 
 def test_a_join_may_be_large_but_not_too_large(court: CourtStub, session: Session) -> None:
-    """All that is let out is taken in, and what is too large is said before it is lost."""
+    """A join up to the limit arrives; a larger one is refused before it is sent."""
     room = JOIN_MAX_BYTES - 1024
     small = len(encode(controller(session, postures=SentFile("a", b""))._join))
     controller(session, postures=SentFile("a", bytes(room - small - 4))).join()
@@ -74,7 +74,7 @@ def test_a_join_may_be_large_but_not_too_large(court: CourtStub, session: Sessio
 def test_a_wrong_token_is_said_and_disturbs_nobody(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
-    """A wrong token never disturbs the seat."""
+    """A join with a wrong token is refused and counted, and the seat's holder plays on."""
     holder = held(session)
     with pytest.raises(UserError, match="not valid for the left seat"):
         controller(other_session, token="guess").join()
@@ -85,21 +85,21 @@ def test_a_wrong_token_is_said_and_disturbs_nobody(
 
 
 def test_mistakes_in_files_come_back_whole(session: Session) -> None:
-    """Rules 2: a file that is wrong is refused whole, with every mistake listed."""
+    """Rules 2: the reply to a join with wrong files lists every mistake."""
     with pytest.raises(FileRefused) as refused:
         controller(session, postures=WRONG).join()
     assert [mistake.found for mistake in refused.value.mistakes] == ["a", "b"]
 
 
 def test_a_join_that_the_match_refuses_makes_no_session(court: CourtStub, session: Session) -> None:
-    """A session starts only when the match has taken the join in."""
+    """If the match refuses a join, no session begins."""
     with pytest.raises(UserError, match="Join when the next match opens"):
         controller(session, team="Nobody").join()
     assert court.network.seat_health(0.0)[0].session == 0
 
 
 def test_an_unknown_seat_and_an_unknown_court_are_named(session: Session) -> None:
-    """The message names what was found and what exists."""
+    """The message about an unknown seat or court lists those that exist."""
     with pytest.raises(UserError, match=r'no seat "middle". It has left and right'):
         Controller(session, "main", "middle", "t", "Blue")
     with pytest.raises(UserError, match=r'no court "mian" at .* There is main'):
@@ -109,7 +109,7 @@ def test_an_unknown_seat_and_an_unknown_court_are_named(session: Session) -> Non
 def test_a_key_is_applied_once_and_its_round_trip_is_known(
     court: CourtStub, session: Session
 ) -> None:
-    """Rules 3: repeated 10 times a second with the same sequence number; issue: round trip."""
+    """A key that is repeated takes effect once, and the controller measures its round trip."""
     one = held(session)
     assert one.press(1, 2) == 1
     until(lambda: one.poll(time.monotonic()) and one.round_trip_ms is not None)
@@ -123,7 +123,7 @@ def test_a_key_is_applied_once_and_its_round_trip_is_known(
 
 
 def test_a_refused_key_is_said_in_a_sentence(court: CourtStub, session: Session) -> None:
-    """A command refused in play is shown on the screen, and the match goes on."""
+    """The controller gives each refused key once, with the reason."""
     one = held(session)
     one.press(1, 9)
     until(lambda: one.poll(time.monotonic()) and court.keys())
@@ -135,7 +135,7 @@ def test_a_refused_key_is_said_in_a_sentence(court: CourtStub, session: Session)
 
 
 def test_ready_and_leave(court: CourtStub, session: Session) -> None:
-    """Requests carry the session's seal; after leaving no keys are sent."""
+    """Ready and leave reach the match; after leaving, the controller sends no keys."""
     one = held(session)
     one.ready()
     one.ready(False)
@@ -149,7 +149,10 @@ def test_ready_and_leave(court: CourtStub, session: Session) -> None:
 def test_a_new_window_takes_over_and_the_old_one_knows(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
-    """With the same token a new window continues the numbers, and the old one gets a message."""
+    """A second window with the same token takes the seat over, and the first one is told.
+
+    Sequence numbers go on in the second window.
+    """
     old = held(session)
     old.press(1, 2)
     until(lambda: court.keys() == [(1, 2)])
@@ -164,7 +167,7 @@ def test_a_new_window_takes_over_and_the_old_one_knows(
 
 
 def test_one_health_of_another_session_is_not_believed(court: CourtStub, session: Session) -> None:
-    """Made before the join and delivered after it, it names the older session: two do not."""
+    """A controller counts as replaced after two health messages in a row with another session."""
     one = held(session)
     until(lambda: one.poll(time.monotonic()) and one.view.health)
     court.silent = True
@@ -182,7 +185,7 @@ def test_one_health_of_another_session_is_not_believed(court: CourtStub, session
 
 
 def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session) -> None:
-    """The reply's field, not its words, says whether a request may succeed later."""
+    """A refusal says whether the same request may succeed later (`NotNow`) or never."""
     one = controller(session)
     court.trouble = FULL_DISK
     with pytest.raises(NotNow, match="Make room"):
@@ -190,7 +193,7 @@ def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session)
     still = one.wait_frame(5.0)
     assert still
     court.trouble = None
-    until(lambda: (frame := one.wait_frame(1.0)) and frame.beat > still.beat)  # it goes on
+    until(lambda: (frame := one.wait_frame(1.0)) and frame.beat > still.beat)  # beats pass again
     for _ in range(5):
         one.join()
     with pytest.raises(NotNow, match="Too many tries to join"):
@@ -202,7 +205,7 @@ def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session)
 
 @pytest.mark.parametrize("seat", ["", "a//b", "le?ft", "#"])
 def test_a_seat_that_is_no_key_is_said(court: CourtStub, session: Session, seat: str) -> None:
-    """A seat in an invitation is checked before it becomes part of a key expression."""
+    """A seat's name that can't be part of a key expression is refused with the right names."""
     with pytest.raises(UserError, match=r"has no seat .* It has left and right"):
         Controller(session, "main", seat, "t", "Blue")
 
@@ -210,7 +213,7 @@ def test_a_seat_that_is_no_key_is_said(court: CourtStub, session: Session, seat:
 def test_forged_commands_are_refused_and_counted(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
-    """A command of another seat, an old one or an altered one is refused by the court itself."""
+    """The court refuses and counts a command for another seat, and bytes that are no command."""
     left, right = held(session, "left"), held(other_session, "right")
     left.press(1, 2)
     until(lambda: court.keys())
@@ -230,7 +233,7 @@ def test_forged_commands_are_refused_and_counted(
 def test_a_flood_on_one_seat_does_not_touch_the_other(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
-    """Failure policy: the other seat and the beat's time are untouched."""
+    """A flood on one seat delays no key of the other seat."""
     one = held(session, "right")
     flood = other_session.publisher(KEYS.command("left"))
     trips = []
@@ -251,7 +254,7 @@ def test_a_flood_on_one_seat_does_not_touch_the_other(
 def test_a_controller_that_stops_is_silent_and_heard_again(
     court: CourtStub, session: Session
 ) -> None:
-    """Rules 3: silent for 1 s of wall time gets "silent" as an input."""
+    """Rules 3: a seat that is not heard for 1 s is silent, until its controller sends again."""
     one = held(session)
     until(lambda: SilentSeat(0) in court.inputs)
     one.poll(time.monotonic())
@@ -262,9 +265,9 @@ def test_a_controller_that_stops_is_silent_and_heard_again(
 def test_no_seat_is_lost_for_what_its_program_did_not_hear(
     court: CourtStub, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The program asks for missed events and sheets while it repeats its command.
+    """A controller repeats its command while it asks for missed events and sheets.
 
-    An answer takes nearly a second here, and who is silent for one stands.
+    An answer takes nearly a second here, and a seat that is not heard for a second is silent.
     """
     with SlowLink(court.address, delay_s=0.45) as link, open_client([link.address]) as session:
         one = held(session)
@@ -286,7 +289,10 @@ def test_no_seat_is_lost_for_what_its_program_did_not_hear(
 
 @pytest.mark.slow
 def test_a_controller_comes_back_after_a_restart_of_the_court() -> None:
-    """Failure policy: the same token takes the seat back, here by itself, and numbers go on."""
+    """After a restart of the court, a controller takes its seat back by itself.
+
+    It goes on with its sequence numbers, and gives up if the court no longer takes the token.
+    """
     with CourtStub() as first:
         address = first.address
         session = open_client([address])

@@ -1,4 +1,4 @@
-"""The referee's desk: whom the court listens to."""
+"""The referee's desk: which requests become decisions, and which are refused."""
 
 import math
 
@@ -22,7 +22,7 @@ def request(decision: d.Decision, token: str = "whistle", by: str = "Kubota") ->
 
 
 def test_a_decision_becomes_an_input() -> None:
-    """Rules 4: each decision has the referee's name and the reason."""
+    """A request with a referee's token becomes an input with the referee's name and the reason."""
     taken = DecisionDesk(HASHES).decision("adjust", request(d.Adjust("left", -2)))
     assert taken == Decide("Kubota", "foul", d.Adjust("left", -2))
 
@@ -55,7 +55,7 @@ def test_a_decision_becomes_an_input() -> None:
 def test_a_request_is_refused_with_its_reason(
     name: str, payload: bytes, code: str, why: str
 ) -> None:
-    """The answer says what was found and, if useful, all valid values."""
+    """A request that is wrong is refused with its reason, and counted."""
     desk = DecisionDesk(HASHES)
     refusal = desk.decision(name, payload)
     assert isinstance(refusal, Refusal)
@@ -64,7 +64,7 @@ def test_a_request_is_refused_with_its_reason(
 
 
 def test_a_decision_that_is_not_read_is_told_all_there_are() -> None:
-    """The answer says what was wrong, and lists each decision with its arguments."""
+    """The refusal of an unreadable decision lists all decisions with their arguments."""
     refusal = DecisionDesk(HASHES).decision("halt", request(d.Start()))
     assert isinstance(refusal, Refusal)
     words = render(refusal.why)
@@ -84,20 +84,20 @@ def test_a_decision_that_is_not_read_is_told_all_there_are() -> None:
     ],
 )
 def test_a_reason_is_a_text_or_one_of_the_pages(reason: Phrase | str, taken: bool) -> None:
-    """Nobody lets the court say another sentence in the record."""
+    """A reason is a text or a phrase of `reason.*`; any other phrase is refused."""
     asked = DecisionRequest(token="whistle", by="Kubota", reason=reason, decision=d.Start())
     judged = DecisionDesk(HASHES).decision("start", encode(asked))
     assert isinstance(judged, Decide) == taken
 
 
 def test_a_wrong_token_learns_nothing() -> None:
-    """Only referees learn which values exist."""
+    """With a wrong token, a refusal tells nothing about the decision."""
     refusal = DecisionDesk(HASHES).decision("x", encode({"token": "guess", "decision": 3}))
     assert refusal == Refusal(say("refused.no-referee-token"))
 
 
 def test_a_token_can_be_shown_without_deciding() -> None:
-    """A page asks whether it may referee before it shows buttons."""
+    """`enter` says whether a token is a referee's, without a decision."""
     desk = DecisionDesk(HASHES)
     assert desk.enter(encode(Enter(token="whistle"))) == Done()
     refusal = Refusal(say("refused.no-referee-token"))
@@ -108,6 +108,6 @@ def test_a_token_can_be_shown_without_deciding() -> None:
 
 @given(st.text(), st.binary(max_size=300))
 def test_no_bytes_ever_raise(name: str, payload: bytes) -> None:
-    """Failure policy: bad bytes are dropped and counted."""
+    """No bytes make the desk raise an exception; it answers with a refusal."""
     assert isinstance(DecisionDesk(HASHES).decision(name, payload), Refusal)
     assert isinstance(DecisionDesk(HASHES).enter(payload), Refusal)

@@ -1,4 +1,4 @@
-"""Two controllers answer the same frame, one of them far away, at a real court."""
+"""Two controllers answer the same frames at a real court; one of them has a slow link."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ FAR = (0.1, 0.025)
 
 @pytest.mark.long
 def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) -> None:
-    """Whatever comes too late for that says by how much (benchmarks.fairness has the figures)."""
+    """With equal links, keys that answer one frame take effect in one beat, unless one is late."""
     played = play(tmp_path, "equal", *FAR, warm_s=6, seconds=10)
     fast, slow = played.health.seats
     assert fast.round_trip_p50_ms is not None
@@ -34,7 +34,7 @@ def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) 
 
 @pytest.mark.slow
 def test_without_the_setting_the_near_one_is_first(tmp_path: Path) -> None:
-    """No key is held and none is late; the court still shows both links."""
+    """Without equal links, no key is held, so the key over the fast link takes effect first."""
     played = play(tmp_path, "none", *FAR, warm_s=3, seconds=4)
     fast, slow = played.health.seats
     assert played.health.input_delay_ms == 0

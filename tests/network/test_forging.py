@@ -1,4 +1,4 @@
-"""A short run of `benchmarks.forging`: nothing that is forged is accepted, all that is right is."""
+"""A short run of `benchmarks.forging`, in which hostile clients forge messages."""
 
 import json
 import subprocess
@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.slow
 @pytest.mark.parametrize("attempts", [30, pytest.param(2000, marks=pytest.mark.long)])
 def test_nothing_forged_is_accepted(attempts: int) -> None:
-    """With all protection, with tokens and seals alone, and with the transport's rules alone."""
+    """No forgery is accepted with all protection, with seals alone, or with access rules alone."""
     command = [sys.executable, "-m", "benchmarks.forging", "--attempts", str(attempts)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=600)
     decoder, found, text = json.JSONDecoder(), [], done.stdout.strip()
@@ -26,4 +26,4 @@ def test_nothing_forged_is_accepted(attempts: int) -> None:
     assert [one["right"] for one in found] == [True] * 3
     assert {sum(one["accepted"].values()) for one in found} == {0}
     refused = found[1]["refused by the court"]["commands"]
-    assert {"bad-seal", "old", "not-your-seat"} <= set(refused)  # they did arrive there
+    assert {"bad-seal", "old", "not-your-seat"} <= set(refused)  # so the forgeries did arrive

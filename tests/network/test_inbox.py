@@ -1,4 +1,4 @@
-"""The court's inbox, with a time that the test gives."""
+"""The court's inbox; each test passes the time as an argument."""
 
 import secrets
 from collections.abc import Sequence
@@ -53,7 +53,7 @@ def check_files(join: Join) -> Join:
 
 
 class Court(Inbox):
-    """An inbox and what its match makes of the seats' silence."""
+    """An inbox with what its match knows about each seat's silence."""
 
     silent = (False, False)
 
@@ -109,7 +109,7 @@ WELCOME = say("note.next-match")
 
 
 def test_a_join_gives_a_session_only_when_the_match_has_taken_it_in() -> None:
-    """A session starts with `seated`: once the join is applied and on disk."""
+    """A session begins when the match has accepted the join, not when the inbox has."""
     inbox = make()
     taken = inbox.join(LEFT, join_bytes(name="  Blue ", postures=SentFile("a.txt", b"x")))
     assert taken == JoinSeat(
@@ -124,7 +124,7 @@ def test_a_join_gives_a_session_only_when_the_match_has_taken_it_in() -> None:
 
 
 def test_a_join_waits_while_its_files_are_weighed_in() -> None:
-    """Who is asked again gives the answer; the join itself is not judged, or counted, again."""
+    """While files are weighed in, the inbox returns a function that gives the outcome later."""
     answers: list[Join | None] = [
         None,
         None,
@@ -140,7 +140,7 @@ def test_a_join_waits_while_its_files_are_weighed_in() -> None:
 
 
 def test_a_mistake_that_takes_long_to_find_is_told() -> None:
-    """A robot that does not stand is refused when that is known."""
+    """A robot whose trial ends in a mistake is refused when the trial is over."""
     known = False
 
     def weigh(join: Join) -> Join | None:
@@ -177,7 +177,7 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
     ],
 )
 def test_a_join_is_refused_with_its_reason(payload: bytes, code: str, why: str) -> None:
-    """A wrong file, token or version: one clear sentence, counted, and nothing else disturbed."""
+    """A wrong join is refused with its reason and counted, and the seat's holder plays on."""
     inbox = make()
     holder = take_seat(inbox)
     refusal = inbox.join(LEFT, payload)
@@ -189,13 +189,13 @@ def test_a_join_is_refused_with_its_reason(payload: bytes, code: str, why: str) 
 
 
 def test_a_seat_without_a_token_is_closed() -> None:
-    """No token was given out for it, so none opens it."""
+    """A seat for which no token was made can't be joined."""
     inbox = Inbox(KEYS, SEATS, {}, check_files, secrets.token_bytes)
     assert isinstance(inbox.join(LEFT, join_bytes(token="")), Refusal)
 
 
 def test_joins_can_not_flood_the_reading_of_files() -> None:
-    """A join is expensive, so even the right token may join only a few times a second."""
+    """A seat takes five joins at once and then one a second, even with the right token."""
     inbox = make()
     inbox.beat(10.0, [[], []])
     answers = [inbox.join(LEFT, join_bytes()) for _ in range(50)]
@@ -205,7 +205,7 @@ def test_joins_can_not_flood_the_reading_of_files() -> None:
 
 
 def test_the_same_token_takes_the_seat_over() -> None:
-    """The same person's new window: the old session is refused from then on as replaced."""
+    """After a second join with the same token, commands of the first session are refused."""
     inbox = make()
     old = take_seat(inbox)
     inbox.beat(0.1, [[command(old, 5)], []])
@@ -221,7 +221,7 @@ def test_the_same_token_takes_the_seat_over() -> None:
 
 
 def test_a_command_counts_once_and_its_repetition_is_a_sign_of_life() -> None:
-    """Rules 3: repetition with the same sequence number is retransmission and heartbeat in one."""
+    """A repeated command enters the match once, and each repeat is a sign of life."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.beat(0.1, [[command(joined, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
@@ -232,7 +232,7 @@ def test_a_command_counts_once_and_its_repetition_is_a_sign_of_life() -> None:
 
 
 def test_the_newest_restart_comes_before_the_newest_digit() -> None:
-    """Rules 3: in one tick a seat's newest [x] is applied first, then its newest digit."""
+    """Of a beat's commands the newest [x] enters the match, and then the newest digit."""
     inbox = make()
     joined = take_seat(inbox)
     keys = (3, RESTART_KEY, 1, RESTART_KEY, 4)
@@ -268,7 +268,7 @@ def altered(payload: bytes, field: str, value: object) -> bytes:
     ],
 )
 def test_an_altered_command_is_refused(field: str, value: object, why: str) -> None:
-    """A seal covers every number of a command."""
+    """A command is refused if any of its numbers was changed after it was sealed."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.beat(0.1, [[altered(command(joined, 10), field, value)], []]) == []
@@ -290,7 +290,7 @@ def test_an_altered_command_is_refused(field: str, value: object, why: str) -> N
 def test_a_sealed_command_that_makes_no_sense_is_refused(
     seq: int, level: int, key: int, why: str
 ) -> None:
-    """Old and impossible commands have no effect and are counted by reason."""
+    """A command that is old or out of range is refused and counted, though its seal is right."""
     inbox = make()
     joined = take_seat(inbox)
     inbox.beat(0.1, [[command(joined, 10)], []])
@@ -299,7 +299,7 @@ def test_a_sealed_command_that_makes_no_sense_is_refused(
 
 
 def test_a_frame_that_is_not_there_yet_is_refused() -> None:
-    """Nobody has seen it: the command has no effect and is counted."""
+    """A command that names a frame that was not sent yet is refused and counted."""
     inbox = make()
     joined = take_seat(inbox)
     inbox.links.begin(0.08, 1, 6)
@@ -315,7 +315,7 @@ def test_a_frame_that_is_not_there_yet_is_refused() -> None:
 
 
 def test_held_keys_obey_the_rules_of_the_beat_in_which_they_take_effect() -> None:
-    """Rules 3: a seat's newest [x] of that beat, then its newest digit; a repetition is none."""
+    """Of held keys that fall due in one beat, the newest [x] and the newest digit take effect."""
     inbox = make(most_delay_ms=400)
     joined = take_seat(inbox)
 
@@ -345,7 +345,7 @@ def test_held_keys_obey_the_rules_of_the_beat_in_which_they_take_effect() -> Non
 
 
 def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
-    """Failure policy: refused with the reason, counted; the seat is not disturbed."""
+    """A command for a seat that its session does not hold is refused; the holder's takes effect."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     forged = command(left, 1, seat=RIGHT)
@@ -358,7 +358,7 @@ def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
 
 
 def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
-    """Failure policy: the newest wins; the other seat and the beat's time are untouched."""
+    """A flood on a seat is limited, its newest command counts, and the other seat plays on."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     inbox.beat(0.0, [[], []])
@@ -375,7 +375,7 @@ def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
 
 
 def test_a_flood_of_rubbish_costs_a_fixed_amount() -> None:
-    """Bytes beyond the allowance are not even read."""
+    """Of 1,000 invalid messages in a beat, only a fixed number is read."""
     inbox = make()
     inbox.beat(5.0, [[b"rubbish"] * 1000, []])
     looked_at = LOOKED_AT_PER_BEAT
@@ -383,7 +383,7 @@ def test_a_flood_of_rubbish_costs_a_fixed_amount() -> None:
 
 
 def test_rubbish_of_others_takes_nothing_of_what_a_seat_may_send() -> None:
-    """Failure policy: the seat is not disturbed, without access rules either."""
+    """Invalid messages of others under a seat's name do not use up the seat's own limit."""
     inbox = make()
     joined = take_seat(inbox)
     other = take_seat(inbox, RIGHT)
@@ -404,14 +404,14 @@ def test_rubbish_of_others_takes_nothing_of_what_a_seat_may_send() -> None:
 
 
 def test_an_overheard_command_does_not_keep_a_seat_alive() -> None:
-    """Rules 3: a seat whose controller is gone is silent, even if others repeat its commands."""
+    """A seat whose controller is gone falls silent, even if others repeat its last command."""
     inbox = make()
     joined = take_seat(inbox)
     newest = b""
     for beat in range(1, 1001):
         inbox.links.begin(beat * 0.02, 1, beat)
         sent = []
-        if beat <= 500 and beat % 5 == 0:  # ten a second, each upon the newest frame
+        if beat <= 500 and beat % 5 == 0:  # ten a second, each names the newest frame
             newest = command(joined, 1, match=1, seen=beat - 1)
             sent = [newest]
         taken = inbox.beat(beat * 0.02, [[*sent, newest] if newest else [], []])
@@ -427,7 +427,7 @@ def test_an_overheard_command_does_not_keep_a_seat_alive() -> None:
 
 
 def test_a_controller_that_gets_no_frames_is_not_believed_for_long() -> None:
-    """Who sees nothing steers nothing: its repetitions name a frame of two seconds ago."""
+    """A controller that always names the same frame is silent three seconds after that frame."""
     inbox = make()
     joined = take_seat(inbox)
     for beat in range(1, 1001):
@@ -439,7 +439,7 @@ def test_a_controller_that_gets_no_frames_is_not_believed_for_long() -> None:
 
 
 def test_silence_is_what_the_match_does_not_know_yet() -> None:
-    """A new match, or one that a contestant has rejoined, learns which seats are silent now."""
+    """The inbox reports a seat as silent or heard whenever the match believes the opposite."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.commands(5.0, [[], []], (False, False)) == [SilentSeat(LEFT)]
@@ -454,7 +454,7 @@ def test_silence_is_what_the_match_does_not_know_yet() -> None:
 
 
 def test_ready_can_not_flood_the_log() -> None:
-    """Each is an event for everybody, and may make a model."""
+    """A seat may say ready or take it back five times at once, and then once a second."""
     inbox = make()
     joined = take_seat(inbox)
     inbox.beat(10.0, [[], []])
@@ -467,7 +467,7 @@ def test_ready_can_not_flood_the_log() -> None:
 
 
 def test_a_seat_is_silent_after_a_second_and_heard_again() -> None:
-    """Rules 3: silent for 1 s of wall time gets "silent" as an input."""
+    """Rules 3: a seat that is not heard for 1 s is silent, until its next command."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.beat(1.0, [[], []]) == []
@@ -482,7 +482,7 @@ def test_a_seat_is_silent_after_a_second_and_heard_again() -> None:
 
 
 def test_refused_commands_are_no_sign_of_life() -> None:
-    """Nobody else can keep a seat from falling silent."""
+    """A command that is refused is no sign of life."""
     inbox = make()
     joined = take_seat(inbox)
     bad = altered(command(joined, 1), "key", 5)
@@ -490,7 +490,7 @@ def test_refused_commands_are_no_sign_of_life() -> None:
 
 
 def test_a_late_beat_makes_nobody_silent() -> None:
-    """After a stall of the court the commands that waited are read before silence is judged."""
+    """After a stall of the court, waiting commands are read before a seat is called silent."""
     inbox = make()
     joined = take_seat(inbox)
     inbox.beat(0.5, [[command(joined, 1)], []])
@@ -498,12 +498,12 @@ def test_a_late_beat_makes_nobody_silent() -> None:
 
 
 def test_ready_and_leave_are_proven_by_the_session() -> None:
-    """The token travels once; after that the session's secret proves the sender."""
+    """Ready and leave need the seal of the seat's session for exactly that request."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.ready(LEFT, request(joined, "ready")) == ReadySeat(LEFT, True)
     assert inbox.ready(LEFT, request(joined, "ready", False, seq=2)) == ReadySeat(LEFT, False)
-    assert isinstance(inbox.ready(LEFT, request(joined, "leave")), Refusal)  # another key
+    assert isinstance(inbox.ready(LEFT, request(joined, "leave")), Refusal)  # sealed for leave
     assert isinstance(inbox.ready(RIGHT, request(joined, "ready", seat=RIGHT)), Refusal)
     assert isinstance(inbox.leave(LEFT, b""), Refusal)
     assert inbox.leave(LEFT, request(joined, "leave", seq=3)) == LeaveSeat(LEFT)
@@ -514,7 +514,7 @@ def test_ready_and_leave_are_proven_by_the_session() -> None:
 
 
 def test_a_request_counts_once() -> None:
-    """Whoever read a ready or a leave on the line gains nothing by sending it again."""
+    """A ready or leave that is sent a second time is refused as old."""
     inbox = make()
     joined = take_seat(inbox)
     ready, taken_back = request(joined, "ready"), request(joined, "ready", False, seq=2)
@@ -531,7 +531,7 @@ def test_a_request_counts_once() -> None:
 
 
 def test_a_restarted_court_knows_its_seats() -> None:
-    """Sequence numbers go on, an unheard seat falls silent, and the old session is unknown."""
+    """A restarted court goes on with its seats' sequence numbers; older sessions are unknown."""
     before = make()
     old = take_seat(before)
     after = make(last_seqs={"left": 41}, joined=("left",))
@@ -549,7 +549,7 @@ def test_a_restarted_court_knows_its_seats() -> None:
 
 
 def test_a_seat_that_was_silent_at_the_kill_is_silent_until_it_is_heard() -> None:
-    """The record says that it is silent, and a restart of the court is no sign of life."""
+    """A seat that was silent before a restart of the court stays silent until it is heard."""
     after = make(last_seqs={"left": 41}, joined=("left",))
     for now_s in (100.0, 100.5, 105.0):
         assert after.commands(now_s, [[], []], (True, False)) == []
@@ -568,7 +568,7 @@ ARBITRARY = st.binary(max_size=200) | st.recursive(
 
 @given(st.lists(ARBITRARY, max_size=20))
 def test_no_bytes_ever_raise(payloads: list[bytes]) -> None:
-    """Failure policy: never an exception in the loop, and nothing enters the match."""
+    """No bytes make the inbox raise an exception, and none enter the match."""
     inbox = make()
     assert inbox.beat(0.0, [payloads, payloads]) == []
     for payload in payloads:
@@ -583,7 +583,7 @@ def test_no_bytes_ever_raise(payloads: list[bytes]) -> None:
     st.binary(max_size=40),
 )
 def test_no_numbers_ever_raise(numbers: tuple[int, int, int], mac: bytes) -> None:
-    """Well-formed commands with any numbers and any seal have no effect."""
+    """A command with random numbers and a random seal has no effect."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.beat(0.0, [[encode(Command(joined.session, *numbers, 0, 0, mac))], []]) == []

@@ -1,4 +1,4 @@
-"""Round trips by the court's clock, and the delay that makes links equal."""
+"""Round trips on the court's clock, and the delay that makes links equal."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from lacoc_shared.messages import Command
 LEFT, RIGHT = 0, 1
 BEAT_S = 0.02
 SENT_S = 0.002
-"""A frame goes out so long after its beat has begun."""
+"""Time from the beginning of a beat until its frame is sent [s]."""
 TRUST = round(TRUST_S / BEAT_S)
 MOST_MS = 400
 MOST = 20
@@ -29,7 +29,7 @@ class Effect(NamedTuple):
 
 
 class Clock:
-    """Beats of 20 ms of one match, and commands whose senders saw a frame some beats ago."""
+    """A match with beats of 20 ms, and commands that name the frame of some beats ago."""
 
     def __init__(self, most_ms: int = MOST_MS) -> None:
         self.links = Links(2, most_ms)
@@ -44,7 +44,7 @@ class Clock:
         self.links.begin(self.now_s, match, self.beat)
 
     def sign(self, seat: int, lag: int) -> None:
-        """Make a sign of life that names the frame of `lag` beats ago."""
+        """Send a sign of life that names the frame of `lag` beats ago."""
         self.links.heard(seat, Command(7, 0, 1, 2, 1, self.beat - lag, b""))
 
     def key(self, seat: int, lag: int, match: int = 1) -> None:
@@ -62,7 +62,7 @@ class Clock:
         self.links.sent(self.now_s + SENT_S)
 
     def run(self, beats: int, left: int, right: int) -> None:
-        """Let beats pass with a sign of life in each."""
+        """Let beats pass; both seats send a sign of life in each."""
         for _ in range(beats):
             self.begin()
             for seat, lag in ((LEFT, left), (RIGHT, right)):
@@ -78,7 +78,7 @@ def warm(left: int, right: int, most_ms: int = MOST_MS) -> Clock:
 
 
 def test_a_round_trip_is_counted_by_the_courts_own_beats() -> None:
-    """From the frame that was seen to the beat that has the answer."""
+    """A round trip lasts from the sending of a frame to the beat that has the answer."""
     clock = warm(3, 11, most_ms=0)
     for seat, beats in ((LEFT, 3), (RIGHT, 11)):
         trip_s = beats * BEAT_S - SENT_S
@@ -87,7 +87,7 @@ def test_a_round_trip_is_counted_by_the_courts_own_beats() -> None:
 
 
 def test_a_slow_court_counts_the_time_that_passed() -> None:
-    """Milliseconds are the clock's, whatever the pace of the beats."""
+    """If beats take 50 ms, a round trip is still measured in real time."""
     links = Links(1)
     for beat in range(MEASURE_BEATS + 1):
         links.begin(beat * 0.05, 1, beat)
@@ -98,11 +98,11 @@ def test_a_slow_court_counts_the_time_that_passed() -> None:
 
 
 def test_p95_is_the_longest_but_one_of_twenty() -> None:
-    """The longest 5 % do not count, the others do."""
+    """If one round trip in twenty is longer, the p95 does not include it."""
     clock = Clock()
     for number in range(WINDOW_BEATS):
         clock.begin()
-        if clock.beat >= 30 and number % 5 == 0:  # each names a newer frame than the last
+        if clock.beat >= 30 and number % 5 == 0:  # each names a newer frame than the one before
             clock.sign(LEFT, 4 if number % 100 else 7)
         clock.end()
     trip = clock.links.trip(LEFT)
@@ -110,7 +110,7 @@ def test_p95_is_the_longest_but_one_of_twenty() -> None:
 
 
 def test_the_same_frame_again_is_no_new_round_trip() -> None:
-    """Who sends an old command again makes nobody's link longer."""
+    """A command that names an older frame again gives no new round trip."""
     clock = warm(2, 2)
     for ago in range(1, 200):
         clock.begin()
@@ -121,7 +121,7 @@ def test_the_same_frame_again_is_no_new_round_trip() -> None:
 
 
 def test_a_link_that_is_not_heard_is_not_known() -> None:
-    """Old round trips do not count for a new link."""
+    """A seat that was not heard in the last ten seconds has no known round trip."""
     clock = warm(5, 5)
     for _ in range(WINDOW_BEATS + MEASURE_BEATS):
         clock.begin()
@@ -130,7 +130,7 @@ def test_a_link_that_is_not_heard_is_not_known() -> None:
 
 
 def test_a_frame_that_was_not_there_can_not_have_been_seen() -> None:
-    """Neither of this match nor of one to come."""
+    """A command can't name a frame that was not sent yet, in this match or a later one."""
     links = Links(1)
     links.begin(1.0, 2, 10)
 
@@ -145,7 +145,7 @@ def test_a_frame_that_was_not_there_can_not_have_been_seen() -> None:
 
 
 def test_both_links_get_the_delay_of_the_slower() -> None:
-    """Keys that answer the same frame take effect in the same beat."""
+    """With equal links, keys that answer the same frame take effect in the same beat."""
     clock = warm(1, 12)
     assert clock.links.delay_ms == 240
     for _ in range(40):
@@ -158,7 +158,7 @@ def test_both_links_get_the_delay_of_the_slower() -> None:
 
 
 def test_without_the_setting_nothing_is_held() -> None:
-    """Links are measured all the same."""
+    """Without equal links no key is held, and none counts as late."""
     clock = warm(1, 12, most_ms=0)
     for _ in range(40):
         clock.begin()
@@ -170,7 +170,7 @@ def test_without_the_setting_nothing_is_held() -> None:
 
 
 def test_the_delay_is_capped_and_who_is_slower_is_late() -> None:
-    """A hopeless link does not spoil the other's match, and each late key is counted."""
+    """The common delay has a maximum, and each key over a slower link is counted as late."""
     clock = warm(1, 30)
     assert clock.links.delay_ms == MOST_MS
     clock.begin()
@@ -184,7 +184,7 @@ def test_the_delay_is_capped_and_who_is_slower_is_late() -> None:
 
 
 def test_the_delay_follows_seldom_and_falls_only_by_much() -> None:
-    """Both seats have the same delay for the same frame, also while it changes."""
+    """The common delay falls only by two beats or more, and changes at most every three seconds."""
     clock = warm(1, 12)
     clock.run(WARM + WINDOW_BEATS, 1, 11)
     assert clock.links.delay_ms == 240
@@ -198,7 +198,7 @@ def test_the_delay_follows_seldom_and_falls_only_by_much() -> None:
 
 
 def test_an_old_frame_gains_no_more_than_two_beats() -> None:
-    """A key that names an older frame is held for its seat's own p95, and counts as late."""
+    """A key that claims to answer an older frame gains at most two beats, and counts as late."""
     clock = warm(2, 12)
     for claim in (2, 5, 12, 200):
         clock.begin()
@@ -211,7 +211,7 @@ def test_an_old_frame_gains_no_more_than_two_beats() -> None:
 
 
 def test_a_link_that_was_never_measured_is_not_believed() -> None:
-    """To come back with a new link opens no way around the delay."""
+    """Without a known round trip, a key that names an old frame gains two beats at most."""
     clock = warm(1, 12)
     for _ in range(WINDOW_BEATS + MEASURE_BEATS):
         clock.begin()
@@ -224,7 +224,7 @@ def test_a_link_that_was_never_measured_is_not_believed() -> None:
 
 
 def test_a_key_of_the_match_before_is_held_as_a_new_one() -> None:
-    """Its beats are of another count."""
+    """A key that names a frame of the match before is held for the whole delay."""
     clock = warm(1, 12)
     clock.beat = -1
     clock.begin(2)
@@ -236,7 +236,7 @@ def test_a_key_of_the_match_before_is_held_as_a_new_one() -> None:
 
 
 def test_a_stall_of_the_court_delays_both_alike() -> None:
-    """The time at which a frame was sent counts, not the pace of the beats after it."""
+    """If the court stalls, keys that answer the same frame still take effect in the same beat."""
     clock = warm(1, 12)
     clock.run(20, 1, 12)
     clock.now_s += 0.1
@@ -256,7 +256,7 @@ def test_a_stall_of_the_court_delays_both_alike() -> None:
 
 
 def test_what_is_held_for_a_seat_that_was_left_is_forgotten() -> None:
-    """Nobody's keys move a robot."""
+    """When a seat becomes free, its held keys are dropped."""
     clock = warm(1, 12)
     clock.begin()
     clock.key(LEFT, 1)
@@ -272,7 +272,10 @@ LAGS = st.lists(st.tuples(st.integers(1, 30), st.integers(1, 30)), min_size=20, 
 def test_held_keys_keep_their_order_and_are_never_early_nor_held_too_long(
     left: int, right: int, lags: list[tuple[int, int]], most_ms: int
 ) -> None:
-    """Whatever the links do; and in time they meet in the same beat."""
+    """Held keys keep their order, and none is held for longer than the maximum.
+
+    Two keys that answer the same frame in time take effect in the same beat.
+    """
     clock = warm(left, right, most_ms)
     for one, other in lags:
         clock.begin()

@@ -1,4 +1,4 @@
-"""A program with only Zenoh works as docs/protocol.md says."""
+"""A program that uses only Zenoh can talk to a court as docs/protocol.md describes."""
 
 import base64
 import hashlib
@@ -22,7 +22,7 @@ JOIN = Keys("main").request("left", "join")
 
 
 def of_page(court: str, user: str = "", password: str = "", ca: str = "") -> zenoh.Config:
-    """Read the page's configuration, for this court; without a user the part with keys is out."""
+    """Return the page's configuration for this court; without a user, without the part for keys."""
     (text,) = re.findall(r"```json5\n(.*?)```", PAGE, re.DOTALL)
     for there, here in (
         ("tls/court.example.org:7447", court),
@@ -50,14 +50,14 @@ def stranger(court: Session) -> Iterator[zenoh.Session]:
 
 
 def ask(stranger: zenoh.Session, payload: bytes, timeout_s: float = 10.0) -> list[bytes | None]:
-    """Ask to join; return the error replies, None for a reply that is none."""
+    """Ask to join; return the payload of each error reply, and None for each other reply."""
     replies = stranger.get(JOIN, payload=payload, timeout=timeout_s)
     return [reply.err and reply.err.payload.to_bytes() for reply in replies]
 
 
 @pytest.mark.slow
 def test_a_stranger_enters_a_court_with_keys(tmp_path: Path) -> None:
-    """User, password and certificate where the page has them; the password as it makes it."""
+    """The page's configuration and password open a court with keys."""
     with KeyedCourt(keyed_file(tmp_path)) as court:
         credentials = court.people["left"].credentials
         assert credentials is not None
@@ -73,7 +73,7 @@ def test_a_stranger_enters_a_court_with_keys(tmp_path: Path) -> None:
 
 
 def test_what_comes_back(court: Session, stranger: zenoh.Session) -> None:
-    """A refusal is an error reply in msgpack; silence is the text Timeout; nobody is nothing."""
+    """A request gets a refusal, the text "Timeout" or no reply, as the page's table says."""
     assert ask(stranger, b"") == []
     desk = court.desk(JOIN, 4)
     assert ask(stranger, b"x", 0.3) == [b"Timeout"]
@@ -88,7 +88,7 @@ def test_what_comes_back(court: Session, stranger: zenoh.Session) -> None:
 
 
 def test_a_join_that_is_too_long_is_dropped(court: Session, stranger: zenoh.Session) -> None:
-    """A payload that is too large gets no refusal: the court never sees it."""
+    """A join above the limit never reaches the court, and gets no refusal."""
     desk = court.desk(JOIN, 4)
     assert ask(stranger, bytes(JOIN_MAX_BYTES), 0.3) == [b"Timeout"]
     assert desk.take() is not None

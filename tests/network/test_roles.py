@@ -1,4 +1,4 @@
-"""Each user of a court with keys has exactly its rights."""
+"""In a court with keys, each user has exactly the rights of its role."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -41,12 +41,12 @@ def sessions(court: KeyedCourt) -> Iterator[dict[str, Session]]:
 
 
 def passed(session: Session) -> None:
-    """Comes back when the court's network has dealt with all that the session sent before."""
+    """Wait until the court's network has handled everything that the session sent before."""
     session.ask(KEYS.sheet)
 
 
 def heard(court: KeyedCourt) -> int:
-    """Return how many messages the court accepted and refused."""
+    """Return how many messages the court has accepted or refused."""
     refused = sum(sum(reasons.values()) for reasons in court.refused.values())
     told = [item for item in court.inputs if not isinstance(item, SilentSeat)]
     return len(told) + refused + sum(court.network.dropped.values())
@@ -54,7 +54,7 @@ def heard(court: KeyedCourt) -> int:
 
 @pytest.mark.parametrize("who", EVERYBODY)
 def test_everybody_watches(court: KeyedCourt, sessions: dict[str, Session], who: str) -> None:
-    """Frames, events, sheet, scene and health reach everybody who has an invitation."""
+    """Every user receives frames, sheet, scene and health."""
     view = Spectator(sessions[who], "main")
     assert view.wait_frame(10) is not None
     assert view.scene() == court.scene
@@ -65,7 +65,7 @@ def test_everybody_watches(court: KeyedCourt, sessions: dict[str, Session], who:
 def test_a_seat_is_steered_by_its_own_user(
     court: KeyedCourt, sessions: dict[str, Session], seat: str
 ) -> None:
-    """Join, ready, keys and leave pass."""
+    """A seat's own user can join, say ready, send keys and leave."""
     controller = Controller(sessions[seat], "main", seat, TOKENS[seat], "Ants")
     controller.join()
     controller.ready()
@@ -78,7 +78,7 @@ def test_a_seat_is_steered_by_its_own_user(
 def test_a_seat_is_steered_by_nobody_else(
     court: KeyedCourt, sessions: dict[str, Session], who: str
 ) -> None:
-    """Not even with its token, its session and its secret: the transport stops it first."""
+    """Access rules stop other users at a seat, even with the seat's token and secret."""
     controller = Controller(sessions["left"], "main", "left", TOKENS["left"], "Ants")
     controller.join()
     joined = controller._joined
@@ -104,7 +104,7 @@ def test_a_seat_is_steered_by_nobody_else(
 def test_only_the_referees_user_decides(
     court: KeyedCourt, sessions: dict[str, Session], who: str
 ) -> None:
-    """Nobody else is even asked for the token; with the right user it is the token that counts."""
+    """Only the referee's user reaches the desk, and needs the referee's token there."""
     request = encode(DecisionRequest(token=WHISTLE, by="Kim", reason="", decision=Start()))
     with pytest.raises(NoReply):
         sessions[who].ask(KEYS.decision("start"), request)
@@ -121,7 +121,7 @@ def test_only_the_referees_user_decides(
 def test_nobody_speaks_for_the_court(
     court: KeyedCourt, sessions: dict[str, Session], who: str, what: str
 ) -> None:
-    """Forged frames, events, sheets, health and scenes reach nobody; nor forged answers."""
+    """No user can publish, or answer requests, in the name of the court."""
     key = f"{KEYS.root}/{what}"
     watching = sessions["spectators" if who != "spectators" else "gateway"]
     box, court_box = watching.mailbox(key, 64), watching.mailbox(KEYS.frame, 1)
@@ -129,7 +129,7 @@ def test_nobody_speaks_for_the_court(
     forger.publisher(key).put(b"forged")
     desk = forger.desk(key, 4)
     forger.announce("lacoc/forged/live/court")
-    forger.ask(KEYS.scene if what == "sheet" else KEYS.sheet)  # all before it was dealt with
+    forger.ask(KEYS.scene if what == "sheet" else KEYS.sheet)  # answered after all of the above
 
     assert decode(watching.ask(KEYS.sheet), Sheet).court == "main"
     assert decode(watching.ask(KEYS.scene), Scene) == court.scene
@@ -146,7 +146,7 @@ def test_nobody_speaks_for_the_court(
 def test_nobody_hears_what_is_said_to_the_court(
     court: KeyedCourt, sessions: dict[str, Session], who: str
 ) -> None:
-    """Commands go to the court alone, whatever somebody subscribes to."""
+    """No user receives another user's commands, with any subscription."""
     boxes = [sessions[who].mailbox(key, 64) for key in (f"{KEYS.root}/seat/**", "lacoc/**", "**")]
     sender = next(one for one in TOKENS if one != who)
     controller = Controller(sessions[sender], "main", sender, TOKENS[sender], "Ants")
@@ -158,7 +158,7 @@ def test_nobody_hears_what_is_said_to_the_court(
 
 
 def test_a_user_of_another_token_does_not_get_in(court: KeyedCourt, file: Path) -> None:
-    """Wrong token, a token of another person, a user that is not there, none at all."""
+    """A wrong token, another person's token, an unknown user and an empty user are refused."""
     left, right = court.people["left"], court.people["right"]
     thief = left.of_seat("left", right.token)
     for access in (left.of_seat("left", "some other token"), thief, left.of_seat("top", "x" * 20)):
@@ -170,7 +170,7 @@ def test_a_user_of_another_token_does_not_get_in(court: KeyedCourt, file: Path) 
 
 
 def test_a_password_says_nothing_of_others(court: KeyedCourt) -> None:
-    """Each user's is its own; the spectators' is public, and nobody else's comes from it."""
+    """Users have different passwords, even with equal tokens, and none contains its token."""
     passwords = {who: access.credentials for who, access in court.people.items()}
     assert len({one.password for one in passwords.values() if one}) == len(EVERYBODY)
     same = court.people["left"].of_seat("right", TOKENS["left"]).credentials

@@ -1,4 +1,4 @@
-"""Tokens and seals."""
+"""Tokens, hashes of tokens, seals and passwords."""
 
 import base64
 import hashlib
@@ -12,14 +12,14 @@ from lacoc_shared.contest.tokens import hash_token, new_token
 
 
 def test_tokens_are_random_and_safe_to_type() -> None:
-    """128 bits, no sign that a shell or a reader mistakes."""
+    """A token has 26 small letters and digits, and no two are the same."""
     tokens = {new_token() for _ in range(100)}
     assert len(tokens) == 100
     assert all(len(token) == 26 and token.isalnum() and token.islower() for token in tokens)
 
 
 def test_a_hash_knows_its_token_only() -> None:
-    """Salted: the same token has another hash each time, and both know it."""
+    """Two hashes of a token differ by their salt, and only that token fits both."""
     one, two = hash_token("secret"), hash_token("secret")
     assert one != two
     assert seal.verify_token("secret", one)
@@ -29,13 +29,13 @@ def test_a_hash_knows_its_token_only() -> None:
 
 
 def test_a_token_has_128_bits() -> None:
-    """Base32 in small letters, without padding: it comes back as 16 bytes."""
+    """A token is 16 bytes in base32, in small letters and without padding."""
     token = new_token()
     assert len(base64.b32decode(token.upper() + "======")) == 16
 
 
 def test_a_session_has_a_number_of_32_bits_and_a_secret_of_16_bytes() -> None:
-    """docs/protocol.md, Joined: a session's number is at least 1; its secret is a BLAKE2b key."""
+    """A session has a random number of 32 bits, at least 1, and a random secret of 16 bytes."""
     sessions = Sessions(secrets.token_bytes)
     begun = [sessions.begin(0) for _ in range(100)]
     numbers, keys = ({one[i] for one in begun} for i in (0, 1))
@@ -47,13 +47,13 @@ def test_a_session_has_a_number_of_32_bits_and_a_secret_of_16_bytes() -> None:
 
 @pytest.mark.parametrize("byte", [0, 255])
 def test_no_random_number_makes_a_session_without_a_number(byte: int) -> None:
-    """0 stands for "nobody" on the wire."""
+    """A session's number is never 0, because 0 means "no session" on the wire."""
     number, _ = Sessions(lambda count: bytes([byte]) * count).begin(0)
     assert 1 <= number < 2**32
 
 
 def test_a_kept_hash_opens_its_seat_in_later_versions_too() -> None:
-    """A contest's files and records hold hashes: "salt$hash", BLAKE2b with 32 bytes."""
+    """The form of a token's hash does not change: "salt$hash", BLAKE2b with 32 bytes."""
     salt = bytes(range(16))
     digest = hashlib.blake2b(b"secret", salt=salt, digest_size=32, person=b"lacoc token")
     assert seal.verify_token("secret", f"{salt.hex()}${digest.hexdigest()}")
@@ -64,12 +64,12 @@ def test_a_kept_hash_opens_its_seat_in_later_versions_too() -> None:
 
 @pytest.mark.parametrize("stored", ["", "$", "zz$zz", "00", "00" * 17 + "$00", "é$é"])
 def test_a_broken_hash_opens_nothing(stored: str) -> None:
-    """A damaged settings file locks a seat; it does not open it."""
+    """A damaged hash opens no seat."""
     assert not seal.verify_token("", stored)
 
 
 def test_a_command_seal_is_the_documented_one() -> None:
-    """docs/protocol.md: BLAKE2b keyed with the secret, 8 bytes, over text joined by spaces."""
+    """A command's seal is the one that docs/protocol.md describes."""
     secret = bytes(range(16))
     text = b"lacoc/main/seat/left/key 77 3 1 2 1 900"
     expected = hashlib.blake2b(text, key=secret, digest_size=8).digest()
@@ -80,14 +80,14 @@ def test_a_command_seal_is_the_documented_one() -> None:
 
 @pytest.mark.parametrize("ready", [False, True])
 def test_a_request_seal_is_the_documented_one(ready: bool) -> None:
-    """docs/protocol.md: the text of a request ends with its 1 or 0."""
+    """The seal of ready and leave is the one that docs/protocol.md describes."""
     expected = hashlib.blake2b(b"lacoc/a 77 3 %d" % ready, key=b"k" * 16, digest_size=8).digest()
     assert seal.request_mac(b"k" * 16, "lacoc/a", 77, 3, ready) == expected
 
 
 @pytest.mark.parametrize("token", ["", "a token", "\ud800 is no character"])
 def test_a_password_is_the_documented_one(token: str) -> None:
-    """docs/protocol.md: 20 bytes of BLAKE2b over user, a space and token, as hexadecimal digits."""
+    """A password is the one that docs/protocol.md describes."""
     text = b"main.left " + token.encode("utf-8", "surrogatepass")
     digest = hashlib.blake2b(text, digest_size=20, person=b"lacoc password").hexdigest()
     assert seal.password("main.left", token) == digest
@@ -95,7 +95,7 @@ def test_a_password_is_the_documented_one(token: str) -> None:
 
 
 def test_every_part_changes_the_seal() -> None:
-    """No two different commands share a seal, also where digits could run together."""
+    """If any part of a command or request changes, its seal changes."""
     base = ("lacoc/main/seat/left/key", 7, 11, 1, 2, 1, 900)
     others = [
         ("lacoc/main/seat/right/key", 7, 11, 1, 2, 1, 900),

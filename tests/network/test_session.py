@@ -1,4 +1,4 @@
-"""The door to Zenoh: addresses, errors in words, and ends that do not hang."""
+"""Network sessions: addresses, clear errors, and processes that end without a hang."""
 
 import socket
 import subprocess
@@ -32,7 +32,7 @@ def router() -> Iterator[Session]:
     ],
 )
 def test_addresses_are_completed(text: str, complete: str) -> None:
-    """People write the least that is clear."""
+    """An address may leave out the port and "tcp/"."""
     assert address.endpoint(text) == complete
 
 
@@ -40,13 +40,13 @@ def test_addresses_are_completed(text: str, complete: str) -> None:
     "text", ["", "a b", "http://x", "udp/x:1", "x:70000", "tcp/", "::1", "tcp/x:y", "x:٣"]
 )
 def test_what_is_no_address_is_said(text: str) -> None:
-    """Found, and what it should look like."""
+    """A text that is not an address is refused with a message."""
     with pytest.raises(UserError, match="is not an address"):
         address.endpoint(text)
 
 
 def test_a_court_learns_its_free_port(router: Session) -> None:
-    """Listening on port 0, then reading the locators."""
+    """A court that listens on port 0 can read which port it got."""
     (locator,) = router.locators()
     assert int(locator.rpartition(":")[2]) > 0
     with open_client([locator]):
@@ -54,19 +54,19 @@ def test_a_court_learns_its_free_port(router: Session) -> None:
 
 
 def test_a_port_in_use_is_said(router: Session) -> None:
-    """One clear message that says what to do."""
+    """A court whose port is in use gets a message that says so."""
     with pytest.raises(UserError, match=r"Port \d+ is in use"):
         open_court(router.locators())
 
 
 def test_an_address_that_is_not_ours_is_said() -> None:
-    """A documentation address that no machine has."""
+    """A court that listens at another machine's address gets a message that says so."""
     with pytest.raises(UserError, match=r"no address 192\.0\.2\.1"):
         open_court(["192.0.2.1:0"])
 
 
 def test_where_nobody_listens_is_said() -> None:
-    """The court is not running, or has another port."""
+    """A client gets the message "Nobody listens" for a closed port."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     with pytest.raises(UserError, match="Nobody listens at tcp/127"):
@@ -74,7 +74,7 @@ def test_where_nobody_listens_is_said() -> None:
 
 
 def test_another_program_at_the_address_is_said() -> None:
-    """Something answers, but not as a court does."""
+    """A client is told if another program than a court has the address."""
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         with pytest.raises(UserError, match="does not let this program in"):
@@ -82,18 +82,18 @@ def test_another_program_at_the_address_is_said() -> None:
 
 
 def test_an_unknown_name_is_said_at_once() -> None:
-    """Before any waiting: ".invalid" is never resolved."""
+    """A host name that can't be resolved is reported at once, before any attempt to connect."""
     with pytest.raises(UserError, match=r"court\.invalid.* is not known"):
         open_client(["court.invalid:7447"], timeout_s=30)
 
 
 def test_requests_are_answered_refused_or_in_vain(router: Session) -> None:
-    """No reply is an error of its own, and too late another; a refusal carries its payload."""
+    """A request that nobody gets raises NoReply, and one without an answer in time TooLate."""
     desk = router.desk("lacoc/main/sheet", 1)
     with open_client(router.locators()) as client:
 
         def is_late() -> bool:
-            """Ask; until the client has learnt of the desk, there is nobody to ask."""
+            """Ask once; return whether the desk got it, which needs some tries at first."""
             try:
                 client.ask("lacoc/main/sheet", timeout_s=0.05)
             except NoReply as error:
@@ -110,13 +110,13 @@ def test_requests_are_answered_refused_or_in_vain(router: Session) -> None:
 
 
 def test_a_request_whose_asker_is_gone_can_be_answered(router: Session) -> None:
-    """A client that ends while it waits does not disturb the court."""
+    """The court can answer a request whose client has ended."""
     desk = router.desk("lacoc/main/sheet", 1)
     arrived = []
     with open_client(router.locators()) as client:
 
         def arrives() -> bool:
-            """Ask; the first requests are lost while the client has not learnt of the desk."""
+            """Ask once; return whether the desk got it, which needs some tries at first."""
             with pytest.raises(NoReply):
                 client.ask("lacoc/main/sheet", timeout_s=0.02)
             arrived.extend(filter(None, [desk.take()]))
@@ -127,7 +127,7 @@ def test_a_request_whose_asker_is_gone_can_be_answered(router: Session) -> None:
 
 
 def test_refusals_carry_their_payload(router: Session) -> None:
-    """Typed: `Refused` with what the court said."""
+    """A refusal raises Refused with the payload of the court."""
     desk = router.desk("lacoc/main/referee/*", 4)
     code = (
         "import sys; from lacoc_shared.network.session import *\n"
@@ -148,7 +148,7 @@ def test_refusals_carry_their_payload(router: Session) -> None:
 
 
 def test_a_request_to_many_is_not_served(router: Session) -> None:
-    """A wildcard would ask every seat at once with one token."""
+    """A request with a wildcard in its key expression reaches no desk."""
     left, right = (router.desk(f"lacoc/main/seat/{seat}/join", 4) for seat in ("left", "right"))
     with open_client(router.locators()) as client, pytest.raises(NoReply):
         client.ask("lacoc/main/seat/*/join", b"me", timeout_s=0.1)
@@ -157,7 +157,7 @@ def test_a_request_to_many_is_not_served(router: Session) -> None:
 
 
 def test_too_long_a_command_does_not_arrive(router: Session) -> None:
-    """A message size limit a key: 1 KiB for commands; the link lives on."""
+    """A command above 1 KiB is dropped, and the connection stays open."""
     ring = router.ring("lacoc/main/seat/left/key", 8)
     with open_client(router.locators()) as client:
         door = client.publisher("lacoc/main/seat/left/key")
@@ -169,7 +169,7 @@ def test_too_long_a_command_does_not_arrive(router: Session) -> None:
 
 
 def test_a_mailbox_keeps_the_newest(router: Session) -> None:
-    """The newest wins, and that is the receiver's doing."""
+    """A mailbox for one message keeps the newest one."""
     frames = router.publisher("lacoc/main/frame")
     with open_client(router.locators()) as client:
         newest, every = client.mailbox("lacoc/main/frame", 1), client.mailbox("lacoc/*/frame", 99)
@@ -189,11 +189,11 @@ def test_a_mailbox_keeps_the_newest(router: Session) -> None:
 
 
 def test_presence_is_seen(router: Session) -> None:
-    """A court announces itself while it is connected; nobody else can announce one."""
+    """A client sees that the court is present, and no client can announce another court."""
     router.announce("lacoc/main/live/court")
     with open_client(router.locators()) as client, open_client(router.locators()) as forger:
         forger.announce("lacoc/forged/live/court")
-        with pytest.raises(NoReply):  # comes back when all before it has been dealt with
+        with pytest.raises(NoReply):  # returns when the announcement above was handled
             forger.ask("lacoc/main/sheet")
         assert client.present("lacoc/*/live/court") == ("lacoc/main/live/court",)
 
@@ -210,7 +210,7 @@ def _python(code: str, *arguments: str) -> "subprocess.Popen[str]":
 @pytest.mark.slow
 @pytest.mark.parametrize("end", ["raise SystemError('oops')", "pass", "sys.exit(3)"])
 def test_a_program_that_forgets_to_close_still_ends(router: Session, end: str) -> None:
-    """No process hangs at exit, however it ends (docs/facts.md 6)."""
+    """A process that does not close its sessions still ends, with its own exit code."""
     code = (
         "import sys; from lacoc_shared.network.session import *\n"
         "client = open_client([sys.argv[1]]); client.mailbox('lacoc/main/frame', 1)\n"

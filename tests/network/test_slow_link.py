@@ -1,4 +1,4 @@
-"""The bad network that other tests stand on does what it says."""
+"""The bad link that other tests use delays, loses, stalls and cuts as it should."""
 
 import socket
 import threading
@@ -11,7 +11,7 @@ from slow_link import SlowLink
 
 @pytest.fixture
 def echo() -> Iterator[str]:
-    """The address of a server that sends everything back."""
+    """Give the address of a server that sends back everything it receives."""
     with socket.create_server(("127.0.0.1", 0)) as server:
 
         def answer() -> None:
@@ -52,7 +52,7 @@ def round_trip_s(client: socket.socket, packet: bytes = b"x") -> float:
 
 
 def test_both_ways_are_delayed_and_order_is_kept(echo: str) -> None:
-    """A round trip takes twice the delay, at least, and jitter turns nothing round."""
+    """A round trip takes at least twice the delay, and jitter does not change the order."""
     with SlowLink(echo, delay_s=0.05) as link, connect(link) as client:
         assert round_trip_s(client) >= 0.1
         link.delay_s = link.jitter_s = 0.02
@@ -67,13 +67,13 @@ def test_both_ways_are_delayed_and_order_is_kept(echo: str) -> None:
 
 
 def test_a_lost_packet_comes_late(echo: str) -> None:
-    """A lost packet becomes a delay, as with TCP."""
+    """A lost packet arrives late, as with TCP."""
     with SlowLink(echo, loss=1.0) as link, connect(link) as client:
         assert round_trip_s(client) >= 2 * SlowLink.RESEND_S
 
 
 def test_a_stalled_link_keeps_what_was_sent(echo: str) -> None:
-    """A paused link delivers nothing, closes nothing, and loses nothing."""
+    """A stalled link delivers nothing and closes nothing; later it delivers what was sent."""
     with SlowLink(echo) as link, connect(link) as client:
         assert round_trip_s(client) < 5
         link.stall()
@@ -87,7 +87,7 @@ def test_a_stalled_link_keeps_what_was_sent(echo: str) -> None:
 
 
 def test_a_cut_link_breaks_and_is_mended(echo: str) -> None:
-    """Connections end at once and new ones are refused, until it is mended."""
+    """A cut link closes its connections and refuses new ones, until it is mended."""
     with SlowLink(echo) as link:
         with connect(link) as client:
             round_trip_s(client)

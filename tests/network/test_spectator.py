@@ -1,4 +1,4 @@
-"""Watching a real court over a real network, and the referee's hand."""
+"""A spectator and a referee at a court for tests, over a real network."""
 
 import threading
 from contextlib import ExitStack
@@ -23,7 +23,7 @@ def seen(spectator: Spectator, numbers: list[int]) -> None:
 
 
 def test_a_late_comer_is_complete_at_once(court: CourtStub, session: Session) -> None:
-    """The sheet can be fetched at any time; all events of the match come too."""
+    """A spectator that connects late gets the sheet, the scene and all events of the match."""
     for number in range(1, 301):
         court.network.publish_event(make_event(number))
     spectator = Spectator(session, "main")
@@ -38,7 +38,7 @@ def test_a_late_comer_is_complete_at_once(court: CourtStub, session: Session) ->
 
 @pytest.mark.slow
 def test_who_comes_while_events_are_sent_gets_them_all(court: CourtStub) -> None:
-    """A subscription that begins in a burst has its end alone: the rest is asked for."""
+    """Spectators that connect while events are being published get each event once."""
 
     def send() -> None:
         for number in range(1, 301):
@@ -56,7 +56,7 @@ def test_who_comes_while_events_are_sent_gets_them_all(court: CourtStub) -> None
 
 
 def test_the_log_is_that_of_one_match(court: CourtStub, session: Session) -> None:
-    """The next match begins a new log, in which numbers count from 1 again."""
+    """When the next match begins, the list of events begins again."""
     spectator = Spectator(session, "main")
     for event in (make_event(1), make_event(2), make_event(1, match=2)):
         court.network.publish_event(event)
@@ -66,7 +66,7 @@ def test_the_log_is_that_of_one_match(court: CourtStub, session: Session) -> Non
 
 @pytest.mark.slow
 def test_what_a_restarted_court_sends_again_is_not_new() -> None:
-    """Event history dies with a court: after a restart it is published again from the record."""
+    """Events that a restarted court publishes again are not taken as new."""
     with CourtStub() as first:
         address = first.address
         session = open_client([address])
@@ -87,7 +87,7 @@ def test_what_a_restarted_court_sends_again_is_not_new() -> None:
 
 
 def test_a_changed_scene_is_followed(court: CourtStub, session: Session) -> None:
-    """Another scene needs another picture: the sheet is always that of the frame."""
+    """When the scene changes, the spectator has the sheet and the scene of its frame."""
     spectator = Spectator(session, "main")
     for name in ("one", "two", "three"):
         scene = make_scene(name)
@@ -101,7 +101,7 @@ def test_a_changed_scene_is_followed(court: CourtStub, session: Session) -> None
 def test_a_court_whose_frames_do_not_fit_its_sheet_is_told_of(
     court: CourtStub, session: Session
 ) -> None:
-    """Scene hash is checked; a mismatch that stays is a clear sentence."""
+    """If frames keep naming another scene than the sheet does, an error says so."""
     spectator = Spectator(session, "main")
     court.scene = make_scene("a scene that no sheet describes")
     with pytest.raises(UserError, match="another scene than its sheet"):
@@ -112,7 +112,7 @@ def test_a_court_whose_frames_do_not_fit_its_sheet_is_told_of(
 
 
 def test_another_version_of_the_protocol_is_a_sentence(court: CourtStub, session: Session) -> None:
-    """Protocol version is checked by the sheet, also where the sheet itself looks different."""
+    """A court with another version of the protocol is refused with both version numbers."""
     court.in_a_beat(lambda: court.show(court.scene, protocol=99))
     until(lambda: decode(session.ask(KEYS.sheet), Sheet).protocol == 99)
     with pytest.raises(UserError, match=r"version 99 .* this program version 2"):
@@ -120,7 +120,7 @@ def test_another_version_of_the_protocol_is_a_sentence(court: CourtStub, session
 
 
 def test_events_that_nobody_takes_are_not_kept_for_ever(court: CourtStub, session: Session) -> None:
-    """A bot that plays for days looks at none: those of this match and the last are there."""
+    """If no events are taken, only those of the current match and the last one are kept."""
     spectator = Spectator(session, "main")
     for match in range(1, 6):
         for number in (1, 2, 3):
@@ -131,7 +131,7 @@ def test_events_that_nobody_takes_are_not_kept_for_ever(court: CourtStub, sessio
 
 
 def test_a_message_that_goes_astray_ends_nothing(court: CourtStub, session: Session) -> None:
-    """It is left out; the sheet says that the court speaks the same version still."""
+    """A frame that can't be decoded is skipped, if the sheet has the same protocol version."""
     spectator = Spectator(session, "main")
     for _ in range(10):
         court.silent = True
@@ -143,7 +143,7 @@ def test_a_message_that_goes_astray_ends_nothing(court: CourtStub, session: Sess
 
 
 def test_a_court_that_makes_no_sense_is_a_sentence(court: CourtStub, session: Session) -> None:
-    """Its sheet says the same version, and yet no frame is understood."""
+    """If no frame at all can be decoded, an error says so."""
     spectator = Spectator(session, "main")
     court.silent = True
 
@@ -156,7 +156,7 @@ def test_a_court_that_makes_no_sense_is_a_sentence(court: CourtStub, session: Se
 
 
 def test_a_court_that_comes_back_with_another_version(court: CourtStub, session: Session) -> None:
-    """Clients can't decode its messages; its sheet tells them that its version differs."""
+    """If frames can't be decoded and the sheet has another version, the error names both."""
     spectator = Spectator(session, "main")
     assert spectator.wait_frame(1.0)
     court.in_a_beat(lambda: court.show(court.scene, protocol=99))
@@ -167,13 +167,13 @@ def test_a_court_that_comes_back_with_another_version(court: CourtStub, session:
 
 
 def test_a_sheet_that_is_not_understood_is_a_sentence() -> None:
-    """A court of another make does not end in a traceback."""
+    """A sheet that can't be decoded raises a UserError."""
     with pytest.raises(UserError, match="can't be read"):
         understand(encode({"protocol": 1}), Sheet)
 
 
 def test_a_request_where_no_court_is(court: CourtStub, session: Session) -> None:
-    """A request that gets no reply is an error, with words."""
+    """A request to an unknown court gets no reply, and a spectator's error lists the courts."""
     with pytest.raises(NoReply):
         session.ask("lacoc/other/sheet")
     with pytest.raises(UserError, match=r'no court "other" .* There is main'):
@@ -183,7 +183,7 @@ def test_a_request_where_no_court_is(court: CourtStub, session: Session) -> None
 def test_nobody_but_the_court_sends_frames(
     court: CourtStub, session: Session, other_session: Session
 ) -> None:
-    """Frames and events are not signed: the access rules protect them."""
+    """A client can't publish frames, read commands, or answer requests to the referee's desk."""
     spectator = Spectator(session, "main")
     spied = session.mailbox("lacoc/main/seat/**", 10)
     for key in (KEYS.frame, KEYS.event, KEYS.sheet, KEYS.health):
@@ -192,21 +192,21 @@ def test_nobody_but_the_court_sends_frames(
     other_session.publisher(KEYS.command("left")).put(b"rubbish")
     until(lambda: court.refused["left"].get("bad-bytes"))
     for _ in range(5):
-        assert spectator.wait_frame(1.0)  # a forged one would not be understood
+        assert spectator.wait_frame(1.0)  # a forged frame could not be decoded
     assert spied.take() is None
     RefereeClient(session, "main", WHISTLE).decide(d.Start(), "", "Kubota")
     assert desk.take() is None
 
 
 def test_the_referee_decides(court: CourtStub, session: Session) -> None:
-    """Rules 4: each decision has a referee, a reason and a reply."""
+    """A referee's decision enters the match with name and reason, and gets a reply."""
     reply = RefereeClient(session, "main", WHISTLE).decide(d.Start(), "all ready", "Kubota")
     assert reply.said == say("decision.start", seconds=3)
     assert court.inputs == [Decide("Kubota", "all ready", d.Start())]
 
 
 def test_a_wrong_referee_token_is_refused(court: CourtStub, session: Session) -> None:
-    """One sentence, counted where the referee sees it, and nothing enters the match."""
+    """A decision with a wrong token is refused and counted, and does not enter the match."""
     with pytest.raises(UserError, match="not a referee's token"):
         RefereeClient(session, "main", "guess").decide(d.Start(), "", "K")
     assert court.network.dropped == {"wrong-token": 1}
@@ -214,7 +214,7 @@ def test_a_wrong_referee_token_is_refused(court: CourtStub, session: Session) ->
 
 
 def test_health_reaches_everybody(court: CourtStub, session: Session) -> None:
-    """Twice a second; each seat's link and refusals."""
+    """A spectator receives the health of every seat."""
     spectator = Spectator(session, "main")
     until(lambda: spectator.wait_frame(1.0) and spectator.health)
     assert spectator.health is not None
@@ -222,7 +222,7 @@ def test_health_reaches_everybody(court: CourtStub, session: Session) -> None:
 
 
 def test_a_silent_court_is_noticed(court: CourtStub, session: Session) -> None:
-    """No frame means no court: every phase has frames."""
+    """A spectator knows for how long the court has sent no frame."""
     spectator = Spectator(session, "main")
     assert spectator.wait_frame(1.0)
     court.silent = True

@@ -1,4 +1,4 @@
-"""Why a court with keys was not entered, each case in words that say what to do."""
+"""Why a court with keys can't be entered: each case has a message that says what to do."""
 
 import os
 import re
@@ -36,14 +36,14 @@ def keyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[KeyedCourt]:
 
 
 def refused(access: Access) -> str:
-    """Why a way to a court is closed."""
+    """Return the message with which a connection fails."""
     with pytest.raises(UserError) as caught:
         open_client([access.connect], SHORT_S, access.credentials)
     return str(caught.value)
 
 
 def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
-    """By number and by name: the certificate is made for both."""
+    """An invitation opens the court at its IP address and at its name; the certificate has both."""
     port = keyed.address.rpartition(":")[2]
     for host in ("127.0.0.1", "localhost"):
         access = msgspec.structs.replace(keyed.people["left"], connect=f"tls/{host}:{port}")
@@ -52,7 +52,7 @@ def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
 
 
 def test_a_court_that_comes_back_is_entered_again(tmp_path: Path) -> None:
-    """A connection with keys heals as one without does, in both directions."""
+    """After a restart of a court with keys, a controller takes its seat back by itself."""
     file = keyed_file(tmp_path)
     with ExitStack() as stack:
         with KeyedCourt(file) as court:
@@ -67,7 +67,7 @@ def test_a_court_that_comes_back_is_entered_again(tmp_path: Path) -> None:
 
 
 def test_keys_of_another_contest(keyed: KeyedCourt, tmp_path: Path) -> None:
-    """A court that the invitation's authority does not vouch for may be a false one."""
+    """An invitation of another contest gets a warning that the court may be false."""
     other = contests.load(keyed_file(tmp_path))
     access = entrances.everybody(other, "main")["left"]
     why = refused(msgspec.structs.replace(access, connect=keyed.address))
@@ -75,7 +75,7 @@ def test_keys_of_another_contest(keyed: KeyedCourt, tmp_path: Path) -> None:
 
 
 def test_a_name_that_is_not_in_the_certificate(keyed: KeyedCourt) -> None:
-    """Says the name and how an organiser adds it."""
+    """If a name is not in the certificate, the message says how an organiser adds it."""
     with _tunnel("127.0.0.2", int(keyed.address.rpartition(":")[2])) as port:
         there = msgspec.structs.replace(keyed.people["left"], connect=f"tls/127.0.0.2:{port}")
         assert "not made for the name 127.0.0.2" in refused(there)
@@ -90,7 +90,7 @@ def test_a_name_that_is_not_in_the_certificate(keyed: KeyedCourt) -> None:
     ],
 )
 def test_a_certificate_out_of_its_time(tmp_path: Path, made: timedelta, said: str) -> None:
-    """Expired or not yet valid, which may also be the clock of either machine."""
+    """A certificate that is expired or not valid yet gets a message about renewal or clocks."""
     file = keyed_file(tmp_path)
     folder = contests.load(file).keys
     assert folder is not None
@@ -104,7 +104,7 @@ def test_a_certificate_out_of_its_time(tmp_path: Path, made: timedelta, said: st
 
 
 def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
-    """TLS to a plain port, plain to a TLS port, and what can be seen before any connection."""
+    """If only one of court and client uses keys, the message says which one."""
     left = keyed.people["left"]
     with CourtStub() as plain:
         there = plain.address.replace("tcp/", "tls/")
@@ -116,7 +116,7 @@ def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
 
 
 def test_a_damaged_certificate_and_nobody_there(keyed: KeyedCourt) -> None:
-    """The rest of what can be wrong with an invitation."""
+    """A damaged certificate and a closed port each have their own message."""
     left = keyed.people["left"]
     damaged = left.ca.replace("BEGIN CERT", "BEGIN SERT")
     assert "damaged" in refused(msgspec.structs.replace(left, ca=damaged))
@@ -126,7 +126,7 @@ def test_a_damaged_certificate_and_nobody_there(keyed: KeyedCourt) -> None:
 
 
 def test_a_court_needs_keys_for_tls_and_tls_for_keys(keyed: KeyedCourt, tmp_path: Path) -> None:
-    """A court never opens with less protection than somebody meant it to have."""
+    """A court does not open with TLS and no keys, and a contest with keys allows only TLS."""
     with pytest.raises(UserError, match="lacoc contest keys"):
         open_court(["tls/127.0.0.1:0"])
     contest = keyed_file(tmp_path)
@@ -138,7 +138,7 @@ def test_a_court_needs_keys_for_tls_and_tls_for_keys(keyed: KeyedCourt, tmp_path
 def test_passwords_are_on_disk_only_while_a_court_opens(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In a folder and file of their owner's alone; gone when the court is open."""
+    """The file of passwords has mode 0600, and is deleted when the court is open."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "t"))
     (tmp_path / "t").mkdir()
     seen: list[tuple[str, int]] = []
@@ -157,7 +157,7 @@ def test_passwords_are_on_disk_only_while_a_court_opens(
 
 
 def test_no_password_in_zenohs_own_log(keyed: KeyedCourt, tmp_path: Path) -> None:
-    """Also where somebody lets it say everything."""
+    """Zenoh's log has no password and no token, even at level "trace"."""
     left = keyed.people["left"]
     invitation = tmp_path / "left.toml"
     invitation.write_text(invitation_text(left, "x"))
@@ -184,7 +184,7 @@ def test_no_password_in_zenohs_own_log(keyed: KeyedCourt, tmp_path: Path) -> Non
 
 @contextmanager
 def _tunnel(host: str, to_port: int) -> Iterator[int]:
-    """Another address of the same court."""
+    """Give a port of another address that forwards connections to the same court."""
     with ExitStack() as stack:
         door = stack.enter_context(socket.create_server((host, 0)))
         open_sockets: list[socket.socket] = []

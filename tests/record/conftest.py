@@ -1,4 +1,4 @@
-"""A small match to record: two robots of four legs on a board of three markers."""
+"""A small match to record: two robots with four legs each, on a board of three markers."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -33,7 +33,7 @@ _ZERO = (0.0, 0.0, 0.0)
 
 @pytest.fixture(scope="session")
 def header() -> Callable[..., Header]:
-    """Make headers, of the first segment if nothing else is said."""
+    """Give a function that makes a record's header, by default that of the first segment."""
 
     def make(segment: int = 0, first_beat: int = 0, match_id: str = "m") -> Header:
         return Header(
@@ -53,7 +53,7 @@ def header() -> Callable[..., Header]:
 
 @pytest.fixture(scope="session")
 def sheet() -> Sheet:
-    """Two teams, each with a robot of four legs."""
+    """Give the sheet of two teams, each with a robot of four legs."""
     seats = tuple(
         SheetSeat(id=id, team=team, colour=colour, pattern="plain", legs=("RF", "RB", "LB", "LF"))
         for id, team, colour in (("left", "Ants", "#0000ff"), ("right", "Bees, Inc", "#ff8000"))
@@ -79,7 +79,7 @@ def sheet() -> Sheet:
 
 @pytest.fixture(scope="session")
 def scene() -> Scene:
-    """A floor, a disc in two states for each marker, two robots of a body and a leg."""
+    """Give a scene: a floor, a disc in two states for each marker, and two robots with one leg."""
     bodies = [SceneBody(name="world", parent=-1, pos=_ZERO, quat=_ONE)]
     geoms = [_geom("plane", (0.0, 0.0, 0.1))]
     for marker in range(3):
@@ -104,7 +104,7 @@ def scene() -> Scene:
 
 @pytest.fixture(scope="session")
 def frame() -> Callable[..., Frame]:
-    """Make frames, of PLAYING if nothing else is said."""
+    """Give a function that makes frames, by default in PLAYING."""
     return make_frame
 
 
@@ -137,7 +137,7 @@ def make_frame(
 
 @pytest.fixture(scope="session")
 def result() -> Result:
-    """The left team has won."""
+    """Give a result: the left team has won."""
     return Result(
         match_id="m",
         court="main",
@@ -159,7 +159,7 @@ def result() -> Result:
 def write_match(
     header: Callable[..., Header], sheet: Sheet, scene: Scene, result: Result
 ) -> Callable[..., Path]:
-    """Write a match of 40 beats into a folder; gives its segment's path."""
+    """Give a function that writes a match of 40 beats and returns its segment's path."""
 
     def write(folder: Path, close: bool = True) -> Path:
         writer = RecordWriter(folder, header())

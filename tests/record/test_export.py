@@ -1,4 +1,4 @@
-"""The programs that an export is made for can read it."""
+"""What an export contains, and that other programs can read it."""
 
 import csv
 import io
@@ -46,7 +46,7 @@ def _table(text: str) -> list[dict[str, str]]:
 
 
 def test_pos_data_is_the_table_of_rules_2(frame: MakeFrame) -> None:
-    """Rules 2: header row, tab-separated, 6 decimals, degrees, time from the first row."""
+    """Pos-data has a header row, tabs, six decimals, degrees, and the time since the first row."""
     half = math.radians(90) / 2
     root = (0.25, -0.5, 0.0625, math.cos(half), 0.0, 0.0, math.sin(half))
     data = PosData(1, ROBOTS)
@@ -67,7 +67,7 @@ def test_pos_data_is_the_table_of_rules_2(frame: MakeFrame) -> None:
 
 
 def test_pos_data_has_a_row_for_each_tick_of_physics(frame: MakeFrame) -> None:
-    """Rules 2 and 4: rows in READY and PLAYING and for the tick that ends the match, no others."""
+    """Rules 2: Pos-data has a row for each tick of physics, and none for other beats."""
     data = PosData(0, ROBOTS)
     beats = [
         (0, Phase.LOBBY, 0),
@@ -77,8 +77,8 @@ def test_pos_data_has_a_row_for_each_tick_of_physics(frame: MakeFrame) -> None:
         (50, Phase.COUNTDOWN, 0),
         (153, Phase.PLAYING, 1),
         (154, Phase.PLAYING, 2),
-        (157, Phase.PLAYING, 5),  # two frames were lost on the way
-        (156, Phase.PLAYING, 4),  # and one of them comes late
+        (157, Phase.PLAYING, 5),  # the frames of beats 155 and 156 have not arrived
+        (156, Phase.PLAYING, 4),  # the frame of beat 156 comes late: it gives no row
         (158, Phase.HALTED, 5),
         (200, Phase.COUNTDOWN, 5),
         (350, Phase.PLAYING, 6),
@@ -98,7 +98,7 @@ def test_pos_data_has_a_row_for_each_tick_of_physics(frame: MakeFrame) -> None:
 
 
 def test_a_match_that_a_referee_ends_has_no_last_tick(frame: MakeFrame) -> None:
-    """Without a step of the clock FINISHED was a decision, and nothing moved in that beat."""
+    """If a decision ends the match, no physics ran in that beat, so Pos-data has no row for it."""
     data = PosData(0, ROBOTS)
     data.add(frame(10, Phase.PLAYING, 10))
     data.add(frame(11, Phase.FINISHED, 10))
@@ -106,7 +106,7 @@ def test_a_match_that_a_referee_ends_has_no_last_tick(frame: MakeFrame) -> None:
 
 
 def test_pos_data_of_a_record(record: Record) -> None:
-    """Each recorded tick of a seat; an unknown seat is refused with those there are."""
+    """Pos-data of a record has a row for each tick, and an unknown seat is refused."""
     rows = _table(export.pos_data(record, "left").decode())
     assert [float(row["x_m"]) for row in rows] == pytest.approx(
         [0.01 * beat for beat in range(40)], abs=1e-6
@@ -118,7 +118,7 @@ def test_pos_data_of_a_record(record: Record) -> None:
 def test_pos_data_starts_anew_with_another_robot(
     tmp_path: Path, header: MakeHeader, sheet: Sheet, frame: MakeFrame
 ) -> None:
-    """A team that comes back to the lobby with six legs has no rows of its four."""
+    """If a team comes back with another robot, Pos-data has rows of the new robot only."""
     six = msgspec.structs.replace(
         sheet,
         seats=(msgspec.structs.replace(sheet.seats[0], legs=tuple("abcdef")), sheet.seats[1]),
@@ -138,7 +138,7 @@ def test_pos_data_starts_anew_with_another_robot(
 
 
 def test_events_as_csv(record: Record) -> None:
-    """Quotes and commas survive; seat and team stand by name."""
+    """In the CSV file of events, quotes and commas are kept, and seat and team are names."""
     rows = list(csv.DictReader(io.StringIO(export.events_csv(record).decode())))
     assert rows[1] == {
         "number": "13",
@@ -154,7 +154,7 @@ def test_events_as_csv(record: Record) -> None:
 
 
 def test_the_result_as_json(record: Record, result: Result) -> None:
-    """The same struct comes back; a match without a result says so."""
+    """The result as JSON can be read as a Result; a match without a result is refused."""
     assert msgspec.json.decode(export.result_json(record), type=Result) == result
     record.result = None
     with pytest.raises(UserError, match="has no result: it was never finished"):
@@ -162,7 +162,7 @@ def test_the_result_as_json(record: Record, result: Result) -> None:
 
 
 def _foxglove(record: Record) -> dict[str, list[tuple[int, Any]]]:
-    """The messages of each topic, decoded by their schemas in the file alone."""
+    """Return the messages of each topic, decoded with the schemas in the file alone."""
     reader = make_reader(
         io.BytesIO(foxglove(record)), validate_crcs=True, decoder_factories=[DecoderFactory()]
     )
@@ -178,7 +178,7 @@ def _foxglove(record: Record) -> dict[str, list[tuple[int, Any]]]:
 
 
 def test_foxglove_draws_the_match(record: Record) -> None:
-    """Official schema names, 25 pictures a second, everything in the frame of its body."""
+    """A Foxglove file has official schemas and a pose of each robot's bodies every 40 ms."""
     found = _foxglove(record)
     assert set(found) == {
         "/tf foxglove.FrameTransforms",
@@ -200,7 +200,7 @@ def test_foxglove_draws_the_match(record: Record) -> None:
 
 
 def test_foxglove_has_every_shape(record: Record) -> None:
-    """Robots in their team's colour on their bodies; what stands still, in the world."""
+    """A Foxglove file has each shape of the scene, and a robot's shapes in its team's colour."""
     [(_, update)] = _foxglove(record)["/scene foxglove.SceneUpdate"]
     entities = {entity["id"]: entity for entity in update["entities"]}
     assert set(entities) == {"world", "left/body", "left/leg", "right/body", "right/leg"}
@@ -216,7 +216,7 @@ def test_foxglove_has_every_shape(record: Record) -> None:
 
 
 def test_foxglove_shows_the_board_as_it_changes(record: Record) -> None:
-    """Each change gives the whole board, so that a viewer may jump to any time."""
+    """Each change of the board writes the whole board, so that a viewer can jump to any time."""
     boards = _foxglove(record)["/board foxglove.SceneUpdate"]
     assert [(time - boards[0][0]) // 20_000_000 for time, _ in boards] == [0, 20]
     for _, update in boards:
@@ -229,7 +229,7 @@ def test_foxglove_shows_the_board_as_it_changes(record: Record) -> None:
 
 
 def test_a_marker_is_drawn_in_its_state(record: Record, scene: Scene) -> None:
-    """The colours of both states differ, and the board shows the current one."""
+    """The board is drawn with the shapes of each marker's current state."""
     geoms = tuple(
         msgspec.structs.replace(geom, rgba=(0.1 * geom.state, 0, 0, 1.0))
         if geom.marker >= 0
@@ -246,7 +246,7 @@ def test_a_marker_is_drawn_in_its_state(record: Record, scene: Scene) -> None:
 
 
 def test_info(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay info`: words for a person, one line of JSON for a program."""
+    """`lacoc replay info` prints text for a person, and with --json one line for a program."""
     path = write_match(tmp_path)
     words = CliRunner().invoke(app, ["info", str(path)])
     assert words.exit_code == 0
@@ -261,7 +261,7 @@ def test_info(tmp_path: Path, write_match: WriteMatch) -> None:
 
 
 def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
-    """The export says where the record stops and that there is no result."""
+    """`lacoc replay info` says where a cut record stops and that it has no result."""
     path = write_match(tmp_path)
     path.write_bytes(path.read_bytes()[:-2500])
     words = CliRunner().invoke(app, ["info", str(path)])
@@ -272,7 +272,7 @@ def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
 
 
 def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay export` without options; an older file is kept with a number (rules 2)."""
+    """`lacoc replay export` without options writes all outputs; older files get a number."""
     path, out = write_match(tmp_path), tmp_path / "out"
     for _ in range(2):
         done = CliRunner().invoke(app, ["export", str(path), "--out", str(out)])
@@ -290,7 +290,7 @@ def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> 
 
 
 def test_export_writes_what_is_asked(tmp_path: Path, write_match: WriteMatch) -> None:
-    """Only the chosen outputs are written; if one is impossible, none is."""
+    """`lacoc replay export` writes only the chosen outputs, or none if one is impossible."""
     path, out = write_match(tmp_path), tmp_path / "out"
     args = ["export", str(path), "--out", str(out), "--pos-data", "left"]
     done = CliRunner().invoke(app, args)
@@ -303,7 +303,7 @@ def test_export_writes_what_is_asked(tmp_path: Path, write_match: WriteMatch) ->
 def test_export_of_a_match_that_never_began(
     tmp_path: Path, header: MakeHeader, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The available outputs are written; for the others the command says why they are missing."""
+    """For a match that never began, export writes what it can, and says why the rest is missing."""
     RecordWriter(tmp_path, header()).close()
     path, out = tmp_path / "m.000.live.mcap", tmp_path / "out"
     done = CliRunner().invoke(app, ["export", str(path), "--out", str(out)])
@@ -314,7 +314,7 @@ def test_export_of_a_match_that_never_began(
 
 
 def test_the_command_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`lacoc replay` is an entry point; for a wrong file it prints one line and exits with 2."""
+    """`lacoc replay` is an entry point; for a missing file it prints an error and exits with 2."""
     assert cli.main(["replay", "info", str(tmp_path / "none.mcap")]) == 2
     assert "There is no record" in capsys.readouterr().err
 
@@ -322,7 +322,7 @@ def test_the_command_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 def test_names_in_a_hostile_record_lead_nowhere(
     tmp_path: Path, header: MakeHeader, frame: MakeFrame, sheet: Sheet, scene: Scene
 ) -> None:
-    """A record decides the names of match and seats, but not where files are written."""
+    """An export writes only into its folder, whatever names a record has for match and seats."""
     writer = RecordWriter(tmp_path, header(match_id="aaaaaaaaaa"))
     writer.sheet(0, sheet)
     writer.scene(0, scene)
@@ -341,7 +341,7 @@ def test_names_in_a_hostile_record_lead_nowhere(
 def test_a_record_that_contradicts_itself(
     tmp_path: Path, header: MakeHeader, frame: MakeFrame, sheet: Sheet
 ) -> None:
-    """A sentence, where frames do not fit the sheet; never a traceback."""
+    """If frames do not fit the sheet, an export is refused with a message."""
     writer = RecordWriter(tmp_path, header())
     writer.sheet(0, sheet)
     short = msgspec.structs.replace(frame(1), poses=b"abc")

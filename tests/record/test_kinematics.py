@@ -1,4 +1,4 @@
-"""Forward kinematics against MuJoCo's, and the angles of Pos-data.txt."""
+"""Forward kinematics, compared with MuJoCo's, and the angles of Pos-data."""
 
 import math
 
@@ -73,7 +73,7 @@ def scene(model: mujoco.MjModel) -> Scene:
 
 
 def test_bodies_are_where_mujoco_has_them(model: mujoco.MjModel, scene: Scene) -> None:
-    """Within a micrometre, from the float32 numbers of a frame, one at a time or all at once."""
+    """Bodies are within 1e-6 m of MuJoCo's places, for one frame at a time and for many at once."""
     random = np.random.default_rng(7)
     kinematics = ForwardKinematics(scene, JOINTS)
     data = mujoco.MjData(model)
@@ -104,9 +104,9 @@ def test_bodies_are_where_mujoco_has_them(model: mujoco.MjModel, scene: Scene) -
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_frames_of_a_court_show_its_robots(arena: str) -> None:
-    """docs/architecture.md: with scene and frames alone every body is where it is.
+    """A court's scene and frames give the place of every body, for both games.
 
-    Robots of different joint counts, so that a seat's angles are looked for in their place.
+    The two robots have different numbers of joints, so each seat's angles have their own offset.
     """
     names = ("quadruped", "hexapod")
     entries = [weigh_in(SentFile(*find_robot(name)), *sample_gait_files(name)) for name in names]
@@ -128,7 +128,7 @@ def test_frames_of_a_court_show_its_robots(arena: str) -> None:
 
 
 def test_which_bodies_move(model: mujoco.MjModel, scene: Scene) -> None:
-    """Those of the robots; the others stand still whatever a frame says."""
+    """Only the robots' bodies move; all others keep their place."""
     kinematics = ForwardKinematics(scene, JOINTS)
     assert [scene.bodies[index].name for index in kinematics.moving] == [
         f"{seat}/{part}" for seat in ("left", "right") for part in ("body", "a", "b", "c", "d")
@@ -139,14 +139,14 @@ def test_which_bodies_move(model: mujoco.MjModel, scene: Scene) -> None:
 
 
 def test_a_scene_without_robots_needs_no_poses(scene: Scene) -> None:
-    """Before READY frames have none."""
+    """A scene without robots is computed from empty poses, as frames have them before READY."""
     still = Scene(bodies=scene.bodies[:2], geoms=())
     pos_w, _ = ForwardKinematics(still, ()).poses(b"")
     assert pos_w.tolist() == [[0, 0, 0], [1, 2, 0]]
 
 
 def test_poses_of_other_robots_are_refused() -> None:
-    """A count of numbers that does not fit says what was found and expected."""
+    """Poses with a wrong number of floats are refused; the message has both numbers."""
     left, right = split_poses(np.arange(20, dtype="<f4").tobytes(), (2, 4))
     assert left.tolist() == list(range(9))
     assert right.tolist() == list(range(9, 20))
@@ -180,9 +180,9 @@ def test_euler_angles(
     roll_pitch_yaw: tuple[float, float, float],
     forward: tuple[float, float, float] | None,
 ) -> None:
-    """Rules 2: Euler ZYX, yaw 0 where the body's +y points along the world's +y."""
+    """Angles are Euler ZYX, and yaw is 0 where the robot faces the field's +y (rules 2)."""
     quat = np.array([1.0, 0, 0, 0])
-    for axis, degrees in turns:  # roll first, each about an axis of the world
+    for axis, degrees in turns:  # roll first; each rotation is about an axis of the world
         quat = multiply(_about(axis, degrees), quat)
     assert np.degrees(euler_zyx(quat)) == pytest.approx(roll_pitch_yaw, abs=1e-6)
     if forward is not None:

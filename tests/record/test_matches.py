@@ -1,4 +1,4 @@
-"""A court's names for its matches, and which records in a folder are its own."""
+"""The names that a court gives its matches, and which records in a folder are its own."""
 
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
@@ -23,7 +23,7 @@ from lacoc_shared.record.writer import RecordWriter
     ],
 )
 def test_a_name_is_read_as_it_was_made(match_id: str, court: str, number: int) -> None:
-    """Names work with any hyphens and digits in a court's name, and any number of matches."""
+    """A match's name can be read back, with any hyphens and digits in the court's name."""
     name = MatchName("20260501-100000", number, court)
     assert str(name) == match_id
     assert MatchName.parse(match_id) == name
@@ -35,19 +35,19 @@ def test_a_name_is_read_as_it_was_made(match_id: str, court: str, number: int) -
      "20260501-100000-main-0001", "20260501-100000--001", "20260501-100000-main-001.part"],
 )  # fmt: skip
 def test_what_no_court_made_is_no_match_name(match_id: str) -> None:
-    """A file of another name in the folder is nobody's match."""
+    """A name that no court makes is not read as a match's name."""
     assert MatchName.parse(match_id) is None
 
 
 def test_a_match_that_is_opened_now_has_the_time_in_its_name() -> None:
-    """UTC, so that the order of names is the order of matches, also where the clocks change."""
+    """A new match's name has the time in UTC, so that names sort in the order of matches."""
     before = datetime.now(UTC).replace(microsecond=0)
     opened = datetime.strptime(MatchName.new(None, "main", 1).opened, "%Y%m%d-%H%M%S")
     assert before <= opened.replace(tzinfo=UTC) <= before + timedelta(seconds=60)
 
 
 def test_a_court_that_starts_twice_in_a_second_has_two_matches(tmp_path: Path) -> None:
-    """A supervisor starts a court again at once; its first match is number 1 again."""
+    """A court that is started twice within a second gives its matches different, sorted names."""
     names = []
     for ending in ("mcap", "000.live.mcap") * 3:
         names.append(MatchName.new(tmp_path, "main", 1))
@@ -56,7 +56,7 @@ def test_a_court_that_starts_twice_in_a_second_has_two_matches(tmp_path: Path) -
 
 
 def test_a_court_has_its_own_matches_in_their_order(tmp_path: Path) -> None:
-    """Not those of a court whose name ends in the same way; match 1000 comes after match 999."""
+    """A court finds its own matches in order, and none of a court with a similar name."""
     for name in (
         "20260501-100000-final-1000.000.live.mcap",
         "20260501-100000-final-1000.001.live.mcap",
@@ -80,7 +80,7 @@ def test_a_court_has_its_own_matches_in_their_order(tmp_path: Path) -> None:
 def test_a_match_is_over_when_its_court_ended_it(
     tmp_path: Path, header: Callable[..., Header]
 ) -> None:
-    """Left and cut ones are not; what is over and lies in segments is to be packed."""
+    """A match is over only if its court ended it; it is then to be packed."""
     ids = [f"20260501-10000{number}-main-001" for number in range(4)]
     writers = [RecordWriter(tmp_path, header(match_id=match_id)) for match_id in ids[:3]]
     ended, left, cut = writers

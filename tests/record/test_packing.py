@@ -1,4 +1,4 @@
-"""Segments become one packed file, and go only when every message of them is in it."""
+"""Packing: segments become one file, and are removed only if it has each of their messages."""
 
 import subprocess
 import sys
@@ -25,7 +25,7 @@ WriteSegments = Callable[[Path], list[Path]]
 def write_segments(
     write_match: WriteMatch, header: Callable[..., Header], frame: Callable[..., Frame]
 ) -> WriteSegments:
-    """Write a match whose court was killed after 40 beats and went on for one."""
+    """Give a function that writes two segments of a match whose court was killed after 40 beats."""
 
     def write(folder: Path) -> list[Path]:
         first = write_match(folder, close=False)
@@ -38,7 +38,7 @@ def write_segments(
 
 
 def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) -> None:
-    """The packed file says what its segments said, indexed and smaller; then they are gone."""
+    """A packed file has the same record, indexed and compressed, and its segments are removed."""
     path = write_match(tmp_path)
     size, record = path.stat().st_size, Record.read(path)
     pack.pack([path], tmp_path / "m.mcap")
@@ -54,7 +54,7 @@ def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) 
 def test_packing_that_was_interrupted_is_repeated(
     tmp_path: Path, write_segments: WriteSegments
 ) -> None:
-    """A half-written packed file is no record; a finished one replaces its segments."""
+    """Interrupted packing can be repeated, beside a half-written file or an old segment."""
     first, second = write_segments(tmp_path)
     record, data = Record.read(first), second.read_bytes()
     (tmp_path / "m.mcap.part").write_bytes(b"half")
@@ -66,7 +66,7 @@ def test_packing_that_was_interrupted_is_repeated(
 
 
 def test_packing_that_fails_keeps_the_segments(tmp_path: Path, write_match: WriteMatch) -> None:
-    """On a full disk nothing is lost and nothing half-made is left."""
+    """If the disk is full, packing leaves the segments and no half-written file."""
     resource = pytest.importorskip("resource")
     path = write_match(tmp_path)
     data = path.read_bytes()
@@ -83,7 +83,7 @@ def test_packing_that_fails_keeps_the_segments(tmp_path: Path, write_match: Writ
 
 @pytest.mark.slow
 def test_packing_in_the_background(tmp_path: Path, write_match: WriteMatch) -> None:
-    """A court packs in a process of its own; of a match without segments it says so."""
+    """A court packs in another process, which reports a match without segments."""
     record = Record.read(write_match(tmp_path))
     assert pack.pack_in_background(tmp_path, ["m"]).wait(60) == 0
     assert Record.read(tmp_path / "m.mcap") == record
@@ -100,7 +100,7 @@ def test_packing_in_the_background(tmp_path: Path, write_match: WriteMatch) -> N
 def test_segments_that_the_packed_file_lacks_are_kept(
     tmp_path: Path, write_match: WriteMatch, write_segments: WriteSegments
 ) -> None:
-    """A match that went on while it was packed: no message is removed that is nowhere else."""
+    """If a packed file lacks a message of the segments, all files are kept."""
     pack.pack([write_match(tmp_path)], tmp_path / "m.mcap")
     segments = write_segments(tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
@@ -116,7 +116,7 @@ def test_segments_that_the_packed_file_lacks_are_kept(
 def test_damage_beside_a_packed_file_removes_nothing(
     victim: str, tmp_path: Path, write_match: WriteMatch
 ) -> None:
-    """Packing was interrupted, and a file is damaged since: both stay."""
+    """If the packed file or its segment is damaged, packing again removes neither."""
     path = write_match(tmp_path)
     data = path.read_bytes()
     pack.pack([path], tmp_path / "m.mcap")
@@ -132,7 +132,7 @@ def test_damage_beside_a_packed_file_removes_nothing(
 def test_what_is_packed_is_held(
     tmp_path: Path, write_segments: WriteSegments, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """From before it is read until it goes: nobody takes it up, nobody packs it a second time."""
+    """While segments are being packed they are locked, and no other process can pack them."""
     segments = write_segments(tmp_path)
     held: list[bool] = []
     write = pack._write
@@ -152,7 +152,7 @@ def test_what_is_packed_is_held(
 def test_what_is_being_written_is_not_packed(
     tmp_path: Path, write_match: WriteMatch, header: Callable[..., Header]
 ) -> None:
-    """While a court holds the match, all segments stay and there is no packed file."""
+    """While a court writes a match, its segments can't be packed."""
     write_match(tmp_path, close=False)
     writer = RecordWriter(tmp_path, header(segment=1, first_beat=40))
     segments = files.segment_paths(tmp_path, "m")
@@ -165,7 +165,7 @@ def test_what_is_being_written_is_not_packed(
 def test_one_match_that_can_not_be_packed_stops_no_other(
     tmp_path: Path, header: Callable[..., Header], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Each is packed by itself; the exit code says that one was not."""
+    """If one of several matches can't be packed, the others are, and the exit code is 2."""
     for match_id in ("a", "b"):
         RecordWriter(tmp_path, header(match_id=match_id)).close()
     assert pack.main(str(tmp_path), "a", "none", "b") == 2

@@ -1,4 +1,4 @@
-"""The journal's promise: whatever happens to the process or the file, whole messages stay."""
+"""A record's files: after a kill, damage or a full disk, all whole messages can still be read."""
 
 import os
 import re
@@ -49,7 +49,7 @@ def packed(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) ->
 
 
 def test_a_key_of_an_older_record_was_not_held() -> None:
-    """A field missing from an old record has its default."""
+    """A key input of an older record, without the newer fields, gets their defaults."""
     older = codec.encode(["key", 0, 14, 1, 2])
     assert codec.decode(older, Input) == KeySeat(0, 14, 1, 2, seen=0, held=0, late=0)  # type: ignore[arg-type]
 
@@ -57,7 +57,7 @@ def test_a_key_of_an_older_record_was_not_held() -> None:
 def test_what_is_written_is_read(
     segment: Path, header: MakeHeader, sheet: Sheet, scene: Scene, result: Result, frame: MakeFrame
 ) -> None:
-    """Everything comes back, typed, by its beat and in its order."""
+    """Everything that is written to a record is read back with its type, beat and order."""
     record = Record.read(segment)
     assert record.headers == [header()]
     assert record.sheets == [(0, sheet)]
@@ -73,7 +73,7 @@ def test_what_is_written_is_read(
 
 
 def test_a_segment_is_plain_mcap(segment: Path) -> None:
-    """Mcap's own reader agrees: channels, counts and times; nothing is a private dialect."""
+    """The library `mcap` reads a segment with the same messages, counts and times."""
     with segment.open("rb") as file:
         reader = make_reader(file, validate_crcs=True)
         summary = reader.get_summary()
@@ -97,7 +97,7 @@ def test_a_segment_is_plain_mcap(segment: Path) -> None:
 def test_a_segment_cut_anywhere_gives_every_whole_message(
     tmp_path: Path, segment: Path, share: float
 ) -> None:
-    """A killed court or a broken copy: the messages before the cut, and a sentence about it."""
+    """From a segment that is cut anywhere, every whole message is read, and the cut is reported."""
     data = segment.read_bytes()
     cut = data[: round(share * len(data))]
     path = tmp_path / "m.000.live.mcap"
@@ -122,7 +122,7 @@ def test_a_segment_cut_anywhere_gives_every_whole_message(
 
 
 def test_a_packed_file_cut_anywhere_is_read_or_refused(tmp_path: Path, packed: Path) -> None:
-    """A record that is cut anywhere raises only UserError."""
+    """A packed file that is cut anywhere is read or refused with a UserError."""
     data = packed.read_bytes()
     path = tmp_path / "m.mcap"
     for size in range(0, len(data), 7):
@@ -140,7 +140,7 @@ def test_a_packed_file_cut_anywhere_is_read_or_refused(tmp_path: Path, packed: P
 def test_a_wrong_byte_anywhere_is_read_or_refused(
     tmp_path: Path, segment: Path, packed: Path, place: float, byte: int, closed: bool
 ) -> None:
-    """A broken disk: nothing raises but UserError, whatever byte it changed."""
+    """A record with a wrong byte anywhere is read or refused with a UserError."""
     data = bytearray((packed if closed else segment).read_bytes())
     data[int(place * len(data))] = byte
     path = tmp_path / "m.mcap"
@@ -150,9 +150,9 @@ def test_a_wrong_byte_anywhere_is_read_or_refused(
 
 
 def test_a_damaged_closed_file_says_so(tmp_path: Path, segment: Path) -> None:
-    """The part before the damage is read; the record is not changed or taken for a short match."""
+    """A damaged segment is read up to the damage, is reported as damaged, and can't be packed."""
     data = bytearray(segment.read_bytes())
-    at = data.index(codec.encode(KeySeat(0, 24, 1, 2)))  # what entered at beat 23
+    at = data.index(codec.encode(KeySeat(0, 24, 1, 2)))  # the input of beat 23
     data[at] ^= 0xFF
     path = tmp_path / "m.000.live.mcap"
     path.write_bytes(data)
@@ -170,7 +170,7 @@ def test_a_damaged_closed_file_says_so(tmp_path: Path, segment: Path) -> None:
 def test_a_missing_segment_is_told(
     tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """The part before the missing segment is read; the part after it is not joined to it."""
+    """If a segment is missing, the part before it is read, and the missing beats are reported."""
     write_match(tmp_path, close=False)
     late = RecordWriter(tmp_path, header(segment=2, first_beat=60))
     late.frame(60, codec.encode(frame(60)))
@@ -188,7 +188,7 @@ def test_a_missing_segment_is_told(
 def test_a_segment_without_a_header_holds_nothing(
     size: int, tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """If a court was killed while it opened the file, the next one goes on with a new segment."""
+    """A segment without a whole header is skipped, and the match goes on in the next segment."""
     first = write_match(tmp_path, close=False)
     empty = tmp_path / "m.001.live.mcap"
     empty.write_bytes(first.read_bytes()[:size])
@@ -206,7 +206,7 @@ def test_a_segment_without_a_header_holds_nothing(
 def test_an_unfinished_segment_ends_where_it_stops_making_sense(
     tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """A power cut may leave anything in the last second; a packed record is right all the same."""
+    """A segment with zeros in it, as after a power cut, is read up to the first of them."""
     path = write_match(tmp_path, close=False)
     with path.open("ab") as file:
         file.write(bytes(4096))
@@ -249,7 +249,7 @@ for beat in range(10**9):
 def test_kill_9_loses_nothing_that_was_answered(
     tmp_path: Path, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """docs/architecture.md: every beat that the killed court told anybody is in its file."""
+    """Each beat that a process reported before it was killed is in its record."""
     victim = subprocess.Popen(
         [
             sys.executable,
@@ -277,7 +277,7 @@ def test_kill_9_loses_nothing_that_was_answered(
 def test_a_restarted_court_goes_on_in_a_new_segment(
     tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """Messages of a beat that the killed court did not finish do not count."""
+    """Messages from a new segment's first beat on replace those of the segment before it."""
     write_match(tmp_path, close=False)
     second = RecordWriter(tmp_path, header(segment=1, first_beat=33))
     second.input(33, KeySeat(1, 99, 1, 0))
@@ -298,7 +298,7 @@ def test_a_restarted_court_goes_on_in_a_new_segment(
 def test_files_that_are_no_record_of_one_match_are_refused(
     tmp_path: Path, write_match: WriteMatch, header: MakeHeader
 ) -> None:
-    """Each with a sentence that names the file and says what to do."""
+    """Files that are not one match's record are refused; the message says what is wrong."""
     table = tmp_path / "table.txt"
     table.write_text("1\t2\n")
     foreign = tmp_path / "foreign.mcap"
@@ -326,7 +326,7 @@ def test_files_that_are_no_record_of_one_match_are_refused(
 
 
 def test_a_record_is_never_overwritten(tmp_path: Path, header: MakeHeader) -> None:
-    """A second record of the same name is refused, and so is a folder that can't be made."""
+    """A second record of the same match is refused, and so is a folder that can't be made."""
     RecordWriter(tmp_path, header()).close()
     with pytest.raises(UserError, match="never overwritten"):
         RecordWriter(tmp_path, header())
@@ -336,7 +336,7 @@ def test_a_record_is_never_overwritten(tmp_path: Path, header: MakeHeader) -> No
 
 
 def test_a_full_disk_loses_nothing(tmp_path: Path, header: MakeHeader, frame: MakeFrame) -> None:
-    """Data that the disk refuses waits in memory until it is written; `flush` reports it."""
+    """Data that a full disk refuses waits in memory, and is written when there is room."""
     resource = pytest.importorskip("resource")
     unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
     writer = RecordWriter(tmp_path, header())
@@ -368,7 +368,7 @@ def test_a_full_disk_loses_nothing(tmp_path: Path, header: MakeHeader, frame: Ma
 def test_a_disk_that_reports_errors_later_is_heard(
     tmp_path: Path, header: MakeHeader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The disk's answer comes a second after the write; it stays in `sync_trouble`."""
+    """An error that the disk reports at `fsync` is kept in `sync_trouble`."""
     writer = RecordWriter(tmp_path, header())
     asked = threading.Event()
 
@@ -385,7 +385,7 @@ def test_a_disk_that_reports_errors_later_is_heard(
 
 
 def test_closing_twice_is_once(tmp_path: Path, header: MakeHeader) -> None:
-    """A court may close in its ordinary course and again on its way out."""
+    """Closing a record twice has the effect of closing it once."""
     writer = RecordWriter(tmp_path, header())
     writer.close()
     data = writer.path.read_bytes()
@@ -394,7 +394,7 @@ def test_closing_twice_is_once(tmp_path: Path, header: MakeHeader) -> None:
 
 
 def _messages(data: bytes) -> dict[str, list[bytes]]:
-    """The whole messages of a cut file by topic, found by their announced lengths alone."""
+    """Return a cut file's whole messages by topic, found by their lengths alone."""
     topics = list(KINDS)
     found: dict[str, list[bytes]] = {}
     at = 8
@@ -410,7 +410,7 @@ def _messages(data: bytes) -> dict[str, list[bytes]]:
 
 
 def test_a_bomb_is_no_record(segment: Path, tmp_path: Path) -> None:
-    """A packed file that unpacks to far more than a match has is refused before it does."""
+    """A chunk that unpacks to far more than a match has is refused as damaged."""
     packed = zstandard.ZstdCompressor().compress(bytes(1 << 28))
     for told in (1 << 28, 100):
         body = struct.pack("<QQQII", 0, 0, told, 0, 4) + b"zstd"
@@ -425,7 +425,7 @@ def test_a_bomb_is_no_record(segment: Path, tmp_path: Path) -> None:
 
 
 def test_many_inputs_in_a_beat_are_read_in_linear_time(header: MakeHeader, tmp_path: Path) -> None:
-    """Nobody's record makes its reader wait for hours."""
+    """A record with 20,000 inputs in one beat is read within two seconds."""
     writer = RecordWriter(tmp_path, header())
     for seq in range(20_000):
         writer.input(3, KeySeat(0, seq, 1, 2))
@@ -438,7 +438,7 @@ def test_many_inputs_in_a_beat_are_read_in_linear_time(header: MakeHeader, tmp_p
 def test_a_damaged_time_ends_what_is_read(
     header: MakeHeader, frame: MakeFrame, tmp_path: Path
 ) -> None:
-    """A flipped bit in a time does not make a restarted court replay a thousand years."""
+    """A frame whose time is far in the future counts as damage, and the part before it is read."""
     writer = RecordWriter(tmp_path, header())
     for beat in (0, 1, 2**36 // BEATS_PER_S):
         writer.frame(beat, codec.encode(frame(0)))
@@ -453,7 +453,7 @@ def test_a_damaged_time_ends_what_is_read(
 
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.8])
 def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: Path) -> None:
-    """A byte in its first, a middle or its last chunk: whole chunks before it are read."""
+    """A damaged packed file is read up to the damaged chunk, and the message gives its byte."""
     data = bytearray(packed.read_bytes())
     chunks = [at for at, opcode in _records_of(data) if opcode == Opcode.CHUNK]
     at = chunks[int(part * len(chunks))]
@@ -471,7 +471,7 @@ def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: P
 
 
 def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed: Path) -> None:
-    """A file is packed before it gets its name: no kill can have cut it; a cut chunk is lost."""
+    """Half of a packed file can't be read, and the message says why that may be."""
     path = tmp_path / "part.mcap"
     data = packed.read_bytes()
     path.write_bytes(data[: len(data) // 2])
@@ -480,7 +480,7 @@ def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed:
 
 
 def test_what_a_killed_court_leaves_is_not_lost(tmp_path: Path, segment: Path) -> None:
-    """It has each message that was written."""
+    """A segment that a kill has cut counts as complete: it has every message that was written."""
     path = tmp_path / "m.000.live.mcap"
     data = segment.read_bytes()
     path.write_bytes(data[: len(data) // 2])
@@ -490,7 +490,7 @@ def test_what_a_killed_court_leaves_is_not_lost(tmp_path: Path, segment: Path) -
 
 
 def _records_of(data: bytes) -> Iterator[tuple[int, int]]:
-    """Where the records of an MCAP file begin, each with its opcode."""
+    """Yield the offset and the opcode of each record in an MCAP file."""
     at = len(MCAP0_MAGIC)
     while at < len(data) - len(MCAP0_MAGIC):
         yield at, data[at]

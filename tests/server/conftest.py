@@ -1,4 +1,4 @@
-"""Makes `stage`, the builders that the tests of the court share, importable; and the log."""
+"""Put `stage` (the builders of the court's tests) on the import path, and give fixtures."""
 
 import json
 import logging
@@ -18,7 +18,7 @@ from lacoc_server.world import arithmetic
 
 @pytest.fixture
 def loud() -> Iterator[None]:
-    """The log, as `start` switches it on."""
+    """Set the level of the log to INFO, as `start` does."""
     before = structlog.get_config()
     structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.INFO))
     yield
@@ -27,7 +27,7 @@ def loud() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def has_other_arithmetic() -> None:
-    """Skip where the C library or the processor knows no second arithmetic."""
+    """Skip the test if a second process can't be given another arithmetic on this machine."""
     there = json.loads(elsewhere("benchmarks.proof", ["fingerprint"]))
     if arithmetic.same(arithmetic.here(), there):
         pytest.skip("the second arithmetic of this machine is the first")

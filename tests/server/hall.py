@@ -1,4 +1,4 @@
-"""A court, a spectator and a referee; contestants join and get lost."""
+"""A court with a spectator and a referee, whose contestants are processes that can be lost."""
 
 import signal
 import subprocess
@@ -19,11 +19,11 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
 
 LATE_BEATS = 10
-"""A court that was held up takes five beats at once; a beat or two are on their way."""
+"""Tolerance in beats: a late court makes five beats at once, and a frame travels for one or two."""
 
 
 class Hall:
-    """A court, a spectator and a referee; contestants are processes."""
+    """A running court, a spectator, a referee, and contestants in their own processes."""
 
     def __init__(self, folder: Path, stack: ExitStack, host: str = "127.0.0.1") -> None:
         self.folder = folder
@@ -40,7 +40,7 @@ class Hall:
         self.referee = RefereeClient(self.session, name, self.court.referee.token)
 
     def lacoc(self, *words: str, before: tuple[str, ...] = ()) -> subprocess.Popen[bytes]:
-        """Start a command; it ends with the test."""
+        """Start a `lacoc` command in a process that is killed when the test ends."""
         process = started(
             *words,
             before=before,
@@ -55,7 +55,7 @@ class Hall:
     def bot(
         self, seat: str, connect: str = "", before: tuple[str, ...] = ()
     ) -> subprocess.Popen[bytes]:
-        """A contestant's program, which presses a key every half second."""
+        """Start the program of a contestant that presses a key every half second."""
         (self.folder / "walker.py").write_text(
             "from lacoc_arenas.bot import Key\nfrom lacoc_shared.gait.tables import Level\n"
             "def bot(sheet, seat):\n"
@@ -67,14 +67,15 @@ class Hall:
         return self.lacoc(*words, before=before)
 
     def until(self, true: Callable[[], bool]) -> None:
-        """Watch until something is true."""
+        """Receive frames until a condition is true."""
         until([self.view], true)
 
     def phase(self, phase: Phase) -> None:
+        """Wait until the match is in a phase."""
         self.until(lambda: self.view.frame is not None and self.view.frame.phase == phase)
 
     def play(self) -> None:
-        """Start the match, or go on with it."""
+        """Start the match, or resume it if it is halted, and wait for PLAYING."""
         self.until(lambda: self.frame.phase in (Phase.READY, Phase.HALTED))
         halted = self.frame.phase == Phase.HALTED
         self.referee.decide(Resume() if halted else Start(), "", "Kubota")
@@ -91,22 +92,22 @@ class Hall:
         return self.frame.seats[0]
 
     def walks(self, seat: int = 0) -> None:
-        """Wait for a new key of a seat that takes effect."""
+        """Wait until a new key of a seat takes effect."""
         before = self.frame.seats[seat].applied_seq
         self.until(lambda: self.frame.seats[seat].applied_seq > before)
 
     def silences(self) -> list[Event]:
-        """That a seat was not heard any more, each time."""
+        """Return the events that say that a seat fell silent."""
         return [event for event in self.view.events if event.kind == "silent"]
 
     def loses(self, lose: Callable[[], object]) -> None:
-        """Lose the left seat, and it alone: all are shown a second later that it stands (rules 3).
+        """Call `lose`, and check that the left seat alone falls silent and stands a second later.
 
-        Frames show the seat grey in the beat in which it stands, and health says the same.
+        Rules 3. Frames show the seat as silent in the beat in which it stands, and health agrees.
         """
         before = len(self.silences())
         lose()
-        # Its answer left the court after the loss, however late this test sees frames.
+        # The court answers after the loss, so its newest frame then bounds when the loss happened.
         fetch(self.session, self.view.keys, self.view.keys.sheet)
         self.view.poll()
         lost = self.frame.beat

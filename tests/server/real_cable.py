@@ -1,4 +1,4 @@
-"""A cable of the kernel's own between two machines that are networks of this one (Linux, root)."""
+"""A virtual cable (veth) to a network namespace of this machine that acts as another machine."""
 
 import ctypes
 import os
@@ -13,17 +13,22 @@ from running import WAIT_S
 from lacoc_shared.seat import SeatFlag
 
 CLONE_NEWNET = 0x40000000
-"""In linux/sched.h."""
+"""The flag of `unshare` for a new network namespace, from linux/sched.h."""
 
 
 def ip(*words: str) -> None:
-    """Change the network."""
+    """Run the `ip` command, which changes this machine's network."""
     subprocess.run(["ip", *words], check=True, capture_output=True)
 
 
 @contextmanager
 def cable() -> Iterator[tuple[str, tuple[str, ...], Callable[[str], None]]]:
-    """Another machine's network, a cable to it: our address, how to run there, up or down."""
+    """Connect a second network namespace by a cable.
+
+    Yields:
+        Our address; the words before a command that run it there; a function that sets the
+        cable "up" or "down".
+    """
     name = f"lacoc{os.getpid()}"
     ip("netns", "add", name)
     try:
@@ -39,10 +44,10 @@ def cable() -> Iterator[tuple[str, tuple[str, ...], Callable[[str], None]]]:
 
 
 def pull_a_real_cable(folder: Path) -> bool:
-    """A match over a cable that goes down, up and down; its court ends with the cable down.
+    """Play a match over a cable that goes down, up and down; the court is ended while it is down.
 
     Returns:
-        False if this user may make no networks.
+        False if this user may not make network namespaces.
     """
     if ctypes.CDLL(None).unshare(CLONE_NEWNET):
         return False

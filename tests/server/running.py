@@ -1,4 +1,4 @@
-"""A contest's court as a process, and clients that wait for its actions."""
+"""A court in a process of its own, and clients that wait for what it does."""
 
 import json
 import subprocess
@@ -24,7 +24,7 @@ WAIT_S = 60.0
 
 
 def write_contest(path: Path) -> Path:
-    """A contest of one court, at a port that stays."""
+    """Write a contest file of one court, whose port stays the same when the court restarts."""
     path.write_text(f"""
 [court.main]
 arena = "othello"
@@ -41,13 +41,13 @@ referee.token = "the token of the referee"
 def served(
     contest: Path, folder: Path, *words: str, before: Sequence[str] = ()
 ) -> Iterator[subprocess.Popen[str]]:
-    """A court's process that has opened.
+    """Run `lacoc serve`, and give its process once the court is open.
 
     Args:
-        contest: its contest file.
-        folder: of its records.
-        words: further words for `lacoc serve`.
-        before: a command that runs it.
+        contest: the contest file.
+        folder: the folder for the court's records.
+        words: more words for the command line of `lacoc serve`.
+        before: a command that the court's command line is appended to.
     """
     serve = ["serve", "--json", "--contest", str(contest), "--recordings", str(folder), *words]
     process = started(*serve, before=before, stdout=subprocess.PIPE, text=True)
@@ -61,7 +61,7 @@ def served(
 
 
 def until(clients: Iterable[Controller | Spectator], true: Callable[[], bool]) -> None:
-    """Let clients do their work until something is true."""
+    """Let clients receive and send until a condition is true."""
     clients = list(clients)
     end_s = time.monotonic() + WAIT_S
     while not true():
@@ -71,7 +71,7 @@ def until(clients: Iterable[Controller | Spectator], true: Callable[[], bool]) -
 
 
 def frame(controller: Controller) -> Frame:
-    """The newest frame; waits for the first."""
+    """Return the newest frame; wait for the first one if there is none."""
     until([controller], lambda: controller.view.frame is not None)
     assert controller.view.frame is not None
     return controller.view.frame
@@ -82,7 +82,7 @@ def phase(controller: Controller) -> int:
 
 
 class Party:
-    """All contestants of a court, joined and ready, and its referee, in one session."""
+    """All contestants of a court, joined and ready, with a referee, in one network session."""
 
     def __init__(self, session: Session, contest: Path) -> None:
         name, court = load(contest).court()
@@ -99,12 +99,12 @@ class Party:
 
     @property
     def view(self) -> Spectator:
-        """Return the view of one client."""
+        """Return what the left contestant's client has received."""
         return self.left.view
 
     @property
     def frame(self) -> Frame:
-        """The newest; waits for the first."""
+        """Return the newest frame; wait for the first one if there is none."""
         return frame(self.left)
 
     @property
@@ -118,7 +118,7 @@ class Party:
         return render(trouble) if trouble else ""
 
     def until(self, true: Callable[[], bool]) -> None:
-        """Let them do their work until something is true."""
+        """Let all contestants receive and send until a condition is true."""
         until(self.controllers, true)
 
     def reach(self, phase: Phase) -> None:
@@ -126,7 +126,7 @@ class Party:
         self.until(lambda: self.phase == phase)
 
     def decide(self, decision: Decision, then: Phase | None = None) -> None:
-        """Let the referee decide, and wait for what follows."""
+        """Send a decision of the referee, and wait for the phase `then` if it is given."""
         self.referee.decide(decision, "a test", "Kubota")
         if then is not None:
             self.reach(then)
@@ -139,7 +139,7 @@ class Party:
 
 @contextmanager
 def party(contest: Path) -> Iterator[Party]:
-    """Connect the clients of a contest's running court."""
+    """Join and ready all contestants at a contest's running court."""
     _, court = load(contest).court()
     with open_client([court.address()]) as session:
         yield Party(session, contest)

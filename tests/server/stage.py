@@ -1,4 +1,4 @@
-"""A match under test: whom it seats, how it gets from phase to phase, and a physics by script."""
+"""A match under test: helpers that seat teams and change phases, and physics with a script."""
 
 import functools
 import hashlib
@@ -28,9 +28,9 @@ LEFT, RIGHT = 0, 1
 A, B = Level.POSTURE, Level.LOCOMOTION
 X = RESTART_KEY
 STAND, TURN_LEFT, FORWARD, TURN_RIGHT = range(4)
-"""Keys of level B in the sample gait (rules 2)."""
+"""Keys of level B in the sample gait: 0, 1, 2 and 3."""
 QUICK = {"match": {"countdown_s": 0.02}}
-"""For tests in which the countdown is not the point: one beat."""
+"""Settings with a countdown of one beat, for tests that are not about the countdown."""
 
 
 def setup(arena: str, overrides: Mapping[str, Any] | None = None) -> Setup:
@@ -43,7 +43,7 @@ def setup(arena: str, overrides: Mapping[str, Any] | None = None) -> Setup:
 def join(
     seat: int, team: str | None = None, robot: str = "hexapod", robot_file: bytes | None = None
 ) -> JoinSeat:
-    """A team with a sample robot and its gait, or with a robot file of its own."""
+    """Return the join of a team with a sample robot and its gait, or with another robot file."""
     (name, data), gait = _files(robot)
     return JoinSeat(
         seat,
@@ -70,21 +70,21 @@ def decide(decision: d.Decision, reason: str = "agreed", by: str = "Kubota") -> 
 
 @dataclass
 class Script:
-    """Where robots are and what they touch after the ticks of PLAYING, counted from 1."""
+    """A script of where robots are and what they touch, by tick of PLAYING; the first tick is 1."""
 
     poses: dict[int, dict[int, tuple[float, float]]] = field(default_factory=dict)
-    """Tick -> seat -> x, y; a robot stays until the next."""
+    """Tick -> seat -> x, y [m]; a robot stays there until the next entry."""
     touches: dict[int, dict[int, tuple[int, ...]]] = field(default_factory=dict)
-    """Tick -> seat -> markers; nobody touches anything in other ticks."""
+    """Tick -> seat -> indices of touched markers; in all other ticks nothing is touched."""
     faults: dict[int, Fault] = field(default_factory=dict)
-    """Tick -> what goes wrong in it, once."""
+    """Tick -> the fault that happens in it, once."""
 
 
 class ScriptedPhysics:
-    """Robots that go where a script says.
+    """Physics in which robots are where a script puts them.
 
-    Honest in all that a match may ask of a physics: between ticks it stands still, a fault
-    changes nothing, and the digest chains its state.
+    It keeps what a match expects of physics: nothing moves between ticks, a fault changes
+    nothing, and the digest is a hash chained over the states.
     """
 
     scene = Scene(bodies=(), geoms=())
@@ -102,7 +102,7 @@ class ScriptedPhysics:
         self._angles: list[Posture] = [entry.robot.start_posture for entry in entries]
 
     def begin(self) -> None:
-        """From now on ticks are ticks of PLAYING."""
+        """Count ticks from 1 again: the next tick is the first of PLAYING."""
         self.ticks = 0
 
     def place(self, seat: int, place: Place) -> None:
@@ -134,7 +134,7 @@ class ScriptedPhysics:
 
 
 class Stage:
-    """A match and all that it has made."""
+    """A match, and all beats that it has made."""
 
     def __init__(
         self,
@@ -150,7 +150,7 @@ class Stage:
 
     @classmethod
     def real(cls, arena: str = "othello", overrides: Mapping[str, Any] | None = None) -> "Stage":
-        """With MuJoCo."""
+        """Return a stage with MuJoCo instead of scripted physics."""
         return cls(arena, overrides, World)
 
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> ScriptedPhysics:
@@ -179,7 +179,7 @@ class Stage:
 
     @property
     def board(self) -> dict[str, str]:
-        """State of each marker that is not neutral."""
+        """Return the state of each marker that is not neutral, by name."""
         markers = self.match.game.markers
         states = unpack_states(self.frame.markers, len(markers))
         return {
@@ -191,7 +191,7 @@ class Stage:
         return self.beats[-1]
 
     def send(self, item: Input) -> Outcome:
-        """Run one beat with one input; returns its effect."""
+        """Run one beat with one input; return the input's outcome."""
         return self.beat(item).outcomes[0]
 
     def decide(self, decision: d.Decision, reason: str = "agreed") -> Any:
@@ -209,10 +209,10 @@ class Stage:
         raise AssertionError(f"no {phase.name}, still {self.phase.name}")
 
     def numbers(self, *kinds: str) -> list[int]:
-        """Numbers of the events of some kinds."""
+        """Return the numbers of all events of the given kinds."""
         return [event.number for event in self.events if event.kind in kinds]
 
-    # From phase to phase.
+    # Lead the match to a phase.
 
     def to_ready(self, *joins: JoinSeat) -> "Stage":
         seats = range(len(self.match.seats))
@@ -222,7 +222,10 @@ class Stage:
         return self
 
     def to_playing(self, *joins: JoinSeat) -> "Stage":
-        """To the last beat before PLAYING: the next is tick 1 (but practice has no countdown)."""
+        """Go to the last beat before PLAYING, so that the next beat is tick 1.
+
+        Practice has no countdown, so its first tick may have passed.
+        """
         self.to_ready(*joins)
         if self.match.rules.start == "referee":
             self.beat(decide(d.Start()))
@@ -233,7 +236,7 @@ class Stage:
         return self
 
     def to(self, phase: Phase) -> "Stage":
-        """To a phase, the straight way."""
+        """Lead the match to a phase by the shortest way."""
         match phase:
             case Phase.LOBBY:
                 self.beat(join(LEFT), join(RIGHT))
@@ -266,7 +269,7 @@ def key(seat: int, digit: int, seq: int = 1, level: int = B) -> KeySeat:
 
 
 def seen(stage: Stage) -> tuple[bytes, ...]:
-    """All that anybody can see of a match, but for the number of the beat."""
+    """Return everything that clients can see of a match, without the number of the beat."""
     frame = stage.frame
     result = stage.match.result()
     return (

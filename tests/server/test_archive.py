@@ -1,4 +1,4 @@
-"""The records of matches that are over: what their disk says last is in the log."""
+"""A finished match's record: the last error that its disk reported is in the court's log."""
 
 import os
 from pathlib import Path
@@ -26,7 +26,7 @@ HEADER = Header(
 
 
 def said(folder: Path, writer: RecordWriter) -> list[str]:
-    """Return the log after a match's record is closed."""
+    """Close a match's record; return the lines that this adds to the log."""
     with capture_logs() as lines:
         archive = Archive(folder, "main", CourtLog("main"))
         archive.take(MATCH, writer)
@@ -36,14 +36,14 @@ def said(folder: Path, writer: RecordWriter) -> list[str]:
 
 
 def test_a_match_that_the_disk_has_is_no_line(tmp_path: Path) -> None:
-    """The log is for what an organiser must know."""
+    """A record that reaches the disk adds no line to the log."""
     assert said(tmp_path, RecordWriter(tmp_path, HEADER)) == []
 
 
 def test_the_last_that_a_disk_said_is_logged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nobody looks at that match any more: the organiser learns it from the log."""
+    """If the disk reports an error for a finished match, the log tells the organiser."""
     writer = RecordWriter(tmp_path, HEADER)
 
     def fails(descriptor: int) -> None:

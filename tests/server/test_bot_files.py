@@ -1,4 +1,4 @@
-"""A user's bot in a file: its mistakes are reported with their line."""
+"""A user's bot in a file: each mistake is reported with its line."""
 
 from pathlib import Path
 from typing import Any
@@ -44,7 +44,7 @@ def brain(returns: str) -> str:
     ],
 )
 def test_what_is_a_key(tmp_path: Path, returns: str, expected: Key | None) -> None:
-    """README, for developers: a brain turns a frame into a key, or leaves the last one."""
+    """A brain returns a key, or None to keep its last key."""
     assert play(tmp_path, brain(returns)) == expected
 
 
@@ -53,7 +53,7 @@ def test_what_is_a_key(tmp_path: Path, returns: str, expected: Key | None) -> No
     ["2", "(1, 2)", "Key(1, 42)", "Key(1, -1)", "Key(2, 1)", "Key('B', 2)", "Key(1, 2.0)"],
 )
 def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
-    """It is refused in a sentence, before it is recorded or sent."""
+    """A brain that returns something else than a key or None is refused with a message."""
     with pytest.raises(UserError, match=r"my_bot\.py:5\) returned .*Expected a Key\(level"):
         play(tmp_path, brain(returns))
 
@@ -78,7 +78,7 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
     ],
 )
 def test_the_line_of_a_mistake(tmp_path: Path, text: str, says: str) -> None:
-    """One sentence, with the last line of the bot's own code that led to it."""
+    """A mistake is reported in one line, with the last line of the bot's own code before it."""
     with pytest.raises(UserError, match=rf"^The bot .*my_bot\.py.*{says}") as refused:
         play(tmp_path, text)
     assert "\n" not in str(refused.value)

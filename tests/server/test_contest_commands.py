@@ -1,4 +1,4 @@
-"""`lacoc contest`: what it writes loads, is private, and is checked to the last setting."""
+"""`lacoc contest`: the file that it writes is private and loads, and every setting is checked."""
 
 import json
 import stat
@@ -30,7 +30,7 @@ def run(*args: str) -> str:
     ],
 )
 def test_a_new_file_is_right_for_every_arena(tmp_path: Path, arena: str, seats: list[str]) -> None:
-    """The file that init writes passes its own check and has a token for every seat."""
+    """The file that `init` writes passes `check` and has a token for every seat."""
     file = tmp_path / "contest.toml"
     run("init", str(file), "--arena", arena)
 
@@ -41,7 +41,7 @@ def test_a_new_file_is_right_for_every_arena(tmp_path: Path, arena: str, seats: 
 
 
 def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> None:
-    """Mode 0600, because it holds tokens; an older file is kept with a number (rules 2)."""
+    """The new file has mode 0600, because it holds tokens; an older file is kept with a number."""
     file = tmp_path / "contest.toml"
     run("init", str(file))
     first = file.read_text()
@@ -53,7 +53,7 @@ def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> N
 
 
 def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
-    """Rules 4: names, colours and patterns belong to the teams; the seat's are the default."""
+    """Rules 4: a team may have its own colour and pattern; the default is those of its seat."""
     file = tmp_path / "contest.toml"
     run("init", str(file))
     text = file.read_text()
@@ -70,7 +70,7 @@ def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
 
 
 def test_show_as_json(tmp_path: Path) -> None:
-    """A program that hands out the tokens reads them by court and person."""
+    """A program that hands out the tokens can read them from `show --json`, by court and person."""
     file = tmp_path / "contest.toml"
     run("init", str(file), "--court", "hall")
     lines = json.loads(run("show", str(file), "--json", "--host", "10.0.0.1"))
@@ -93,7 +93,7 @@ def test_show_as_json(tmp_path: Path) -> None:
     ],
 )
 def test_check_looks_into_arena_and_limits(tmp_path: Path, old: str, new: str, said: str) -> None:
-    """A wrong setting, limit or seat is found before a court starts."""
+    """`check` finds a wrong arena, setting, limit or seat before a court starts."""
     file = tmp_path / "contest.toml"
     run("init", str(file))
     text = file.read_text()
@@ -105,7 +105,7 @@ def test_check_looks_into_arena_and_limits(tmp_path: Path, old: str, new: str, s
 
 
 def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
-    """A name that can't be a key expression is refused, and nothing is written."""
+    """A court's name that can't be part of a key expression is refused, and no file is written."""
     with pytest.raises(UserError, match="Main Hall"):
         run("init", str(tmp_path / "contest.toml"), "--court", "Main Hall")
     assert list(tmp_path.iterdir()) == []
@@ -114,7 +114,7 @@ def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
 def test_a_court_says_where_it_is_open_and_not_that_its_match_is_new(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The match may be one that goes on after a restart; an earlier line says so."""
+    """The line "is open at" does not call the match new: it may be one that was resumed."""
     entry = contests.throwaway("othello").courts["main"]
     at = ("tcp/127.0.0.1:7447",)
     serve._open_doors("main", entry, "m-1", at, metrics=None, made_here=False, json=False)

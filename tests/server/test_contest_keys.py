@@ -1,4 +1,4 @@
-"""`lacoc contest keys`: what it makes, to whom it belongs, and that it destroys nothing."""
+"""`lacoc contest keys`: which files it makes, who may read them, and that it destroys nothing."""
 
 import ssl
 import stat
@@ -30,12 +30,12 @@ def file(tmp_path: Path) -> Path:
 
 
 def certificate(path: Path) -> dict[str, Any]:
-    """Return a certificate as Python's own TLS reads it."""
+    """Return a certificate's fields as Python's `ssl` decodes them."""
     return ssl._ssl._test_decode_cert(str(path))  # type: ignore[attr-defined, no-any-return]
 
 
 def test_one_command_encrypts_a_contest(file: Path) -> None:
-    """A contest file as `init` writes it, and the command, are all there is to do."""
+    """`lacoc contest keys` makes the file that `init` wrote into a contest with TLS."""
     run("keys", str(file), "--host", "192.168.1.20", "--host", "court.example.org")
 
     contest = contests.load(file)
@@ -53,7 +53,7 @@ def test_one_command_encrypts_a_contest(file: Path) -> None:
 
 
 def test_all_of_it_is_its_owners_alone(file: Path) -> None:
-    """Private keys and invitations have mode 0600, folders 0700; the contest file stays 0600."""
+    """All files, also the contest file, have mode 0600, and the folder of invitations has 0700."""
     run("keys", str(file), "--host", "x.example")
     found = [file, *(file.parent / "keys").rglob("*")]
     modes = {path.name: stat.S_IMODE(path.stat().st_mode) for path in found}
@@ -63,7 +63,7 @@ def test_all_of_it_is_its_owners_alone(file: Path) -> None:
 
 
 def test_an_invitation_holds_nothing_of_others(file: Path) -> None:
-    """No other token, and no private key."""
+    """An invitation holds no private key and no token of another person."""
     run("keys", str(file), "--host", "x.example")
     contest = contests.load(file)
     people = entrances.everybody(contest, "main")
@@ -78,7 +78,7 @@ def test_an_invitation_holds_nothing_of_others(file: Path) -> None:
 
 
 def test_twice_keeps_what_was_handed_out(file: Path) -> None:
-    """The authority and the gateway's token stay; hosts are added; it is said."""
+    """A second run adds a host to the court's certificate, and all invitations stay valid."""
     run("keys", str(file), "--host", "one.example")
     before = contests.load(file)
     assert before.keys is not None
@@ -94,7 +94,7 @@ def test_twice_keeps_what_was_handed_out(file: Path) -> None:
 
 
 def test_two_contests_of_one_folder_have_keys_of_their_own(file: Path) -> None:
-    """The second contest does not touch the first one's keys; a taken name is refused."""
+    """A second contest in a folder gets a key folder of its own, or an error if no name is free."""
     run("keys", str(file), "--host", "one.example")
     first = contests.load(file).keys
     assert first is not None
@@ -116,7 +116,7 @@ def test_two_contests_of_one_folder_have_keys_of_their_own(file: Path) -> None:
 
 
 def test_every_court_is_named_that_can_be_started_next(file: Path) -> None:
-    """With two courts in the file, serve needs the name of one."""
+    """With two courts in the file, the printed `serve` commands name the court with `--court`."""
     text = file.read_text()
     second = text[text.index("[court.main]") :].replace("court.main", "court.two")
     file.write_text(text + second.replace(":7447", ":7448"))
@@ -126,7 +126,7 @@ def test_every_court_is_named_that_can_be_started_next(file: Path) -> None:
 
 
 def test_renew_keeps_the_old_with_a_number(file: Path) -> None:
-    """Everything is new, nothing is gone."""
+    """`--renew` makes a new authority, and moves the older folder of keys to one with a number."""
     keys = file.parent / "keys"
     run("keys", str(file), "--host", "one.example")
     first = (keys / "ca.pem").read_bytes()
@@ -140,7 +140,10 @@ def test_renew_keeps_the_old_with_a_number(file: Path) -> None:
 
 
 def test_the_entry_goes_into_any_contest_file(tmp_path: Path) -> None:
-    """With or without a table [contest], with Windows' line ends; its comments stay."""
+    """The entry `keys` is added with or without a table [contest], and all other lines stay.
+
+    If the file has `contest.name = ...`, the message gives the line to add by hand.
+    """
     for number, head in enumerate(
         (
             '[contest]\r\nname = "A"\r\n',
@@ -172,7 +175,7 @@ def test_the_entry_goes_into_any_contest_file(tmp_path: Path) -> None:
     ],
 )
 def test_a_wrong_file_is_said_and_left(file: Path, old: str, new: str, said: str) -> None:
-    """Nothing is made for a contest that can't be served, and its file stays as it is."""
+    """If a contest file can't be served, the command makes no keys and does not change the file."""
     file.write_text(file.read_text().replace(old, new, 1))
     text = file.read_text()
     with pytest.raises(UserError, match=said):
@@ -182,7 +185,7 @@ def test_a_wrong_file_is_said_and_left(file: Path, old: str, new: str, said: str
 
 
 def test_what_lacks_is_asked_for(file: Path) -> None:
-    """Where the court can be reached, if nothing says it; a key that was moved away."""
+    """A message says what is missing: the court's host, the authority's key, or the key folder."""
     with pytest.raises(UserError, match="--host"):
         run("keys", str(file))
     with pytest.raises(UserError, match="not an address"):
@@ -198,7 +201,10 @@ def test_what_lacks_is_asked_for(file: Path) -> None:
 
 @pytest.mark.parametrize("what", ["empty", "no text", "key", "authority"])
 def test_what_is_no_certificate_of_a_court_is_said(file: Path, what: str) -> None:
-    """A file that was cut or mixed up: both ways out, and the gentle one keeps invitations."""
+    """A damaged certificate of a court is reported, and the message names two remedies.
+
+    One is to delete the certificate and make it again: then all invitations stay valid.
+    """
     run("keys", str(file), "--host", "x.example")
     keys = contests.load(file).keys
     assert keys is not None
@@ -221,7 +227,7 @@ def test_what_is_no_certificate_of_a_court_is_said(file: Path, what: str) -> Non
 
 
 def test_show_names_the_invitations(file: Path) -> None:
-    """The short line, without a token in it."""
+    """`show` prints the short commands with invitations, without a token in them."""
     run("keys", str(file), "--host", "x.example")
     shown = run("show", str(file))
     assert "lacoc play --invitation main.left.toml" in shown
@@ -231,7 +237,7 @@ def test_show_names_the_invitations(file: Path) -> None:
 
 @pytest.mark.parametrize("seat", ["referee", "gateway", "spectators"])
 def test_a_seat_is_not_called_like_somebody_else(file: Path, seat: str) -> None:
-    """Its user would be somebody else's."""
+    """A seat can't be called like another user of the court."""
     file.write_text(file.read_text().replace("main.seat.left", f"main.seat.{seat}"))
     with pytest.raises(UserError, match="can't be called"):
         contests.load(file)

@@ -1,4 +1,4 @@
-"""The lines of a court's log other than the events of its match."""
+"""The court's log: events of a match, and lines about refusals, slow beats and the disk."""
 
 import msgspec
 import pytest
@@ -25,7 +25,7 @@ TROUBLE = say("record.no-room", file="m.mcap", why="disk full")
 
 
 def test_an_event_is_a_line_with_all_it_has() -> None:
-    """One line an event, a match id everywhere; trouble stands out."""
+    """Each event is one line with all its fields and the match id; "silent" is a warning."""
     said = say("event.back", team="Ants")
     flip = Event(number=7, match=1, beat=99, clock_ticks=12, kind="flip", said=said, seat=0)
     with capture_logs() as lines:
@@ -45,7 +45,7 @@ def test_an_event_is_a_line_with_all_it_has() -> None:
 
 
 def test_what_went_wrong_is_said_once() -> None:
-    """New refusals, slow beats and the disk, as they change; not twice a second for ever."""
+    """Refusals, slow beats and disk trouble are logged when they change, not in every report."""
     flooded = msgspec.structs.replace(LEFT, refused={"flood": 5, "bad-seal": 1})
     worse = msgspec.structs.replace(
         HEALTH,
@@ -80,7 +80,7 @@ def test_what_went_wrong_is_said_once() -> None:
 
 
 def test_slow_beats_are_told_now_and_then() -> None:
-    """A loaded machine has some every second: the first at once, the others together."""
+    """If every second has a slow beat, the first is logged at once, and then 30 at a time."""
     with capture_logs() as lines:
         log = CourtLog("main")
         for second in range(100):

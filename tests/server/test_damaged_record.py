@@ -1,6 +1,6 @@
-"""Records that are cut, damaged, foreign or of other software: at verify, and where a court starts.
+"""Cut, damaged or foreign records, and those of other software: verified, and resumed by a court.
 
-What can be had is had, it is said in words, and the record stays as it is.
+Everything readable is recovered, a message says what is missing, and no record is changed.
 """
 
 import json
@@ -51,7 +51,7 @@ OTHELLO = arenas.load("othello")
 
 
 def play(folder: Path, made: Setup, arena: Path | None = None) -> Path:
-    """The segment that a court leaves behind that is killed in beat 120 of a match."""
+    """Play a match of 120 beats and leave it as a kill does; return its segment."""
     journal = Journal(Match(made, World, arena), folder)
     for number in range(BEATS):
         journal.beat(INPUTS.get(number, ()))
@@ -80,7 +80,7 @@ def segment(folder: Path, data: bytes, number: int = 0) -> Path:
 
 
 def with_header(data: bytes, folder: Path, **changes: Any) -> bytes:
-    """The same record with another header."""
+    """Return the same record with other fields in its header."""
     path = segment(folder, data)
     header = Record.read(path).header
     old, new = encode(header), encode(msgspec.structs.replace(header, **changes))
@@ -103,7 +103,7 @@ def verdict(path: Path) -> Verdict:
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.83, 0.999])
 def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder: Path) -> None:
-    """The record verifies up to the cut, and a court goes on from there."""
+    """A cut record verifies up to the cut, and a court goes on from there."""
     path = segment(folder, left_behind[: round(share * len(left_behind))])
     found = verdict(path)
     assert found.kind is Kind.SAME
@@ -114,9 +114,9 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
 
 
 def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder: Path) -> None:
-    """Verify and a court's start end with words, never with an error of the program.
+    """With a flipped bit, verify and a court's start end with a message, not with a crash.
 
-    What a court goes on with is the match that was recorded, as far as it could be read.
+    The record stays as it is, and most flips are found.
     """
     whole = Record.read(segment(folder, left_behind))
     chance = random.Random(7)
@@ -136,7 +136,7 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder:
         except UserError:
             told["start"] += 1
         assert path.read_bytes() == data
-    # The rest means nothing for the match: versions, times of publishing, numbers of messages.
+    # The other flips have no effect on the match: in versions, publish times, message numbers.
     assert told["verify"] > 50
     assert told["start"] > 10
     assert whole.last_beat == BEATS - 1
@@ -144,7 +144,7 @@ def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder:
 
 @pytest.mark.parametrize("size", [0, 4, 900])
 def test_an_empty_last_segment_is_passed_over(size: int, left_behind: bytes, folder: Path) -> None:
-    """After a court was killed while it started again, the next one still goes on."""
+    """A court goes on with the match if the newest segment is empty or has no whole header."""
     segment(folder, left_behind)
     segment(folder, left_behind[:size], 1)
     left = unfinished(folder, "main", OTHELLO)
@@ -153,13 +153,13 @@ def test_an_empty_last_segment_is_passed_over(size: int, left_behind: bytes, fol
 
 
 def test_an_empty_first_segment_is_no_match(left_behind: bytes, folder: Path) -> None:
-    """Killed while it opened: there is nothing to go on with."""
+    """If the only segment has no whole header, there is no match to go on with."""
     segment(folder, left_behind[:700])
     assert unfinished(folder, "main", OTHELLO) is None
 
 
 def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
-    """No court goes on with a match that lacks a segment; the part before it can be read."""
+    """No court goes on with a match that lacks a segment; the part before the gap can be read."""
     first = segment(folder, left_behind)
     header = msgspec.structs.replace(Record.read(first).header, segment=2, first_beat=200)
     RecordWriter(folder, header).leave()
@@ -193,7 +193,10 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
 def test_a_record_of_another_version_is_refused(
     change: Callable[[bytes, Path], bytes], words: str, left_behind: bytes, tmp_path: Path
 ) -> None:
-    """With the reason; the record stays as it is, and the court can open a fresh match."""
+    """A record of other software or another arena is refused with the reason and stays unchanged.
+
+    `serve --fresh` opens a new match beside it.
+    """
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     folder.mkdir()
     data = change(left_behind, folder)
@@ -217,13 +220,13 @@ def setup_of(arena: str) -> Setup:
 
 
 def other_model(data: bytes) -> tuple[bytes, bytes]:
-    """The model's hash in the event of READY, and another one."""
+    """Return the model's hash from the event of READY, and another one to replace it."""
     at = data.rindex(b"\xa5model\xb0") + 7
     return data[at : at + 16], b"0" * 16
 
 
 def test_no_code_runs_because_a_record_names_it(tmp_path: Path, left_behind: bytes) -> None:
-    """Verify and a court's start refuse a folder that nobody named."""
+    """If a record names a folder with code, verify and a court's start do not run it."""
     game, folder = tmp_path / "game", tmp_path / "recordings"
     game.mkdir()
     folder.mkdir()
@@ -238,7 +241,10 @@ def test_no_code_runs_because_a_record_names_it(tmp_path: Path, left_behind: byt
 
 
 def test_a_folder_that_the_user_names_plays_its_record(tmp_path: Path) -> None:
-    """A game in a folder, verified where the folder lies elsewhere; and resumed."""
+    """If the user names the folder of a game, its record is verified and resumed.
+
+    The folder may have moved since the match was recorded.
+    """
     original = plugins.folder_of(plugins.package("lacoc.arenas", "arena", "othello"))
     here, there = tmp_path / "here", tmp_path / "there"
     shutil.copytree(original, here, ignore=shutil.ignore_patterns("__pycache__"))

@@ -1,4 +1,4 @@
-"""The drive, tick by tick, as tables (rules 3)."""
+"""The drive: commanded angles tick by tick, compared with tables (rules 3)."""
 
 import math
 from itertools import pairwise
@@ -13,7 +13,7 @@ from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture, Post
 A, B = Level.POSTURE, Level.LOCOMOTION
 ANG_MIN = math.radians(120)
 STEP_DEG = 2.4
-"""120 degrees/s in a tick of 20 ms (rules 1)."""
+"""How far a joint moves in a tick of 20 ms at 120 degrees/s (rules 1)."""
 
 
 def posture(*degrees: float) -> Posture:
@@ -28,7 +28,7 @@ def drive(
     start: float = 0.0,
     postures: dict[int, float] | None = None,
 ) -> Drive:
-    """A drive of one joint: level B's keys [degrees], and level A's postures."""
+    """Return a drive of one joint with sequences for level B and postures for level A [degrees]."""
     table = LocomotionTable(tuple(tuple(posture(angle) for angle in key) for key in keys))
     return Drive(
         Gait(
@@ -52,7 +52,7 @@ def ticks(it: Drive, state: DriveState, count: int) -> list[DriveState]:
 
 
 def targets(it: Drive, state: DriveState, count: int) -> list[int]:
-    """The index of the target posture in each of the next ticks."""
+    """Return the index of the target posture in each of the next ticks."""
     return [state.posture for state in ticks(it, state, count)]
 
 
@@ -60,7 +60,7 @@ def targets(it: Drive, state: DriveState, count: int) -> list[int]:
     ("degrees", "needed"), [(45, 19), (-45, 19), (24, 10), (2.4, 1), (2.5, 2), (0.1, 1), (150, 63)]
 )
 def test_a_move_takes_whole_ticks(degrees: float, needed: int) -> None:
-    """Rules 3: a commanded angle moves by at most AngMin * 0.02 s: 45 degrees take 19 ticks."""
+    """Rules 3: an angle moves by at most 2.4 degrees in a tick, so 45 degrees take 19 ticks."""
     it = drive((0.0,), (degrees,))
     states = ticks(it, it.press(it.begin(B), B, 1), needed)
     assert states[-1].angles == posture(degrees)
@@ -68,14 +68,14 @@ def test_a_move_takes_whole_ticks(degrees: float, needed: int) -> None:
 
 
 def test_no_remainder_is_carried() -> None:
-    """Rules 3: what is left of a tick's motion is not used for the next posture."""
+    """The part of a tick that remains after arrival is not used for the next posture."""
     it = drive((0.0,), (3.0, 6.0))
     angles = [s.angles[0] for s in ticks(it, it.press(it.begin(B), B, 1), 4)]
     assert angles == pytest.approx([math.radians(a) for a in (2.4, 3.0, 5.4, 6.0)])
 
 
 def test_all_joints_move_at_once_and_wait_for_the_last() -> None:
-    """Rules 3: the next posture comes when every commanded angle has arrived."""
+    """Rules 3: the next posture begins when the commanded angles of all joints have arrived."""
     it = Drive(
         Gait(None, LocomotionTable(((posture(0, 0),), (posture(2.4, -7.2), posture(0, 0))))),
         posture(0, 0),
@@ -101,27 +101,27 @@ def test_all_joints_move_at_once_and_wait_for_the_last() -> None:
     ],
 )
 def test_reached(hold_s: float, expected: list[int]) -> None:
-    """Rules 3, "reached": the next posture, ceil(hold_s / 0.02) ticks after the arrival."""
+    """With "reached", the next posture begins 1 + ceil(hold_s / 0.02) ticks after the arrival."""
     it = drive((0.0,), (4.8, 0.0), hold_s=hold_s)
     assert targets(it, it.press(it.begin(B), B, 1), len(expected)) == expected
 
 
 def test_at_most_one_posture_a_tick() -> None:
-    """Rules 3: at most one posture a tick, also where postures are equal."""
+    """Rules 3: the target changes at most once a tick, also if all postures are equal."""
     it = drive((0.0,), (0.0, 0.0, 0.0))
     assert targets(it, it.press(it.begin(B), B, 1), 7) == [0, 1, 2, 0, 1, 2, 0]
 
 
 @pytest.mark.parametrize("hold_s", [0.02, 0.05, 0.09, 0.2, 0.33])
 def test_time(hold_s: float) -> None:
-    """Rules 3, "time": the next posture every hold_s exactly, also between two ticks."""
+    """With "time", posture n (from 0) begins n * hold_s after the key, rounded up to a tick."""
     it = drive((0.0,), (45.0, -45.0, 30.0), advance="time", hold_s=hold_s)
     expected = [k * 20_000 // round(hold_s * 1e6) % 3 for k in range(400)]
     assert targets(it, it.press(it.begin(B), B, 1), 400) == expected
 
 
 def test_time_does_not_wait_for_arrival() -> None:
-    """Rules 3: with "time" postures act as directions."""
+    """With "time", the next posture begins even if the joint has not arrived."""
     it = drive((0.0,), (45.0, -45.0), advance="time", hold_s=0.2)
     degrees = [math.degrees(s.angles[0]) for s in ticks(it, it.press(it.begin(B), B, 1), 40)]
     assert max(degrees) == pytest.approx(24.0)
@@ -130,7 +130,7 @@ def test_time_does_not_wait_for_arrival() -> None:
 
 @pytest.mark.parametrize(("advance", "hold_s"), [("reached", 0.0), ("time", 0.04)])
 def test_without_repeat_the_last_posture_holds(advance: str, hold_s: float) -> None:
-    """Rules 3: with repeat = false a sequence runs once; the same digit starts it again."""
+    """With repeat = false a sequence runs once; the same digit starts it again."""
     it = drive((0.0,), (2.4, 4.8), advance=advance, hold_s=hold_s, repeat=False)
     states = ticks(it, it.press(it.begin(B), B, 1), 300)
     assert [s.posture for s in states][-200:] == [1] * 200
@@ -141,7 +141,7 @@ def test_without_repeat_the_last_posture_holds(advance: str, hold_s: float) -> N
 
 @pytest.mark.parametrize(("advance", "hold_s"), [("reached", 0.0), ("time", 0.1)])
 def test_with_repeat_the_same_command_changes_nothing(advance: str, hold_s: float) -> None:
-    """Rules 3: with repeat = true the same level and digit again changes nothing."""
+    """Rules 3: pressing the same key again changes nothing while its sequence repeats."""
     it = drive((0.0,), (24.0, -24.0), advance=advance, hold_s=hold_s)
     state = pressed = it.press(it.begin(B), B, 1)
     for _ in range(60):
@@ -150,7 +150,7 @@ def test_with_repeat_the_same_command_changes_nothing(advance: str, hold_s: floa
 
 
 def test_the_other_level_is_another_command() -> None:
-    """Rules 3: the same digit on the other level is another command."""
+    """The same digit at the other level is a new command and starts its own sequence."""
     it = drive((0.0,), (4.8, 0.0), postures={0: 0.0, 1: 12.0})
     state = ticks(it, it.press(it.begin(B), B, 1), 3)[-1]
     assert state.posture == 1
@@ -163,7 +163,7 @@ def test_the_other_level_is_another_command() -> None:
 
 @pytest.mark.parametrize("advance", ["reached", "time"])
 def test_a_key_starts_at_its_first_posture_at_once(advance: str) -> None:
-    """Rules 3: a digit starts its sequence at the first posture in the tick it is pressed."""
+    """A new digit's sequence begins with its first posture, in the tick of the key."""
     it = drive((0.0,), (24.0, 0.0), (-24.0, 0.0), advance=advance, hold_s=0.1)
     state = ticks(it, it.press(it.begin(B), B, 1), 17)[-1]
     angle = state.angles[0]
@@ -173,7 +173,7 @@ def test_a_key_starts_at_its_first_posture_at_once(advance: str) -> None:
 
 
 def test_level_a_holds_its_posture() -> None:
-    """Rules 3, level A: every joint moves toward one posture at AngMin, and holds it."""
+    """Rules 3: at level A, every joint moves to one posture at AngMin and stays there."""
     it = drive(postures={0: 0.0, 5: 45.0})
     states = ticks(it, it.press(it.begin(A), A, 5), 100)
     assert [s.angles == posture(45.0) for s in states] == [False] * 18 + [True] * 82
@@ -182,7 +182,7 @@ def test_level_a_holds_its_posture() -> None:
 
 @pytest.mark.parametrize("level", [A, B])
 def test_key_0_is_the_start_posture_where_the_file_lacks_it(level: Level) -> None:
-    """Rules 3, silence is key 0: where a file has no key 0, the robot stands as it started."""
+    """If the file has no key 0, the robot takes its start posture instead."""
     it = drive(postures={3: 24.0}, start=12.0)
     state = ticks(it, it.press(it.begin(A), A, 3), 10)[-1]
     assert state.angles == posture(24.0)
@@ -191,7 +191,7 @@ def test_key_0_is_the_start_posture_where_the_file_lacks_it(level: Level) -> Non
 
 
 def test_begin_is_the_start_posture_with_key_0() -> None:
-    """Rules 4: a robot starts in its start posture, commanded angles equal to it, key 0."""
+    """A drive begins with key 0 and with commanded angles equal to the start posture."""
     it = drive((24.0,), (45.0,), start=12.0)
     state = it.begin(B)
     assert (state.level, state.digit, state.angles) == (B, 0, posture(12.0))
@@ -200,7 +200,7 @@ def test_begin_is_the_start_posture_with_key_0() -> None:
 
 @pytest.mark.parametrize("advance", ["reached", "time"])
 def test_who_is_told_to_stand_takes_one_posture(advance: str) -> None:
-    """Rules 3 and 4: on key 0 a robot settles, also where key 0 is a sequence (decision 15)."""
+    """Rules 3: a robot that stands holds the first posture of key 0, even if key 0 has several."""
     it = drive((24.0, -24.0), (45.0, 0.0), advance=advance, hold_s=0.04)
     walking = it.tick(it.press(it.begin(B), B, 1))
     for state in (it.begin(B), it.stand(walking), it.stand(it.press(walking, B, 0))):
@@ -212,7 +212,7 @@ def test_who_is_told_to_stand_takes_one_posture(advance: str) -> None:
 
 @pytest.mark.parametrize("repeat", [True, False])
 def test_key_0_of_who_stands_begins_its_sequence(repeat: bool) -> None:
-    """Rules 3, "time": a key 0 that is pressed is a command like any other, from its tick on."""
+    """Rules 3: if a standing robot's own key 0 is pressed, the whole sequence of key 0 begins."""
     it = drive((24.0, -24.0, 0.0), (0.0,), advance="time", hold_s=0.04, repeat=repeat)
     pressed = it.press(it.tick(it.begin(B)), B, 0)
     assert targets(it, pressed, 6) == [0, 0, 1, 1, 2, 2]
@@ -220,7 +220,7 @@ def test_key_0_of_who_stands_begins_its_sequence(repeat: bool) -> None:
 
 
 def test_which_keys_do_something() -> None:
-    """Rules 2: level A has the keys of Loco-data, level B those of LocoTra-data."""
+    """Rules 3: level A has the keys of Loco-data, and level B has those of LocoTra-data."""
     it = drive((0.0,), (45.0,), postures={0: 0.0, 9: 45.0})
     assert [digit for digit in range(-1, 12) if it.has(A, digit)] == [0, 9]
     assert [digit for digit in range(-1, 12) if it.has(B, digit)] == [0, 1]
@@ -262,7 +262,7 @@ def path(it: Drive, script: list[tuple[int, Level, int]]) -> list[DriveState]:
 def test_never_faster_than_ang_min_and_the_same_again(
     it: Drive, script: list[tuple[int, Level, int]]
 ) -> None:
-    """Rules 3: whatever is pressed, no angle moves faster than AngMin, and it is repeatable."""
+    """No angle moves faster than AngMin, and the same keys give the same angles again."""
     states = path(it, script)
     step = it._step_rad * (1 + 1e-8)
     for before, now in pairwise(states):
@@ -275,7 +275,7 @@ def test_never_faster_than_ang_min_and_the_same_again(
 def test_angles_end_exactly_at_the_target(
     it: Drive, script: list[tuple[int, Level, int]], digit: int
 ) -> None:
-    """Rules 3: a posture is reached exactly, with no rounding left over."""
+    """A posture is reached exactly, without a rounding error."""
     state = it.press(path(it, script)[-1], A, digit)
     needed = math.ceil(math.radians(300) / it._step_rad) + 1
     held = ticks(it, state, needed)[-1]

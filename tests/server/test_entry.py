@@ -1,4 +1,4 @@
-"""Weighing in: a robot and its gait files, checked together (rules 1 and 2)."""
+"""Weighing in: a robot and its gait files are checked together (rules 1 and 2)."""
 
 import pytest
 from stage import join
@@ -33,14 +33,14 @@ def edited(file: SentFile | None, old: str, new: str) -> SentFile:
 
 @pytest.mark.parametrize("robot", ["hexapod", "long-legs", "quadruped", "octopod"])
 def test_every_sample_is_let_in(robot: str) -> None:
-    """Rules 1: the sample robots with their sample gaits."""
+    """Every sample robot is accepted with its sample gait."""
     was: JoinSeat = join(0, robot=robot)
     entry = weigh_in(was.robot, was.postures, was.locomotion)
     assert entry.gait.joints == entry.robot.joints
 
 
 def test_one_gait_file_is_enough() -> None:
-    """Rules 2: a table for either level, or both."""
+    """One table, for either level, is enough; a robot without any table is refused."""
     assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, None).gait.locomotion is None
     assert weigh_in(HEXAPOD.robot, None, HEXAPOD.locomotion).gait.postures is None
     (mistake,) = mistakes_of()
@@ -48,13 +48,13 @@ def test_one_gait_file_is_enough() -> None:
 
 
 def test_a_gait_needs_keys_at_an_open_level() -> None:
-    """Rules 3: where only level B is open, postures alone would leave the robot standing."""
+    """If only level B is open, a robot with nothing but a Loco-data file is refused."""
     with pytest.raises(FileRefused, match=r"gait convert Loco-data\.xlsx LocoTra-data"):
         weigh_in(HEXAPOD.robot, HEXAPOD.postures, None, levels=(Level.LOCOMOTION,))
 
 
 def test_the_files_are_not_swapped() -> None:
-    """Rules 2: each file is the table that it is sent as."""
+    """A Loco-data file that is sent as LocoTra-data is a mistake, and so is the reverse."""
     found = [m.expected for m in mistakes_of(None, HEXAPOD.locomotion, HEXAPOD.postures)]
     assert found == [
         say("gait.loco-data"),
@@ -63,7 +63,7 @@ def test_the_files_are_not_swapped() -> None:
 
 
 def test_a_gait_for_another_robot() -> None:
-    """Rules 2: more or fewer angles than the robot has joints is a mistake."""
+    """A gait with fewer angles than the robot has joints is a mistake in both files."""
     other = join(0, robot="quadruped")
     assert {m.file for m in mistakes_of(None, other.postures, other.locomotion)} == {
         "Loco-data.txt",
@@ -72,7 +72,7 @@ def test_a_gait_for_another_robot() -> None:
 
 
 def test_angles_out_of_the_robots_own_range() -> None:
-    """Rules 2: nothing is clamped silently: a joint's range is the robot file's."""
+    """Rules 2: an angle outside the robot file's range is a mistake; it is not clamped silently."""
     narrow = edited(HEXAPOD.robot, "range_deg = [-150, 150]", "range_deg = [-45, 45]")
     assert weigh_in(narrow, HEXAPOD.postures, HEXAPOD.locomotion).robot.name == "Hexapod"
     far = edited(HEXAPOD.postures, "40", "45.5")
@@ -83,7 +83,7 @@ def test_angles_out_of_the_robots_own_range() -> None:
 
 
 def test_a_range_is_met_exactly() -> None:
-    """Rules 1: an angle at the end of the range is in it, whatever degrees become in radians."""
+    """An angle at the end of a joint's range is accepted, in spite of rounding to radians."""
     for end in ("127.8", "124.6", "120.1"):
         robot = edited(HEXAPOD.robot, "range_deg = [-150, 150]", f"range_deg = [-{end}, {end}]")
         gait = edited(HEXAPOD.postures, "40", end)
@@ -91,7 +91,7 @@ def test_a_range_is_met_exactly() -> None:
 
 
 def test_all_mistakes_of_all_files_at_once() -> None:
-    """The server checks the files and answers with all mistakes."""
+    """The mistakes of all three files are reported at once."""
     robot = edited(HEXAPOD.robot, "mass_kg = 0.125", "mass_kg = 7")
     postures = edited(HEXAPOD.postures, "45", "abc")
     locomotion = edited(HEXAPOD.locomotion, "45", "def")
@@ -100,13 +100,13 @@ def test_all_mistakes_of_all_files_at_once() -> None:
 
 
 def test_the_contests_limits() -> None:
-    """Rules 1: each limit is a setting of the contest."""
+    """Rules 1: a contest may lower the limits for robots, here that of the joints' speed."""
     (mistake,) = mistakes_of(None, HEXAPOD.postures, ang_min_deg_s=100.0)
     assert mistake.field == "drive.ang_min_deg_s"
 
 
 def test_a_legend_that_contradicts_the_columns_is_told_with_the_join() -> None:
-    """Rules 2: the columns count; the contestant hears it when she joins."""
+    """If a legend contradicts the columns, the columns count and the contestant gets a note."""
     assert HEXAPOD.postures is not None
     exchanged = HEXAPOD.postures.data.replace(b"R,F", b"x").replace(b"L,F", b"R,F")
     (note,) = weigh_in(HEXAPOD.robot, SentFile("mine.txt", exchanged), None).notes

@@ -29,7 +29,7 @@ pytestmark = pytest.mark.slow
 
 
 class Disk(NamedTuple):
-    """Where a running court records, and how to fill it."""
+    """The records of a running court, and functions that fill their disk and make room on it."""
 
     fill: Callable[[], None]
     make_room: Callable[[], None]
@@ -38,7 +38,7 @@ class Disk(NamedTuple):
 
 @contextmanager
 def limited(contest: Path, folder: Path) -> Iterator[Disk]:
-    """The system lets the court's files grow no more."""
+    """Give a court whose files the system can keep from growing (RLIMIT_FSIZE)."""
     records = folder / "recordings"
     with served(contest, records) as court:
 
@@ -56,7 +56,7 @@ def limited(contest: Path, folder: Path) -> Iterator[Disk]:
 
 @contextmanager
 def small(contest: Path, folder: Path) -> Iterator[Disk]:
-    """A disk of its own in memory, which another file fills."""
+    """Give a court that records on a disk of 16 MiB in memory, which another file can fill."""
     mount = folder / "disk"
     mount.mkdir()
     inside = ["unshare", "--user", "--map-root-user", "--mount", "--"]
@@ -83,19 +83,19 @@ def small(contest: Path, folder: Path) -> Iterator[Disk]:
 
 
 def read(folder: Path) -> Record:
-    """The one match of a folder."""
+    """Return the record of the only match in a folder."""
     return Record.read(next(folder.glob("*.live.mcap")))
 
 
 def is_given(those: Party, reason: str) -> bool:
-    """Whether a decision has this reason; an event comes after the frame of its beat."""
+    """Return whether an event gives this reason; the event comes after the frame of its beat."""
     given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
 
 @pytest.mark.parametrize("disk_of", [limited, small])
 def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: Path) -> None:
-    """The court publishes nothing unrecorded; with room again the match is halted and goes on."""
+    """While the disk is full no beat passes; when there is room again, the match is halted."""
     contest = write_contest(tmp_path / "contest.toml")
     seen: dict[int, bytes] = {}
     with ExitStack() as stack:
@@ -123,7 +123,7 @@ def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: P
             assert those.frame.seats[0].applied_seq < lost
             while (mail := frames.take()) is not None:
                 told = decode(mail.payload, Frame)
-                if told.phase == Phase.PLAYING:  # others are recorded where they change
+                if told.phase == Phase.PLAYING:  # in other phases only changed frames are recorded
                     seen[told.beat] = mail.payload
             recorded = dict(read(kept).frames)
             assert seen
@@ -158,16 +158,16 @@ os.fsync = sync
 sys.argv = sys.argv[5:]
 runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 """
-"""Runs the command that follows; while a file is there the disk fails, or takes some seconds."""
+"""A program that runs a command; while a flag file exists, `fsync` fails or takes seconds."""
 
 
 def sync(flag: Path, what: str) -> list[str]:
-    """Return the prefix of a court's command line."""
+    """Return the words before a court's command line that run it with the changed `fsync`."""
     return [sys.executable, "-c", SYNC, str(flag), what]
 
 
 def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -> None:
-    """The referee is told and may resume: only a power cut could lose a part of the record."""
+    """If `fsync` reports an error, the match is halted; after a resume it is not halted again."""
     contest, broken = write_contest(tmp_path / "contest.toml"), tmp_path / "broken"
     before = sync(broken, "fails")
     with served(contest, tmp_path / "recordings", before=before), party(contest) as those:
@@ -179,13 +179,13 @@ def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -
         those.until(lambda: said in those.trouble)
         those.decide(Resume(), Phase.PLAYING)
         resumed = those.frame.beat
-        # Two seconds, in which the disk was asked again and refused again.
+        # In these two seconds `fsync` was called again and failed again.
         those.until(lambda: those.frame.beat > resumed + 100)
         assert those.phase == Phase.PLAYING
 
 
 def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
-    """Where no file can be made, the match that is over stays, and it is said why."""
+    """If no file can be made for the next match, the last one stays open; the court says why."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     with served(contest, folder), party(contest) as those:
         those.decide(Abort())
@@ -201,7 +201,7 @@ def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
 
 
 def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
-    """The court stays in sight while the record of the match before goes to the disk."""
+    """While the last record goes to a slow disk, frames come less than a second apart."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     slow = tmp_path / "slow"
     slow.touch()
@@ -220,7 +220,7 @@ def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
 
 
 def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) -> None:
-    """That match is still over; the next start goes on with the one after it."""
+    """A court that is killed before a finished match is on disk goes on with the next match."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     slow = tmp_path / "slow"
     slow.touch()
@@ -237,7 +237,7 @@ def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) ->
 
 
 def test_a_court_does_not_open_on_a_full_disk(tmp_path: Path) -> None:
-    """It says why, and leaves no empty record."""
+    """A court does not start on a full disk; it says why and leaves no empty record."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     words = ["serve", "--contest", str(contest), "--recordings", str(folder)]
     done = subprocess.run(

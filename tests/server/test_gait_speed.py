@@ -1,4 +1,4 @@
-"""How fast the workshop's gait walks and turns, in a whole match of practice."""
+"""How fast the workshop's gait walks and turns, measured in matches of practice."""
 
 import math
 from functools import cache
@@ -19,13 +19,13 @@ RUN_S = 24.0
 
 
 class Walk(NamedTuple):
-    """The result of a walk."""
+    """The measured speeds of a walk."""
 
     forward_mm_s: float
     turn_deg_s: float
-    """+ is to the left."""
+    """Positive: the robot turns to the left."""
     upright: float
-    """Smallest z of the body's up."""
+    """Smallest z component of the body's upward unit vector; 1 is upright."""
 
 
 def practice(heading_deg: float, joins: JoinSeat | None = None) -> Stage:
@@ -36,7 +36,7 @@ def practice(heading_deg: float, joins: JoinSeat | None = None) -> Stage:
 
 
 def measure(stage: Stage, frames: list[np.ndarray]) -> Walk:
-    """From the frames of a walk, one a tick."""
+    """Return the speeds of a walk, from one pose a tick."""
     poses = np.array(frames, dtype=float)
     w, x, y, z = poses[:, 3:7].T
     yaw = np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
@@ -56,7 +56,7 @@ def pose(stage: Stage) -> np.ndarray:
 
 @cache
 def by_hand(digits: tuple[int, ...], heading_deg: float = 90.0) -> Walk:
-    """Level A: a key every 0.5 s, as at a keyboard."""
+    """Walk with level A: press a key every 0.5 s, as at a keyboard."""
     stage = practice(heading_deg)
     frames = [pose(stage)]
     for number, digit in zip(range(int(RUN_S / 0.5)), cycle(digits)):
@@ -69,7 +69,7 @@ def by_hand(digits: tuple[int, ...], heading_deg: float = 90.0) -> Walk:
 
 
 def by_sequence(joins: JoinSeat | None = None) -> Walk:
-    """Level B: one key that stands."""
+    """Walk with level B: press one key once."""
     stage = practice(90.0, joins)
     frames = [pose(stage)]
     stage.beat(key(0, FORWARD, level=B))
@@ -80,7 +80,7 @@ def by_sequence(joins: JoinSeat | None = None) -> Walk:
 
 
 def test_1234_walks_forward() -> None:
-    """Workshop 4-2, rules 2: 42 ± 3 mm/s, heading drift under 1 degree/s, upright."""
+    """Workshop 4-2: keys 1, 2, 3, 4 walk forward at 42 ± 3 mm/s, upright, nearly straight."""
     walk = by_hand((1, 2, 3, 4))
     assert walk.forward_mm_s == pytest.approx(42.0, abs=3.0)
     assert abs(walk.turn_deg_s) < 1.0
@@ -88,14 +88,14 @@ def test_1234_walks_forward() -> None:
 
 
 def test_4321_walks_back() -> None:
-    """Workshop 4-2, rules 2: back as fast as forward."""
+    """Workshop 4-2: keys 4, 3, 2, 1 walk back as fast as 1, 2, 3, 4 walk forward."""
     walk = by_hand((4, 3, 2, 1))
     assert walk.forward_mm_s == pytest.approx(-42.0, abs=3.0)
     assert abs(walk.turn_deg_s) < 1.0
 
 
 def test_5678_turns_right_and_8765_left() -> None:
-    """Workshop 4-2, rules 2: 15 ± 2 degrees/s, nearly on the spot."""
+    """Workshop 4-2: keys 5 to 8 turn right at 15 ± 2 degrees/s, and 8 to 5 turn left."""
     right, left = by_hand((5, 6, 7, 8)), by_hand((8, 7, 6, 5))
     assert right.turn_deg_s == pytest.approx(-15.0, abs=2.0)
     assert left.turn_deg_s == pytest.approx(15.0, abs=2.0)
@@ -104,27 +104,27 @@ def test_5678_turns_right_and_8765_left() -> None:
 
 
 def test_0_stands() -> None:
-    """Rules 2: 0 stands."""
+    """Key 0 lets the robot stand."""
     walk = by_hand((0,))
     assert abs(walk.forward_mm_s) < 0.5
     assert abs(walk.turn_deg_s) < 0.1
 
 
 def test_every_heading_is_as_fast() -> None:
-    """Rules 4: nobody is favoured; elliptic cones have no direction (physics 1)."""
+    """A robot walks equally fast in all headings, thanks to elliptic cones (docs/facts.md 2)."""
     speeds = [by_hand((1, 2, 3, 4), heading).forward_mm_s for heading in (90.0, 27.0)]
     assert speeds[0] == pytest.approx(speeds[1], abs=0.3)
 
 
 def test_reached() -> None:
-    """Rules 3: level B with "reached" walks at about 57 mm/s."""
+    """At level B with "reached" the sample gait walks at 57 ± 4 mm/s."""
     walk = by_sequence()
     assert walk.forward_mm_s == pytest.approx(57.0, abs=4.0)
     assert abs(walk.turn_deg_s) < 1.0
 
 
 def test_time() -> None:
-    """Rules 3: level B with "time", 0.20 s, walks at about 98 mm/s."""
+    """At level B with "time" and 0.2 s a posture, the sample gait walks at 98 ± 5 mm/s."""
     text = find_robot("hexapod")[1].decode()
     assert 'advance = "reached"' in text
     text = text.replace('advance = "reached"', 'advance = "time"').replace(

@@ -1,4 +1,4 @@
-"""Health verdict: measurements, advice, and its place in the record."""
+"""The health verdict: what it measures, when it advises a replay, and how the record keeps it."""
 
 import json
 from collections import Counter
@@ -44,7 +44,7 @@ GOOD = HealthVerdict(
 
 @dataclass
 class Held:
-    """A match in PLAYING and what measures it; its wall clock is the test's."""
+    """A match in PLAYING with its `MatchHealth`; the test sets the wall clock."""
 
     stage: Stage = field(default_factory=lambda: Stage("othello", QUICK).to_playing())
     speed: float = 1.0
@@ -54,7 +54,7 @@ class Held:
     refused: Counter[str] = field(default_factory=Counter)
 
     def __post_init__(self) -> None:
-        self.refused["flood"] = 7  # of the match before
+        self.refused["flood"] = 7  # refused before this match: must not be in its verdict
         self.health = MatchHealth(
             self.stage.match, HealthLimits(), self.doors(), speed=self.speed, before=self.before
         )
@@ -86,25 +86,25 @@ def codes(verdict: HealthVerdict) -> list[str]:
 
 
 def lost(verdict: HealthVerdict) -> list[object]:
-    """The seats whose commands got lost, as the advice has them."""
+    """Return the seats whose commands got lost, according to the advice."""
     reasons = [why for why in verdict.advice if isinstance(why, Phrase)]
     return [why.values["seat"] for why in reasons if why.code == "health.lost-commands"]
 
 
 def test_a_match_that_is_held_well() -> None:
-    """50 beats a second, none late, all repeats: nothing is advised."""
+    """With 50 beats a second, none late, and all repeats heard, no replay is advised."""
     held = Held()
     held.seconds(4)
     verdict = held.verdict
     assert (verdict.real_time_factor, verdict.slow_beats, verdict.faults) == (1.0, 0, 0)
-    assert verdict.played_beats == 199  # the first begins nothing: nobody waited for it
+    assert verdict.played_beats == 199  # the first beat of PLAYING is not counted
     assert held.left.expected == 30
     assert held.left.arrived == 30
     assert verdict.advice == ()
 
 
 def test_only_the_time_that_is_played_counts() -> None:
-    """A join may cost a beat before the start, and in HALTED nobody waits."""
+    """Slow beats before the start and in HALTED do not change the verdict."""
     held = Held(Stage("othello", QUICK))
     held.beat(took_s=3.0, late_s=2.98)
     held.stage.to_playing()
@@ -124,7 +124,7 @@ def test_only_the_time_that_is_played_counts() -> None:
 
 @pytest.mark.parametrize("speed", [1.0, 4.0])
 def test_slow_beats_and_the_real_time_factor(speed: float) -> None:
-    """A stall of 0.1 s in each second is 1/1.08 of real time, at any speed."""
+    """One stall of 0.1 s each second gives a real-time factor of 1/1.08, at any court's speed."""
     held = Held(speed=speed)
     held.beat(took_s=0.02 / speed)
     for beat in range(250):
@@ -137,19 +137,22 @@ def test_slow_beats_and_the_real_time_factor(speed: float) -> None:
 
 
 def test_repeats_of_a_lossy_link() -> None:
-    """Link loss: four of ten repeats are lost; more than ten a second replace none."""
+    """A seat that is heard 6 times a second instead of 10 has lost commands.
+
+    More than 10 a second later do not make up for the lost ones.
+    """
     held = Held()
     held.seconds(1)
     held.seconds(10, repeats=6)
     assert held.left.arrived / held.left.expected == pytest.approx(0.6, abs=0.05)
     assert "left" in lost(held.verdict)
     missed = held.left.expected - held.left.arrived
-    held.seconds(10, repeats=60)  # a bot
+    held.seconds(10, repeats=60)  # a bot sends as often as this
     assert held.left.expected - held.left.arrived <= missed + 4
 
 
 def test_repeats_that_come_a_little_early_or_late() -> None:
-    """A second has 9 repeats and the next 11: none was lost."""
+    """If one second has 9 repeats and the next has 11, none is counted as lost."""
     held = Held()
     for repeats in (10, 9, 11, 9, 11, 9, 11, 10):
         held.seconds(1, repeats)
@@ -157,7 +160,7 @@ def test_repeats_that_come_a_little_early_or_late() -> None:
 
 
 def test_repeats_of_a_match_that_is_often_halted() -> None:
-    """A halt costs no repeat: a second begins with play, and one that is cut short counts none."""
+    """If a match is often halted, no repeat counts as lost, because only whole seconds count."""
     held = Held()
     for _ in range(6):
         for beat in range(60):
@@ -169,7 +172,7 @@ def test_repeats_of_a_match_that_is_often_halted() -> None:
 
 
 def test_who_left_is_missed_by_nobody() -> None:
-    """Rules 4: if a team leaves in play, its robot stands, and its link has no fault."""
+    """The link of a team that has left the match is not counted as lossy."""
     held = Held()
     held.seconds(2)
     expected = held.left.expected
@@ -181,7 +184,7 @@ def test_who_left_is_missed_by_nobody() -> None:
 
 
 def test_silences() -> None:
-    """How often and how long a seat was silent while the match was played."""
+    """The verdict has how often and how long each seat was silent in PLAYING."""
     held = Held()
     for _ in range(2):
         held.beat(SilentSeat(LEFT))
@@ -194,7 +197,7 @@ def test_silences() -> None:
 
 
 def test_refusals_of_this_match() -> None:
-    """The verdict counts refusals of the doors and of the rules since the match began."""
+    """The verdict counts refusals by the court's doors and by the rules since the match began."""
     held = Held()
     held.beat()
     held.refused.update({"flood": 3, "bad-seal": 1})
@@ -203,7 +206,7 @@ def test_refusals_of_this_match() -> None:
 
 
 def test_faults_of_physics() -> None:
-    """Each stop of physics is counted, and one is enough for the advice."""
+    """A fault of physics is counted, and a single one is enough for advice."""
     script = Script(faults={3: Fault(LEFT, say("fault.velocity"))})
     held = Held(Stage("othello", QUICK, script=script).to_playing())
     held.seconds(1)
@@ -212,7 +215,7 @@ def test_faults_of_physics() -> None:
 
 
 def test_a_killed_court_goes_on_counting() -> None:
-    """Measurements from before the kill count too."""
+    """A restarted court adds its measurements to those from before the kill."""
     first = Held()
     first.beat()
     first.beat(SilentSeat(LEFT))
@@ -253,7 +256,7 @@ LINK = GOOD.seats[0]
     ids=["factor", "slow", "worst", "faults", "resumptions", "silent", "repeats"],
 )
 def test_each_limit_has_its_phrase(held: dict[str, object], why: Phrase) -> None:
-    """Beyond a contest's limits the referee is told "replay advised", and why."""
+    """For each limit of the contest that is exceeded, the advice has one phrase."""
     verdict = msgspec.structs.replace(GOOD, **held)
     assert list(advice(GOOD, HealthLimits())) == []
     assert list(advice(verdict, HealthLimits())) == [why]
@@ -261,7 +264,7 @@ def test_each_limit_has_its_phrase(held: dict[str, object], why: Phrase) -> None
 
 
 def test_advice_is_an_event_of_the_match() -> None:
-    """It enters as an input, so that a replay has the same log."""
+    """Advice enters the match as an input, so that a replay has the same log."""
     stage = Stage("othello", QUICK).to(Phase.FINISHED)
     stage.beat(Advice(("a", "b")))
     stage.beat(Advice(()))
@@ -274,7 +277,7 @@ def test_advice_is_an_event_of_the_match() -> None:
 
 @pytest.mark.slow
 def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
-    """The verdict is beside the result, not in it, because `replay verify` has no wall clock."""
+    """The verdict is not part of the result, because the result must follow from the inputs."""
     match = Match(setup("othello", QUICK), World)
     health = MatchHealth(match, HealthLimits(), [Door(0, {})] * 2)
     journal = Journal(match, tmp_path, measure=health.measure)
@@ -303,7 +306,7 @@ def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_simulated_match_has_none(tmp_path: Path) -> None:
-    """It ran headless: no clock, no link, nothing to be late."""
+    """A simulated match has no verdict, because it has neither a wall clock nor links."""
     made = setup("othello", {"match": {"duration_s": 0.5}})
     ground = arenas.load("othello")
     simulate(made, [player(ground, seat, "straight") for seat in (0, 1)], tmp_path)

@@ -1,4 +1,4 @@
-"""A court is killed in every phase of a match, at random moments (benchmarks/kills.py)."""
+"""A court is killed at random moments in every phase of a match (benchmarks/kills.py)."""
 
 import subprocess
 import sys
@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.mark.long
 def test_a_court_may_be_killed_in_any_phase() -> None:
-    """The match comes back as it should; nothing that was shown or answered is lost."""
+    """A killed court's match comes back in the right phase, without loss of what was shown."""
     command = [sys.executable, "-m", "benchmarks.kills", "--kills", "24"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=900)
     assert done.returncode == 0, done.stdout + done.stderr

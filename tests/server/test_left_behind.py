@@ -1,4 +1,4 @@
-"""A court goes on only with its own match, and only if it did not end it."""
+"""A court goes on only with its own match, and only if the match was not ended."""
 
 import os
 import signal
@@ -32,14 +32,14 @@ pytestmark = pytest.mark.slow
 
 OTHELLO = arenas.load("othello", QUICK)
 TEN = "20260501-100000"
-"""Wall time of a match that comes before those of `LATER`."""
+"""Wall time at which the earlier matches were opened."""
 LATER = "20260501-100500"
 
 
 def held(
     folder: Path, court: str = "main", opened: str = TEN, number: int = 1, arena: str = "othello"
 ) -> Journal:
-    """Leave a match of a court in PLAYING, or in READY if nobody has to start it."""
+    """Play a match to PLAYING (practice: to READY), and return its open journal."""
     made = msgspec.structs.replace(
         setup(arena, QUICK), match_id=f"{opened}-{court}-{number:03d}", court=court, match=number
     )
@@ -57,7 +57,7 @@ def held(
 def killed(
     folder: Path, court: str = "main", opened: str = TEN, number: int = 1, arena: str = "othello"
 ) -> str:
-    """A match that was left by its court; returns its id."""
+    """Play a match and leave it as a killed court does; return its id."""
     journal = held(folder, court, opened, number, arena)
     journal.leave()
     return journal.match.setup.match_id
@@ -69,14 +69,14 @@ def taken_up(folder: Path, court: str, arena: Arena = OTHELLO) -> str | None:
 
 
 def test_a_court_does_not_take_up_the_match_of_another(tmp_path: Path) -> None:
-    """Its name may end in the same way."""
+    """A court named "final" does not go on with a match of "semi-final"."""
     match_id = killed(tmp_path, "semi-final")
     assert taken_up(tmp_path, "final") is None
     assert taken_up(tmp_path, "semi-final") == match_id
 
 
 def test_the_packed_match_of_another_court_hides_none(tmp_path: Path) -> None:
-    """Nor does a court whose name begins or ends in the same way."""
+    """Newer matches of courts with similar names do not hide a court's own unfinished match."""
     match_id = killed(tmp_path, "final")
     for court in ("semi-final", "final-b", "zoo"):
         (tmp_path / f"{LATER}-{court}-002.mcap").touch()
@@ -86,14 +86,14 @@ def test_the_packed_match_of_another_court_hides_none(tmp_path: Path) -> None:
 
 
 def test_match_1000_goes_on(tmp_path: Path) -> None:
-    """The number of a match may have more than three digits; 1000 comes after 999."""
+    """Match 1000 counts as newer than match 999."""
     (tmp_path / f"{TEN}-main-999.mcap").touch()
     match_id = killed(tmp_path, number=1000)
     assert taken_up(tmp_path, "main") == match_id
 
 
 def test_a_renamed_record_is_told(tmp_path: Path) -> None:
-    """Its segments would go on under the name that is in it: refused, and nothing is changed."""
+    """A record whose files were renamed is refused, because new segments would get the old name."""
     match_id = killed(tmp_path, "semi-final")
     path = files.segment_path(tmp_path, match_id, 0)
     path.rename(files.segment_path(tmp_path, f"{TEN}-final-001", 0))
@@ -104,7 +104,7 @@ def test_a_renamed_record_is_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("there", "here"), [("othello", "practice"), ("practice", "othello")])
 def test_a_match_of_another_arena_is_refused(there: str, here: str, tmp_path: Path) -> None:
-    """Both courts are called main where nobody names them: neither takes over the other's."""
+    """A court refuses to go on with a match of another arena, and does not change its record."""
     match_id = killed(tmp_path, arena=there)
     path = files.segment_path(tmp_path, match_id, 0)
     data = path.read_bytes()
@@ -116,7 +116,7 @@ def test_a_match_of_another_arena_is_refused(there: str, here: str, tmp_path: Pa
 
 
 def test_a_match_of_other_seats_is_refused(tmp_path: Path) -> None:
-    """Who holds a token of the court could not steer its robot."""
+    """A match whose seats have other names is refused: no token of the court would open them."""
     killed(tmp_path)
     renamed = [seat | {"id": new} for seat, new in zip(OTHELLO.settings["seat"], "ab", strict=True)]
     other = arenas.load("othello", arenas.merge(QUICK, {"seat": renamed}))
@@ -125,7 +125,7 @@ def test_a_match_of_other_seats_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_match_that_its_court_ended_is_over(tmp_path: Path) -> None:
-    """Also while its segments wait to be packed, or could not be: docs/operations.md, SIGTERM."""
+    """A match that its court ended is over, even while its segments are not packed yet."""
     journal = held(tmp_path)
     journal.close()
     assert unfinished(tmp_path, "main", OTHELLO) is None
@@ -138,7 +138,7 @@ def test_a_match_that_its_court_ended_is_over(tmp_path: Path) -> None:
 
 
 def test_a_match_that_went_on_loses_nothing_to_a_packer(tmp_path: Path) -> None:
-    """A packer that is late finds the segment that came after those it has."""
+    """A resumed match can't be packed while it is on; when it is over, all segments are packed."""
     first = held(tmp_path)
     first.leave()
     match_id = first.match.setup.match_id
@@ -164,7 +164,7 @@ def test_a_match_that_went_on_loses_nothing_to_a_packer(tmp_path: Path) -> None:
 
 
 def test_a_match_that_a_court_took_up_is_not_taken_up_twice(tmp_path: Path) -> None:
-    """Nobody holds its first segment, and the running court holds its second."""
+    """A second court does not go on with a match that a running court has resumed."""
     killed(tmp_path)
     left = unfinished(tmp_path, "main", OTHELLO)
     assert left is not None
@@ -199,7 +199,7 @@ else:
 sys.argv = sys.argv[5:]
 runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 """
-"""Runs the command that follows; a beat, or starting a process, fails while a file is there."""
+"""A program that runs a command; while a flag file exists, beats or new processes fail."""
 
 
 def failing(flag: Path, what: str) -> list[str]:
@@ -207,7 +207,7 @@ def failing(flag: Path, what: str) -> list[str]:
 
 
 def packed(folder: Path, *numbers: str) -> list[Path]:
-    """Packed files of matches of these numbers, when there is nothing but them."""
+    """Return a folder's packed files, once it holds those of these matches and nothing else."""
     end_s, wanted = time.monotonic() + WAIT_S, sorted(f"-{number}.mcap" for number in numbers)
     while sorted(path.name[-9:] for path in folder.iterdir()) != wanted:
         assert time.monotonic() < end_s, list(folder.iterdir())
@@ -216,7 +216,7 @@ def packed(folder: Path, *numbers: str) -> list[Path]:
 
 
 def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
-    """As it outlives a kill: the next start goes on with it, halted; then it is packed whole."""
+    """If a court ends by an error, the next start goes on with its match, which is halted."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     flag = tmp_path / "flag"
     with ExitStack() as stack:
@@ -242,7 +242,7 @@ def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
 
 
 def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
-    """The record is packed when the next match ends or when the court starts again."""
+    """A court that can't start a packer plays on; the records are packed after the next start."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     flag = tmp_path / "flag"
     with ExitStack() as stack:
@@ -270,7 +270,7 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
 
 
 def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:
-    """SIGTERM in PLAYING: it is packed, and the next start opens another, however early."""
+    """SIGTERM in PLAYING ends the match, so the next start opens another one, however early."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     with served(contest, folder) as first, party(contest) as those:
         those.play()
@@ -285,5 +285,5 @@ def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:
 
 
 def ended(folder: Path) -> bool:
-    """Whether all matches of a folder are over."""
+    """Return whether all matches of a folder are over."""
     return all(is_over(*match) for match in court_matches(folder, "main").items())

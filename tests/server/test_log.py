@@ -1,4 +1,4 @@
-"""The log of a match and its answers, phrase for phrase (docs/protocol.md, Event)."""
+"""The log of a match and its answers to inputs, phrase by phrase (docs/protocol.md, Event)."""
 
 from typing import Any
 
@@ -32,9 +32,9 @@ from lacoc_shared.words import Phrase, faults, render, say
 
 P = Phase
 FLIP = {2: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}}
-"""From the middle of one's own disc c2r2 to the other's c3r2."""
+"""The left robot goes from the middle of its own disc c2r2 to the right seat's disc c3r2."""
 Said = tuple[str, int, Phrase, dict[str, Any]]
-"""kind, seat, said, data"""
+"""An event as (kind, seat, said, data)."""
 
 
 def said(events: tuple[Event, ...]) -> list[Said]:
@@ -62,7 +62,7 @@ BROKE = say("fault.contacts")
 
 
 HEXAPODS, WITH_A_QUADRUPED = "3d16d9075b90decf", "280170d9694dcef7"
-"""Names that the scripted physics gives its models."""
+"""Model hashes that the scripted physics gives to these pairs of robots."""
 STORY: tuple[tuple[tuple[Input, ...], list[Said]], ...] = (
     (
         (join(LEFT), join(RIGHT, robot="quadruped")),
@@ -217,7 +217,7 @@ STORY: tuple[tuple[tuple[Input, ...], list[Said]], ...] = (
 
 
 def test_the_log_of_a_match() -> None:
-    """docs/protocol.md, Event: each event with its kind, seat, phrase and particulars."""
+    """A whole match logs each event with its kind, seat, phrase and data."""
     script = Script(poses=dict(FLIP), faults={5: Fault(RIGHT, BROKE)})
     stage = Stage(overrides={"match": {"countdown_s": 0.04}}, script=script)
     for inputs, expected in STORY:
@@ -233,7 +233,7 @@ def test_the_log_of_a_match() -> None:
 
 
 def test_what_a_fault_in_ready_leaves_in_the_log() -> None:
-    """Rules 4, design "Failure policy": both have to say ready again."""
+    """A fault of physics in READY is logged, and the match goes back to LOBBY (docs/facts.md 3)."""
     stage = Stage(script=Script(faults={3: Fault(NOBODY, BROKE)})).to_ready()
     stage.until(P.LOBBY)
     told = [event for beat in stage.beats[2:] for event in beat.events]
@@ -244,7 +244,7 @@ def test_what_a_fault_in_ready_leaves_in_the_log() -> None:
 
 
 def test_what_the_court_measured_in_the_log() -> None:
-    """A replay is advised with its reasons, or not any more."""
+    """The log says that a replay is advised, with the reasons, and later that it no longer is."""
     stage = Stage(overrides=QUICK).to(P.PLAYING)
     assert stage.match.advice == ()
     reasons = (say("health.late-beat", late_ms=80, most_ms=60), "a text of an old record")
@@ -258,7 +258,7 @@ def test_what_the_court_measured_in_the_log() -> None:
 
 
 def test_what_an_abort_and_a_draw_leave_in_the_log() -> None:
-    """Rules 4, `abort`: the match is void; workshop 5-1 rule 7: equal is a draw."""
+    """Equal scores are logged as a draw (workshop 5-1 rule 7); an abort makes the match VOID."""
     stage = Stage(overrides=QUICK).to(P.FINISHED)
     assert said(stage.beats[-1].events)[-1] == (
         "result",
@@ -274,7 +274,7 @@ def test_what_an_abort_and_a_draw_leave_in_the_log() -> None:
 
 
 def test_what_a_take_back_leaves_in_the_log() -> None:
-    """Rules 4, take-back: the decision with what vanished, then what appeared, judged again."""
+    """A take-back logs the decision with the vanished events, then the events that are new."""
     script = Script(poses={5: {LEFT: (-0.8, -0.8)}, 6: {LEFT: (0.0, 0.0)}, 7: {LEFT: (-0.8, -0.8)}})
     stage = Stage("flag-strike", QUICK, script=script).to_playing()
     stage.run(8)
@@ -308,7 +308,7 @@ def test_what_a_take_back_leaves_in_the_log() -> None:
 
 
 def test_a_sheet_of_a_robot_that_does_not_walk() -> None:
-    """Rules 3: practice opens both levels, and a file for one of them is enough."""
+    """In practice a robot needs no LocoTra-data file; its sheet then has no keys of level B."""
     whole = join(LEFT)
     stage = Stage("practice")
     stage.beat(msgspec.structs.replace(whole, locomotion=None))
@@ -338,12 +338,12 @@ def test_a_sheet_of_a_robot_that_does_not_walk() -> None:
     ],
 )
 def test_answers(at: Phase, item: Input, answer: Done | Refusal) -> None:
-    """Rules 4: what is refused says why."""
+    """Each input is answered with Done, or with a refusal that says why."""
     assert Stage(overrides=QUICK).to(at).send(item) == answer
 
 
 def test_answers_about_empty_seats() -> None:
-    """Rules 4: seats are taken in LOBBY; a later contestant plays in the next match."""
+    """An empty seat can't be made ready, and nobody can join it while a match is on."""
     stage = Stage(overrides=QUICK)
     nobody = Refusal(say("refused.nobody-joined", seat="right"))
     assert stage.send(ReadySeat(RIGHT, True)) == nobody
@@ -361,7 +361,7 @@ def test_answers_about_empty_seats() -> None:
 
 
 def test_a_robot_is_weighed_by_the_contest_and_the_arena() -> None:
-    """Rules 1 and 3: the contest limits robots, the arena says which levels need a file."""
+    """A robot is refused if it breaks a limit of the contest, or lacks keys for an open level."""
     light = msgspec.structs.replace(setup("othello"), limits={"mass_max_kg": 0.4})
     stage = Stage()
     stage.match = Match(light, lambda arena, entries: ScriptedPhysics(arena, entries, Script()))
@@ -373,7 +373,7 @@ def test_a_robot_is_weighed_by_the_contest_and_the_arena() -> None:
 
 
 def test_a_result_says_all() -> None:
-    """Rules 4: what is computed, with scores, clock, reason and what proves it."""
+    """The result has teams, scores, winner, reason, clock, and the digest that proves it."""
     stage = Stage(overrides=QUICK, script=Script(poses=dict(FLIP))).to(P.PLAYING)
     assert stage.match.result().computed == ""
     stage.decide(d.Clock(-3600.0))
@@ -397,7 +397,7 @@ def test_a_result_says_all() -> None:
 
 
 def test_a_frame_says_all() -> None:
-    """docs/protocol.md, Frame: self-contained, so that a late comer needs only one."""
+    """A frame has all fields that docs/protocol.md names; a client needs no earlier frame."""
     stage = Stage(overrides=QUICK)
     first = stage.beat()
     assert first.sheet_changed
@@ -425,7 +425,7 @@ def test_a_frame_says_all() -> None:
 
 
 def test_a_sheet_says_what_frames_leave_out() -> None:
-    """docs/protocol.md, Sheet: everything about a match that does not change in play."""
+    """The sheet has everything about a match that does not change during play."""
     stage = Stage("flag-strike", QUICK)
     empty = stage.beat(join(LEFT))
     assert empty.sheet_changed

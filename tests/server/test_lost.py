@@ -1,7 +1,7 @@
-"""Contestants that are lost, and watchers that freeze: real processes, real cables.
+"""Contestants that are lost and watchers that freeze, as real processes on real connections.
 
-Rules 3: a robot whose controller is not heard for a second stands, and its seat stays its own.
-What is counted is counted in beats of the court, so that a busy machine changes no verdict.
+Rules 3: a robot whose controller is not heard for a second stands, and keeps its seat.
+Times are counted in beats of the court, so that a busy machine does not change the result.
 """
 
 import os
@@ -35,11 +35,11 @@ from lacoc_shared.words import render
 pytestmark = pytest.mark.slow
 
 LINK_S = 3.0
-"""A link that says nothing for so long may be given up."""
+"""Zenoh may close a connection after this long without a message [s]."""
 WATCHED_BEATS = 600
-"""Longer than the ten seconds after which a connection that says nothing is given up."""
+"""12 s: longer than a silent connection could stop all others (docs/facts.md 5)."""
 WAITED_MS = 2000.0
-"""A court that waits for a frozen watcher is this late; a busy machine is not."""
+"""A court that waits for a frozen watcher is at least this late; a merely busy one is not."""
 
 
 @pytest.fixture
@@ -49,11 +49,11 @@ def hall(tmp_path: Path) -> Iterator[Hall]:
 
 
 def test_a_killed_controller_is_taken_back_in_any_phase(hall: Hall) -> None:
-    """By its own token, from another process; by no other token."""
+    """In any phase, the seat of a killed controller can be taken back with its own token only."""
     with open_client([hall.court.address()]) as session:
 
         def lose_and_guess(bot: subprocess.Popen[bytes]) -> None:
-            """Kill the left seat's program; others try to take the seat."""
+            """Kill the left seat's program; then try to take its seat with four wrong tokens."""
             hall.loses(bot.kill)
             for token in (hall.court.seat["right"].token, hall.court.referee.token, "guess", ""):
                 thief = Controller(session, "main", "left", token, "Thieves")
@@ -106,7 +106,10 @@ def test_a_killed_controller_is_taken_back_in_any_phase(hall: Hall) -> None:
 
 
 def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
-    """SIGSTOP: its connection stays, and it says nothing. The record has the same beat."""
+    """The robot of a frozen controller (SIGSTOP) stands, and walks again after SIGCONT.
+
+    The record has the silence at the same beat as the event.
+    """
     bot = hall.bot("left")
     hall.bot("right")
     hall.play()
@@ -126,7 +129,7 @@ def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
 def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
     hall: Hall, answer_s: float
 ) -> None:
-    """Too late, or lost with the link: the referee hears that, and not that it was refused."""
+    """If a decision's answer is missing, the referee is told so, and it is done at most once."""
     hall.bot("left")
     hall.bot("right")
     hall.play()
@@ -146,7 +149,7 @@ def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
 
 
 def test_a_pulled_cable(hall: Hall) -> None:
-    """A silent link is noticed, and the seat comes back, also after the connection was closed."""
+    """If a link goes silent, or is cut, the robot stands; the controller comes back by itself."""
     with SlowLink(hall.court.address()) as link:
         hall.bot("left", link.address)
         hall.bot("right")
@@ -165,7 +168,7 @@ def test_a_pulled_cable(hall: Hall) -> None:
 
 @pytest.mark.long
 def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
-    """Keys over a bad link still work: they are late, but the seat never counts as lost."""
+    """On a link with delay, jitter and loss, keys take effect and the seat is never silent."""
     with SlowLink(hall.court.address(), delay_s=0.05, jitter_s=0.04, loss=0.03) as link:
         hall.bot("left", link.address)
         hall.bot("right")
@@ -177,9 +180,9 @@ def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
 
 @pytest.mark.long
 def test_a_real_cable(tmp_path: Path) -> None:
-    """The kernel's own link goes down, and comes up again.
+    """When the kernel's own link goes down and up, the robot stands and walks again.
 
-    In a process with a network of its own: a browser gives up what it loads when one comes.
+    It runs in another process, because a new network interrupts the page loads of a browser.
     """
     with ProcessPoolExecutor(1, get_context("spawn")) as apart:
         if not apart.submit(pull_a_real_cable, tmp_path).result():
@@ -187,7 +190,7 @@ def test_a_real_cable(tmp_path: Path) -> None:
 
 
 def frames_of(hall: Hall) -> int:
-    """Return how many frames a spectator gets in a number of beats."""
+    """Return how many frames a spectator receives in 600 beats."""
     first, frames = hall.frame.beat, 0
     while hall.frame.beat < first + WATCHED_BEATS:
         frames += hall.view.wait_frame(WAIT_S) is not None
@@ -196,7 +199,7 @@ def frames_of(hall: Hall) -> int:
 
 @pytest.mark.long
 def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
-    """A spectator, a gateway and a referee's program stop; the court and others go on as before."""
+    """A frozen spectator, gateway or referee's program delays neither the court nor others."""
     hall.bot("left")
     hall.bot("right")
     where = ("--contest", str(hall.contest), "--court", "main")
@@ -216,7 +219,7 @@ def test_frozen_watchers_hurt_nobody(hall: Hall) -> None:
         os.kill(process.pid, signal.SIGCONT)
     hall.walks()
     hall.walks(1)
-    # A busy machine has it look at fewer; the court drops for the frozen ones alone.
+    # On a busy machine the spectator may receive fewer; the court drops none of its frames.
     assert frames >= 0.5 * before
     assert hall.health.worst_late_ms <= late_ms + WAITED_MS
     assert hall.silences() == []

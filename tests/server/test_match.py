@@ -37,12 +37,12 @@ from lacoc_shared.words import say
 
 P = Phase
 LOCK_TICKS = 250
-"""5 s (rules 4, [x])."""
+"""5 s of the clock, for which keys are refused after [x] (rules 3)."""
 BOTH_LEVELS = {"match": {"levels": ["A", "B"], "countdown_s": 0.02}}
 
 
 def at(frame: Frame, seat: int) -> tuple[float, ...]:
-    """A hexapod's x, y, z, quaternion and angles."""
+    """Return a hexapod's x, y, z, quaternion and joint angles from a frame."""
     return struct.unpack_from("<25f", frame.poses, seat * 100)
 
 
@@ -58,7 +58,7 @@ def playing(
 
 
 def test_x_puts_the_robot_back_as_it_started() -> None:
-    """Rules 4, [x]: start place and posture, commanded angles equal to it, at rest, key 0."""
+    """Rules 3: [x] puts the robot back at its start place, in its start posture and at rest."""
     stage = Stage.real(overrides=QUICK).to(P.PLAYING)
     fresh = at(stage.beats[1].frame, LEFT)  # its first tick in READY
     stage.beat(key(LEFT, FORWARD))
@@ -77,7 +77,7 @@ def test_x_puts_the_robot_back_as_it_started() -> None:
 
 
 def test_x_keeps_the_level() -> None:
-    """Rules 4, [x]: key 0 at the same level."""
+    """[x] keeps the level of the seat, also if the command names the other level."""
     stage = playing(**BOTH_LEVELS)
     for seat, level in ((LEFT, B), (RIGHT, A)):
         stage.beat(key(seat, 3, level=level))
@@ -86,7 +86,7 @@ def test_x_keeps_the_level() -> None:
 
 
 def test_x_locks_for_5_s_of_clock() -> None:
-    """Rules 4, [x]: x and digits are refused for 5 s of clock, and taken again then."""
+    """Rules 3: after [x], digits and [x] are refused for 5 s of the clock."""
     stage = playing(ticks=3)
     stage.beat(key(LEFT, X, seq=1))
     assert stage.frame.seats[LEFT].locked_ticks == LOCK_TICKS - 1
@@ -104,7 +104,7 @@ def test_x_locks_for_5_s_of_clock() -> None:
 
 
 def test_the_lock_is_a_setting() -> None:
-    """Rules 4, [x]: 5 s is a setting; 0 in practice, where x and then a digit work at once."""
+    """The 5 s after [x] are a setting; it is 0 in practice, where a digit works at once."""
     stage = playing(match={"restart_freeze_s": 0.1, "countdown_s": 0.02})
     stage.beat(key(LEFT, X))
     stage.run(4)
@@ -118,7 +118,7 @@ def test_the_lock_is_a_setting() -> None:
 
 
 def test_x_comes_before_the_digit_of_its_tick() -> None:
-    """Rules 3: in one tick a seat's x is applied first, then its digit; a match refuses that."""
+    """Rules 3: in one tick [x] takes effect before a digit, so the digit is refused."""
     stage = playing(ticks=2)
     beat = stage.beat(key(LEFT, FORWARD, seq=2), key(LEFT, X, seq=1))
     assert beat.outcomes == (Refusal(say("key.restarted")), Done())
@@ -127,7 +127,7 @@ def test_x_comes_before_the_digit_of_its_tick() -> None:
 
 
 def test_x_also_when_it_lies_on_its_back() -> None:
-    """Rules 4, [x]: allowed at any time in PLAYING, also when it lies on its back."""
+    """Rules 3: [x] also works when the robot lies on its back."""
     stage = Stage.real(overrides=QUICK).to(P.PLAYING)
     world = stage.match.physics
     robot = world._robots[LEFT]
@@ -146,7 +146,7 @@ def test_x_also_when_it_lies_on_its_back() -> None:
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 @pytest.mark.parametrize("taken", [0, 1, 2])
 def test_the_first_free_start_place_is_used(arena: str, taken: int) -> None:
-    """Rules 4, [x]: the first place at least 0.35 m, and both radii, from the other's centre."""
+    """Rules 3: [x] takes the first start place that is far enough from the other robot."""
     starts = arenas.load(arena).game.starts[LEFT]
     # The other robot stands so that the first `taken` places are too near, and no others.
     near = {
@@ -165,7 +165,7 @@ def test_the_first_free_start_place_is_used(arena: str, taken: int) -> None:
 
 
 def test_a_wide_robot_needs_more_room() -> None:
-    """Rules 4, [x]: at least both robots' radii from the other robot's centre."""
+    """[x] skips a start place if the other robot is nearer to it than both radii together."""
     stage = Stage("flag-strike", QUICK)
     radii = {}
     for robot in ("hexapod", "long-legs"):
@@ -185,7 +185,7 @@ def test_a_wide_robot_needs_more_room() -> None:
 
 
 def test_both_restart_at_once() -> None:
-    """Rules 4: nobody comes first; robots that both go back are not in each other's way."""
+    """If both robots go back in one tick, each gets its first place, whichever [x] came first."""
     for order in ((LEFT, RIGHT), (RIGHT, LEFT)):
         swapped = {LEFT: (0.6, 0.0), RIGHT: (-0.6, 0.0)}
         stage = playing("flag-strike", Script(poses={1: swapped}), ticks=2)
@@ -196,7 +196,7 @@ def test_both_restart_at_once() -> None:
 
 @pytest.mark.parametrize(("other_y_m", "roomiest_y_m"), [(-0.05, 0.1), (0.15, 0.0)])
 def test_where_no_place_is_free_the_roomiest_is_used(other_y_m: float, roomiest_y_m: float) -> None:
-    """Rules 4, [x]: with every place taken the robot goes where there is most room."""
+    """If no start place is free, [x] takes the one that is farthest from the other robot."""
     one = {"game": {"starts": [[-0.6, 0.0], [-0.6, 0.1]]}, "match": {"countdown_s": 0.02}}
     script = Script(poses={1: {RIGHT: (-0.6, other_y_m)}})
     stage = Stage("flag-strike", one, script=script).to_playing()
@@ -206,7 +206,7 @@ def test_where_no_place_is_free_the_roomiest_is_used(other_y_m: float, roomiest_
 
 
 def test_being_put_back_claims_nothing() -> None:
-    """Rules 5, start: the cell a robot is put on is its last cell; it flips nothing there."""
+    """Rules 5: the disc on which [x] puts a robot is its last disc, and nothing flips."""
     own = (-0.75, -0.15)
     script = Script(poses={1: {LEFT: (-0.15, -0.15)}, 2: {LEFT: own}})
     stage = playing(script=script, ticks=3)
@@ -216,7 +216,7 @@ def test_being_put_back_claims_nothing() -> None:
 
 
 def test_being_put_back_is_no_walk() -> None:
-    """Rules 5, start: the start cell is not entered, even from a neighbour of one's own."""
+    """Rules 5: [x] onto a disc of the other colour flips nothing, even from a disc of one's own."""
     script = Script(poses={1: {LEFT: (-0.45, -0.15)}})
     stage = playing(script=script, ticks=3)
     stage.beat(decide(d.Set("c0r2", "right")))
@@ -226,7 +226,7 @@ def test_being_put_back_is_no_walk() -> None:
 
 
 def _postures(stage: Stage, ticks: int) -> list[int]:
-    """Target postures of the left seat while it walks forward."""
+    """Press forward for the left seat; return the index of its posture in each tick."""
     stage.beat(key(LEFT, FORWARD))
     stage.run(ticks)
     return [beat.frame.seats[LEFT].posture for beat in stage.beats[-ticks - 1 :]]
@@ -234,13 +234,13 @@ def _postures(stage: Stage, ticks: int) -> list[int]:
 
 @pytest.mark.parametrize("repeat", [True, False])
 def test_whether_sequences_repeat_is_the_arenas_to_say(repeat: bool) -> None:
-    """Rules 3: with repeat = false a sequence runs once."""
+    """The arena's setting `repeat` says whether a sequence repeats or runs once."""
     walked = _postures(playing(match={"repeat": repeat, "countdown_s": 0.02}), 600)
     assert (max(walked) > 0, 0 in walked[-300:]) == (True, repeat)
 
 
 def test_how_a_sequence_goes_on_is_the_robots_to_say() -> None:
-    """Rules 1 and 3: a robot with advance = "time" takes each posture for hold_s."""
+    """Rules 3: with advance = "time" in the robot file, each posture lasts hold_s."""
     _, data = find_robot("hexapod")
     by_time = data.replace(b'advance = "reached"', b'advance = "time"')
     by_time = by_time.replace(b"hold_s = 0.0", b"hold_s = 0.1")
@@ -251,11 +251,11 @@ def test_how_a_sequence_goes_on_is_the_robots_to_say() -> None:
     assert _postures(stage, 99) == [tick // 5 % length for tick in range(100)]
 
 
-# Silence, refusals.
+# Silence, and refused keys.
 
 
 def test_a_silent_seat_stands_until_a_new_command() -> None:
-    """Rules 3: silent is key 0 at the same level, until a command with a new sequence number."""
+    """Rules 3: the robot of a silent seat stands until the seat sends a new command."""
     stage = playing(ticks=1)
     stage.beat(key(LEFT, FORWARD, seq=5))
     stage.run(30)
@@ -271,7 +271,7 @@ def test_a_silent_seat_stands_until_a_new_command() -> None:
 
 
 def test_leaving_a_match_is_standing_and_the_seat_stays_ones_own() -> None:
-    """Rules 4, design "Failure policy": the robot stands; the seat stays the team's."""
+    """When a team leaves in play its robot stands, and the team can come back to its seat."""
     stage = playing(ticks=1)
     stage.beat(key(LEFT, FORWARD))
     stage.beat(LeaveSeat(LEFT))
@@ -292,7 +292,7 @@ def test_leaving_a_match_is_standing_and_the_seat_stays_ones_own() -> None:
     ],
 )
 def test_refused_keys(item: KeySeat, why: No) -> None:
-    """Rules 3: which levels are open is the arena's to say, which keys there are, the file's."""
+    """A key of a closed level, or one that the gait lacks, is refused and changes nothing."""
     stage, twin = playing(ticks=3), playing(ticks=3)
     for both in (stage, twin):
         both.beat(key(LEFT, TURN_LEFT, seq=1))
@@ -305,7 +305,7 @@ def test_refused_keys(item: KeySeat, why: No) -> None:
 
 
 def test_each_level_has_its_own_keys() -> None:
-    """Rules 2: level A has the keys of Loco-data, level B those of LocoTra-data."""
+    """Rules 3: level A has the keys of Loco-data, and level B has those of LocoTra-data."""
     stage = playing(**BOTH_LEVELS)
     entry = stage.match.seats[LEFT].entry
     assert entry is not None
@@ -319,7 +319,7 @@ def test_each_level_has_its_own_keys() -> None:
 
 
 def test_frames_tell_which_command_was_applied_when() -> None:
-    """A controller can show its round trip."""
+    """A frame has each seat's newest applied command and the beat in which it took effect."""
     stage = playing(ticks=3)
     beat = stage.beat(key(LEFT, FORWARD, seq=41))
     stage.run(5)
@@ -327,13 +327,13 @@ def test_frames_tell_which_command_was_applied_when() -> None:
     assert (seat.applied_seq, seat.applied_beat) == (41, beat.frame.beat)
 
 
-# The order of a beat.
+# The order of inputs in a beat.
 
 seats = st.sampled_from([LEFT, RIGHT])
 
 
 def _beat_of_inputs() -> st.SearchStrategy[list[Input]]:
-    """Draw the inputs of one beat: for each seat an [x], a digit, silence."""
+    """Draw the inputs of one beat: [x], a digit and a silence of each seat, and a freeze."""
 
     def of(seat: int) -> st.SearchStrategy[list[Input]]:
         return st.tuples(
@@ -349,7 +349,7 @@ def _beat_of_inputs() -> st.SearchStrategy[list[Input]]:
 @pytest.mark.slow
 @given(_beat_of_inputs(), st.randoms(use_true_random=False))
 def test_the_order_of_arrival_favours_no_seat(inputs: list[Input], mix: random.Random) -> None:
-    """Rules 4: however a beat's inputs arrive, the frames are the same bytes."""
+    """Rules 4: frames do not depend on the order in which a beat's inputs arrived."""
     shuffled = list(inputs)
     mix.shuffle(shuffled)
     one, other = playing(ticks=2), playing(ticks=2)
@@ -362,7 +362,7 @@ def test_the_order_of_arrival_favours_no_seat(inputs: list[Input], mix: random.R
 
 
 def test_the_order_of_a_beat_is_that_of_its_kinds() -> None:
-    """Requests, silences, decisions, [x], digits, however they arrive."""
+    """A beat takes requests first, then silences, decisions, [x] and digits."""
     stage = playing(ticks=2)
     freeze = decide(d.Freeze("right", 1.0))
     inputs = (key(RIGHT, FORWARD), key(LEFT, X), freeze, SilentSeat(RIGHT), join(RIGHT))
@@ -378,7 +378,7 @@ def test_the_order_of_a_beat_is_that_of_its_kinds() -> None:
 
 
 def test_decisions_come_before_keys() -> None:
-    """A key in the beat of a halt is too late."""
+    """A key that arrives in the beat of a halt is refused."""
     stage = playing(ticks=2)
     beat = stage.beat(key(LEFT, FORWARD), decide(d.Halt()))
     assert isinstance(beat.outcomes[0], Refusal)
@@ -386,7 +386,7 @@ def test_decisions_come_before_keys() -> None:
 
 
 def test_a_key_takes_effect_in_its_tick() -> None:
-    """Commands, drive, physics, rules, in one beat."""
+    """A key moves the robot's joints in the tick in which it is taken."""
     stage = playing(ticks=2)
     before = at(stage.frame, LEFT)[7:]
     stage.beat(key(LEFT, FORWARD))
@@ -399,7 +399,7 @@ def test_a_key_takes_effect_in_its_tick() -> None:
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_a_frame_has_at_most_320_bytes(arena: str) -> None:
-    """At most 320 bytes for two hexapods in either game, in every phase."""
+    """A frame of two hexapods has at most 320 bytes in every phase (docs/protocol.md, Frame)."""
     sizes = {}
     for phase in list(P)[1:]:
         stage = Stage.real(arena, QUICK if phase is not P.COUNTDOWN else None)
@@ -414,7 +414,7 @@ def test_a_frame_has_at_most_320_bytes(arena: str) -> None:
 
 
 def test_scores_and_board_are_in_every_frame() -> None:
-    """Rules 5 rule 6: the score is the number of discs; frames carry board and score."""
+    """Rules 5: after a flip, a frame has the new board, and each score is a number of discs."""
     script = Script(poses={1: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}})
     stage = playing(script=script, ticks=3)
     assert stage.scores == (19, 17)
@@ -422,11 +422,11 @@ def test_scores_and_board_are_in_every_frame() -> None:
 
 
 def test_a_touch_is_recorded_only_where_there_is_one() -> None:
-    """Touches are recorded beside the poses, only in ticks with a touch."""
+    """A beat has a touch only if a robot touches a marker or was put on a start place."""
     script = Script(touches={3: {RIGHT: (4, 9)}})
     stage = playing("flag-strike", script, ticks=4)
     stage.beat(key(LEFT, X))
-    stage.run(3)  # it is put back once
+    stage.run(3)  # one [x] gives one touch
     noted = {b.frame.clock_ticks: b.touch for b in stage.beats if b.touch}
     assert noted[3].touched == ((), (4, 9))
     assert noted[5].placed == ((-0.6, 0.0, 0.0), None)

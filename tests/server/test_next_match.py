@@ -1,4 +1,4 @@
-"""From one match of a court to the next: seats, files, and which seats are heard."""
+"""From one match of a court to the next: seats, files, and silent seats."""
 
 import errno
 import os
@@ -38,7 +38,7 @@ WHISTLE = "the token of the referee"
 
 
 class Room(NamedTuple):
-    """A court and its connected clients."""
+    """A running court, a session for each seat, and a referee."""
 
     sessions: tuple[Session, Session]
     referee: RefereeClient
@@ -63,7 +63,7 @@ class Room(NamedTuple):
 
 @pytest.fixture
 def room(tmp_path: Path) -> Iterator[Room]:
-    """A court in a thread of this process, whose disk a test can fill."""
+    """Give a court that runs in a thread of this process, so that a test can change its disk."""
     arena = arenas.load("othello", {"match": {"countdown_s": 0.02}})
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
     admission = Admission(*files, Limits(), arena.match.open_levels)
@@ -85,7 +85,7 @@ def room(tmp_path: Path) -> Iterator[Room]:
 
 
 def sheet(controller: Controller, match: int) -> Sheet:
-    """The sheet of a match, once it is there."""
+    """Return the sheet of a match; wait until it has arrived."""
     until([controller], lambda: controller.view.sheet.match == match)
     return controller.view.sheet
 
@@ -100,7 +100,7 @@ def phase_is(controller: Controller, phase: Phase) -> bool:
 
 
 def playing(room: Room) -> list[Controller]:
-    """Both seats of a match that is on."""
+    """Return the controllers of both seats, once the match is in PLAYING."""
     players = [room.controller(seat) for seat in range(2)]
     for player in players:
         player.join()
@@ -112,7 +112,7 @@ def playing(room: Room) -> list[Controller]:
 
 
 def test_the_next_match_takes_the_files_that_were_sent_in_this_one(room: Room) -> None:
-    """Rules 4: a match keeps the files that it began with; what is sent meanwhile is not lost."""
+    """Files that are sent during a match are used in the next one, and not before."""
     playing(room)
     left = room.controller(0, "quadruped")
     assert left.join() == (say("note.files-next-match"),)
@@ -124,7 +124,7 @@ def test_the_next_match_takes_the_files_that_were_sent_in_this_one(room: Room) -
 
 
 def test_who_joins_when_a_match_is_over_sits_in_the_next(room: Room) -> None:
-    """Rules 4: and can say ready there."""
+    """A team that joins after a match has ended has a seat in the next one."""
     left, right = room.controller(0), room.controller(1)
     left.join()
     room.decide(Abort())
@@ -135,7 +135,7 @@ def test_who_joins_when_a_match_is_over_sits_in_the_next(room: Room) -> None:
 
 
 def test_who_was_silent_before_is_silent_in_the_next_match(room: Room) -> None:
-    """Rules 3: a dead controller does not count as alive when a match opens."""
+    """A controller that is silent when a match ends is silent in the next match too."""
     left, right = room.controller(0), room.controller(1)
     left.join()
     right.join()  # and is not heard from then on
@@ -149,7 +149,7 @@ def test_who_was_silent_before_is_silent_in_the_next_match(room: Room) -> None:
 
 
 def test_who_left_in_play_and_came_back_is_heard(room: Room) -> None:
-    """Rules 4: the seat stays theirs; nobody takes them for silent when they steer again."""
+    """A contestant who leaves in play and joins again is no longer silent."""
     players = playing(room)
     players[0].leave()
     until(players[1:], lambda: seat_of(players[1], 0).flags & SeatFlag.SILENT)
@@ -158,7 +158,7 @@ def test_who_left_in_play_and_came_back_is_heard(room: Room) -> None:
 
 
 def test_the_disk_fills_in_the_beat_of_next(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is answered when it is on disk; then the next match opens with both teams."""
+    """If the disk is full in the beat of *next*, the next match opens when there is room."""
     players = [room.controller(seat) for seat in range(2)]
     for player in players:
         player.join()

@@ -1,4 +1,4 @@
-"""The pace of a court: due times, catching up, and what counts as slow (docs/architecture.md)."""
+"""The pace of a court: when beats are due, how it catches up, and which beats are slow."""
 
 import pytest
 
@@ -6,7 +6,7 @@ from lacoc_server.court.pace import CATCH_UP_BEATS, Pace
 
 
 def test_a_beat_every_20_ms_of_the_clock() -> None:
-    """Rules 4: a beat comes every 20 ms; how long beats take does not shift the next ones."""
+    """Beats are due 20 ms apart, and a beat that begins late does not shift the next ones."""
     pace = Pace(100.0)
     for beat in range(50):
         now_s = 100.0 + 0.02 * beat
@@ -18,7 +18,7 @@ def test_a_beat_every_20_ms_of_the_clock() -> None:
 
 
 def test_speed() -> None:
-    """With speed 2, two beats of 20 ms pass in 20 ms."""
+    """At speed 2, two beats pass in 20 ms."""
     pace = Pace(0.0, speed=2.0)
     for _ in range(10):
         pace.begin(pace._due_s)
@@ -27,7 +27,7 @@ def test_speed() -> None:
 
 
 def test_offset_shifts_the_phase_by_less_than_a_beat() -> None:
-    """Courts on one machine do not wake together, whenever they were started."""
+    """Courts with different offsets have beats at different times, whenever they were started."""
     for now_s in (0.0, 7.0, 7.011):
         phases = [
             (now_s + Pace(now_s, offset_s=offset_s).wait_s(now_s)) % 0.02
@@ -37,7 +37,7 @@ def test_offset_shifts_the_phase_by_less_than_a_beat() -> None:
 
 
 def test_after_a_stall_at_most_five_beats_come_without_a_pause() -> None:
-    """It catches up at most 5 beats, and then lets the match run late."""
+    """After a stall, five beats come without a pause; the time beyond them is not made up."""
     pace = Pace(0.0)
     pace.begin(0.0)
     now_s = 1.0  # stalled: 49 beats are overdue
@@ -51,7 +51,7 @@ def test_after_a_stall_at_most_five_beats_come_without_a_pause() -> None:
 
 
 def test_slow_beats() -> None:
-    """A slow beat is one that starts more than 20 ms late."""
+    """A beat is slow if it starts more than 20 ms late."""
     pace = Pace(0.0)
     pace.begin(0.019)
     assert pace.slow_beats == 0
@@ -61,7 +61,7 @@ def test_slow_beats() -> None:
 
 
 def test_real_time_factor() -> None:
-    """Beats of the last seconds per 20 ms of wall time; a stall is forgotten."""
+    """The real-time factor is measured over the last 250 beats, so an old delay is forgotten."""
     pace = Pace(0.0)
     assert pace.real_time_factor == 1.0
     for beat in range(300):

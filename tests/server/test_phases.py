@@ -1,4 +1,4 @@
-"""The phases of a match as a table (rules 4)."""
+"""The phases of a match, and how one leads to the next (rules 4)."""
 
 import pytest
 from stage import FORWARD, LEFT, RIGHT, B, Script, Stage, X, decide, join, key, seen
@@ -14,7 +14,7 @@ from lacoc_shared.words import render, say
 
 P = Phase
 COUNTDOWN_BEATS = 150
-"""3 s (rules 4)."""
+"""3 s in beats of 20 ms (rules 4)."""
 
 
 def steps(events: list[Event]) -> list[tuple[str, str]]:
@@ -22,7 +22,7 @@ def steps(events: list[Event]) -> list[tuple[str, str]]:
 
 
 def test_the_table() -> None:
-    """Rules 4: CREATED, LOBBY, READY, COUNTDOWN, PLAYING, HALTED, FINISHED, OFFICIAL or VOID."""
+    """The table of transitions has exactly the pairs of phases that this test lists."""
     forward = [(a.name, b.name) for a in TRANSITIONS for b in sorted(TRANSITIONS[a])]
     assert forward == [
         ("CREATED", "LOBBY"),
@@ -47,7 +47,7 @@ def test_the_table() -> None:
 
 
 def test_every_transition_happens() -> None:
-    """Rules 4: each arrow of the table is walked by what the rules say."""
+    """Each transition of the table can happen in a match."""
     walked = set()
 
     def walk(stage: Stage) -> None:
@@ -85,7 +85,7 @@ def _all_corners() -> Script:
 
 
 def test_the_first_beat_is_lobby() -> None:
-    """Rules 4: CREATED leads to LOBBY; beats are counted from 0 in every phase."""
+    """The first beat leads from CREATED to LOBBY, and beats are counted from 0."""
     stage = Stage()
     assert stage.phase is P.CREATED
     stage.run(3)
@@ -94,7 +94,7 @@ def test_the_first_beat_is_lobby() -> None:
 
 
 def test_ready_needs_every_seat_joined_and_ready() -> None:
-    """Rules 4: LOBBY to READY when every seat is joined and has said ready."""
+    """A match goes from LOBBY to READY when every seat has joined and said ready."""
     stage = Stage()
     assert isinstance(stage.send(ReadySeat(LEFT, True)), Refusal)
     stage.beat(join(LEFT))
@@ -112,7 +112,7 @@ def test_ready_needs_every_seat_joined_and_ready() -> None:
 @pytest.mark.parametrize("phase", [P.LOBBY, P.READY])
 @pytest.mark.parametrize("item", [LeaveSeat(LEFT), ReadySeat(LEFT, False)])
 def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
-    """Rules 4: back to LOBBY when one leaves or takes ready back; frames lose their robots."""
+    """If a team leaves or takes ready back, the match returns to LOBBY and its field is empty."""
     stage = Stage().to_ready()
     stage.beat(item)
     assert stage.phase is P.LOBBY
@@ -123,7 +123,7 @@ def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
 
 
 def test_an_empty_seat_is_nothing_but_empty() -> None:
-    """Rules 4: a team that leaves in LOBBY leaves no ready, silence or name behind."""
+    """When a team leaves in LOBBY, its name and its marks of ready and silent are removed."""
     stage = Stage().to(P.LOBBY)
     stage.beat(ReadySeat(LEFT, True), SilentSeat(LEFT))
     assert stage.frame.seats[LEFT].flags == SeatFlag.JOINED | SeatFlag.READY | SeatFlag.SILENT
@@ -134,7 +134,7 @@ def test_an_empty_seat_is_nothing_but_empty() -> None:
 
 
 def test_joining_again_with_other_files_takes_ready_back() -> None:
-    """Rules 4: ready is for the robots that one sees; a new robot has to say it again."""
+    """A team that joins again with another robot has to say ready again."""
     stage = Stage().to_ready()
     stage.beat(join(LEFT))  # the same files
     assert stage.phase is P.READY
@@ -148,7 +148,7 @@ def test_joining_again_with_other_files_takes_ready_back() -> None:
 def test_a_new_robot_in_ready_is_built_even_if_ready_is_said_in_the_same_beat(
     first: tuple[LeaveSeat, ...],
 ) -> None:
-    """Rules 4: in READY the model is always that of the robots that have joined."""
+    """If a team changes its robot and says ready in one beat, READY has the new robot."""
     stage = Stage().to_ready()
     before = stage.frame.scene
     stage.beat(*first, join(LEFT, robot="quadruped"), ReadySeat(LEFT, True))
@@ -158,7 +158,7 @@ def test_a_new_robot_in_ready_is_built_even_if_ready_is_said_in_the_same_beat(
 
 
 def test_files_with_mistakes_are_refused_and_the_seat_stays_as_it_was() -> None:
-    """Rules 2: a file that is wrong is refused whole, with every mistake; nothing changes."""
+    """Rules 2: files with mistakes are refused with every mistake, and the seat does not change."""
     stage, twin = Stage().to(P.LOBBY), Stage().to(P.LOBBY)
     bad = join(LEFT, robot_file=b"name = 3")
     outcome = stage.send(bad)
@@ -169,7 +169,7 @@ def test_files_with_mistakes_are_refused_and_the_seat_stays_as_it_was() -> None:
 
 
 def test_frames_before_ready_have_no_robots() -> None:
-    """Rules 4: frames before READY have no robots."""
+    """Frames before READY have no poses."""
     stage = Stage.real().to(P.LOBBY)
     assert stage.frame.poses == b""
     stage.beat(ReadySeat(LEFT, True), ReadySeat(RIGHT, True))
@@ -198,7 +198,7 @@ def test_every_start_and_every_resume_has_a_countdown_of_150_beats(again: bool) 
 
 
 def test_a_countdown_also_where_the_seats_start_themselves() -> None:
-    """Rules 4: every start has its countdown, with start = "ready" too."""
+    """A match without a referee (start = "ready") has the same countdown."""
     stage = Stage(overrides={"match": {"start": "ready"}}).to_ready()
     stage.until(P.PLAYING)
     counted = [b.frame.countdown_beats for b in stage.beats if b.frame.phase is int(P.COUNTDOWN)]
@@ -206,7 +206,7 @@ def test_a_countdown_also_where_the_seats_start_themselves() -> None:
 
 
 def test_physics_runs_in_ready_and_playing_only() -> None:
-    """Rules 4: a tick is a beat with physics; frozen in COUNTDOWN, HALTED and after the end."""
+    """Physics runs in READY and PLAYING; in all other phases nothing moves."""
     stage = Stage()
     ran: dict[int, set[bool]] = {}
     still: dict[int, set[bytes]] = {}
@@ -236,7 +236,7 @@ def test_physics_runs_in_ready_and_playing_only() -> None:
 
 
 def test_tick_9000_is_played_and_judged() -> None:
-    """Workshop 5-1 rule 2, 5-2 rule 1, rules 4: 180 s; tick 9000 is played and judged."""
+    """Rules 4, workshop 5-1 rule 2 and 5-2 rule 1: tick 9000, at 180 s, is the last one judged."""
     script = Script(poses={8999: {LEFT: (-0.15, -0.15)}, 9000: {LEFT: (0.15, -0.15)}})
     stage = Stage(script=script).to_playing()
     stage.until(P.FINISHED)
@@ -251,7 +251,7 @@ def test_tick_9000_is_played_and_judged() -> None:
 
 
 def test_a_match_that_is_over_ends_at_once() -> None:
-    """Workshop 5-2 rule 4, rules 4: end conditions are looked at after the tick's events."""
+    """Rules 6, workshop 5-2 rule 4: the match ends in the tick that takes the fourth corner."""
     stage = Stage("flag-strike", script=_all_corners()).to_playing()
     stage.until(P.FINISHED)
     assert stage.frame.clock_ticks == 40
@@ -259,7 +259,7 @@ def test_a_match_that_is_over_ends_at_once() -> None:
 
 
 def test_all_corners_win_whatever_the_points_where_the_arena_says_so() -> None:
-    """Rules 6 all four: with `all_corners_win` the holder has won."""
+    """Rules 6: with `all_corners_win`, the robot with all four corners wins with any points."""
     stage = Stage("flag-strike", {"game": {"all_corners_win": True}}, script=_all_corners())
     stage.to_playing()
     stage.until(P.FINISHED)
@@ -268,14 +268,14 @@ def test_all_corners_win_whatever_the_points_where_the_arena_says_so() -> None:
 
 
 def test_the_shortest_match_is_one_tick() -> None:
-    """Rules 4: a duration is a number of ticks; only 0 is without end."""
+    """A match of 0.02 s has one tick; only a duration of 0 means that it has no end."""
     stage = Stage(overrides={"match": {"duration_s": 0.02}}).to_playing()
     stage.until(P.FINISHED, at_most=5)
     assert (stage.match.ticks, stage.match.ended) == (1, say("over.time"))
 
 
 def test_a_fault_halts_before_the_tick() -> None:
-    """The state before the tick, HALTED, which robot and when."""
+    """A fault of physics halts the match with the state before that tick (docs/facts.md 3)."""
     script = Script(faults={4: Fault(RIGHT, say("fault.velocity"))})
     stage, twin = Stage(script=script).to_playing(), Stage().to_playing()
     stage.until(P.PLAYING)
@@ -293,7 +293,7 @@ def test_a_fault_halts_before_the_tick() -> None:
 
 
 def test_a_fault_in_ready_goes_back_to_lobby() -> None:
-    """Rules 4: without physics there is no READY; both teams say ready again."""
+    """After a fault in READY the match is in LOBBY, and both teams have to say ready again."""
     stage = Stage(script=Script(faults={5: Fault(LEFT, say("fault.contacts"))})).to_ready()
     stage.until(P.LOBBY, at_most=10)
     assert not any(seat.flags & SeatFlag.READY for seat in stage.frame.seats)
@@ -305,7 +305,7 @@ def test_a_fault_in_ready_goes_back_to_lobby() -> None:
 @pytest.mark.parametrize("phase", [p for p in P if p not in (P.CREATED, P.PLAYING)])
 @pytest.mark.parametrize("digit", [FORWARD, X])
 def test_keys_work_only_in_playing(phase: Phase, digit: int) -> None:
-    """Rules 4: keys in READY, COUNTDOWN and HALTED are refused with the reason."""
+    """Rules 4: in every phase but PLAYING, keys are refused with the reason."""
     stage, twin = Stage().to(phase), Stage().to(phase)
     outcome = stage.send(key(LEFT, digit, seq=7))
     twin.beat()
@@ -318,7 +318,7 @@ def test_keys_work_only_in_playing(phase: Phase, digit: int) -> None:
 
 
 def test_on_resume_each_drive_goes_on_where_it_stopped() -> None:
-    """Rules 4: on resume each drive goes on where it stopped."""
+    """After a halt, a robot goes on with the same path as without the halt."""
     halted, straight = Stage().to(P.PLAYING), Stage().to(P.PLAYING)
     for stage in (halted, straight):
         stage.beat(key(LEFT, FORWARD))
@@ -336,7 +336,7 @@ def test_on_resume_each_drive_goes_on_where_it_stopped() -> None:
 
 
 def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
-    """Rules 4: seats are taken in LOBBY; a team that is back keeps its robot."""
+    """A team that joins again in play with another robot gets that robot in the next match."""
     stage = Stage().to(P.PLAYING)
     assert stage.send(join(LEFT)) == Done()
     changed = stage.send(join(LEFT, robot="quadruped"))
@@ -351,7 +351,7 @@ def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
 
 
 def test_who_joins_after_the_end_plays_in_the_next_match() -> None:
-    """Rules 4: after the end nobody takes a seat of this match any more."""
+    """A team that joins after the end gets a seat in the next match, not in this one."""
     stage = Stage().to(P.LOBBY)
     stage.beat(LeaveSeat(RIGHT))
     stage.decide(d.Abort())
@@ -364,7 +364,7 @@ def test_who_joins_after_the_end_plays_in_the_next_match() -> None:
 
 @pytest.mark.parametrize("change", [LeaveSeat(RIGHT), ReadySeat(RIGHT, False)])
 def test_who_changes_their_mind_in_the_beat_of_start_is_not_begun_without(change: Input) -> None:
-    """Rules 4: READY means that both are; what comes first in a beat counts."""
+    """If a team leaves or takes ready back in the beat of *start*, the start is refused."""
     stage = Stage().to(P.READY)
     *_, started = stage.beat(change, decide(d.Start())).outcomes
     assert isinstance(started, Refusal)
@@ -378,7 +378,7 @@ def test_who_changes_their_mind_in_the_beat_of_start_is_not_begun_without(change
 
 
 def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
-    """Workshop 4-4, rules 4: one seat, no referee; [z] leaves and ends it."""
+    """Rules 7, workshop 4-4: practice starts by itself, and ends when the contestant leaves."""
     stage = Stage("practice")
     stage.beat(join(LEFT), ReadySeat(LEFT, True))
     stage.run(1)
@@ -391,12 +391,12 @@ def test_practice_starts_by_itself_and_ends_when_everybody_has_left() -> None:
 
 
 READY = {"match": {"start": "ready", "countdown_s": 0.1, "unattended_s": 3.0}}
-"""Nobody judges; nobody is waited for longer than 150 beats."""
+"""Settings of a match without a referee that ends when nobody was heard for 150 beats."""
 
 
 @pytest.mark.parametrize("others", [[], [LeaveSeat(RIGHT)]])
 def test_who_leaves_in_the_countdown_has_left(others: list[LeaveSeat]) -> None:
-    """Rules 4: without a referee a match ends when everybody has left, whenever they did."""
+    """Rules 7: a team that leaves in the countdown counts as gone; when all are, the match ends."""
     stage = Stage(overrides=READY).to(P.READY)
     stage.beat()
     assert stage.phase is P.COUNTDOWN
@@ -409,7 +409,7 @@ def test_who_leaves_in_the_countdown_has_left(others: list[LeaveSeat]) -> None:
 
 @pytest.mark.parametrize("halted", [False, True])
 def test_a_match_that_nobody_judges_ends_when_nobody_is_heard(halted: bool) -> None:
-    """Rules 4: every seat silent for `unattended_s`, in play or in a halt, and it is over."""
+    """Rules 7: without a referee, a match ends when all seats are silent for `unattended_s`."""
     stage = Stage(overrides=READY).to_ready()
     stage.until(P.PLAYING)
     stage.beat(*([decide(d.Halt())] if halted else []))
@@ -417,7 +417,7 @@ def test_a_match_that_nobody_judges_ends_when_nobody_is_heard(halted: bool) -> N
     stage.run(200)
     stage.beat(SilentSeat(RIGHT))
     stage.run(148)
-    stage.beat(HeardSeat(LEFT))  # a coffee break is over just in time
+    stage.beat(HeardSeat(LEFT))  # without it, the match would end in this beat
     stage.beat(SilentSeat(LEFT))
     stage.run(148)
     assert stage.phase is (P.HALTED if halted else P.PLAYING)
@@ -427,7 +427,7 @@ def test_a_match_that_nobody_judges_ends_when_nobody_is_heard(halted: bool) -> N
 
 
 def test_who_comes_back_is_heard() -> None:
-    """Rules 3: after all were silent, a match goes on as soon as somebody is back."""
+    """A match without a referee goes on if a team comes back after all were silent."""
     stage = Stage(overrides=READY).to_ready()
     stage.until(P.PLAYING)
     stage.beat(LeaveSeat(LEFT), SilentSeat(RIGHT))
@@ -440,7 +440,7 @@ def test_who_comes_back_is_heard() -> None:
     "match", [{"start": "referee"}, {"start": "ready", "unattended_s": 0.0, "duration_s": 0.0}]
 )
 def test_a_match_may_wait_for_ever(match: dict[str, object]) -> None:
-    """Rules 4: a referee ends a match that nobody plays; 0 is "never" for the others."""
+    """A match with a referee, or with `unattended_s` = 0, does not end when all are silent."""
     stage = Stage(overrides={"match": {"unattended_s": 0.02, "countdown_s": 0.02, **match}})
     stage.to_playing()
     stage.beat(SilentSeat(LEFT), SilentSeat(RIGHT))
@@ -449,7 +449,7 @@ def test_a_match_may_wait_for_ever(match: dict[str, object]) -> None:
 
 
 def test_a_practice_outlives_a_coffee_break() -> None:
-    """Rules 4, practice: it ends after a quarter of an hour without a sign of life."""
+    """Rules 7: practice ends after 15 minutes of silence, and not after 14."""
     stage = Stage("practice").to_playing()
     stage.beat(SilentSeat(LEFT))
     for _ in range(14 * 60 * 50):
@@ -461,7 +461,7 @@ def test_a_practice_outlives_a_coffee_break() -> None:
 
 
 def test_a_match_with_a_referee_goes_on_though_everybody_has_left() -> None:
-    """Rules 4: in a match the seats stay theirs, and the end is the referee's to declare."""
+    """If both teams leave a match with a referee, it goes on and they keep their seats."""
     stage = Stage().to(P.PLAYING)
     stage.beat(LeaveSeat(LEFT), LeaveSeat(RIGHT))
     assert stage.phase is P.PLAYING
@@ -473,7 +473,7 @@ def test_a_match_with_a_referee_goes_on_though_everybody_has_left() -> None:
 
 
 def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
-    """Rules 4: an illegal decision is refused with the reason and does not change the match."""
+    """An illegal decision is refused, and the match goes on as if it had not been sent."""
     stage, twin = Stage().to(P.READY), Stage().to(P.READY)
     assert isinstance(stage.decide(d.Resume()), Refusal)
     twin.beat()
@@ -485,7 +485,7 @@ def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
 
 
 def test_silence_and_hearing_are_only_told_once() -> None:
-    """Rules 3: "silent" is an input like any other, and so is "heard"."""
+    """If a seat is reported as silent or as heard twice in a row, each is logged once."""
     stage = Stage().to(P.PLAYING)
     for item in (SilentSeat(LEFT), SilentSeat(LEFT), HeardSeat(LEFT), HeardSeat(LEFT)):
         stage.beat(item)
@@ -493,7 +493,7 @@ def test_silence_and_hearing_are_only_told_once() -> None:
 
 
 def test_levels_begin_with_the_arenas_first() -> None:
-    """Rules 3: the arena says which levels are open; default B in a match."""
+    """Rules 3: a match begins with level B, and practice opens both levels."""
     stage = Stage().to(P.PLAYING)
     assert [seat.level for seat in stage.frame.seats] == [B, B]
     assert Stage("practice").match.rules.open_levels == (0, 1)

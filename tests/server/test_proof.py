@@ -1,4 +1,4 @@
-"""What a record proves, here and with another arithmetic (docs/reliability.md, "Proof")."""
+"""What verification proves, with the same arithmetic and with another (docs/reliability.md)."""
 
 import json
 import struct
@@ -48,7 +48,7 @@ def header(first_beat: int = 0, made_by: Mapping[str, str] = HERE) -> Header:
 
 @pytest.fixture(scope="module")
 def paths(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Two matches of each game, each two with the same robots; of each two one wrestles."""
+    """Give the records of two matches of each game, between hexapods that push each other."""
     folder = tmp_path_factory.mktemp("proof")
     return [play(folder, number, SECONDS) for number in (0, 30, 1, 31)]
 
@@ -64,7 +64,7 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
     return record
 
 
-# What a finding comes to.
+# From findings to a verdict.
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
 def test_bits_may_differ_only_where_another_arithmetic_recorded(
     made_by: Mapping[str, str], finding: Finding, kind: Kind
 ) -> None:
-    """A record that says it was made with this arithmetic has this arithmetic's bits."""
+    """If a record claims this arithmetic, every bit must match; otherwise rounding may differ."""
     found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
     assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
     assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
@@ -92,7 +92,7 @@ def test_bits_may_differ_only_where_another_arithmetic_recorded(
 
 
 def test_each_segment_says_what_made_it() -> None:
-    """A section that another court went on with may have other bits; those before it may not."""
+    """A section may differ in bits only if another arithmetic recorded a part of it."""
     headers = [header(), header(100, THERE)]
     bits = Difference(50, ("poses",))
     for first, last, kind in ((1, 99, Kind.DIFFERS), (90, 110, Kind.OTHER_ARITHMETIC)):
@@ -101,7 +101,7 @@ def test_each_segment_says_what_made_it() -> None:
 
 
 def test_the_first_difference_is_told_with_all_of_its_beat() -> None:
-    """Differences are reported in the order of a frame, whichever check found them."""
+    """The verdict names the first beat that differs, and all differences in that beat."""
     findings = [
         Finding(1, 9, Difference(7, ("state-hash", "poses"))),
         Finding(10, 19, Difference(12, ("poses",))),
@@ -112,7 +112,7 @@ def test_the_first_difference_is_told_with_all_of_its_beat() -> None:
 
 
 def test_a_fingerprint_names_the_machine() -> None:
-    """Its hashes decide; the rest says why."""
+    """Two arithmetics are the same if their hashes are equal; other fields name the machine."""
     assert arithmetic.same(HERE, {**HERE, "python": "4"})
     assert not arithmetic.same(HERE, THERE)
     assert not arithmetic.same({}, {})
@@ -126,7 +126,7 @@ def test_a_fingerprint_names_the_machine() -> None:
 
 @pytest.mark.slow
 def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
-    """Side by side or in one process, with a fingerprint or, as older records, without."""
+    """An honest record verifies as the same, with two processes, and also without a fingerprint."""
     for path in paths:
         assert verdict(Record.read(path)).kind is Kind.SAME
     older = with_arithmetic(Record.read(paths[0]), {})
@@ -138,7 +138,7 @@ def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> None:
-    """Other bits, the same match; nothing that a forger changes passes there either."""
+    """With another arithmetic an honest record is the same match, and no forgery passes."""
     lines = elsewhere("benchmarks.proof", ["verdicts", *map(str, paths)]).splitlines()
     found = [json.loads(line) for line in lines]
     assert [one["kind"] for one in found] == [Kind.OTHER_ARITHMETIC] * len(paths), found
@@ -149,7 +149,7 @@ def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> N
 
 @pytest.mark.slow
 def test_no_forgery_passes(paths: Sequence[Path]) -> None:
-    """Two of three also lie about the arithmetic that made them."""
+    """No forgery of a record passes, also if it lies about the arithmetic."""
     found = forge(paths, FORGERIES, seed=1)
     assert found.passed == []
     assert len(found.kinds) > 15
@@ -160,7 +160,7 @@ def test_no_forgery_passes(paths: Sequence[Path]) -> None:
 def test_a_pose_is_told_beyond_the_bound_only(
     made_by: Mapping[str, str], paths: Sequence[Path]
 ) -> None:
-    """This arithmetic forgives no bit; another one what is below the bound."""
+    """A changed pose is found if it exceeds the bound, and with the same arithmetic always."""
     record = with_arithmetic(Record.read(paths[0]), made_by)
     at = len(record.frames) // 2
     beat, encoded = record.frames[at]
@@ -187,7 +187,7 @@ def test_a_pose_is_told_beyond_the_bound_only(
 def test_a_model_may_have_other_last_bits(
     nudge_m: float, made_by: Mapping[str, str], kind: Kind, paths: Sequence[Path]
 ) -> None:
-    """Where another arithmetic builds other ones; the drawn model is the same all the same."""
+    """The drawn model may differ in last bits only if the other arithmetic builds other models."""
     record = with_arithmetic(Record.read(paths[0]), made_by)
     for at, (beat, scene) in enumerate(record.scenes):
         old = message_hash(encode(scene))
@@ -219,7 +219,7 @@ def test_a_model_may_have_other_last_bits(
 
 @pytest.mark.slow
 def test_the_command_tells_the_verdict(paths: Sequence[Path]) -> None:
-    """With JSON and exit code."""
+    """`lacoc replay verify --json` prints the verdict, and its exit code is 0."""
     done = CliRunner().invoke(verify_app, [str(paths[0]), "--json"])
     told = json.loads(done.stdout)
     assert done.exit_code == 0
@@ -231,7 +231,7 @@ def test_the_command_tells_the_verdict(paths: Sequence[Path]) -> None:
 def test_a_record_that_lost_a_part_is_not_proven(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The readable part is verified, and the lost part is reported, also to programs."""
+    """If a part of a record is lost, the rest is verified and the exit code is 1."""
     monkeypatch.setattr("lacoc_shared.record.pack.Writer", partial(Writer, chunk_size=20_000))
     path = play(tmp_path, 0, 2.0)
     data = bytearray(path.read_bytes())

@@ -1,4 +1,4 @@
-"""A court that is killed and started again (rules 4, docs/architecture.md)."""
+"""A court that is killed and started again goes on with its match (docs/architecture.md)."""
 
 import os
 import signal
@@ -40,7 +40,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
-    """After kill -9 in PLAYING the match is HALTED with seats, clock and robots, and goes on."""
+    """A court killed in PLAYING comes back HALTED with its seats, clock and robots, and goes on."""
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
         those = stack.enter_context(party(contest))
@@ -72,7 +72,10 @@ def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
 
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: Path) -> None:
-    """As on another machine: from the newest snapshot, and it says so; both parts verify."""
+    """On a machine with another arithmetic, a killed match goes on, and an event says so.
+
+    The parts of the record before and after the kill both verify.
+    """
     elsewhere = ["env", *(f"{name}={value}" for name, value in OTHER_ARITHMETIC.items())]
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
@@ -101,7 +104,7 @@ def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: P
 
 
 def test_settings_that_were_changed_count_from_the_next_match(contest: Path, folder: Path) -> None:
-    """The current match keeps its settings; changes in the file count from the next one."""
+    """A resumed match keeps its settings; changes of the contest file apply to the next match."""
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
         those = stack.enter_context(party(contest))
@@ -126,7 +129,7 @@ def test_settings_that_were_changed_count_from_the_next_match(contest: Path, fol
 
 
 def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> None:
-    """Measurements from before the kill count; the referee is told "replay advised"."""
+    """The health verdict includes the time before the kill, and a restart may advise a replay."""
     lasts(contest, 4)
     contest.write_text("health.resumptions = 0\n" + contest.read_text())
     with ExitStack() as stack:
@@ -140,7 +143,7 @@ def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> 
         stack.enter_context(served(contest, folder))
         those.reach(Phase.HALTED)
         those.until(lambda: those.view.health is not before)
-        assert played(those.left) > 50  # what the last second measured died with the court
+        assert played(those.left) > 50  # the measurements of the last second are lost
         those.decide(Resume())
         those.until(lambda: any(event.kind == "advice" for event in those.view.events))
         assert those.phase == Phase.FINISHED
@@ -160,13 +163,13 @@ def kill(court: subprocess.Popen[str]) -> None:
 
 
 def lasts(contest: Path, seconds: int) -> None:
-    """Give the contest's matches another length."""
+    """Change how long the contest's matches last."""
     setting = f"settings.match.duration_s = {seconds}\nsettings.match."
     contest.write_text(contest.read_text().replace("settings.match.", setting, 1))
 
 
 def packed(folder: Path) -> Record:
-    """The first match's record, once it is packed."""
+    """Wait until the first match's record is packed; return it."""
     end_s = time.monotonic() + WAIT_S
     while not (found := list(folder.glob("*main-001.mcap"))):
         assert time.monotonic() < end_s, "the record was not packed"
@@ -181,13 +184,13 @@ def assert_same(record: Record) -> None:
 
 
 def played(controller: Controller) -> int:
-    """Beats that the court has measured."""
+    """Return how many beats of PLAYING the newest health message counts."""
     health = controller.view.health
     return health.verdict.played_beats if health and health.verdict else 0
 
 
 def test_a_court_that_just_came_back_can_be_asked(contest: Path, folder: Path) -> None:
-    """Its first frame comes before the way to its desks is known: the client asks again."""
+    """A request right after a restarted court's first frame succeeds, as the client asks again."""
     name, court = load(contest).court()
     with ExitStack() as stack:
         process = stack.enter_context(served(contest, folder))
@@ -205,7 +208,7 @@ def test_a_court_that_just_came_back_can_be_asked(contest: Path, folder: Path) -
 
 
 def test_a_running_court_is_not_taken_over(contest: Path, folder: Path) -> None:
-    """The record of a court that lives was not left behind."""
+    """The match of a running court is not resumed by another; after a kill it is."""
     with served(contest, folder) as process:
         assert unfinished(folder, "main", arenas.load("othello")) is None
         process.kill()
@@ -217,6 +220,6 @@ def test_a_running_court_is_not_taken_over(contest: Path, folder: Path) -> None:
 
 
 def test_no_record_nothing_left(tmp_path: Path) -> None:
-    """A folder that is empty, or not there yet, has no match to go on with."""
+    """An empty or missing folder has no match to go on with."""
     assert unfinished(tmp_path, "main", arenas.load("othello")) is None
     assert unfinished(tmp_path / "none", "main", arenas.load("othello")) is None

@@ -1,4 +1,4 @@
-"""The referee's decisions: when each is legal, why not, and what it does (rules 4).
+"""The referee's decisions: when each is legal, why it is not, and what it does (rules 4.1).
 
 Workshop 5-1 rule 8 and 5-2 rule 9.
 """
@@ -55,7 +55,7 @@ def stage_in(phase: Phase, script: Script | None = None) -> Stage:
 
 
 def refused(stage: Stage, decision: d.Decision, reason: str = "agreed") -> Phrase:
-    """The reason of a refusal, after a look that it changed nothing at all."""
+    """Return why a decision is refused, after a check that the refusal changed nothing."""
     before = encode(stage.match.result()), stage.match.history.state
     outcome = stage.decide(decision, reason)
     assert isinstance(outcome, Refusal), outcome
@@ -75,13 +75,13 @@ def done(stage: Stage, decision: d.Decision) -> DecisionReply:
 
 
 def test_every_decision_is_in_the_table() -> None:
-    """Rules 4: the decisions of a referee, each."""
+    """This file's table has every decision of the protocol."""
     assert list(LEGAL) == list(d.DECISIONS)
 
 
 @pytest.mark.parametrize("phase", PHASES, ids=lambda phase: phase.name)
 def test_what_is_legal_is_published(phase: Phase) -> None:
-    """Rules 4: legal when and why not is the match's to say, and is published."""
+    """In each phase the match lists which decisions are legal, and why the others are not."""
     published = stage_in(phase).match.legality()
     assert list(published) == list(LEGAL)
     for name, (_, phases) in LEGAL.items():
@@ -98,7 +98,7 @@ def test_what_is_legal_is_published(phase: Phase) -> None:
 @pytest.mark.parametrize("name", LEGAL)
 @pytest.mark.parametrize("phase", PHASES, ids=lambda phase: phase.name)
 def test_an_illegal_decision_is_refused_and_changes_nothing(phase: Phase, name: str) -> None:
-    """Rules 4: the illegal are answered with the reason; the whole visible state stays."""
+    """An illegal decision is refused with the reason, and nothing visible changes."""
     decision, phases = LEGAL[name]
     stage, twin = stage_in(phase), stage_in(phase)
     if phase in phases:
@@ -116,7 +116,7 @@ def test_an_illegal_decision_is_refused_and_changes_nothing(phase: Phase, name: 
 
 
 def test_why_a_match_cannot_start_names_all_that_is_missing() -> None:
-    """Rules 4: why not is published: everything that is missing, at once."""
+    """The reason why a match can't start lists everything that is missing."""
     stage = Stage()
     stage.beat(join(LEFT))
     legality = stage.match.legality()
@@ -130,7 +130,7 @@ def test_why_a_match_cannot_start_names_all_that_is_missing() -> None:
 
 @pytest.mark.parametrize("name", sorted(LEGAL))
 def test_which_need_a_reason(name: str) -> None:
-    """Rules 4: each decision has a reason; what is routine may do without."""
+    """A decision that needs a reason is refused with a blank one; the others are done."""
     decision, phases = LEGAL[name]
     if name in ("take-back", "unfreeze"):
         return
@@ -174,7 +174,7 @@ BAD_ARGUMENTS: list[tuple[d.Decision, Phase, str]] = [
 
 @pytest.mark.parametrize(("decision", "phase", "code"), BAD_ARGUMENTS)
 def test_wrong_arguments(decision: d.Decision, phase: Phase, code: str) -> None:
-    """Rules 4: the refusal says what was found and which values exist; nothing changes."""
+    """A decision with a wrong argument is refused with its reason, and nothing changes."""
     stage, twin = stage_in(phase), stage_in(phase)
     assert refused(stage, decision).code == code
     twin.beat()
@@ -182,7 +182,7 @@ def test_wrong_arguments(decision: d.Decision, phase: Phase, code: str) -> None:
 
 
 def test_a_decision_is_an_event_with_who_beat_and_reason() -> None:
-    """Rules 4: each decision has a referee, a beat, a reason, and a reply with the scores."""
+    """Rules 4.1: the log has a decision's beat, referee and reason; the reply has the scores."""
     stage = stage_in(P.PLAYING)
     beat = stage.beat(decide(d.Adjust("right", -2), "pushed the table", by="Takeda"))
     (reply,) = beat.outcomes
@@ -199,11 +199,11 @@ def test_a_decision_is_an_event_with_who_beat_and_reason() -> None:
     assert event.data["arguments"] == {"type": "adjust", "seat": "right", "points": -2}
 
 
-# What each does.
+# What each decision does.
 
 
 def test_ready_for_a_seat() -> None:
-    """Rules 4, `ready`: the referee says it for a contestant who can't."""
+    """`ready`: the referee says ready for a contestant; an empty seat can't be made ready."""
     stage = Stage()
     stage.beat(join(LEFT), join(RIGHT))
     assert "nobody" not in render(stage.match.legality()["start"] or "")
@@ -220,7 +220,7 @@ def test_ready_for_a_seat() -> None:
 
 @pytest.mark.parametrize("phase", [P.PLAYING, P.HALTED])
 def test_restart(phase: Phase) -> None:
-    """Rules 4, `restart`: the robot is at its start place with key 0; its keys work at once."""
+    """`restart` puts the robot back at its start, standing, and its keys work at once."""
     stage = Stage(overrides=QUICK, script=Script(poses={1: {LEFT: (0.1, 0.5)}})).to(P.PLAYING)
     stage.beat(key(LEFT, FORWARD))
     if phase is P.HALTED:
@@ -236,7 +236,7 @@ def test_restart(phase: Phase) -> None:
 
 
 def test_freeze_and_its_end() -> None:
-    """Rules 4, `freeze` n s: key 0, keys refused, for n s of clock."""
+    """`freeze` lets the robot stand and refuses its keys, for some seconds of the clock."""
     stage = stage_in(P.PLAYING)
     stage.beat(key(LEFT, FORWARD))
     done(stage, d.Freeze("left", 1.0))
@@ -260,7 +260,7 @@ def test_freeze_and_its_end() -> None:
 
 
 def test_unfreeze() -> None:
-    """Rules 4, `unfreeze`: keys work again; the robot stands until one comes."""
+    """`unfreeze` ends a freeze, and keys work again."""
     stage = stage_in(P.PLAYING)
     done(stage, d.Freeze("right", 600.0))
     stage.run(5)
@@ -270,7 +270,7 @@ def test_unfreeze() -> None:
 
 
 def test_unfreeze_where_nothing_is_frozen_any_more() -> None:
-    """Rules 4, `unfreeze`: what would change nothing is refused; in tick 0 it works too."""
+    """`unfreeze` is refused after a freeze has ended; before the first tick it works."""
     stage = stage_in(P.PLAYING)
     done(stage, d.Freeze("left", 0.04))
     assert stage.frame.seats[LEFT].locked_ticks == 1
@@ -296,12 +296,12 @@ def test_unfreeze_where_nothing_is_frozen_any_more() -> None:
     ],
 )
 def test_the_limits_themselves_are_allowed(decision: d.Decision) -> None:
-    """Rules 4: "between" and "at most" include their ends; a tick is 20 ms."""
+    """The largest and smallest numbers that are allowed for a decision are accepted."""
     done(stage_in(P.HALTED), decision)
 
 
 def test_adjust() -> None:
-    """Rules 4, `adjust`: points are added; computed and shown with them."""
+    """`adjust` adds points to a score, which is shown and decides the winner."""
     stage = stage_in(P.HALTED)
     assert done(stage, d.Adjust("left", 5)).scores == (23, 18)
     assert done(stage, d.Adjust("right", -1)).scores == (23, 17)
@@ -320,14 +320,14 @@ def test_adjust() -> None:
     ],
 )
 def test_set(arena: str, marker: str, state: str, scores: tuple[int, ...]) -> None:
-    """Rules 4, `set` a disc, corner or flag."""
+    """`set` changes a disc, a corner or a flag, and the scores with it."""
     stage = Stage(arena, QUICK).to(P.HALTED)
     assert done(stage, d.Set(marker, state)).scores == scores == stage.scores
     assert stage.board.get(marker, "neutral") == state
 
 
 def test_set_in_a_game_without_a_board() -> None:
-    """Rules 4: why not is published."""
+    """In a game without markers and without an end, `set` and `clock` are not legal."""
     stage = Stage("practice", {"match": {"start": "referee"}})
     assert stage.to_ready().match.phase is P.READY
     stage.decide(d.Start())
@@ -336,7 +336,7 @@ def test_set_in_a_game_without_a_board() -> None:
 
 
 def test_clock_moves_the_end() -> None:
-    """Rules 4, `clock` ±s: an offset to the played ticks moves the end by as much."""
+    """`clock` with a positive number gives time, and with a negative number takes time."""
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
     done(stage, d.Clock(10.0))
@@ -349,7 +349,7 @@ def test_clock_moves_the_end() -> None:
 
 
 def test_clock_in_old_records() -> None:
-    """A record that says `seconds` took that time: it gives the same match and words again."""
+    """An old record's `clock` with `seconds` takes time, with the same words in the log as then."""
     old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
@@ -360,7 +360,7 @@ def test_clock_in_old_records() -> None:
 
 
 def test_clock_past_the_end() -> None:
-    """Rules 4, tick 9000 is the last: none is played after it, and a slip can be put right."""
+    """If `clock` takes all the time, play ends at once, or after the resume if it is halted."""
     stage = stage_in(P.HALTED)
     ticks = stage.match.ticks
     done(stage, d.Clock(-3600.0))
@@ -375,7 +375,7 @@ def test_clock_past_the_end() -> None:
 
 
 def test_what_changes_the_winner_is_told() -> None:
-    """Rules 4, the computed result: pages and the log have the newest, once for each change."""
+    """Each decision that changes the computed winner adds one event with the new result."""
     stage = stage_in(P.FINISHED)
 
     def told() -> list[tuple[str, tuple[int, ...]]]:
@@ -399,7 +399,7 @@ def test_what_changes_the_winner_is_told() -> None:
 
 
 def test_abort_is_void() -> None:
-    """Rules 4, `abort` (VOID): nobody wins; the computed result is kept."""
+    """`abort` makes a match void; after the end, the computed result is kept."""
     stage = stage_in(P.PLAYING)
     done(stage, d.Abort())
     result = stage.beats[-1].result
@@ -416,7 +416,7 @@ def test_abort_is_void() -> None:
 @pytest.mark.parametrize("phase", [P.HALTED, P.FINISHED])
 @pytest.mark.parametrize("winner", ["left", "right", "draw"])
 def test_declare_keeps_both_results(phase: Phase, winner: str) -> None:
-    """Rules 4, `declare`: the computed result and the official one are both kept."""
+    """Rules 4.1: after `declare`, the computed result and the official one are both kept."""
     stage = stage_in(phase)
     done(stage, d.Adjust("right", 4))
     done(stage, d.Declare(winner))
@@ -429,7 +429,7 @@ def test_declare_keeps_both_results(phase: Phase, winner: str) -> None:
 
 
 def test_official_without_a_word_is_what_was_computed() -> None:
-    """Rules 4, `official`: makes the result official."""
+    """`official` without `declare` makes the computed result official."""
     stage = stage_in(P.FINISHED)
     reply = done(stage, d.Official())
     assert reply.said == say("decision.official-draw")
@@ -438,7 +438,7 @@ def test_official_without_a_word_is_what_was_computed() -> None:
 
 @pytest.mark.parametrize("phase", [P.OFFICIAL, P.VOID])
 def test_next(phase: Phase) -> None:
-    """Rules 4, `next`: a new match, which the court opens."""
+    """`next` asks the court for a new match; the match itself does not change."""
     stage = stage_in(phase)
     assert not stage.match.next_wanted
     done(stage, d.Next())
@@ -447,7 +447,7 @@ def test_next(phase: Phase) -> None:
 
 
 def test_a_halt_in_the_countdown() -> None:
-    """Rules 4: a countdown can be halted; the next one is whole again."""
+    """A countdown can be halted, and the next countdown begins from 3 s again."""
     stage = stage_in(P.COUNTDOWN)
     stage.run(100)
     done(stage, d.Halt())
@@ -458,7 +458,7 @@ def test_a_halt_in_the_countdown() -> None:
 
 
 def test_two_decisions_of_one_beat_are_taken_in_the_order_they_came() -> None:
-    """Rules 4: what is legal is asked when a decision is reached."""
+    """Two decisions of one beat are taken one after the other, so a repeated `halt` is refused."""
     stage = stage_in(P.PLAYING)
     beat = stage.beat(decide(d.Halt()), decide(d.Halt()), decide(d.Adjust("left", 1)))
     assert [type(outcome) for outcome in beat.outcomes] == [DecisionReply, Refusal, DecisionReply]
@@ -467,7 +467,7 @@ def test_two_decisions_of_one_beat_are_taken_in_the_order_they_came() -> None:
 
 
 def test_ready_can_be_taken_back_after_the_referee_gave_it() -> None:
-    """Rules 4: the match is back in LOBBY when a team takes ready back, whoever said it."""
+    """A team can take ready back, even if the referee said it for the team."""
     stage = Stage()
     stage.beat(join(LEFT), join(RIGHT))
     done(stage, d.Ready("left"))
@@ -478,12 +478,12 @@ def test_ready_can_be_taken_back_after_the_referee_gave_it() -> None:
 
 @pytest.mark.parametrize("decision", [d.Freeze("left", 0.004), d.Clock(-0.009)])
 def test_less_than_a_tick_is_no_decision(decision: d.Decision) -> None:
-    """Rules 4: what would change nothing is refused, not answered as if it were done."""
+    """A freeze or a change of the clock that rounds to no tick is refused."""
     assert refused(stage_in(P.HALTED), decision).code == "why.less-than-tick"
 
 
 def test_a_decision_stands_in_the_log_before_what_follows() -> None:
-    """Rules 4: the decision comes first, then the phase and the result that follow from it."""
+    """In the log a decision comes first, then the phase and the result that follow from it."""
     stage = stage_in(P.HALTED)
     stage.decide(d.Declare("left"))
     assert [event.kind for event in stage.beats[-1].events] == ["decision", "phase", "result"]

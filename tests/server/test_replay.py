@@ -1,4 +1,4 @@
-"""Replay: a record verified, or taken up where it ended (docs/architecture.md)."""
+"""Replay: a record is verified, or resumed from where it ends (docs/architecture.md)."""
 
 import struct
 from collections.abc import Iterator
@@ -35,19 +35,19 @@ INPUTS: dict[int, list[Input]] = {
     260: [key(RIGHT, TURN_LEFT, 2), decide(d.Adjust("right", 2))],
     300: [SilentSeat(RIGHT)],
     310: [HeardSeat(RIGHT), key(LEFT, X, 2), key(LEFT, FORWARD, 3)],
-    330: [decide(d.Halt()), decide(d.Start())],  # the second is refused
+    330: [decide(d.Halt()), decide(d.Start())],  # the start is refused
     340: [decide(d.Restart("right")), decide(d.Set("flag18", "left"))],
     341: [decide(d.Start())],  # refused; nothing else happens in this beat
     350: [decide(d.TakeBack(17)), decide(d.Resume())],
     353: [key(RIGHT, TURN_RIGHT, 3)],
 }
-"""A match of Flag-Strike in which a bit of everything happens."""
+"""Inputs of a Flag-Strike match, by beat: keys, [x], a silence, and legal and illegal decisions."""
 BEATS = 420
 
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, list[Beat]]]:
-    """The segment of a match that is still going on, and its beats."""
+    """Give the segment of a match that is still being played, and the match's beats."""
     journal = Journal(Match(setup("flag-strike", QUICK), World), tmp_path_factory.mktemp("live"))
     assert journal.writer is not None
     beats = [journal.beat(INPUTS.get(number, ()))[0] for number in range(BEATS)]
@@ -70,7 +70,7 @@ def verdict(record: Record) -> Verdict:
 
 
 def boundaries(data: bytes) -> list[int]:
-    """Where the records of an unchunked MCAP file begin."""
+    """Return the offsets of all records in an MCAP file without chunks."""
     places, at = [], 8
     while at < len(data):
         places.append(at)
@@ -84,7 +84,7 @@ def boundaries(data: bytes) -> list[int]:
 @pytest.mark.slow
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_a_simulated_match_verifies(arena: str, tmp_path: Path) -> None:
-    """`replay verify` says same, for both games."""
+    """A simulated match of either game verifies as the same."""
     made = setup(arena, {"match": {"duration_s": 20.0}})
     ground = arenas.load(arena)
     bots = list(ground.bots)
@@ -98,7 +98,7 @@ def test_a_simulated_match_verifies(arena: str, tmp_path: Path) -> None:
 
 
 def test_a_match_that_goes_on_verifies_up_to_where_it_is(live: tuple[Path, list[Beat]]) -> None:
-    """A killed court's record gives every whole message."""
+    """The record of a match that is still on verifies up to its newest beat."""
     record = Record.read(live[0])
     assert record.cut
     found = verdict(record)
@@ -106,7 +106,7 @@ def test_a_match_that_goes_on_verifies_up_to_where_it_is(live: tuple[Path, list[
 
 
 def test_a_changed_key_is_named(live: tuple[Path, list[Beat]]) -> None:
-    """Verify names the first beat that differs."""
+    """If a key is changed in the record, verify names the beat of that key."""
     record = Record.read(live[0])
     record.inputs[260] = [
         KeySeat(item.seat, item.seq, item.level, TURN_RIGHT) if isinstance(item, KeySeat) else item
@@ -118,7 +118,7 @@ def test_a_changed_key_is_named(live: tuple[Path, list[Beat]]) -> None:
 
 
 def test_a_missing_input_is_named(live: tuple[Path, list[Beat]]) -> None:
-    """Also where an input was taken out."""
+    """If an input is taken out of the record, verify names the beat of that input."""
     record = Record.read(live[0])
     del record.inputs[300]
     assert verdict(record).differs_at == 300
@@ -128,7 +128,7 @@ def test_a_missing_input_is_named(live: tuple[Path, list[Beat]]) -> None:
 def test_one_flipped_bit_of_a_pose_is_named(
     beat: int, live: tuple[Path, list[Beat]], tmp_path: Path
 ) -> None:
-    """One bit in one frame of the file."""
+    """If one bit of a pose is flipped, verify names the frame's beat."""
     path, beats = live
     data = bytearray(path.read_bytes())
     recorded = [at for at, _ in Record.read(path).frames]
@@ -154,7 +154,7 @@ def test_one_flipped_bit_of_a_pose_is_named(
 def test_nothing_of_a_record_can_be_changed_unseen(
     what: str, words: str, live: tuple[Path, list[Beat]]
 ) -> None:
-    """Not only frames are compared, but all that a resumed match is built of."""
+    """Verify also finds a changed event, touch or snapshot."""
     record = Record.read(live[0])
     if what == "event":
         event = record.events[-1]
@@ -170,7 +170,7 @@ def test_nothing_of_a_record_can_be_changed_unseen(
 
 
 def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
-    """Write a record again as software of protocol 1 wrote it."""
+    """Write a record again in the form of protocol 1."""
     header = record.header
     versions = {**header.versions, "protocol": "1"}
     writer = RecordWriter(folder, msgspec.structs.replace(header, versions=versions))
@@ -191,7 +191,7 @@ def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
 def test_a_record_of_protocol_1_is_read_and_verified(
     live: tuple[Path, list[Beat]], tmp_path: Path
 ) -> None:
-    """Its sentences are English; everything else in it is compared."""
+    """Events of protocol 1 have English sentences; the rest of their fields is verified."""
     path = as_protocol_1(Record.read(live[0]), live[0], tmp_path)
     record = Record.read(path)
     first = Record.read(live[0]).events[0]
@@ -204,7 +204,7 @@ def test_a_record_of_protocol_1_is_read_and_verified(
 
 @pytest.mark.slow
 def test_a_changed_result_is_named(tmp_path: Path) -> None:
-    """The recording replays to the same result."""
+    """If the recorded result is changed, verify says so."""
     made = setup("othello", {"match": {"duration_s": 0.5}})
     ground = arenas.load("othello")
     simulate(made, [player(ground, seat, "straight") for seat in (0, 1)], tmp_path)
@@ -215,7 +215,7 @@ def test_a_changed_result_is_named(tmp_path: Path) -> None:
 
 
 def test_another_mujoco_is_refused(live: tuple[Path, list[Beat]]) -> None:
-    """Rules 4, physics 1: exact only within one version; the sentence says what to install."""
+    """A record of another MuJoCo is refused; the message says which version to install."""
     record = Record.read(live[0])
     versions = {**record.header.versions, "mujoco": "3.9.9"}
     record.headers[0] = msgspec.structs.replace(record.header, versions=versions)
@@ -224,11 +224,11 @@ def test_another_mujoco_is_refused(live: tuple[Path, list[Beat]]) -> None:
             attempt()
 
 
-# Cut anywhere, and taken up again.
+# A cut record, and a match that is resumed from it.
 
 
 def go_on(match: Match, beats: list[Beat]) -> None:
-    """Play a resumed match on; it makes what the uncut one made, to the last bit."""
+    """Play a resumed match on, and check that each beat has the same bits as in the whole match."""
     for number in range(match.beats + 1, len(beats)):
         beat = match.beat(INPUTS.get(number, ()))
         assert encode(beat.frame) == encode(beats[number].frame), number
@@ -241,7 +241,7 @@ def go_on(match: Match, beats: list[Beat]) -> None:
     [0.12, 0.73, *(pytest.param(part, marks=pytest.mark.long) for part in (0.31, 0.5, 0.9, 1.0))],
 )
 def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
-    """Verified to its end, resumed with the same hash, and on from there."""
+    """A cut record verifies to its end, and the match resumed from it goes on with equal bits."""
     path, beats = live
     data = path.read_bytes()
     copy = tmp_path / path.name
@@ -264,9 +264,9 @@ def test_a_record_cut_anywhere(part: float, live: tuple[Path, list[Beat]], tmp_p
 def test_a_beat_is_whole_or_not_at_all(
     beat: int, live: tuple[Path, list[Beat]], tmp_path: Path
 ) -> None:
-    """A court killed in the middle of a beat does that beat again.
+    """A court that was killed in the middle of a beat does that beat again.
 
-    Cut after every single message around a beat with inputs, decisions and events.
+    The record is cut after each message around a beat with inputs, decisions and events.
     """
     path, beats = live
     data = path.read_bytes()
@@ -288,7 +288,7 @@ def test_a_beat_is_whole_or_not_at_all(
 @pytest.mark.slow
 @pytest.mark.parametrize("snapshot", [0, 1])
 def test_restored_from_any_snapshot(snapshot: int, live: tuple[Path, list[Beat]]) -> None:
-    """Restored from any snapshot: one state hash."""
+    """A match that is resumed from any snapshot ends with the same digest."""
     path, beats = live
     record = Record.read(path)
     assert len(record.snapshots) == 2
@@ -300,7 +300,7 @@ def test_restored_from_any_snapshot(snapshot: int, live: tuple[Path, list[Beat]]
 
 
 def test_snapshots_come_every_5_s_of_physics(live: tuple[Path, list[Beat]]) -> None:
-    """A full snapshot every 5 s."""
+    """The record has a snapshot in the first tick and every 5 s of physics."""
     path, beats = live
     ticked = [beat.frame.beat for beat in beats if beat.ticked]
     expected = [ticked[n] for n in range(0, len(ticked), SNAPSHOT_TICKS)]
@@ -308,7 +308,7 @@ def test_snapshots_come_every_5_s_of_physics(live: tuple[Path, list[Beat]]) -> N
 
 
 def test_the_court_goes_on_in_a_new_segment(live: tuple[Path, list[Beat]], tmp_path: Path) -> None:
-    """Killed twice, each time in a beat; the whole verifies, no event is lost."""
+    """After two kills, the record of three segments verifies and has each event once."""
     path, beats = live
     data = path.read_bytes()
     segment = tmp_path / path.name
@@ -334,7 +334,7 @@ def test_the_court_goes_on_in_a_new_segment(live: tuple[Path, list[Beat]], tmp_p
 
 
 def _abandon(writer: RecordWriter) -> None:
-    """Leave a record as a kill does: nothing more is written."""
+    """Leave a record as a kill does: write nothing more."""
     writer._file.flush()
     writer._closing.set()
     writer._syncer.join()

@@ -1,4 +1,4 @@
-"""The scene: everything a page needs to draw the model, and no more (docs/architecture.md)."""
+"""The scene: everything that a page needs to draw the model, and nothing else."""
 
 import math
 
@@ -19,7 +19,7 @@ ROBOTS = ("hexapod", "long-legs", "quadruped", "octopod")
 
 
 def turned_about(it: World, seed: int) -> None:
-    """Give every robot any pose at all."""
+    """Give every robot a random pose and random joint angles."""
     rng = np.random.default_rng(seed)
     for robot in it._robots:
         at = robot.root_qpos
@@ -33,7 +33,7 @@ def turned_about(it: World, seed: int) -> None:
 @pytest.mark.parametrize("left", ROBOTS)
 @pytest.mark.parametrize("right", ["hexapod", "quadruped"])
 def test_forward_kinematics_from_scene_and_frame(left: str, right: str) -> None:
-    """Scene and frame give every body where MuJoCo has it, to 1e-6 m."""
+    """Scene and frame together give every body's pose as MuJoCo has it, within 1e-6 m."""
     entries = [entry(left), entry(right)]
     it = World(arenas.load("flag-strike"), entries)
     scene = decode(encode(it.scene), Scene)
@@ -42,13 +42,13 @@ def test_forward_kinematics_from_scene_and_frame(left: str, right: str) -> None:
         turned_about(it, seed)
         pos_w, quat_w = kinematics.poses(it.poses())
         assert np.abs(pos_w - it.data.xpos).max() < 1e-6
-        same = np.abs((quat_w * it.data.xquat).sum(-1))  # q and -q are one turn
+        same = np.abs((quat_w * it.data.xquat).sum(-1))  # q and -q are the same rotation
         assert np.abs(same - 1).max() < 1e-6
 
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_every_marker_has_a_shape_for_each_of_its_states(arena: str) -> None:
-    """Design: a board is a list of markers with small states; the scene has a geom for each."""
+    """The scene has a shape for every state of every marker."""
     ground = arenas.load(arena)
     scene = World(ground, [entry()] * 2).scene
     drawn = {(g.marker, g.state) for g in scene.geoms if g.marker >= 0}
@@ -59,7 +59,7 @@ def test_every_marker_has_a_shape_for_each_of_its_states(arena: str) -> None:
 
 
 def test_what_cannot_be_seen_is_left_out() -> None:
-    """Probes and wall planes have no colour: they are not in the picture."""
+    """Invisible shapes (probes of flags, planes of walls) are not in the scene."""
     it = World(arenas.load("flag-strike"), [entry()] * 2)
     hidden = int((it.model.geom_rgba[:, 3] == 0).sum())
     assert hidden == 4 + 20
@@ -67,7 +67,7 @@ def test_what_cannot_be_seen_is_left_out() -> None:
 
 
 def test_whose_colour() -> None:
-    """Rules 1: legs 0 and 5 are drawn in another colour; all else of a robot is its team's."""
+    """Rules 1: the two front legs (0 and 5) have another colour; the rest has the seat's colour."""
     it = World(arenas.load("othello"), [entry()] * 2)
     for seat, name in enumerate(("left", "right")):
         mine = [g for g in it.scene.geoms if it.scene.bodies[g.body].name.startswith(name)]
@@ -79,7 +79,7 @@ def test_whose_colour() -> None:
 
 
 def test_the_hash_is_of_what_is_drawn() -> None:
-    """Frames carry the first 8 bytes of the scene's hash: another scene has others."""
+    """The hash of a scene has 8 bytes, and differs if other robots are drawn."""
     ground = arenas.load("othello")
     worlds = [World(ground, e) for e in ([], [entry()] * 2, [entry("quadruped"), entry()])]
     hashes = {it.scene_hash for it in worlds}
@@ -91,7 +91,7 @@ def test_the_hash_is_of_what_is_drawn() -> None:
 
 @pytest.mark.parametrize("kind", ["slide", "offset", "mesh"])
 def test_what_pages_cannot_draw_is_said(kind: str) -> None:
-    """A third party's field with another joint or shape: a sentence that names it."""
+    """A field with a joint or shape that pages can't draw is refused with a message."""
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body(name="gate")
     if kind == "mesh":
@@ -109,7 +109,7 @@ def test_what_pages_cannot_draw_is_said(kind: str) -> None:
 
 
 def test_a_robot_starts_where_its_arena_says() -> None:
-    """Rules 1: where it starts on the field is the arena's; it looks at the other side."""
+    """The arena says where a robot starts; the two robots face each other's side."""
     ground = arenas.load("othello")
     it = World(ground, [entry()] * 2)
     for seat, sign in ((0, 1.0), (1, -1.0)):

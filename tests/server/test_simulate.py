@@ -1,4 +1,4 @@
-"""Headless matches: bots and ghosts in the seats, as fast as the machine can."""
+"""Headless matches: bots and ghosts play in the seats, as fast as the machine can."""
 
 import os
 from pathlib import Path
@@ -32,7 +32,7 @@ def play(
 
 
 def test_a_match_to_its_end(tmp_path: Path) -> None:
-    """Result and record; robots settle, then the whole ceremony."""
+    """A simulated match has a result and a record, and goes through all phases in order."""
     result = play(tmp_path)
     assert (result.reason, result.clock_s, sum(result.scores)) == (say("over.time"), 4.0, 36)
     assert result.official == result.computed != ""
@@ -50,13 +50,13 @@ def test_a_match_to_its_end(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_same_players_play_the_same_match() -> None:
-    """Rules 4: the same inputs give the same match, bit for bit, recorded or not."""
+    """The same players give the same match, bit for bit; a bot that begins later gives another."""
     assert play() == play()
     assert play(late=30).digest != play().digest
 
 
 def test_it_can_be_watched() -> None:
-    """Every frame is shown, so that a progress bar or a picture can follow."""
+    """`watch` is called with the frame of every beat."""
     seen: list[int] = []
     ground = setup("othello", SHORT)
     players = [player(OTHELLO, seat, "straight") for seat in (0, 1)]
@@ -65,7 +65,7 @@ def test_it_can_be_watched() -> None:
 
 
 def test_ghosts_of_both_seats_play_their_match_again(tmp_path: Path) -> None:
-    """A ghost is a brain that reads a record; it brings its own files."""
+    """Two ghosts that repeat the keys of a record give the same match again."""
     result = play(tmp_path)
     ghosts = [
         player(OTHELLO, n, f"ghost:{tmp_path}/m.mcap:{s}") for n, s in ((0, "left"), (1, "right"))
@@ -76,14 +76,14 @@ def test_ghosts_of_both_seats_play_their_match_again(tmp_path: Path) -> None:
 
 
 def test_a_match_without_end_is_refused() -> None:
-    """A headless match of practice would never end: the sentence says what to give."""
+    """A simulated match needs an end; for practice the message asks for --seconds."""
     ground = arenas.load("practice")
     with pytest.raises(UserError, match="of practice has no time limit: give --seconds"):
         simulate(setup("practice"), [player(ground, 0, next(iter(ground.bots)))])
 
 
 def test_practice_with_an_end() -> None:
-    """One seat, no referee: it starts by itself."""
+    """A simulated practice has one seat and starts by itself."""
     made = setup("practice", {"match": {"duration_s": 1.0}})
     ground = arenas.load("practice")
     result = simulate(made, [player(ground, 0, next(iter(ground.bots)))])
@@ -91,7 +91,7 @@ def test_practice_with_an_end() -> None:
 
 
 def test_files_with_mistakes_are_refused() -> None:
-    """A wrong file at start: every mistake."""
+    """A player's file with mistakes is refused with every mistake."""
     good = player(OTHELLO, 0, "straight")
     bad = Player(join(1, robot_file=b"legs = 3"), good.bot)
     with pytest.raises(FileRefused) as refused:
@@ -100,13 +100,13 @@ def test_files_with_mistakes_are_refused() -> None:
 
 
 def test_a_match_knows_nothing_of_how_it_is_run() -> None:
-    """The headless match is the live one, made from the same setup."""
+    """`Match` takes the setup of a headless match, as it takes that of a live one."""
     match = Match(setup("othello", SHORT), World)
     assert match.duration_ticks == 200
 
 
 def test_a_record_is_never_overwritten(tmp_path: Path) -> None:
-    """A match of a name whose record is there already is not even begun; the record stays."""
+    """A match whose record exists already is refused, and that record does not change."""
     there = tmp_path / "m.mcap"
     there.write_bytes(b"yesterday's match")
 
@@ -117,7 +117,7 @@ def test_a_record_is_never_overwritten(tmp_path: Path) -> None:
 
 
 def handed_in(folder: Path, locomotion: bytes | None) -> Path:
-    """Return the files that a student handed in."""
+    """Make the folder of a student's files; return it."""
     folder.mkdir()
     if locomotion is not None:
         (folder / "LocoTra-data.txt").write_bytes(locomotion)
@@ -131,7 +131,7 @@ def sample() -> bytes:
 
 
 def test_a_bot_steers_what_lies_in_a_folder(tmp_path: Path) -> None:
-    """README, for teachers: gaits meet without anybody at the keyboard; a robot file goes along."""
+    """`BOT@FOLDER` lets a bot steer the gait, and the robot if there is one, in a folder."""
     anna = handed_in(tmp_path / "anna", sample().replace(b"45", b"40"))
     one = player(OTHELLO, 0, f"straight@{anna}")
     assert (one.join.team, one.join.robot.name) == ("anna", "anna/robot.toml")
@@ -145,7 +145,7 @@ def test_a_bot_steers_what_lies_in_a_folder(tmp_path: Path) -> None:
 
 
 def test_where_a_gait_is_looked_for_is_said(tmp_path: Path) -> None:
-    """Beside the robot file, or in the folder; and how to make it of a workbook."""
+    """If no gait is found, the message says where it was looked for and how to make it."""
     empty = handed_in(tmp_path / "empty", None)
     (empty / "mine.toml").write_bytes(find_robot("hexapod")[1])
     for word, robot in ((f"straight@{empty}", "hexapod"), ("straight", str(empty / "mine.toml"))):
@@ -156,7 +156,7 @@ def test_where_a_gait_is_looked_for_is_said(tmp_path: Path) -> None:
 
 
 def test_everybody_s_mistakes_are_listed_before_anything_begins(tmp_path: Path) -> None:
-    """Each file with its folder: they all have the same name."""
+    """The mistakes of all folders are listed before any match, each file with its folder's name."""
     wrong = b"1\n1\n5"
     names = [f"straight@{handed_in(tmp_path / name, wrong)}" for name in ("anna", "ben", "chie")]
     with pytest.raises(FileRefused) as refused:
@@ -167,7 +167,7 @@ def test_everybody_s_mistakes_are_listed_before_anything_begins(tmp_path: Path) 
 
 
 def test_a_folder_whose_name_is_no_text(tmp_path: Path) -> None:
-    """A zip from Japanese Windows: the team is called by the numbers of the bytes."""
+    """If a folder's name is not valid text, the team's name has its bytes as numbers."""
     folder = tmp_path / os.fsdecode(b"team\x98\x8b")
     handed_in(folder, sample())
     players = [player(OTHELLO, 0, f"straight@{folder}"), player(OTHELLO, 1, "straight")]
@@ -176,7 +176,7 @@ def test_a_folder_whose_name_is_no_text(tmp_path: Path) -> None:
 
 
 def test_a_match_that_breaks_off_leaves_no_record(tmp_path: Path) -> None:
-    """It can be played again; what is left behind would only stand in the way."""
+    """A simulated match that is interrupted leaves no record, so it can be played again."""
 
     def stop(frame: Frame) -> None:
         if frame.phase == Phase.PLAYING:

@@ -1,4 +1,4 @@
-"""Before play a robot stays at its start place, or is put back there (docs/rules.md 4)."""
+"""Before play, a robot stays at its start place or is put back there (rules 4)."""
 
 import math
 
@@ -13,7 +13,7 @@ from lacoc_shared.words import render
 
 
 def straying(*ticks: int, by_m: float = 0.06, seat: int = LEFT) -> Stage:
-    """Make a match whose robot moves from its start by a distance some ticks after it is built."""
+    """Make a match whose robot is `by_m` away from its start in some ticks after it is built."""
     x_m, y_m = start(Stage("flag-strike"), seat)
     poses = {tick: {seat: (x_m, y_m + by_m)} for tick in ticks}
     return Stage("flag-strike", QUICK, script=Script(poses=poses))
@@ -32,7 +32,7 @@ def strayed(stage: Stage) -> list[Event]:
 
 
 def test_who_leaves_its_start_place_before_play_is_put_back() -> None:
-    """An event says so in the same beat; in the next beat the robot is at its start."""
+    """A robot that leaves its start place in READY is put back in the next beat, with an event."""
     stage = straying(3).to_ready()
     stage.run(2)
     assert from_start_m(stage) > 0.05
@@ -49,7 +49,7 @@ def test_who_leaves_its_start_place_before_play_is_put_back() -> None:
 
 
 def test_a_step_within_the_place_is_none() -> None:
-    """Settling is allowed: 0.05 m."""
+    """A robot that moves by less than 0.05 m in READY is not put back."""
     stage = straying(3, by_m=0.049, seat=RIGHT).to_ready()
     stage.run(10)
     assert strayed(stage) == []
@@ -57,7 +57,7 @@ def test_a_step_within_the_place_is_none() -> None:
 
 
 def test_who_leaves_again_and_again_is_not_ready() -> None:
-    """The third time its team is not ready; after it says ready again, the count begins at 0."""
+    """The third time a robot is put back, its team is no longer ready; then the count restarts."""
     assert MOST_STRAYS == 3
     stage = straying(3, 6, 9).to_ready()
     stage.run(9)
@@ -74,7 +74,7 @@ def test_who_leaves_again_and_again_is_not_ready() -> None:
 
 
 def test_a_start_in_that_beat_finds_it_at_its_place() -> None:
-    """Whoever is on the way back when the referee starts is there when play begins."""
+    """If the referee starts while a robot has to go back, play begins with it at its start."""
     stage = straying(3).to_ready()
     stage.run(2)
     assert len(strayed(stage)) == 1
@@ -84,7 +84,7 @@ def test_a_start_in_that_beat_finds_it_at_its_place() -> None:
 
 
 def test_one_who_leaves_or_comes_anew_on_the_way_back_disturbs_nothing() -> None:
-    """The field is empty then."""
+    """If a team leaves or changes its robot before the robot is put back, the field is empty."""
     for item in (LeaveSeat(LEFT), join(LEFT, robot="octopod")):
         stage = straying(3).to_ready()
         stage.run(2)
@@ -95,7 +95,7 @@ def test_one_who_leaves_or_comes_anew_on_the_way_back_disturbs_nothing() -> None
 
 
 def test_play_puts_nobody_back() -> None:
-    """A robot may go where it likes, and be pushed, also while it stands."""
+    """In PLAYING a robot that is away from its start is not put back."""
     stage = straying(3).to_playing()
     stage.run(10)
     assert from_start_m(stage) > 0.05

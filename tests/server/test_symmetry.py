@@ -1,4 +1,4 @@
-"""Fairness: turned by 180 degrees with the seats swapped, everything is the same."""
+"""Fairness: a match that is turned by 180 degrees, with its seats swapped, is the same match."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from lacoc_shared.inputs import Input
 from lacoc_shared.seat import Phase
 
 Keys = dict[int, tuple[int, int]]
-"""Tick -> seat, key."""
+"""Tick -> (seat, digit)."""
 
 
 def swapped(keys: Keys) -> Keys:
@@ -25,13 +25,13 @@ def inputs(keys: Keys, tick: int) -> list[Input]:
 
 
 def robots(stage: Stage) -> np.ndarray:
-    """(2, 25) pose and angles, in the precision of physics."""
+    """Return both robots' poses and joint angles as MuJoCo's float64, in the shape (2, 25)."""
     world = stage.match.physics
     return world.data.qpos[world._pose_qpos].reshape(2, 25).copy()
 
 
 def turned(poses: np.ndarray) -> np.ndarray:
-    """The poses when the field is turned by 180 degrees and the seats are swapped."""
+    """Return both robots' poses with the field turned by 180 degrees and the seats swapped."""
     out = poses[::-1].copy()
     out[:, :2] *= -1
     w, x, y, z = out[:, 3:7].T.copy()
@@ -40,7 +40,7 @@ def turned(poses: np.ndarray) -> np.ndarray:
 
 
 def distance(one: np.ndarray, other: np.ndarray) -> float:
-    """How far apart, with q and -q the same turn."""
+    """Return the largest difference of any number; quaternions q and -q count as equal."""
     sign = np.sign((one[:, 3:7] * other[:, 3:7]).sum(1, keepdims=True))
     other = other.copy()
     other[:, 3:7] *= sign
@@ -68,10 +68,10 @@ COLLIDING: Keys = {
     7500: (RIGHT, TURN_RIGHT),
     7900: (RIGHT, FORWARD),
 }
-"""Straight at each other, pushing and scraping along, into the walls, back to the start, again.
+"""Keys with which robots push each other, scrape along walls, and go back to their starts.
 
-Contact multiplies the last bit of rounding. Two robots that stay entangled for a minute part
-from their turned twins by more than this; nobody can foresee such a path anyhow.
+Contact multiplies rounding errors. Robots that stay entangled for a minute would part from
+their turned path by more than the bound of the test.
 """
 
 
@@ -85,7 +85,7 @@ from their turned twins by more than this; nobody can foresee such a path anyhow
     ],
 )
 def test_the_physics_gives_the_turned_path(arena: str, ticks: int, least_contacts: int) -> None:
-    """The turned match stays within 1e-6 m, contacts allowed, and has the turned events."""
+    """The turned match keeps within 1e-6 m of the turned path, also when robots push each other."""
     one, other = (Stage.real(arena, QUICK).to_playing() for _ in range(2))
     mirrored = swapped(COLLIDING)
     worst, contacts = 0.0, 0
@@ -102,7 +102,7 @@ def test_the_physics_gives_the_turned_path(arena: str, ticks: int, least_contact
 
 
 def _touching(stage: Stage) -> int:
-    """Whether the robots touch each other."""
+    """Return whether the robots touch each other."""
     world = stage.match.physics
     body = world.model.geom_bodyid
     root = world.model.body_rootid
@@ -111,7 +111,7 @@ def _touching(stage: Stage) -> int:
 
 
 def claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], int]]:
-    """Return the game's claims (seat, kind, marker, also, tick), in an order that ignores seats."""
+    """Return the game's claims (seat, kind, marker, also, tick), sorted."""
     return sorted(
         (e.seat, e.kind, e.data["marker"], tuple(sorted(e.data["also"])), e.clock_ticks)
         for e in stage.events
@@ -120,7 +120,7 @@ def claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], int]]:
 
 
 def _opposite(stage: Stage) -> dict[str, str]:
-    """Return for each marker its partner on the other side of the field."""
+    """Return for each marker the name of its partner on the other side of the field."""
     markers = stage.match.game.markers
     at = {(round(m.x_m, 6) + 0.0, round(m.y_m, 6) + 0.0): m.name for m in markers}
     return {m.name: at[round(-m.x_m, 6) + 0.0, round(-m.y_m, 6) + 0.0] for m in markers}
@@ -138,7 +138,7 @@ def _turned_claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], i
 
 
 def wander(arena: str, seed: int) -> Script:
-    """Two robots that walk about the whole board in straight lines and touch flags."""
+    """Return a script of two robots that walk about in straight lines and touch flags."""
     rng = np.random.default_rng(seed)
     script = Script()
     at = np.array([[-0.6, 0.0], [0.6, 0.0]])
@@ -174,7 +174,7 @@ def turned_script(stage: Stage, script: Script) -> Script:
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 @pytest.mark.parametrize("seed", range(6))
 def test_the_rules_give_exactly_the_turned_match(arena: str, seed: int) -> None:
-    """Rules 4: no rule depends on which seat is evaluated first."""
+    """Rules 4: the rules give exactly the turned match if both seats are exchanged."""
     script = wander(arena, seed)
     half_minute = {"match": {"duration_s": 30.0, "countdown_s": 0.02}}
     one = Stage(arena, half_minute, script=script)

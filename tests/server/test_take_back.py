@@ -1,4 +1,4 @@
-"""Take-back: one event is struck out and the match judged again (rules 4)."""
+"""Take-back: one event is taken back, and the match is judged without it (rules 4.1)."""
 
 import tracemalloc
 from itertools import permutations
@@ -22,12 +22,12 @@ AWAY = (0.0, 0.0)
 
 
 def cell(name: str) -> tuple[float, float]:
-    """The centre of a disc."""
+    """Return the centre of a disc [m]."""
     return (int(name[1]) - 2.5) * 0.3, (int(name[3]) - 2.5) * 0.3
 
 
 def othello(walks: dict[int, dict[int, str]], ticks: int = 100) -> Stage:
-    """A match of Othello played to a tick; walks: tick -> seat -> disc."""
+    """Play a match of Othello up to a tick; `walks` is tick -> seat -> disc."""
     poses = {tick: {s: cell(c) for s, c in step.items()} for tick, step in walks.items()}
     return play(Stage("othello", QUICK, script=Script(poses=poses)), ticks)
 
@@ -42,7 +42,7 @@ def flag_strike(
 
 
 def play(stage: Stage, ticks: int) -> Stage:
-    """Play to a tick, or to the end, and halt."""
+    """Play up to a tick or to the end, then halt."""
     if not stage.beats:
         stage.to_playing()
     while stage.match.ticks < ticks and stage.phase is not P.FINISHED:
@@ -53,7 +53,7 @@ def play(stage: Stage, ticks: int) -> Stage:
 
 
 def event(stage: Stage, kind: str, marker: str) -> Event:
-    """The newest event of a kind about a marker."""
+    """Return the newest event of a kind about a marker."""
     return [e for e in stage.events if e.kind == kind and e.data.get("marker") == marker][-1]
 
 
@@ -63,12 +63,12 @@ def take_back(stage: Stage, number: int, dry_run: bool = False) -> DecisionReply
     return reply
 
 
-# A chain of flips, of which the later ones need the first.
+# A chain of flips: the flip in tick 30 needs the one in tick 20.
 CHAIN = {10: {LEFT: "c2r2"}, 20: {LEFT: "c3r2"}, 30: {LEFT: "c4r2"}, 40: {RIGHT: "c5r2"}}
 
 
 def test_a_flip_and_what_came_of_it() -> None:
-    """Rules 4, take-back, workshop 5-1 rule 4: later captures may vanish; the reply lists them."""
+    """Rules 4.1: if a flip is taken back, later flips that needed it vanish and are listed."""
     stage = othello(CHAIN)
     assert stage.scores == (20, 16)
     first, second = event(stage, "flip", "c3r2"), event(stage, "flip", "c4r2")
@@ -87,7 +87,7 @@ def test_a_flip_and_what_came_of_it() -> None:
 
 
 def test_an_event_may_appear() -> None:
-    """Rules 4, take-back: later captures may appear; they get numbers of their own."""
+    """Rules 4.1: if a flip is taken back, a later flip may appear, as an event of its own."""
     stage = othello(
         {
             5: {RIGHT: "c3r2", LEFT: "c2r1"},
@@ -109,7 +109,7 @@ def test_an_event_may_appear() -> None:
 
 
 def test_a_capture() -> None:
-    """Rules 4, take-back, workshop 5-2 rule 3: a robot is in a corner without having taken it."""
+    """If a capture is taken back, the robot can capture that corner when it comes in again."""
     stage = flag_strike({10: {LEFT: CORNERS[0]}, 20: {LEFT: AWAY}, 30: {LEFT: CORNERS[0]}})
     first = event(stage, "capture", "corner0")
     assert stage.numbers("capture") == [first.number]
@@ -123,7 +123,7 @@ def test_a_capture() -> None:
 
 
 def test_a_strike() -> None:
-    """Rules 4, take-back, workshop 5-2 rule 5: the flag stands again, also a tick later."""
+    """If a strike is taken back, the flag stands, even if the robot touched it in later ticks."""
     on = {tick: {RIGHT: (22,)} for tick in range(10, 20)}  # flag18 has 5 points
     stage = flag_strike({}, on)
     assert stage.scores == (0, 5)
@@ -136,7 +136,7 @@ def test_a_strike() -> None:
 
 
 def test_adjust_and_set() -> None:
-    """Rules 4, take-back: also of adjust and set."""
+    """The decisions `adjust` and `set` can be taken back too."""
     stage = othello(CHAIN)
     adjust, put = stage.decide(d.Adjust("right", 7)), stage.decide(d.Set("c0r0", "right"))
     assert stage.scores == (19, 24)
@@ -147,7 +147,7 @@ def test_adjust_and_set() -> None:
 
 
 def test_a_set_that_a_later_flip_needed() -> None:
-    """Rules 4, take-back: the game is folded again from that event on."""
+    """If a `set` is taken back, everything after it is judged again, and a flip may appear."""
     stage = Stage("othello", QUICK, script=Script(poses={20: {LEFT: cell("c2r2")}})).to_playing()
     stage.run(10)
     stage.decide(d.Set("c3r2", "left"))
@@ -162,7 +162,7 @@ def test_a_set_that_a_later_flip_needed() -> None:
 
 @pytest.mark.parametrize("kind", ["flip", "adjust", "set"])
 def test_a_dry_run_changes_nothing_and_tells_the_truth(kind: str) -> None:
-    """Rules 4, take-back: dry_run shows it before it is done."""
+    """A dry run shows what a take-back would change, and changes nothing."""
     stage, twin = othello(CHAIN), othello(CHAIN)
     for both in (stage, twin):
         both.decide(d.Set("c0r0", "right"))
@@ -187,7 +187,7 @@ def test_a_dry_run_changes_nothing_and_tells_the_truth(kind: str) -> None:
 
 
 def test_what_is_gone_cannot_be_taken_back() -> None:
-    """Rules 4, take-back: an event that stands; not twice, and not one that has vanished."""
+    """An event that was taken back, or has vanished, can't be taken back again."""
     stage = othello(CHAIN)
     gone = [event(stage, "flip", name).number for name in ("c3r2", "c4r2")]
     gone += [stage.decide(d.Adjust("left", 1)).event, stage.decide(d.Set("c0r0", "right")).event]
@@ -202,7 +202,7 @@ ALL_FOUR = {10 * n: {LEFT: at} for n, at in enumerate(CORNERS, start=1)}
 
 
 def test_a_match_that_the_event_had_ended_goes_on() -> None:
-    """Rules 4, take-back: if the struck event had ended the match, it is HALTED again."""
+    """If the event that ended the match is taken back, the match is HALTED and can be resumed."""
     stage = flag_strike(ALL_FOUR)
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
     reply = take_back(stage, event(stage, "capture", "corner3").number)
@@ -219,7 +219,7 @@ def test_a_match_that_the_event_had_ended_goes_on() -> None:
 
 
 def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
-    """Rules 4, take-back: only the end that the struck event had made is undone."""
+    """If a `set` after the end is taken back, the match stays finished for the same reason."""
     stage = flag_strike(ALL_FOUR)
     numbers = [stage.decide(d.Set(flag, "right")).event for flag in ("flag0", "flag1")]
     take_back(stage, numbers[1])
@@ -230,7 +230,7 @@ def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
 
 
 def test_a_match_may_turn_out_to_have_been_over() -> None:
-    """Rules 4, take-back: what would have ended the match ends it; what came later is void."""
+    """If a match would have ended without an event, its take-back ends it; later events vanish."""
     walks = dict(ALL_FOUR)
     walks[35] = {RIGHT: CORNERS[0]}
     stage = flag_strike(walks, {60: {RIGHT: (22,)}})
@@ -241,14 +241,14 @@ def test_a_match_may_turn_out_to_have_been_over() -> None:
     assert stage.match.ended == say("over.all-corners", seat="left")
     assert reply.scores == stage.scores == (20, 0)
     assert say("change.vanishes", event=strike, kind="strike", marker="flag18") in reply.changes
-    # And back: without the last corner it was not over, and the strike counts again.
+    # Without the fourth corner the match was not over, so the strike counts again.
     reply = take_back(stage, event(stage, "capture", "corner3").number)
     assert stage.phase is P.HALTED
     assert reply.scores == (15, 5)
 
 
 def test_what_turned_out_to_be_over_stays_over() -> None:
-    """Rules 4, take-back: a later take-back starts from the result of an earlier one."""
+    """A match that a take-back has finished stays finished after another take-back."""
     stage = flag_strike({**ALL_FOUR, 35: {RIGHT: CORNERS[0]}})
     put = stage.decide(d.Set("flag0", "right")).event
     take_back(stage, event(stage, "capture", "corner0").number)
@@ -259,7 +259,7 @@ def test_what_turned_out_to_be_over_stays_over() -> None:
 
 
 def test_time_is_up_stays_up() -> None:
-    """Rules 4, take-back: the clock stays as it was; the result is worked out again."""
+    """If the time is up, a take-back changes the winner, but not the clock."""
     short = {"match": {"duration_s": 1.0, "countdown_s": 0.02}}
     poses = {10: {LEFT: cell("c2r2")}, 20: {LEFT: cell("c3r2")}}
     stage = play(Stage("othello", short, script=Script(poses=poses)), 50)
@@ -272,7 +272,7 @@ def test_time_is_up_stays_up() -> None:
 
 
 def test_over_in_the_tick_in_which_time_is_up() -> None:
-    """Rules 4: over counts before time; without the event that made it over, time is up."""
+    """If the capture that ended the match in its last tick is taken back, "time is up" ends it."""
     short = {"match": {"duration_s": 0.8, "countdown_s": 0.02}}
     stage = play(Stage("flag-strike", short, script=Script(poses=dict(ALL_FOUR))), 40)
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
@@ -282,7 +282,7 @@ def test_over_in_the_tick_in_which_time_is_up() -> None:
 
 
 def test_time_is_never_up_in_a_match_without_end() -> None:
-    """Rules 4: a match with duration 0 has no time limit; without its last event it goes on."""
+    """If a match has no time limit, taking back the event that ended it makes it HALTED."""
     endless = {"match": {"duration_s": 0.0, "countdown_s": 0.02}}
     stage = play(Stage("flag-strike", endless, script=Script(poses=dict(ALL_FOUR))), 100)
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
@@ -291,7 +291,7 @@ def test_time_is_never_up_in_a_match_without_end() -> None:
 
 
 def test_a_declared_end_stays() -> None:
-    """Rules 4: only another decision replaces a declared end, not a take-back."""
+    """A take-back does not change a result that the referee has declared."""
     stage = flag_strike(ALL_FOUR)
     stage.decide(d.Declare("right"))
     take_back(stage, event(stage, "capture", "corner3").number)
@@ -301,7 +301,7 @@ def test_a_declared_end_stays() -> None:
 
 
 def test_paths_restarts_clock_and_other_decisions_stay() -> None:
-    """Rules 4, take-back: body paths, restarts, clock and other decisions stay as they were."""
+    """Rules 4.1: a take-back does not change paths, restarts, the clock or other decisions."""
     stage = Stage("othello", QUICK, script=Script()).to_playing()
     stage.script.poses.update({10: {LEFT: cell("c2r2")}, 20: {LEFT: cell("c3r2")}})
     stage.run(30)
@@ -318,7 +318,7 @@ def test_paths_restarts_clock_and_other_decisions_stay() -> None:
 
 
 def test_both_orders_give_the_same() -> None:
-    """Rules 4, take-back: of several events that stand apart, the order does not matter."""
+    """If three independent events are taken back, their order does not matter."""
     walks = {
         10: {LEFT: "c2r2", RIGHT: "c3r4"},
         20: {LEFT: "c3r2", RIGHT: "c2r4"},
@@ -336,7 +336,7 @@ def test_both_orders_give_the_same() -> None:
     assert len(ends) == 1
 
 
-# The fold itself.
+# Folding: to judge a history again without an event.
 
 NO_TOUCH: tuple[int, ...] = ()
 
@@ -348,7 +348,7 @@ def view(x_m: float, y_m: float, touched: tuple[int, ...] = (), placed: bool = F
 
 @st.composite
 def observations(draw: st.DrawFn, arena: str) -> list[Observation]:
-    """Robots that hop on a grid of the field's own places, touch flags and are put back."""
+    """Draw two robots that hop between places of the field, touch flags and are put back."""
     size = 6 if arena == "othello" else 3
     pitch = 0.3 if arena == "othello" else 0.8
     half = (size - 1) / 2
@@ -371,7 +371,7 @@ GAMES = {name: arenas.load(name).game for name in ("othello", "flag-strike")}
 
 
 def kept_bytes(stage: Stage, ticks: int) -> float:
-    """Memory that a match keeps of a tick in which nothing happens."""
+    """Return the memory that a match keeps for each tick in which nothing happens [bytes]."""
     tracemalloc.start()
     marks = []
     for _ in range(2):
@@ -384,9 +384,9 @@ def kept_bytes(stage: Stage, ticks: int) -> float:
 
 @pytest.mark.parametrize("arena", ["practice", "othello", "flag-strike"])
 def test_ticks_that_nothing_can_be_taken_back_from_are_not_kept(arena: str) -> None:
-    """Rules 4, practice and take-back: a match without an event costs no memory by the tick.
+    """Ticks before the first event of a match are not kept in memory.
 
-    A practice has no end and no markers: at 440 bytes a tick it would fill 1.9 GB a day.
+    Practice has no end: at 440 bytes a tick it would fill 1.9 GB a day.
     """
     stage = Stage(arena).to_playing()
     assert kept_bytes(stage, 2000) < 10
@@ -394,7 +394,7 @@ def test_ticks_that_nothing_can_be_taken_back_from_are_not_kept(arena: str) -> N
 
 
 def test_the_first_event_of_a_match_is_taken_back_as_exactly_as_any() -> None:
-    """Rules 4, take-back: the first event of a match can be taken back exactly."""
+    """The first event can be taken back, though no tick before it is kept."""
     late = {tick + 3000: step for tick, step in CHAIN.items()}
     stage, twin = othello(late, ticks=3100), othello({3030: CHAIN[30]}, ticks=3100)
     reply = take_back(stage, event(stage, "flip", "c3r2").number)
@@ -408,7 +408,7 @@ def test_the_first_event_of_a_match_is_taken_back_as_exactly_as_any() -> None:
 
 
 class Stopwatch:
-    """A game that counts seconds: one of its own package may need to know how long a tick is."""
+    """A game whose state is the time since the start, so it needs to know how long a tick is."""
 
     def start(self) -> float:
         return 0.0
@@ -426,7 +426,7 @@ class Stopwatch:
 
 
 def test_a_tick_is_20_ms_in_play_and_in_a_fold() -> None:
-    """Rules 4: a tick is 20 ms, also when it is judged again."""
+    """A tick is 20 ms for the rules, in play and when the match is judged again."""
     history = History(Stopwatch())  # type: ignore[arg-type]
     history.set(0, 0, number=1)
     for _ in range(3):
@@ -438,7 +438,7 @@ def test_a_tick_is_20_ms_in_play_and_in_a_fold() -> None:
 @pytest.mark.parametrize("arena", list(GAMES))
 @given(data=st.data())
 def test_folding_with_nothing_struck_is_the_match_asplay(arena: str, data: st.DataObject) -> None:
-    """Rules 4, take-back: the fold is the same judging; what is not struck stays as it was."""
+    """If a `set` that changed nothing is taken back, the match stays the same."""
     game = GAMES[arena]
     history = History(game)
     history.set(0, game.board(game.start())[0], number=1)  # changes nothing
@@ -471,7 +471,7 @@ def test_folding_with_nothing_struck_is_the_match_asplay(arena: str, data: st.Da
 def test_a_fold_leaves_the_history_alone_and_can_be_repeated(
     arena: str, data: st.DataObject
 ) -> None:
-    """Rules 4, take-back: what dry_run shows is what is done, whatever was played."""
+    """Judging a history without an event does not change it, and gives the same result twice."""
     history = History(GAMES[arena])
     number = 1
     for observation in data.draw(observations(arena)):

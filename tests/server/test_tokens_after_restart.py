@@ -1,4 +1,4 @@
-"""A court that was killed and started again reports its tokens correctly."""
+"""Which tokens open a seat after a court was killed and started again."""
 
 import json
 import subprocess
@@ -28,7 +28,10 @@ def serving(folder: Path, arena: str) -> list[str]:
 
 @contextmanager
 def opened(folder: Path, arena: str = "practice") -> Iterator[dict[str, Any]]:
-    """A court without a contest file, killed in the end; what it says when it opens."""
+    """Run a court without a contest file; give what it prints when it opens.
+
+    The court is killed at the end.
+    """
     process = Lacoc(*serving(folder, arena), stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
@@ -47,7 +50,7 @@ def practising(court: dict[str, Any], token: str) -> Iterator[Controller]:
 
 
 def test_the_printed_token_opens_the_seat_of_a_match_that_goes_on(tmp_path: Path) -> None:
-    """Rules 4, practice: killed in PLAYING; with either token the contestant walks on."""
+    """After a restart, both the token printed first and the newest one open the seat."""
     with opened(tmp_path) as first, practising(first, first["tokens"]["solo"]) as controller:
         controller.ready()
         until([controller], lambda: phase(controller) == Phase.PLAYING)
@@ -70,7 +73,7 @@ def test_the_printed_token_opens_the_seat_of_a_match_that_goes_on(tmp_path: Path
 
 
 def test_another_arenas_match_is_not_gone_on_with(tmp_path: Path) -> None:
-    """Its seats are others: the tokens that are printed would open none."""
+    """A court of another arena does not start: the unfinished match has other seats."""
     with opened(tmp_path, "othello") as first:
         pass
     done = run_lacoc(*serving(tmp_path, "practice"))
@@ -82,7 +85,7 @@ def test_another_arenas_match_is_not_gone_on_with(tmp_path: Path) -> None:
 
 
 def test_a_token_that_was_replaced_in_the_contest_file_opens_nothing(tmp_path: Path) -> None:
-    """docs/security.md: after a lost token is replaced, the match accepts only the new one."""
+    """A token that was replaced in the contest file no longer opens the seat (docs/security.md)."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     name, court = load(contest).court()
     with served(contest, folder) as process, party(contest):

@@ -1,4 +1,4 @@
-"""A match without a referee goes on by itself (rules 4, start = "ready")."""
+"""A match without a referee (start = "ready") goes on by itself (rules 7)."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -29,12 +29,12 @@ from lacoc_shared.words import say
 
 P = Phase
 LONG = 200
-"""Beats: four seconds."""
+"""Four seconds, in beats."""
 TROUBLE = say("record.disk-trouble", file="m.mcap", why="Input/output error")
 
 
 class Quiet:
-    """A network on which only the test speaks."""
+    """A network that delivers only what the test puts into `said`."""
 
     locators = ("tcp/127.0.0.1:1",)
     input_delay_ms = newest_event = 0
@@ -71,7 +71,7 @@ class Quiet:
 
 
 class Held:
-    """A court, beat by beat."""
+    """A court that the test runs beat by beat."""
 
     def __init__(
         self, arena: str, folder: Path | None = None, overrides: dict[str, Any] | None = None
@@ -87,7 +87,7 @@ class Held:
         self.court = Court(settings, self.network, left)  # type: ignore[arg-type]
 
     def kill(self) -> None:
-        """As a kill leaves it: nothing more is written, and nobody holds the file."""
+        """Leave the record as a kill does: write nothing more, and release the file."""
         self.court._journal.leave()
 
     @property
@@ -120,7 +120,7 @@ class Held:
 
 @pytest.mark.parametrize("arena", ["practice", "othello"])
 def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena: str) -> None:
-    """Rules 4, start = "ready": without a referee, the match waits until a contestant is back."""
+    """Rules 7: a killed match without a referee waits in HALTED until a contestant is back."""
     held = Held(arena, tmp_path, {"match": {"start": "ready", "countdown_s": 0.02}})
     held.begin()
     held.kill()
@@ -140,7 +140,7 @@ def test_a_killed_match_goes_on_when_a_contestant_is_back(tmp_path: Path, arena:
 
 
 def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> None:
-    """Rules 4: to resume is the referee's, where there is one."""
+    """A killed match with a referee stays HALTED, even when both contestants are back."""
     held = Held("othello", tmp_path, {"match": {"countdown_s": 0.02}})
     held.beat(join(LEFT), join(RIGHT))
     held.beat(ReadySeat(LEFT, True), ReadySeat(RIGHT, True))
@@ -154,7 +154,7 @@ def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> 
 
 
 def test_silence_keeps_a_halted_match_waiting_and_then_ends_it() -> None:
-    """Rules 3 and 4: nobody is there to play on; the next match opens, and waits for them."""
+    """Rules 7: while all are silent a halted match waits; after `unattended_s` the next opens."""
     held = Held("practice", None, {"match": {"unattended_s": 10.0}})
     held.begin()
     held.beat(SilentSeat(LEFT))
@@ -171,7 +171,7 @@ def test_silence_keeps_a_halted_match_waiting_and_then_ends_it() -> None:
 
 
 def test_two_have_time_to_read_who_has_won() -> None:
-    """Rules 4, OFFICIAL and next: the court's own decisions, ten seconds apart."""
+    """A match of two without a referee shows its result for ten seconds before the next opens."""
     rules = {"start": "ready", "countdown_s": 0.02, "duration_s": 0.2}
     held = Held("othello", None, {"match": rules})
     held.begin()
@@ -183,7 +183,7 @@ def test_two_have_time_to_read_who_has_won() -> None:
 
 
 def test_leaving_a_halted_match_ends_it() -> None:
-    """Rules 4: when everybody has left, the match is over and the next opens, empty."""
+    """Rules 7: if everybody leaves a halted match, it ends and the next one opens, empty."""
     held = Held("practice")
     held.begin()
     held.beat(decide(d.Halt()))
@@ -196,7 +196,7 @@ def test_leaving_a_halted_match_ends_it() -> None:
 def test_after_a_fault_the_robot_is_put_back_and_play_goes_on(
     monkeypatch: pytest.MonkeyPatch, seat: int
 ) -> None:
-    """HALTED; from where it stopped it would fail again."""
+    """Rules 7: a robot that made physics stop is put back at its start, and play goes on."""
     script = Script(faults={10: Fault(seat, say("fault.velocity"))})
     monkeypatch.setattr(
         court_module, "World", lambda arena, entries: ScriptedPhysics(arena, entries, script)
@@ -210,7 +210,7 @@ def test_after_a_fault_the_robot_is_put_back_and_play_goes_on(
 
 
 def test_a_fault_that_comes_back_at_once_fills_no_log(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A robot that can't stand is tried twice a second, for as long as somebody is there."""
+    """If physics stops at once after each resume, the court resumes only twice a second."""
     held = Held("practice")
     held.begin()
     monkeypatch.setattr(World, "step", lambda self, angles: Fault(LEFT, say("fault.contacts")))
@@ -221,7 +221,7 @@ def test_a_fault_that_comes_back_at_once_fills_no_log(monkeypatch: pytest.Monkey
 
 
 def test_after_a_full_disk_play_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Decision 13: with room again the match is halted; here nobody else would resume it."""
+    """When the disk has room again, the court halts the match and resumes it by itself."""
     held = Held("practice", tmp_path)
     held.begin()
 
@@ -242,7 +242,7 @@ def test_after_a_full_disk_play_goes_on(tmp_path: Path, monkeypatch: pytest.Monk
 def test_a_disk_that_reports_errors_halts_the_match_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Decision 13: the record is there for everybody but a power cut; so a referee may go on."""
+    """If the disk reports an error at `fsync`, the court halts the match once and resumes it."""
     held = Held("practice", tmp_path)
     held.begin()
     monkeypatch.setattr(RecordWriter, "sync_trouble", TROUBLE)

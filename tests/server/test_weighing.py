@@ -1,4 +1,4 @@
-"""Weighing in at a court's door: files, and whether the robot stands (docs/rules.md 1)."""
+"""Weighing in at a court's door: the files, and whether the robot can stand (rules 1)."""
 
 import time
 
@@ -52,7 +52,7 @@ def changed(old: bytes, new: bytes) -> Join:
 
 
 def test_a_robot_is_tried_once() -> None:
-    """The first join waits for its trial; another with the same robot is known at once."""
+    """The first join with a robot waits for its trial; a later one with the same robot does not."""
     with Weighing(admission()) as weighing:
         assert weighing(WHOLE) is None
         assert known(weighing, WHOLE) == WHOLE
@@ -61,13 +61,13 @@ def test_a_robot_is_tried_once() -> None:
 
 
 def test_wrong_files_are_told_without_a_trial() -> None:
-    """Files with mistakes are reported at once, without a trial."""
+    """Files with mistakes are refused at once, without a trial."""
     with Weighing(admission()) as weighing, pytest.raises(FileRefused, match="mass_kg"):
         weighing(changed(b"mass_kg = 0.125", b"mass_kg = 125"))
 
 
 def test_a_robot_that_does_not_stay_is_refused() -> None:
-    """Again whenever it is asked; others are let in meanwhile."""
+    """A robot that moves from its start is refused each time; other robots are still accepted."""
     legs = b"45,  0, -45, -45,  0, 45,  # root"
     rowing = changed(legs, b"100, 100, 100, 100, 100, 100,  # root")
     with Weighing(admission()) as weighing:
@@ -78,7 +78,7 @@ def test_a_robot_that_does_not_stay_is_refused() -> None:
 
 
 def test_files_are_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At the door, and again where the match takes the join in: the same entry."""
+    """Files that were weighed in at the door are not read again for the match."""
     robot = changed(b'name = "Hexapod"', b'name = "Read once"').robot
     assert robot is not None
     read = []

@@ -1,4 +1,4 @@
-"""The world: exact to the bit, touch without force, and no silent reset (rules 6)."""
+"""The world: equal bits, touch without force, and no silent reset."""
 
 import math
 import subprocess
@@ -31,7 +31,7 @@ KEYS = {0: (FORWARD, FORWARD), 150: (TURN_LEFT, FORWARD), 220: (FORWARD, FORWARD
 def commands(
     ticks: int, keys: dict[int, tuple[int, int]] = KEYS, entries: Sequence[Entry] = (HEXAPOD,) * 2
 ) -> Iterator[list[Posture]]:
-    """Commanded angles of both seats, tick by tick."""
+    """Yield the commanded angles of both seats, tick by tick."""
     drives = [
         Drive(e.gait, e.robot.start_posture, e.robot.ang_min_rad_s, e.robot.advance, 0, True)
         for e in entries
@@ -56,11 +56,11 @@ def run(it: World, ticks: int) -> bytes:
     return it.digest
 
 
-# Exact to the bit.
+# Equal bits.
 
 
 def test_the_same_bits_in_the_same_and_in_a_new_process() -> None:
-    """The same angles give one state hash, also in a new process."""
+    """The same angles give the same digest, also in a new process (docs/facts.md 1)."""
     digest = run(world(), 100)
     assert run(world(), 100) == digest
     code = "import sys; sys.path.append(sys.argv[1]); import test_world as t; "
@@ -75,7 +75,7 @@ def test_the_same_bits_in_the_same_and_in_a_new_process() -> None:
 
 
 def test_the_digest_tells_every_difference_and_never_forgets_it() -> None:
-    """A chained hash of the state."""
+    """If one angle differs in its last bit, the digests differ from that tick on."""
     one, other = world(), world()
     for tick, angles in enumerate(commands(20)):
         one.step(angles)
@@ -88,7 +88,7 @@ def test_the_digest_tells_every_difference_and_never_forgets_it() -> None:
 
 
 def test_save_and_load_at_any_tick() -> None:
-    """A restored state goes on bit for bit (mjSTATE_INTEGRATION)."""
+    """A world that loads a saved state goes on with equal bits (docs/facts.md 1)."""
     it = world()
     saved, digests, poses = [], [], []
     angles = list(commands(120))
@@ -107,7 +107,7 @@ def test_save_and_load_at_any_tick() -> None:
 
 
 def test_a_state_of_another_model_is_refused() -> None:
-    """A snapshot fits only the model it was taken of."""
+    """A saved state is refused by a world with another model."""
     with pytest.raises(ValueError, match="this model has"):
         world().load(world(robot="quadruped").save())
 
@@ -115,7 +115,7 @@ def test_a_state_of_another_model_is_refused() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("arena", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
 def test_flags_and_discs_change_no_bit_of_a_path(arena: str) -> None:
-    """Rules 6, strike: the paths with and without flags are the same bits, touched or not."""
+    """Rules 6: with flags or discs on the field, the paths have the same bits as without."""
     full = arenas.load(arena)
     bare = SimpleNamespace(
         seats=full.seats,
@@ -134,7 +134,7 @@ def test_flags_and_discs_change_no_bit_of_a_path(arena: str) -> None:
 
 
 def test_the_model_is_compiled_before_the_match() -> None:
-    """Compiled once before a match, never in the loop."""
+    """The model is compiled before play, and never during it."""
     built: list[Phase] = []
 
     def make(arena: arenas.Arena, entries: Sequence[Entry]) -> World:
@@ -156,7 +156,7 @@ def test_the_model_is_compiled_before_the_match() -> None:
 
 @pytest.mark.parametrize("seat", [LEFT, RIGHT])
 def test_place(seat: int) -> None:
-    """Rules 4, [x]: the start place in the start posture, at rest; nobody else moves."""
+    """`place` puts a robot in its start posture, at rest, and does not move the other robot."""
     it = world()
     run(it, 40)
     before = it.data.qpos.copy(), it.data.qvel.copy()
@@ -175,7 +175,7 @@ def test_place(seat: int) -> None:
 
 
 def test_a_place_is_a_part_of_the_state() -> None:
-    """A restart is in the next snapshot, and in what a fault goes back to."""
+    """A robot's new place is in the saved state, and a fault does not undo it."""
     it, other = world(), world()
     it.place(LEFT, Place(0.3, 0.3, 0.0))
     other.load(it.save())
@@ -212,7 +212,7 @@ def _spoil(name: str, value: float, seat: int, offset: int) -> Callable[[World],
 def test_mujocos_silent_reset_is_caught(
     name: str, value: float, why: Phrase, seat: int, offset: int
 ) -> None:
-    """Design, "Failure policy", physics 6.1: the state before the tick, and which robot."""
+    """A bad number in a state is a fault of its robot, and the tick is undone (docs/facts.md 3)."""
     it, twin = world(), world()
     run(it, 20)
     run(twin, 20)
@@ -223,7 +223,7 @@ def test_mujocos_silent_reset_is_caught(
     assert fault.seat == seat
     assert fault.why == why
     assert (it.save(), it.poses()) == before
-    for angles in commands(10):  # and it goes on as if nothing had been
+    for angles in commands(10):  # afterwards the path is that of a world without the fault
         assert it.step(angles) is None
         twin.step(angles)
     assert it.digest == twin.digest
@@ -231,7 +231,7 @@ def test_mujocos_silent_reset_is_caught(
 
 @pytest.mark.parametrize("seat", [LEFT, RIGHT])
 def test_a_command_that_is_no_number(seat: int) -> None:
-    """A command that is not a number is a fault here; MuJoCo would replace it silently."""
+    """A commanded angle of NaN is a fault; MuJoCo alone would replace it silently."""
     it = world()
     run(it, 5)
     before = it.save()
@@ -243,7 +243,7 @@ def test_a_command_that_is_no_number(seat: int) -> None:
 
 
 def test_a_fault_of_no_seat() -> None:
-    """A warning that names no robot is nobody's."""
+    """A warning of MuJoCo that concerns no robot is a fault without a seat."""
     it = world()
     it.data.warning.number[int(mujoco.mjtWarning.mjWARN_CONTACTFULL)] += 1
     assert it.step(next(commands(1))) == Fault(NOBODY, say("fault.contacts"))
@@ -251,7 +251,7 @@ def test_a_fault_of_no_seat() -> None:
 
 
 def test_a_fault_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The referee is told of a fault; nothing else is disturbed."""
+    """A fault writes no file, such as MuJoCo's own log."""
     monkeypatch.chdir(tmp_path)
     it = world()
     it.data.qvel[0] = math.nan
@@ -265,9 +265,9 @@ POLE_M, REACH_M = 0.01, 0.25
 
 
 def gaps_m(it: World, seat: int, poles: Sequence[tuple[float, float]]) -> np.ndarray:
-    """Horizontal distance of poles and a robot's nearest leg or (upright) body, from its pose.
+    """Return each pole's horizontal distance from a robot's nearest leg or (upright) body [m].
 
-    Where all parts are lower than the poles, this is the distance.
+    It is computed from the pose; it is the true distance if all parts are lower than the poles.
     """
     robot = it._robots[seat]
     at = robot.root_qpos
@@ -293,7 +293,7 @@ def gaps_m(it: World, seat: int, poles: Sequence[tuple[float, float]]) -> np.nda
 
 
 def test_touch_is_where_the_shapes_meet() -> None:
-    """Rules 6, strike: a flag whose pole the robot touches with any part, and no other."""
+    """Rules 6: a robot touches exactly the flags whose poles its shape overlaps."""
     it = world()
     flags = arenas.load("flag-strike").game.markers[4:]
     poles = [(flag.x_m, flag.y_m) for flag in flags]
@@ -315,7 +315,7 @@ def test_touch_is_where_the_shapes_meet() -> None:
 
 @pytest.mark.parametrize("seat", [LEFT, RIGHT])
 def test_touching_and_just_not_touching(seat: int) -> None:
-    """Rules 6, strike: 0.05 mm before the pole nothing, 0.05 mm into it the flag is touched."""
+    """Touch begins within 0.05 mm of the place where a robot's shape meets the pole."""
     it = world()
     flag = arenas.load("flag-strike").game.markers[22]
     it.place(1 - seat, Place(-0.9, -0.9, 0.0))
@@ -336,7 +336,7 @@ def test_touching_and_just_not_touching(seat: int) -> None:
 
 
 def test_both_touching() -> None:
-    """Rules 6, strike: what both touch is seen of both, so that the flag can stand."""
+    """A flag that both robots touch in a tick is reported for both."""
     it = world()
     flag = arenas.load("flag-strike").game.markers[22]
     seen = []
@@ -348,7 +348,7 @@ def test_both_touching() -> None:
 
 
 def test_a_robot_on_its_back_touches_with_its_legs() -> None:
-    """Rules 6, strike: with any part, however the robot lies."""
+    """Rules 6: any part of a robot can touch a flag, however the robot lies."""
     it = world()
     markers = arenas.load("flag-strike").game.markers
     flag = markers[22]
@@ -362,7 +362,7 @@ def test_a_robot_on_its_back_touches_with_its_legs() -> None:
         it.data.qpos[at + 2] = 0.13
         it.data.qpos[at + 3 : at + 7] = turn / np.linalg.norm(turn)
         if math.dist(it.data.qpos[at : at + 2], (flag.x_m, flag.y_m)) < 0.1:
-            continue  # the body may touch, which `gap_m` knows only upright
+            continue  # the body may touch, and `gaps_m` is right only for an upright body
         (gap,) = gaps_m(it, LEFT, [(flag.x_m, flag.y_m)]).tolist()
         if abs(gap) > 1e-5 and _lower_than_a_pole(it):
             assert (22 in it.touched()[LEFT]) is (gap < 0)
@@ -371,7 +371,7 @@ def test_a_robot_on_its_back_touches_with_its_legs() -> None:
 
 
 def _lower_than_a_pole(it: World) -> bool:
-    it.touched()  # brings the geoms to where they are
+    it.touched()  # updates the positions of the geoms
     geoms = it._robots[LEFT].geoms
     heights = it.data.geom_xpos[geoms, 2]
     reach = it.model.geom_rbound[geoms]
@@ -380,10 +380,9 @@ def _lower_than_a_pole(it: World) -> bool:
 
 @pytest.mark.parametrize("robot", ["hexapod", "long-legs", "quadruped", "octopod"])
 def test_touch_is_what_mujoco_says_of_each_pair(robot: str) -> None:
-    """Rules 6, strike: the quick look from above passes over nothing that touches.
+    """`touched` finds the same flags as MuJoCo's distance of each part from each pole.
 
-    In any pose, also over the top of a pole and on its back: the same as when MuJoCo is asked for
-    the distance of each part from each pole.
+    Robots are in random poses, also over the top of a pole and on their backs.
     """
     it = world(robot=robot)
     markers = arenas.load("flag-strike").game.markers
@@ -422,7 +421,7 @@ def test_touch_is_what_mujoco_says_of_each_pair(robot: str) -> None:
 
 
 def test_touch_costs_no_bit() -> None:
-    """Rules 6, strike: asking what is touched changes no path."""
+    """Asking what is touched does not change the path."""
     asked, quiet = world(), world()
     for it in (asked, quiet):
         it.place(LEFT, Place(-0.3, 0.0, 0.0))
@@ -437,7 +436,7 @@ def test_touch_costs_no_bit() -> None:
 
 
 def test_the_empty_field() -> None:
-    """Rules 4: frames before READY have no robots."""
+    """A world without robots has no poses and no touches."""
     it = World(arenas.load("flag-strike"), [])
     assert it.poses() == b""
     assert list(it.touched()) == []

@@ -7,7 +7,7 @@ from lacoc_shared.network.allowance import Allowance
 
 
 def test_a_burst_then_the_rate() -> None:
-    """Unused allowance does not exceed the burst; a clock that starts late gives no more."""
+    """A burst is taken at once, then only the rate; unused allowance never exceeds the burst."""
     allowance = Allowance(2.0, 5)
     assert allowance.take(7, 1000.0) == 5
     assert allowance.take(1, 1000.4) == 0
@@ -24,7 +24,7 @@ def test_a_burst_then_the_rate() -> None:
 def test_never_more_than_promised(
     rate_hz: float, burst: int, asked: list[tuple[float, int]]
 ) -> None:
-    """However it is asked, what passes is at most the burst and the rate."""
+    """In any time, at most the burst plus the rate times that time is taken."""
     allowance, now_s, passed = Allowance(rate_hz, burst), 50.0, 0
     for wait_s, wanted in asked:
         now_s += wait_s

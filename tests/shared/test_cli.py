@@ -1,4 +1,4 @@
-"""The command `lacoc`: how it finds its commands and what it makes of their errors."""
+"""The command `lacoc`: how it finds its commands and how it reports their errors."""
 
 import os
 import subprocess
@@ -79,7 +79,7 @@ COMMANDS = {
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Replace what is installed by the commands above."""
+    """Replace the installed commands by those above."""
     import textwrap
 
     for name, source in COMMANDS.items():
@@ -102,7 +102,7 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def lacoc(
     installed: None, capsys: pytest.CaptureFixture[str]
 ) -> Callable[..., tuple[int, str, str]]:
-    """Run the command line; returns its exit code, standard output and standard error."""
+    """Give a function that runs the command line and returns exit code, output and error output."""
 
     def run(*args: str) -> tuple[int, str, str]:
         try:
@@ -120,7 +120,7 @@ Lacoc = Callable[..., tuple[int, str, str]]
 
 
 def test_help_lists_every_command_what_a_contestant_needs_first(lacoc: Lacoc) -> None:
-    """Help shows each command's line under its heading, those of other packages last."""
+    """Help begins with the contestant's commands and ends with those of other packages."""
     code, out, _ = lacoc("--help")
 
     assert code == 0
@@ -132,14 +132,14 @@ def test_help_lists_every_command_what_a_contestant_needs_first(lacoc: Lacoc) ->
 
 
 def test_a_command_is_imported_when_it_is_asked_for(lacoc: Lacoc) -> None:
-    """A contestant's machine needs nothing that other commands need."""
+    """Running a command imports no other command."""
     assert lacoc("play", "--name", "Ant") == (0, "playing as Ant\n", "")
     assert "fake_play" in sys.modules
     assert "fake_tag" not in sys.modules
 
 
 def test_groups_and_lazy_groups_nest(lacoc: Lacoc) -> None:
-    """An entry with several commands is a group; a lazy group finds its own entries."""
+    """A plugin with several commands is a group, and a group may have plugins of its own."""
     assert lacoc("tag", "seek") == (0, "found\n", "")
     assert lacoc("many", "tag", "seek") == (0, "found\n", "")
     assert lacoc("many", "own") == (0, "", "")
@@ -150,7 +150,7 @@ def test_groups_and_lazy_groups_nest(lacoc: Lacoc) -> None:
 
 
 def test_a_wrong_command_suggests_the_nearest(lacoc: Lacoc) -> None:
-    """'pley' is answered with 'play', code 2."""
+    """For an unknown command, the error suggests the one with the nearest name."""
     code, out, err = lacoc("pley")
 
     assert code == 2
@@ -161,7 +161,7 @@ def test_a_wrong_command_suggests_the_nearest(lacoc: Lacoc) -> None:
 
 @pytest.mark.parametrize("args", [("serve",), ("serve", "--court", "x"), ("serve", "--help")])
 def test_a_missing_extra_is_one_line(lacoc: Lacoc, args: tuple[str, ...]) -> None:
-    """A command that needs MuJoCo says so in one line, with any arguments."""
+    """A command that needs MuJoCo says in one line how to install it, with any arguments."""
     code, out, err = lacoc(*args)
 
     assert (code, out) == (2, "")
@@ -169,7 +169,7 @@ def test_a_missing_extra_is_one_line(lacoc: Lacoc, args: tuple[str, ...]) -> Non
 
 
 def test_a_missing_extra_found_late_is_the_same_line(lacoc: Lacoc) -> None:
-    """A command that imports MuJoCo only when it runs says the same."""
+    """A command that imports MuJoCo only when it runs prints the same line."""
     code, _, err = lacoc("late")
 
     assert code == 2
@@ -178,7 +178,7 @@ def test_a_missing_extra_found_late_is_the_same_line(lacoc: Lacoc) -> None:
 
 
 def test_a_user_error_is_one_line_and_code_2(lacoc: Lacoc) -> None:
-    """The sentence goes to standard error unchanged; square brackets are not markup."""
+    """A UserError is printed unchanged as one line of the error output, with exit code 2."""
     assert lacoc("fails", "user") == (
         2,
         "",
@@ -187,7 +187,7 @@ def test_a_user_error_is_one_line_and_code_2(lacoc: Lacoc) -> None:
 
 
 def test_a_word_that_is_no_text_is_one_line_and_code_2(lacoc: Lacoc) -> None:
-    """A team's name typed in another encoding: it can't be sent, and that is said."""
+    """An argument that is not UTF-8 is refused in one line with exit code 2."""
     code, out, err = lacoc("fails", os.fsdecode(b"Ants\x98"))
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert r"Ants\x98" in err
@@ -195,7 +195,7 @@ def test_a_word_that_is_no_text_is_one_line_and_code_2(lacoc: Lacoc) -> None:
 
 
 def test_a_refused_file_is_a_table_and_code_2(lacoc: Lacoc) -> None:
-    """Every mistake is a row with its place, what was found and what was expected (rules 2)."""
+    """Rules 2: a refused file's mistakes are printed as a table, a row for each."""
     code, out, err = lacoc("fails", "file")
 
     assert (code, out) == (2, "")
@@ -208,12 +208,12 @@ def test_a_refused_file_is_a_table_and_code_2(lacoc: Lacoc) -> None:
 
 
 def test_ctrl_c_is_silent(lacoc: Lacoc) -> None:
-    """Ctrl-C ends with the shell's own code and says nothing."""
+    """Ctrl-C ends a command without output, with exit code 130."""
     assert lacoc("fails", "stop") == (130, "", "")
 
 
 def test_what_nobody_foresaw_is_a_traceback(lacoc: Lacoc) -> None:
-    """A bug is not dressed up as the user's mistake; nor is a broken package."""
+    """A bug in a command, or a package that can't be imported, gives a traceback."""
     with pytest.raises(ZeroDivisionError):
         lacoc("fails", "bug")
     with pytest.raises(RuntimeError, match="no such planet"):
@@ -221,7 +221,7 @@ def test_what_nobody_foresaw_is_a_traceback(lacoc: Lacoc) -> None:
 
 
 def test_version(lacoc: Lacoc) -> None:
-    """The version, and no command is imported for it."""
+    """`--version` prints the version and imports no command."""
     assert lacoc("--version") == (0, f"lacoc {__version__}\n", "")
     assert not any(name in sys.modules for name in ("fake_play", "fake_tag", "fake_many"))
 
@@ -236,7 +236,7 @@ def test_version(lacoc: Lacoc) -> None:
     ],
 )
 def test_the_shell_completes(words: str, expected: str) -> None:
-    """Commands, their own commands and options complete, through the lazy group."""
+    """The shell completes commands, subcommands and options."""
     environment = {
         **os.environ,
         "_LACOC_COMPLETE": "complete_bash",
@@ -256,7 +256,7 @@ def test_the_shell_completes(words: str, expected: str) -> None:
 
 @pytest.mark.slow
 def test_a_reader_who_has_gone_is_no_error() -> None:
-    """`lacoc ... | head -1` ends without an error message."""
+    """Output into a pipe that is closed, as by `head -1`, gives no error message."""
     reader, writer = os.pipe()
     os.close(reader)
     try:
@@ -275,7 +275,7 @@ def test_a_reader_who_has_gone_is_no_error() -> None:
 
 @pytest.mark.slow
 def test_no_colours_in_a_pipe() -> None:
-    """Output to a program has no escape sequences."""
+    """Output into a pipe has no escape sequences."""
     done = subprocess.run(
         [sys.executable, "-m", "lacoc_shared", "contest", "check", "none.toml"],
         capture_output=True,

@@ -1,4 +1,4 @@
-"""Messages to bytes and back, and what is refused on the way (docs/protocol.md)."""
+"""Messages to bytes and back, and which bytes are refused (docs/protocol.md)."""
 
 import hashlib
 import subprocess
@@ -24,7 +24,7 @@ NO = say("gateway.no-token")
 
 
 def test_a_payload_is_msgpack_for_anybody() -> None:
-    """docs/protocol.md: every payload is one msgpack value, a map by field name."""
+    """A payload is one msgpack value, a map by field name, that any msgpack library reads."""
     refusal = Refusal(NO, (Mistake(file="a.txt", found="x", expected="a number", row=1),))
     data = encode(refusal)
     assert msgpack.unpackb(data)["why"] == {"code": "gateway.no-token"}
@@ -49,13 +49,13 @@ def test_a_payload_is_msgpack_for_anybody() -> None:
     ids=["empty", "no msgpack", "cut", "more", "type", "field", "shape", "no UTF-8", "deep"],
 )
 def test_what_is_not_the_message_is_refused(data: bytes, words: str) -> None:
-    """Any wrong bytes raise one error, which says what was found."""
+    """Wrong bytes raise BadMessage, which says what was found."""
     with pytest.raises(BadMessage, match=f"(?i){words}"):
         decode(data, Refusal)
 
 
 def test_kinds_are_not_mistaken_for_one_another() -> None:
-    """Bytes are read as the message that they must be here, not as one read before."""
+    """Bytes of one kind of message are refused where another kind is expected."""
     data = encode(Refusal(NO))
     assert decode(data, Refusal) == Refusal(NO)
     with pytest.raises(BadMessage):
@@ -63,7 +63,7 @@ def test_kinds_are_not_mistaken_for_one_another() -> None:
 
 
 def test_a_longer_payload_is_refused_unread() -> None:
-    """docs/protocol.md: at most 64 KiB, or as many bytes as a channel takes, and not one more."""
+    """A payload above its limit (64 KiB by default) is refused before it is decoded."""
     data = encode("x" * 100)
     assert decode(data, str, len(data)) == "x" * 100
     with pytest.raises(BadMessage, match=f"^{len(data)} bytes, at most {len(data) - 1} are read$"):
@@ -75,13 +75,13 @@ def test_a_longer_payload_is_refused_unread() -> None:
 
 
 def test_a_scene_is_named_by_8_bytes_of_its_hash() -> None:
-    """docs/protocol.md: frames and sheets name a scene by BLAKE2b, 8 bytes, of what was sent."""
+    """A scene's hash is 8 bytes of BLAKE2b over its encoded bytes."""
     assert message_hash(b"scene") == hashlib.blake2b(b"scene", digest_size=8).digest()
     assert message_hash(b"scene") != message_hash(b"scenf")
 
 
 def test_states_are_two_bits_the_first_lowest() -> None:
-    """docs/protocol.md, `markers`: the first in the lowest bits of the first byte."""
+    """A marker's state has two bits; the first marker's are the lowest of the first byte."""
     assert pack_states((1, 2, 3, 0, 2)) == bytes([0b00_11_10_01, 0b10])
     assert unpack_states(bytes([0b00_11_10_01, 0b10]), 5) == (1, 2, 3, 0, 2)
     assert [len(pack_states((0,) * count)) for count in (0, 1, 4, 5, 8, 36)] == [0, 1, 1, 2, 2, 9]
@@ -89,7 +89,7 @@ def test_states_are_two_bits_the_first_lowest() -> None:
 
 @given(st.lists(st.integers(0, 3), max_size=40).map(tuple))
 def test_states_come_back_as_they_went(states: tuple[int, ...]) -> None:
-    """No marker's state depends on how many there are."""
+    """Any number of packed states can be unpacked again."""
     assert unpack_states(pack_states(states), len(states)) == states
 
 
@@ -132,6 +132,6 @@ for _ in range(400):
 
 @pytest.mark.slow
 def test_a_message_that_many_threads_read_first_ends_no_process() -> None:
-    """A gateway's seats decode in threads of their own: two at a time once crashed it."""
+    """Six threads that decode a new kind of message at the same time do not crash the process."""
     done = subprocess.run([sys.executable, "-c", FIRST_USE], capture_output=True, timeout=120)
     assert (done.returncode, done.stderr) == (0, b"")

@@ -1,4 +1,4 @@
-"""The contest file, and the order of sources: command line, environment, file, default."""
+"""The contest file, and which source of an option wins over which."""
 
 from pathlib import Path
 from typing import Annotated
@@ -54,7 +54,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
-    """Names stay names; paths start from the contest file's folder, not from where one stands."""
+    """Relative paths in a contest file start from its folder; names of arenas stay names."""
     file.write_text(GOOD + SECOND)
 
     contest = contests.load(file)
@@ -72,7 +72,7 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
 
 
 def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
-    """Off by default; on, it has a cap."""
+    """Links are not made equal unless the court says so; then the delay has a maximum."""
     assert contests.load(file).courts["main"].most_delay_ms == 0
     equal = 'arena = "othello"\ninput_delay = "equal"'
     file.write_text(GOOD.replace('arena = "othello"', equal))
@@ -118,7 +118,7 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
     ],
 )
 def test_a_wrong_entry_is_named(file: Path, old: str, new: str, said: str) -> None:
-    """A wrong entry: one sentence with the file, the entry and what was expected."""
+    """The message about a wrong entry names the file, the entry, and what was expected."""
     assert old in GOOD
     file.write_text(GOOD.replace(old, new))
 
@@ -151,7 +151,7 @@ referee.token = "referee-token-of-second"
     ],
 )
 def test_two_courts_at_one_port_are_named(file: Path, main: str, second: str) -> None:
-    """Only one of them could start: both are named, with a port that is free."""
+    """Two courts that would use the same port are refused; the message suggests a free port."""
     file.write_text(TWO.format(main=main, second=second))
     with pytest.raises(UserError, match=r'court\.second.*"main" listens at .*:7447 too.*:744[89]'):
         contests.load(file)
@@ -170,13 +170,13 @@ def test_two_courts_at_one_port_are_named(file: Path, main: str, second: str) ->
     ],
 )
 def test_courts_that_can_run_at_once_are_right(file: Path, main: str, second: str) -> None:
-    """Other ports, free ones, other addresses; or other machines, as `connect` says."""
+    """Courts with different ports, addresses or machines are accepted."""
     file.write_text(TWO.format(main=main, second=second))
     assert list(contests.load(file).courts) == ["main", "second"]
 
 
 def test_no_file_and_no_text_are_said(tmp_path: Path) -> None:
-    """A file that isn't there, or isn't text, is one sentence with the way out."""
+    """A missing file, or one that is not text, is refused with a message."""
     with pytest.raises(UserError, match=r"No such file.*lacoc contest init"):
         contests.load(tmp_path / "none.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
@@ -185,14 +185,14 @@ def test_no_file_and_no_text_are_said(tmp_path: Path) -> None:
 
 
 def test_a_file_saved_by_an_editor_that_writes_a_mark_loads(file: Path) -> None:
-    """Windows' Notepad begins a UTF-8 file with a byte order mark."""
+    """A contest file that begins with a UTF-8 byte order mark loads."""
     file.write_bytes(b"\xef\xbb\xbf" + GOOD.encode())
 
     assert contests.load(file).name == "Spring"
 
 
 def test_a_throwaway_contest_has_fresh_tokens(file: Path) -> None:
-    """Without a file: one court, every place with its own token, never the same twice."""
+    """A court without a contest file gets new tokens, different for each seat and the referee."""
     one, other = contests.throwaway("othello"), contests.throwaway("othello")
     tokens = [
         token
@@ -206,7 +206,7 @@ def test_a_throwaway_contest_has_fresh_tokens(file: Path) -> None:
 
 
 def test_the_only_court_needs_no_name(file: Path) -> None:
-    """A court is found by name, or because it is the only one; else the names are listed."""
+    """A contest's only court needs no name; with several, a missing or wrong name lists them."""
     assert contests.load(file).court()[0] == "main"
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
@@ -217,7 +217,7 @@ def test_the_only_court_needs_no_name(file: Path) -> None:
 
 
 def test_access_without_a_file(file: Path) -> None:
-    """Without a contest file everything comes from the options; a missing token is said."""
+    """Without a contest file, options give the access, and a missing one is named."""
     access = entrances.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
 
     assert access == Access(
@@ -235,7 +235,7 @@ def test_access_without_a_file(file: Path) -> None:
 
 
 def test_access_from_a_file(file: Path) -> None:
-    """The file fills in missing options; given options take precedence."""
+    """The contest file gives missing options, and given options win."""
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 
@@ -251,7 +251,7 @@ def test_access_from_a_file(file: Path) -> None:
 
 
 def test_join_lines_name_the_host(file: Path) -> None:
-    """The lines to hand out never tell anybody to connect to 0.0.0.0."""
+    """The lines to hand out have the court's public address, or HOST in its place."""
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 
@@ -279,7 +279,7 @@ def test_join_lines_name_the_host(file: Path) -> None:
 def test_precedence(
     file: Path, line: list[str], environment: dict[str, str], expected: str
 ) -> None:
-    """Command line over environment over the contest's TOML over defaults."""
+    """An option is taken from the command line, else from environment, contest file or default."""
     file.write_text(GOOD.replace('"0.0.0.0"', '"127.0.0.1:9999"'))
     app = typer.Typer()
 

@@ -1,4 +1,4 @@
-"""Invitations: what is written is read again, and what is none is said."""
+"""Invitations: how they are written, read and refused."""
 
 import os
 from pathlib import Path
@@ -26,12 +26,12 @@ def written(folder: Path, access: Access) -> Path:
 
 @pytest.mark.parametrize("access", [WATCH, LEFT, REFEREE, GATEWAY], ids=lambda one: one.role)
 def test_an_invitation_is_read_as_it_was_written(tmp_path: Path, access: Access) -> None:
-    """All that it holds comes back, whatever stands in a token or a contest's name."""
+    """An invitation is read exactly as it was written, with any characters in its token."""
     assert read_invitation(written(tmp_path, access)) == access
 
 
 def test_an_address_in_an_invitation_may_be_short(tmp_path: Path) -> None:
-    """An organiser may write one by hand, for a court without keys."""
+    """An invitation that is written by hand may have a short address."""
     path = tmp_path / "mine.toml"
     path.write_text('court = "main"\nconnect = "10.0.0.7"\n')
     assert read_invitation(path).connect == "tcp/10.0.0.7:7447"
@@ -52,7 +52,7 @@ def test_an_address_in_an_invitation_may_be_short(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_no_invitation_is_said(tmp_path: Path, text: str, said: str) -> None:
-    """One sentence with the file and what is wrong."""
+    """A file that is no invitation is refused; the message names the file and the mistake."""
     path = tmp_path / "mine.toml"
     path.write_text(text)
     with pytest.raises(UserError, match=said) as caught:
@@ -63,7 +63,7 @@ def test_what_is_no_invitation_is_said(tmp_path: Path, text: str, said: str) -> 
 
 
 def test_an_invitation_is_for_one_role(tmp_path: Path) -> None:
-    """A seat's lets in to its seat, and like every other to watch."""
+    """An invitation for a seat opens only that seat, and lets its owner watch."""
     left, referee, gateway = (written(tmp_path, one) for one in (LEFT, REFEREE, GATEWAY))
     nothing = (None, None, None)
 
@@ -81,7 +81,7 @@ def test_an_invitation_is_for_one_role(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("place", range(5))
 def test_an_invitation_stands_alone(tmp_path: Path, place: int) -> None:
-    """No other option for court, address, seat or token may be given with an invitation."""
+    """No option for contest, court, address, seat or token may be given beside an invitation."""
     others = [None] * 5
     others[place] = "x"  # type: ignore[call-overload]
     with pytest.raises(UserError, match="leave --contest"):
@@ -89,7 +89,7 @@ def test_an_invitation_stands_alone(tmp_path: Path, place: int) -> None:
 
 
 def test_a_secret_is_not_shown_by_accident() -> None:
-    """A message or a log that has a whole `Access` in it has no token in it."""
+    """The `repr` of an access shows neither its token nor its password."""
     assert 'a "token"' not in repr(LEFT)
     assert LEFT.credentials is not None
     assert LEFT.credentials.password not in repr(LEFT.credentials)

@@ -1,4 +1,4 @@
-"""The log of what runs for long: its lines, its silence elsewhere, and that it never waits."""
+"""The log of processes that run for long: its lines, and that writing it never waits."""
 
 import json
 import os
@@ -33,7 +33,7 @@ def said(code: str, encoding: str = "utf-8") -> str:
 
 
 def test_lines_for_a_program() -> None:
-    """One object a line, with when, how serious, which court and match; nothing before `start`."""
+    """With JSON, each line has its time, level, court and match; no line comes before `start`."""
     first, second = map(json.loads, said(SAY.format(json=True)).splitlines())
     assert datetime.fromisoformat(first.pop("timestamp")).tzinfo is not None
     assert first == {
@@ -49,7 +49,7 @@ def test_lines_for_a_program() -> None:
 
 
 def test_lines_for_a_person() -> None:
-    """Wall time, match, match clock, what happened; a pipe gets no colours."""
+    """Without JSON, a line has time, match, clock and text; a pipe gets no colours."""
     first, second = said(SAY.format(json=False)).splitlines()
     assert first[8:] == " m-1 0:12.3  Ants flip c2r3."
     assert second[8:] == " m-1  3 slow beats."
@@ -64,7 +64,7 @@ for text in ("Équipe", "チーム 🤖 takes the left seat.", "three"):
 
 
 def test_what_a_terminal_can_not_show_ends_no_log() -> None:
-    """A team with a Japanese name at a terminal of Windows: its line has numbers, more follow."""
+    """A character that the terminal can't show is written as a number, and the log goes on."""
     lines = said(NAMES.format(json=False), "cp1252").splitlines()
     assert [line.split("  ")[1] for line in lines] == [
         "Équipe",
@@ -74,7 +74,7 @@ def test_what_a_terminal_can_not_show_ends_no_log() -> None:
 
 
 def test_what_a_pipe_can_not_encode_is_read_as_it_was() -> None:
-    """The numbers are those of JSON: a program has the name whole."""
+    """With JSON, characters that the encoding lacks are escaped; a program reads them unchanged."""
     lines = said(NAMES.format(json=True), "cp1252").splitlines()
     assert [json.loads(line)["text"] for line in lines] == [
         "Équipe",
@@ -96,7 +96,7 @@ sys.stdin.readline()
 
 @pytest.mark.slow
 def test_a_pipe_that_nobody_reads_holds_nothing() -> None:
-    """A beat logs without waiting; when somebody reads again, a line says how many were lost."""
+    """The log does not wait for a full pipe; lines that find no room are dropped."""
     with subprocess.Popen(
         [sys.executable, "-c", NOBODY_READS],
         stdin=subprocess.PIPE,
@@ -118,7 +118,7 @@ def test_a_pipe_that_nobody_reads_holds_nothing() -> None:
 
 @pytest.mark.parametrize("as_json", [False, True])
 def test_the_stack_of_a_crash_is_not_lost(as_json: bool) -> None:
-    """A person finds it in the log; a program's log stays lines of JSON."""
+    """A crash's stack goes into a plain log; with JSON it goes to standard error."""
     code = f"""
 import faulthandler, time
 from lacoc_shared.command import log, screen

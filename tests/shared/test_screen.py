@@ -1,4 +1,4 @@
-"""The output of the command line for people and for programs."""
+"""The output of the command line, for people and for programs."""
 
 import io
 import json
@@ -16,7 +16,7 @@ from lacoc_shared.words import say
 
 
 def test_text_is_no_markup_and_is_never_broken(capsys: pytest.CaptureFixture[str]) -> None:
-    """A key such as [x] shows as it is; in a pipe a long line stays one line."""
+    """Square brackets such as [x] are shown unchanged, and a long line in a pipe is not broken."""
     long = "[x] " + "word " * 100
 
     screen.show(long)
@@ -25,7 +25,7 @@ def test_text_is_no_markup_and_is_never_broken(capsys: pytest.CaptureFixture[str
 
 
 def test_results_and_remarks_go_different_ways(capsys: pytest.CaptureFixture[str]) -> None:
-    """A pipe carries results only: notes, warnings and errors are on standard error."""
+    """Results go to standard output; notes, warnings and errors go to standard error."""
     screen.show("result")
     screen.note("written")
     screen.warn("late")
@@ -35,7 +35,7 @@ def test_results_and_remarks_go_different_ways(capsys: pytest.CaptureFixture[str
 
 
 def test_json_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
-    """Plain values, messages and bytes, a line each, so that a program reads line by line."""
+    """`print_json` prints each value as one line of JSON, also messages and bytes."""
     screen.print_json({"done": Done(say("note.seat-stays")), "scores": (1, 2), "bytes": b"\x00"})
     screen.print_json([])
 
@@ -49,7 +49,7 @@ def test_json_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_table_of_mistakes_has_the_columns_it_needs() -> None:
-    """A text file's mistakes have rows, a robot file's have entries."""
+    """The table of mistakes has only those columns that a mistake in it fills."""
     text = Mistake(file="a.txt", row=1, found="x", expected="a number")
     robot = Mistake(file="r.toml", field="body.mass_kg", found="-1", expected="0.005 to 1")
 
@@ -60,7 +60,7 @@ def test_a_table_of_mistakes_has_the_columns_it_needs() -> None:
 
 
 def test_one_mistake_is_one(capsys: pytest.CaptureFixture[str]) -> None:
-    """The heading counts, and says that the file is refused whole (rules 2)."""
+    """The heading has the number of mistakes, and says that nothing of the file is used."""
     screen.refused([Mistake(file="a.txt", found="nothing", expected="a table")])
 
     err = capsys.readouterr().err
@@ -69,18 +69,18 @@ def test_one_mistake_is_one(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 NOT_UTF_8 = os.fsdecode(b"Bad\x98\x8b.txt")
-"""What a zip from Japanese Windows gives, as Python keeps it."""
+"""A file name in Shift-JIS, as from a zip file of Japanese Windows, in Python's form."""
 
 
 def test_a_name_that_is_no_text_becomes_text() -> None:
-    """Bytes that are not UTF-8 are shown by their numbers; any other name stays as it is."""
+    """In a name, bytes that are not UTF-8 are shown as numbers; any other name stays as it is."""
     assert text_of(NOT_UTF_8) == r"Bad\x98\x8b.txt"
     assert text_of(Path("六足.txt")) == "六足.txt"
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "cp932", "cp1252", "ascii"])
 def test_every_character_can_be_shown(encoding: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A character that the terminal lacks is written as a number; JSON reads back unchanged."""
+    """A character that the terminal lacks is written as a number; JSON is read back unchanged."""
     stream = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
     monkeypatch.setattr(sys, "stdout", stream)
     names = ["Möwe", "六足 🤖", "a\N{NO-BREAK SPACE}b", NOT_UTF_8]
@@ -98,7 +98,7 @@ def test_every_character_can_be_shown(encoding: str, monkeypatch: pytest.MonkeyP
 
 @pytest.mark.skipif(sys.platform == "win32", reason="such names can't exist there")
 def test_no_name_is_a_traceback(tmp_path: Path) -> None:
-    """The whole command: a wrong gait in a file whose name is not UTF-8, at an old terminal."""
+    """`lacoc gait check` works with a file's name and a terminal that are not in UTF-8."""
     folder = os.fsencode(tmp_path)
     with open(folder + b"/Bad\x98\x8b.txt", "wb") as file:
         file.write(b"Num of Posture\t1\n0 Key\tM\xc3\xb6we\xc2\xa0\n")

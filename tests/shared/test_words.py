@@ -1,4 +1,4 @@
-"""Everything that is said renders in both languages, on pages as in terminals."""
+"""Every phrase can be rendered in both languages, with the same text on pages and terminals."""
 
 import ast
 import json
@@ -39,7 +39,7 @@ PLAIN = st.sampled_from([c for c in CODES if not table()[c].values]).map(say)
 
 
 def values_of(kind: str) -> st.SearchStrategy[Any]:
-    """Draw a value of a kind."""
+    """Draw a value of a kind, such as "text" or "number?"."""
     if kind.endswith("?"):
         return st.none() | values_of(kind[:-1])
     return {
@@ -52,7 +52,7 @@ def values_of(kind: str) -> st.SearchStrategy[Any]:
 
 
 def phrases(codes: list[str]) -> st.SearchStrategy[Phrase]:
-    """Draw a phrase that the table allows."""
+    """Draw a phrase with one of the codes and values of the right kinds."""
     return st.sampled_from(codes).flatmap(
         lambda code: st.fixed_dictionaries(
             {name: values_of(kind) for name, kind in table()[code].values.items()}
@@ -61,7 +61,7 @@ def phrases(codes: list[str]) -> st.SearchStrategy[Phrase]:
 
 
 def test_each_code_uses_its_values_in_both_languages() -> None:
-    """A hole that only one language has, or that nobody fills, is a mistake of the table."""
+    """For each phrase code, the texts in both languages use exactly the values of the table."""
     for code in CODES:
         _check_entry(code)
 
@@ -87,6 +87,7 @@ def _is_plural(formats: tuple[str, ...]) -> bool:
 
 @given(phrases(CODES), st.sampled_from(LANGUAGES))
 def test_every_phrase_renders_without_an_open_hole(phrase: Phrase, chosen: Any) -> None:
+    """A phrase with values of the right kinds is rendered with every placeholder filled in."""
     assert faults(phrase) == []
     text = render(phrase, chosen)
     assert not set("{}<>") & set(text)
@@ -107,11 +108,13 @@ ANYTHING = st.recursive(
 
 @given(st.builds(Phrase, st.sampled_from(CODES) | TEXTS, st.dictionaries(TEXTS, ANYTHING)))
 def test_nothing_that_arrives_raises(phrase: Phrase) -> None:
+    """Any phrase, also with unknown codes or wrong values, is rendered without an exception."""
     for chosen in LANGUAGES:
         assert isinstance(render(phrase, chosen), str)
 
 
 def test_hostile_nesting_and_hostile_bytes_end() -> None:
+    """A phrase that is nested too deep is cut, and bytes that are no phrase raise BadMessage."""
     deep = say("over.time")
     for _ in range(500):
         deep = say("event.finished", why=deep)
@@ -125,7 +128,7 @@ def test_hostile_nesting_and_hostile_bytes_end() -> None:
 
 
 def test_pages_and_terminals_say_the_same() -> None:
-    """One node process takes many cases; whole phrases, and numbers where rounding may differ."""
+    """TypeScript (pages) and Python (terminals) render the same text for many phrases."""
     cases: list[tuple[Phrase, str]] = []
     on_pages = sorted(table(ON_PAGES))
     draw = random.Random(7)
@@ -183,7 +186,10 @@ SENDERS = [
 
 
 def test_every_say_in_the_source_has_a_code_and_its_values() -> None:
-    """This test checks every call of `say`, because `say` itself checks nothing in a match."""
+    """Each call of `say` in the source has a code of the table and exactly its values.
+
+    This test is needed because `say` itself checks nothing in a match.
+    """
     wrong = []
     for file in SENDERS:
         if "say(" not in (text := file.read_text("utf-8")):
@@ -196,7 +202,7 @@ def test_every_say_in_the_source_has_a_code_and_its_values() -> None:
 
 
 def _is_say(function: ast.expr) -> bool:
-    """Tell `say(...)` from methods of the same name."""
+    """Return whether a call is of the function `say`, not of a method with this name."""
     return isinstance(function, ast.Name) and function.id == "say"
 
 
@@ -212,6 +218,7 @@ def _wrong_call(node: ast.Call) -> list[str]:
 
 
 def test_a_wrong_call_is_found() -> None:
+    """The check of `say` calls finds wrong codes, missing values and values too many."""
     calls = {
         'say("over.time")': 0,
         "say(code)": 1,
@@ -227,6 +234,7 @@ def test_a_wrong_call_is_found() -> None:
 
 
 def test_faults_find_wrong_kinds_within_lists() -> None:
+    """`faults` finds values of a wrong kind, also in phrases within a list."""
     assert faults(say("event.back", team=3)) != []
     assert faults(say("event.advised", reasons=[say("health.faults", times="x", most=1)])) != []
     assert faults(say("event.advised", reasons=[say("health.faults", times=1, most=1)])) == []
@@ -273,16 +281,19 @@ def test_faults_find_wrong_kinds_within_lists() -> None:
     ],
 )
 def test_phrases_in_words(phrase: Phrase, english: str, japanese: str) -> None:
+    """Sample phrases have exactly these texts in English and Japanese."""
     assert (render(phrase, "en"), render(phrase, "ja")) == (english, japanese)
 
 
 @pytest.mark.parametrize("template", ["{a", "a}", "{a:blue}", "<a", "a>", "<a<b>>", "{a:plural x}"])
 def test_a_template_that_is_wrong_is_refused(template: str) -> None:
+    """A text with a wrong placeholder or clause is refused."""
     with pytest.raises(BadTemplate):
         parse(template)
 
 
 def test_errors_speak_the_language_of_the_process() -> None:
+    """Errors and mistakes are in the language that the process uses."""
     error = UserError(say("record.exists", file="a.mcap"))
     mistake = Mistake(file="g.txt", row=2, found=say("gait.nothing"), expected="x")
     assert "exists already" in str(error)
@@ -310,10 +321,12 @@ def test_errors_speak_the_language_of_the_process() -> None:
     ],
 )
 def test_a_terminal_speaks_the_language_that_is_set(variables: dict[str, str], spoken: str) -> None:
+    """The first of LACOC_LANGUAGE, LC_ALL, LC_MESSAGES and LANG that is set gives the language."""
     assert language.of_process(variables) == spoken
 
 
 def test_a_number_that_is_none_is_shown_as_unknown() -> None:
+    """NaN is shown as "?"."""
     assert render(say("health.late-beat", late_ms=math.nan, most_ms=1), "en").startswith(
         "a beat began ? ms late"
     )

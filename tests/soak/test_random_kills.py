@@ -12,7 +12,7 @@ from benchmarks.random_kills import run
 
 @pytest.mark.long
 def test_whatever_is_killed_all_goes_on(tmp_path: Path) -> None:
-    """No process ends by itself, and every record verifies."""
+    """While processes are killed at random, none ends by itself, and every record verifies."""
     found = run(tmp_path, 15.0, random.Random(3))
     assert (found["ended"], found["not_same"]) == ([], [])
     assert found["same"]

@@ -11,13 +11,16 @@ from benchmarks.soak import MOST_GROWTH, VISITORS, Figures, Look, soak
 MINUTES = 5.0
 WARM_MINUTES = 2.0
 MOST_GROWTH_HERE = 0.03
-"""Three minutes are short: heaps still fill, by up to 1.7 %. 0.1 MB a match would show."""
+"""Limit for three minutes: heaps still grow by up to 1.7 %; a leak of 0.1 MB a match is more."""
 
 
 @pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="the kernel's own counts are read")
 def test_nothing_grows_and_nothing_is_left_over() -> None:
-    """Memory of each process after two minutes; threads, files and sockets; every record."""
+    """No process keeps more threads, files or sockets than when warm, and all records verify.
+
+    The memory of each process except the visitors' grows by less than 3 %.
+    """
     figures = soak(MINUTES, match_s=10.0, speed=2.0, warm_minutes=WARM_MINUTES, visitors_most=5)
     assert figures.same == figures.matches > 0
     assert figures.frames > 0
@@ -42,7 +45,7 @@ def _figures(looks: list[Look]) -> Figures:
 
 
 def test_a_leak_would_be_seen() -> None:
-    """Half a per cent a match is a leak; a single look that is off is none."""
+    """A growth of 0.5 % at each look counts as a leak, and a single high look does not."""
     steady = [Look(at_s, 100_000_000, 9, 20, 3, 0) for at_s in range(20)]
     growing = [look._replace(memory_bytes=round(1e8 * 1.005**look.at_s)) for look in steady]
     off = [*steady[:9], steady[9]._replace(memory_bytes=150_000_000), *steady[10:]]
@@ -54,7 +57,7 @@ def test_a_leak_would_be_seen() -> None:
 
 @pytest.mark.parametrize("what", ["threads", "files", "sockets", "children"])
 def test_what_is_left_over_would_be_seen(what: str) -> None:
-    """One more than while it warmed up."""
+    """One more thread, file, socket or child process than during the warm-up is found."""
     steady = [Look(at_s, 100_000_000, 9, 20, 3, 0) for at_s in range(20)]
     last = steady[-1]._replace(**{what: getattr(steady[-1], what) + 1})
     figures = _figures([*steady[:-1], last])
