@@ -40,7 +40,7 @@ class SeatFrame(msgspec.Struct, frozen=True, array_like=True):
     applied_seq: int
     """Sequence number of the seat's newest command that took effect; 0: none yet."""
     applied_beat: int
-    """Beat at which it took effect."""
+    """Beat at which that command took effect."""
     refused_seq: int
     """Sequence number of the seat's newest command that was refused; 0: none."""
     refused_why: int
@@ -74,7 +74,7 @@ class Frame(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):
-    """A key of a seat, repeated 10 times a second with the same sequence number (rules 3)."""
+    """A seat's newest key; the controller repeats it 10 times a second with the same number."""
 
     session: int
     """Number that the court gave in its reply to the join."""
@@ -126,7 +126,7 @@ class Joined(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Say ready, take it back, or leave; proven by the session's secret, not by the token."""
+    """A request to be ready, or no longer ready, or to leave; sealed with the session's secret."""
 
     session: int
     seq: int
@@ -360,8 +360,10 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
     """Number of times that the match continued after its court was killed."""
     seats: tuple[LinkVerdict, ...]
     advice: tuple[Phrase | str, ...]
-    """Why a replay is advised: the limits of the contest that were broken (`health.*`; a text in a
-    record of protocol 1). Empty: it is not advised."""
+    """Why the match should be played again: the limits of the contest that were broken (`health.*`;
+    a
+    text in a record of protocol 1). Empty: it need not be played again.
+    """
 
 
 class Health(msgspec.Struct, frozen=True, kw_only=True):
@@ -390,4 +392,6 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     events: int = 0
     """Number of the newest event: a client that has fewer asks for the rest."""
     sheet: bytes = b""
-    """8 bytes of BLAKE2 over the newest sheet: a client that has another asks for it."""
+    """Hash of the newest sheet: 8 bytes of BLAKE2. A client that has another sheet asks for this
+    one.
+    """

@@ -250,9 +250,7 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
     ],
 )
 def test_a_field_of_other_measures(game: dict[str, Any]) -> None:
-    """A field of other measures is accepted if all parts fit within the walls, clear of one
-    another.
-    """
+    """A field of other measures is accepted if all parts fit within the walls and clear."""
     assert arena.load("flag-strike", {"game": game}).game.markers
 
 

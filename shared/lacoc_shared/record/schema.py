@@ -56,7 +56,7 @@ class Touch(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Result(msgspec.Struct, frozen=True, kw_only=True):
-    """The end of a match. Both the computed and the official result are kept (rules 4)."""
+    """The end of a match. It keeps both the computed and the official result (rules 4.1)."""
 
     match_id: str
     court: str
