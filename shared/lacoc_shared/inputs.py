@@ -1,9 +1,9 @@
 """The inputs of a match: all that enters it from outside, each at its beat. The record has them.
 
-A match is a pure function of its setup and its inputs, beat by beat: the same inputs
-give the same match, bit for bit, live or headless, at any speed (rules 4). Inputs have
-passed the court's checks (token, session, sequence number). The match then decides
-whether an input has an effect, and a replay decides the same.
+A match is a pure function of its setup and its inputs, beat by beat: the same inputs give the same
+match, bit for bit, live or headless, at any speed (rules 4). Inputs have passed the court's checks
+(token, session, sequence number). The match then decides whether an input has an effect, and a
+replay decides the same.
 """
 
 import msgspec
@@ -84,8 +84,7 @@ class Advice(_Input, frozen=True, tag="advice"):
 
     reasons: tuple[Phrase | str, ...]
     """Why the match should be played again (`health.*`; a text in a record of protocol 1). Empty:
-    it need
-    not be played again.
+    it need not be played again.
     """
 
 

@@ -361,8 +361,7 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
     seats: tuple[LinkVerdict, ...]
     advice: tuple[Phrase | str, ...]
     """Why the match should be played again: the limits of the contest that were broken (`health.*`;
-    a
-    text in a record of protocol 1). Empty: it need not be played again.
+    a text in a record of protocol 1). Empty: it need not be played again.
     """
 
 

@@ -1,8 +1,8 @@
 """A pytest plugin that makes mutmut count calls at import correctly and run quickly.
 
 mutmut notes which functions each test calls, so that a mutant runs only the tests that reach it.
-Functions that a test module calls at import would count for its first test only. This plugin
-counts them for every test of that module.
+Functions that a test module calls at import would count for its first test only. This plugin counts
+them for every test of that module.
 """
 
 import functools

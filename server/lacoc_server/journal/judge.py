@@ -47,7 +47,7 @@ _SCENE_BOUND = 1e-9
 
 
 class RecordedPhysics:
-    """Recorded poses behind the protocol of physics; notes what the match asks for.
+    """Plays the part of physics with recorded poses, and notes what the match asks for.
 
     Args:
         world: the robots as this machine builds them; it is not stepped.

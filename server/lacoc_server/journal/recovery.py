@@ -42,8 +42,9 @@ class Unfinished:
     cut: str
     """Where its record ends, in words."""
     other_arithmetic: Phrase | None = None
-    """That and how this machine computes otherwise than the one that recorded it; None if it does
-    not."""
+    """How this machine computes differently from the machine that made the record; None: both
+    compute the same.
+    """
 
     @property
     def inputs(self) -> list[Input]:

@@ -1,4 +1,4 @@
-"""What the rules saw and decided, so that one event can be taken back (rules 4).
+"""What the rules saw and decided, so that one event can be taken back (rules 4.1).
 
 Nothing is deleted. A match keeps every observation since its first event. To take an event back, it
 judges the game again from that tick, without the event's claim. Paths, clock and all other

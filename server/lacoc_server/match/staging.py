@@ -96,7 +96,7 @@ class Staging:
         self.look()
 
     def _free_place(self, seat: Seat, others: Sequence[Seat]) -> Place:
-        """Find the first start place far enough from the others (rules 4), or the farthest."""
+        """Find the first start place far enough from the others (rules 3), or the farthest."""
 
         def room_m(place: Place) -> float:
             gaps_m = (

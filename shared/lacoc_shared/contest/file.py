@@ -1,9 +1,9 @@
 """The contest file: courts, addresses, tokens, and limits for robots.
 
-An organiser writes it once ('lacoc contest init'). A court is started from it, and a
-client that has it needs no address and no token. Every setting can also be given on the
-command line or in the environment, which take precedence: `options` reads both, and
-`entrances` looks up in this file what is still None.
+An organiser writes it once ('lacoc contest init'). A court is started from it, and a client that
+has it needs no address and no token. Every setting can also be given on the command line or in the
+environment, which take precedence: `options` reads both, and `entrances` looks up in this file what
+is still None.
 """
 
 import itertools

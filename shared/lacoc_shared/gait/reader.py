@@ -36,8 +36,7 @@ for each joint id."""
 
 MAX_MISTAKES = 1000
 """Reading stops at this many mistakes: a garbage file has thousands, and a court reads files within
-a
-beat.
+a beat.
 """
 
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)

@@ -36,8 +36,7 @@ class MatchName:
         """Name a match that is opened now.
 
         If the folder has a match of this name already, the new match gets a later time. This
-        happens
-        when a court is started twice within a second.
+        happens when a court is started twice within a second.
 
         Args:
             folder: folder of the court's records; None: the name need not be free.
