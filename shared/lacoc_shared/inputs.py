@@ -30,7 +30,7 @@ class JoinSeat(_Input, frozen=True, tag="join"):
 
 
 class ReadySeat(_Input, frozen=True, tag="ready"):
-    """A contestant said ready, or took it back."""
+    """A contestant said that the team is ready, or no longer ready."""
 
     seat: int
     ready: bool

@@ -59,7 +59,7 @@ class Keys:
 
     @property
     def scene(self) -> str:
-        """Key expression of queries for the scene; a new scene hash in a frame tells of another."""
+        """Key expression of queries for the scene; frames have the hash of the newest scene."""
         return f"{self.root}/scene"
 
     @property

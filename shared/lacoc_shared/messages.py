@@ -79,7 +79,7 @@ class Command(msgspec.Struct, frozen=True, array_like=True):
     session: int
     """Number that the court gave in its reply to the join."""
     seq: int
-    """Counts the seat's commands from 1; 0: no key yet, only a sign of life."""
+    """Sequence number of the command, from 1 for each seat; 0: no key yet, only a sign of life."""
     level: int
     key: int
     """0-9, or `RESTART_KEY` for [x]."""
@@ -130,7 +130,7 @@ class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     session: int
     seq: int
-    """Counts the session's requests from 1."""
+    """Sequence number of the request, from 1 in each session."""
     ready: bool = True
     mac: bytes
 
@@ -190,7 +190,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     """Something that happened; numbered, and never lost."""
 
     number: int
-    """Counts the events of a match from 1."""
+    """Number of the event, from 1 in each match."""
     match: int
     beat: int
     clock_ticks: int
@@ -261,7 +261,7 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A body in the tree; `Frame.poses` moves the root bodies, its joint angles the others."""
+    """A body in the tree; `Frame.poses` has poses for root bodies and joint angles for others."""
 
     name: str
     parent: int

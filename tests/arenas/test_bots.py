@@ -174,7 +174,7 @@ def glide(ground: arena.Arena, names: tuple[str, str], seed: int) -> tuple[int, 
 @pytest.mark.parametrize("name", ["othello", "flag-strike"])
 @pytest.mark.parametrize(("weak", "strong"), [("straight", "nearest"), ("nearest", "planner")])
 def test_ladder(name: str, weak: str, strong: str) -> None:
-    """The stronger bot wins at least four of six matches, half of them from each seat."""
+    """Of six matches, three from each seat, the stronger bot wins at least four."""
     ground = arena.load(name)
     wins = 0
     for seed in range(3):
@@ -296,7 +296,7 @@ def test_restart_when_it_lies_on_its_back() -> None:
 
 
 def test_restart_when_tangled() -> None:
-    """A pilot presses [x] when its robot has hung on the other one for eight seconds."""
+    """A pilot presses [x] when its robot has been tangled with the other for eight seconds."""
     keys = fly(pilot(), frames(8 * BEATS_PER_S + 1, FORWARD, other=(0.3, 0.0, math.pi)))
     assert keys.index(RESTART) == 8 * BEATS_PER_S
 

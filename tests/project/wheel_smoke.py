@@ -2,8 +2,8 @@
 
     python tests/project/wheel_smoke.py dist
 
-The wheel without MuJoCo stands for a contestant's machine. The source archive with MuJoCo stands
-for a court's machine.
+The wheel is installed without MuJoCo, as on a contestant's machine. The source archive is installed
+with MuJoCo, as on a court's machine.
 """
 
 import json

@@ -327,7 +327,7 @@ def fits_together(record: Record) -> Iterator[None]:
 
 
 def last_beat(record: Record) -> int:
-    """Return the number of the last beat that counts."""
+    """Return the number of the last beat that was answered."""
     sealed = not record.cut or any(beat == record.last_beat for beat, _ in record.frames[-1:])
     return record.last_beat if sealed else record.last_beat - 1
 

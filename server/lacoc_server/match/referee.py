@@ -45,7 +45,9 @@ class _Rule:
 
     phases: frozenset[Phase]
     act: Callable[[MatchState, Any], Phrase]
-    """Does it and returns the sentence for the log; raises `Illegal` before any change."""
+    """Carries the decision out and returns the sentence for the log; raises `Illegal` before any
+    change.
+    """
     then: Callable[[MatchState, Any], object] = lambda match, decision: None
     """Does what follows from the decision; its events come after the decision's own."""
     also: Callable[[MatchState], Phrase | None] = lambda match: None

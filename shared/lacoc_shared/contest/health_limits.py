@@ -1,4 +1,4 @@
-"""Limits for how well a match must run; beyond one of them it should be played again."""
+"""Limits for how well a match must run; a match beyond one of them should be played again."""
 
 from typing import Annotated
 

@@ -34,8 +34,9 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
     segment: int
     """Number of segments before this one; 0 for the first."""
     first_beat: int
-    """First beat of the segment. Anything that earlier segments hold from this beat on does not
-    count: no reply was sent yet (a court killed in the middle of a beat plays that beat again)."""
+    """First beat of the segment. Anything that earlier segments hold from this beat on is ignored,
+    because no reply was sent yet: a court killed in the middle of a beat plays that beat again.
+    """
     started: str
     """Wall time at which the segment began, ISO 8601, UTC."""
     versions: dict[str, str]
