@@ -250,7 +250,7 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
     ],
 )
 def test_a_field_of_other_measures(game: dict[str, Any]) -> None:
-    """A field of other measures is accepted if all parts fit within the walls and clear."""
+    """A field of other measures is accepted if its parts are within the walls and don't overlap."""
     assert arena.load("flag-strike", {"game": game}).game.markers
 
 

@@ -98,7 +98,7 @@ def test_walls_stand_where_the_rules_say(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_only_floor_and_walls_can_be_touched(name: str) -> None:
-    """Only the floor and the walls stop robots; they collide with every robot's bits."""
+    """Only the floor and the walls stop robots, and both collide with every robot."""
     model = build(name).compile()
     solid = {g.name for g in geoms(model) if g.contype[0] or g.conaffinity[0]}
     assert solid == {"floor", "wall:east", "wall:west", "wall:north", "wall:south"}
@@ -143,7 +143,7 @@ def colour_of(geom: Any, swap: bool) -> tuple[float, ...]:
 
 
 def looks(name: str, turn: bool) -> Any:
-    """Return each geom as numbers that depend only on how it looks; `turn` turns the field."""
+    """Return each geom as numbers that depend only on how it looks; `turn`: of the turned field."""
     model = build(name).compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)

@@ -68,7 +68,7 @@ def test_field() -> None:
 
 
 def test_twenty_flags_in_four_colours() -> None:
-    """8, 6, 4 and 2 flags of 1, 2, 3 and 5 points make 42 points (workshop 5-2 rule 6)."""
+    """The 20 flags (8, 6, 4 and 2 of 1, 2, 3 and 5 points) make 42 points (workshop 5-2 rule 6)."""
     flags = [marker for marker in GAME.markers if marker.kind == "flag"]
     worth = [flag.points for flag in flags]
     assert {points: worth.count(points) for points in set(worth)} == {1: 8, 2: 6, 3: 4, 5: 2}

@@ -211,7 +211,7 @@ def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
     ],
 )
 def test_between_and_outside_the_discs(x_m: float, y_m: float) -> None:
-    """A place between discs, outside the board or without numbers is no cell."""
+    """A place that is between discs, outside the board or not a number is no cell."""
     assert GAME.cell_at(x_m, y_m) == NO_CELL
 
 
@@ -256,7 +256,7 @@ WALKS = {
 
 @pytest.mark.parametrize("what", WALKS)
 def test_flip_by_walking(what: str) -> None:
-    """A robot flips a disc that it enters from its own neighbour disc (workshop 5-1 rule 4)."""
+    """A robot flips a disc that it enters from a neighbour of its colour (workshop 5-1 rule 4)."""
     row, origin, cell, flips = WALKS[what]
     before = state(board(row), origin)
     after, events = tick(before, cell)

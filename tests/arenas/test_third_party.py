@@ -129,7 +129,7 @@ def test_the_key_of_the_guide_s_bot_is_one(race: Path) -> None:
 
 
 def use(folder: Path) -> None:
-    """Use all that a court takes from an arena before a match."""
+    """Use every part of an arena that a court uses before a match."""
     ground = arena.load(str(folder))
     assert ground.bots
     spec = mujoco.MjSpec()

@@ -35,7 +35,7 @@ class Figures:
 
     @property
     def refused(self) -> int:
-        """Inputs that were refused with a documented error."""
+        """Number of inputs that were refused with a documented error."""
         return self.inputs - self.accepted - self.crashes - self.hangs - self.state_changes
 
 

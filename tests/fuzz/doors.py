@@ -223,7 +223,7 @@ class Doors:
             self._open()
 
     def _own_keys(self) -> set[KeySeat]:
-        """Queue what the seats' own controllers send; return the new keys among it."""
+        """Queue the commands of the seats' own controllers; return the new keys among them."""
         new: set[KeySeat] = set()
         for seat in (0, 1):
             key = KEYS.command(SEATS[seat])
@@ -281,7 +281,7 @@ def _hash(token: str) -> str:
 
 
 def command_seeds() -> list[bytes]:
-    """Return sealed and unsealed commands of both seats, old ones and sealed nonsense."""
+    """Return commands of both seats with good and bad seals, old numbers and nonsense."""
     seeds = [command(0, 1, 1, 2), command(0, 3, 1, RESTART_KEY), command(0, 2, 0, 3)]
     seeds += [command(1, 9, 1, 2), command(0, 0, 1, 2), command(0, 2**60, 1, 2)]
     seeds += [command(0, 7, 1, 2)[:-1] + b"\0", command(0, -5, 1, 2), command(0, 8, 9, 99)]

@@ -189,7 +189,7 @@ def test_convert_with_keys(lacoc, folder, workshop):
 
 
 def test_convert_never_overwrites(lacoc, folder, workshop):
-    """`convert` keeps the older file under a number, and says so."""
+    """`convert` renames an older file with a number, and says so."""
     target = folder / "LocoTra-data.txt"
     before = target.read_bytes()
     code, _, err = lacoc("gait", "convert", folder / "Loco-data.txt", target, "--keys", "0")

@@ -83,7 +83,7 @@ def test_nothing_is_clamped(cell):
     "cell", ["abc", "4 5", "1.2.3", "1,234.5", "--4", "45°", "4²", "½", "0x10", "1_0", "٤٥", "–45"]
 )
 def test_what_is_no_number(cell):
-    """A cell that is not a number in one of the listed forms is a mistake."""
+    """A cell that is not a number in one of the forms of rules 2 is a mistake."""
     (mistake,) = refused(loco([posture(j0=cell)]))
     assert (mistake.row, mistake.column, mistake.joint, mistake.leg) == (2, 2, 0, "R,F")
     assert mistake.found == f'"{cell}"'
@@ -243,7 +243,7 @@ def test_what_is_no_number(cell):
     ],
 )
 def test_mistakes_of_loco_data(text, expected):
-    """Each mistake of a Loco-data text is reported with its row, column, found and expected."""
+    """A mistake in Loco-data is reported with its place, what was found and what is expected."""
     found = [(m.row, m.column, m.found, m.expected) for m in refused(text)]
     assert sorted(found, key=str) == sorted(expected, key=str)
 
@@ -308,13 +308,13 @@ def test_mistakes_of_loco_data(text, expected):
     ],
 )
 def test_mistakes_of_locotra_data(text, expected):
-    """Each mistake of a LocoTra-data text is reported with its row, column, found and expected."""
+    """A mistake in LocoTra-data is reported with its place, what was found and what is expected."""
     assert [(m.row, m.column, m.found, m.expected) for m in refused(text)] == expected
 
 
 @pytest.mark.parametrize("legs", [6, ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")])
 def test_a_gait_for_another_robot_is_called_so(legs):
-    """Rows of 12 angles for six legs are one mistake; other mistakes are still listed."""
+    """All rows with 12 angles instead of 18 make one mistake; other mistakes are still listed."""
     text = loco([posture(angles=12), posture("1 Key", angles=12, j7="x")])
     assert places(refused(text, legs=legs)) == [
         (

@@ -45,7 +45,7 @@ def postures(
 
 
 def posture_tables_of(degrees: st.SearchStrategy[float]) -> st.SearchStrategy[PostureTable]:
-    """Draw posture tables whose angles are made from such numbers of degrees."""
+    """Draw posture tables whose angles are made from these numbers of degrees."""
     return legs.flatmap(
         lambda n: st.dictionaries(st.integers(0, 9), postures(n, degrees), min_size=1, max_size=10)
     ).map(PostureTable)
@@ -101,7 +101,7 @@ def test_a_written_text_reads_back(table, encoding, line_end, gap):
 @settings(patient)
 @given(posture_tables_of(degrees.map(lambda value: float(f"{value:.15g}"))))
 def test_a_written_workbook_reads_back(table):
-    """A table of numbers with 15 digits, as spreadsheets keep them, survives a workbook."""
+    """A table whose numbers have 15 digits reads back from a workbook, which keeps no more."""
     labels = leg_labels(table.joints // 3)
     assert read_workbook(write_workbook(table, labels), "x", legs=labels) == table
 

@@ -203,7 +203,7 @@ def test_three_columns_a_leg(legs):
 
 
 def test_the_largest_files_are_read():
-    """The reader takes 10 postures in Loco-data, and 10 keys of 100 postures in LocoTra-data."""
+    """Loco-data may have 10 postures, and LocoTra-data 10 keys and 100 postures for a key."""
     angles = "\t0" * 18
     rows = "".join(f"{digit} Key{angles}\n" for digit in range(10))
     assert len(read_gait(f"Num of Posture\t10\n{rows}".encode(), "x").postures) == 10
@@ -280,7 +280,7 @@ def test_what_stands_below_the_legend_is_said():
     ],
 )
 def test_a_legend_that_contradicts_the_columns_is_said(was, now, said):
-    """A legend that contradicts the order of the columns gives a note; the columns are used."""
+    """A legend that contradicts the order of the columns gives a note, and the order is used."""
     notes: list[Phrase] = []
     assert was in FIGURE_4_1
     text = FIGURE_4_1.replace(was, now)

@@ -104,7 +104,7 @@ def test_loco_data_alone_is_read(sample, workshop):
 
 
 def test_formulas_that_show_nothing_are_empty_cells(sample, workshop):
-    """Of a formula its stored value is read, and "" is read as an empty cell."""
+    """The stored value of a formula is read, and the value "" is read as an empty cell."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     mirror = b'<sheet name="Loco-data" sheetId="2" r:id="rId2"/>'
@@ -149,7 +149,7 @@ def test_empty_cells_and_formulas_without_a_value(sample):
 
 
 def test_a_workbook_for_another_robot_is_called_so(sample):
-    """A workbook for another robot is refused with the numbers of legs of both."""
+    """A workbook for another robot is refused; the message has the number of legs of both."""
     ((row, column, *_, found, expected),) = refused(sample, legs=8)
     assert (row, column) == (2, None)
     assert found == "18 angles in a row: a gait for a robot with 6 legs"

@@ -99,7 +99,7 @@ def test_check_by_a_contest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 
 
 def test_list(capsys: pytest.CaptureFixture[str]) -> None:
-    """`robot list` shows every installed robot; --json adds facts such as the number of legs."""
+    """`robot list` shows every installed robot; --json prints their facts, such as the legs."""
     assert lacoc("robot", "list") == 0
     out = capsys.readouterr().out
     assert all(name in out for name in ("hexapod", "long-legs", "octopod", "quadruped"))

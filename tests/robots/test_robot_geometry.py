@@ -85,7 +85,7 @@ def test_joint_ids_go_level_by_level(hexapod: RobotSpec) -> None:
 
 
 def test_fig_1_3_posture(hexapod: RobotSpec) -> None:
-    """With a leg's upper two joints at 30 degrees, the shank leans 60 degrees (workshop 3-1)."""
+    """With 1st and 2nd joint at 30 degrees the shank leans 60 degrees outward (workshop 3-1)."""
     _, _, knee, foot = hexapod.points(turned(6, 12))[0]
     assert (foot.x - knee.x, foot.z - knee.z) == pytest.approx(
         (0.070 * math.sin(math.radians(60)), -0.070 * math.cos(math.radians(60)))

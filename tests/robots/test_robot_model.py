@@ -126,7 +126,7 @@ def test_collisions(hexapod: RobotSpec) -> None:
 
 
 def test_two_robots_in_a_world(hexapod: RobotSpec, compile_world: Compile) -> None:
-    """Two robots have different names in a world; servos are ordered by seat, then by joint."""
+    """Two robots in a world have different names; servos are ordered by seat, then by joint."""
     model = compile_world(hexapod, sample("octopod"))
     names = [model.actuator(i).name for i in range(model.nu)]
     assert names == [f"r0_a{j}" for j in range(18)] + [f"r1_a{j}" for j in range(24)]
@@ -238,5 +238,5 @@ def test_a_servo_is_the_files_within_its_torque(hexapod: RobotSpec, compile_worl
 
 
 def test_every_installed_robot_is_tested() -> None:
-    """The tests above cover sample robots that are all installed."""
+    """All sample robots that the tests above use are installed."""
     assert set(SAMPLES) <= set(installed_robots())

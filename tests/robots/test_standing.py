@@ -91,7 +91,7 @@ def test_a_robot_that_is_still_on_its_way_is_not_at_rest(hexapod_text: str) -> N
 
 
 def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
-    """A robot that sinks at 1.8 mm/s after two seconds is refused, since it falls later."""
+    """A robot that sinks at 1.8 mm/s after two seconds is refused, because it would fall later."""
     slow = Stood(moved_m=0.015, tilt_rad=0.18, joint_rad_s=0.0087, centre_m_s=0.0018)
     (mistake,) = mistakes_of(slow, "robot.toml", (B,))
     assert "a joint at 0.5 degrees/s, its middle at 1.8 mm/s" in render(mistake.found)

@@ -48,7 +48,7 @@ class Unfinished:
 
     @property
     def inputs(self) -> list[Input]:
-        """The court's first inputs: a match in play is halted, so that nobody finds it running."""
+        """The first inputs of the court: a match in play is halted until people are back."""
         if self.match.phase in IN_PLAY:
             why = say("reason.court-restarted")
             if self.other_arithmetic:

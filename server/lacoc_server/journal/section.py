@@ -75,7 +75,7 @@ class Step:
 
 @dataclass
 class Section:
-    """The beats after a snapshot, up to the next."""
+    """The beats after a snapshot, up to the next snapshot."""
 
     build: Build
     start: bytes | None

@@ -60,7 +60,9 @@ class Stop(NamedTuple):
     text: str
     """The fault, as the end of a sentence."""
     damaged: bool
-    """Whether the file is damaged or incomplete; False: never closed, as by a killed court."""
+    """Whether the file is damaged or incomplete; False: it was only not closed, as by a killed
+    court.
+    """
 
 
 class _Format(msgspec.Struct):
