@@ -1,7 +1,7 @@
 """Finds references that a reader of the repository can't follow: `python docs/references.py`.
 
-It looks at every cited file, section, decision and link in the sources and the pages of
-the repository, prints what is not there, and ends with 1 if there is any.
+It looks at every cited file, section, decision and link in the sources and the pages of the
+repository, and prints those that do not exist. The exit code is 1 if there is any.
 """
 
 import re
@@ -13,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 READ = (".py", ".ts", ".tsx", ".css", ".md", ".toml", ".yaml", ".yml", ".sh", "Makefile", "run")
-"""Files whose text is looked at, by the end of their name."""
+"""Ends of the names of the files whose text is searched."""
 
 CITED_FILE = re.compile(r"(?<![\w/.@*{}%-])((?:[\w.-]+/)*[\w-]+\.(?:md|py|tsx?))\b(?![\w(*{-])")
 SECTION = re.compile(r"(docs/[\w/-]+\.md) (\d+(?:\.\d+)?)\b(?! (?:MB|kB|lines))")
@@ -29,14 +29,14 @@ OF_READERS = {"my_bot.py", "your_bot.py", "walker.py", "mujoco.py"}
 
 @cache
 def tracked() -> frozenset[str]:
-    """The repository's files: those that git knows, and those that it would add."""
+    """Return the repository's files: those that git knows, and those that it would add."""
     words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
     return frozenset(subprocess.check_output(words, cwd=ROOT, text=True).splitlines())
 
 
 @cache
 def names() -> frozenset[str]:
-    """Every end of a tracked path, as it may be cited: "court/pace.py" and "pace.py"."""
+    """Return every end of a tracked path, as a text may cite it: "court/pace.py" and "pace.py"."""
     return frozenset(
         "/".join(parts[start:])
         for parts in (path.split("/") for path in tracked())
@@ -46,7 +46,7 @@ def names() -> frozenset[str]:
 
 @cache
 def headings(page: str) -> frozenset[str]:
-    """The numbers and anchors of a page's headings."""
+    """Return the numbers and anchors of a page's headings."""
     found = set()
     for title in re.findall(r"^#+ (.+)$", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE):
         if number := re.match(r"(\d+(?:\.\d+)?)\.? ", title):
@@ -57,7 +57,7 @@ def headings(page: str) -> frozenset[str]:
 
 
 def missing(path: str, line: str) -> Iterator[str]:
-    """What a line of a file cites that is not there."""
+    """Yield a sentence for each thing that a line of a file cites and that does not exist."""
     for name in CITED_FILE.findall(line):
         known = name in names() or (ROOT / path).parent.joinpath(name).is_file()
         if not known and name not in OF_READERS:
@@ -78,7 +78,7 @@ def missing(path: str, line: str) -> Iterator[str]:
 
 
 def missing_links(path: str, line: str) -> Iterator[str]:
-    """What the links of a page lead to that is not there."""
+    """Yield a sentence for each link of a line that leads nowhere."""
     for target, anchor in LINK.findall(line):
         if target.startswith(("http:", "https:", "mailto:")):
             continue
@@ -90,7 +90,7 @@ def missing_links(path: str, line: str) -> Iterator[str]:
 
 
 def main() -> int:
-    """Print every reference that leads nowhere."""
+    """Print every reference that leads nowhere; return 1 if there is any."""
     found = 0
     for path in sorted(tracked()):
         file = ROOT / path

@@ -1,8 +1,7 @@
 """An arena: a folder with its TOML, rules, field and bots, ready to be played.
 
-The TOML has `title`, a table [match] that every game shares, one [[seat]] for each
-seat, and a table [game] for this game alone. The contest file may override any
-entry (rules 1, "Where each number lives").
+The TOML has `title`, a table [match] that every game shares, one [[seat]] for each seat, and a
+table [game] for this game alone. The contest file may override any entry.
 """
 
 import importlib
@@ -44,7 +43,7 @@ class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     levels: Annotated[tuple[Literal["A", "B"], ...], msgspec.Meta(min_length=1)] = ("B",)
     """Levels of control that are open; a seat begins with the first one."""
     repeat: bool = True
-    """True: a sequence repeats until the command changes (4-2, "continuous control")."""
+    """True: a sequence repeats until the command changes (workshop 4-2)."""
     start: Literal["referee", "ready"] = "referee"
     """Who starts the match: the referee, or every seat by saying ready."""
     unattended_s: Seconds = 900.0
@@ -127,7 +126,8 @@ class Arena:
     def plays(self, recorded: str) -> bool:
         """Say whether a record was played in this arena, judged by the arena's name in the record.
 
-        A folder may have moved since: a folder that the user named matches any such name.
+        The folder may have moved since the record was made. So a folder that the user named matches
+        any name that is not installed.
         """
         moved = self.folder is not None and recorded not in plugins.installed(_GROUP)
         return moved or recorded == self.name

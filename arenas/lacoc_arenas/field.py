@@ -1,9 +1,9 @@
 """MuJoCo geoms that the fields of all games are built of.
 
-Only the floor and the four wall planes can be touched. Every other geom is only
-visible: it has no mass and no contacts, so it does not change the physics at all
-(rules 6, strike). The geoms of a marker are named "marker:NAME:STATE", followed by
-":PART" if a state has several shapes; they are shown while the marker is in that state.
+Only the floor and the four wall planes can be touched. Every other geom is only visible: it has no
+mass and no contacts, so it does not change the physics at all (rules 6). The geoms of a marker are
+named "marker:NAME:STATE", followed by ":PART" if a state has several shapes; they are shown while
+the marker is in that state.
 """
 
 import math
@@ -36,7 +36,7 @@ TINTS: dict[str, Rgba] = {
     "right": rgba("#e69f00"),
     "down": rgba("#a39c8f"),
 }
-"""The colour of a marker in each state, with the default colours of the teams (rules 4)."""
+"""The colour of a marker in each state, with the default colours of the teams."""
 
 _GROUND = {"contype": 1, "conaffinity": 0xFFFE}
 """Collides with robots, whose own bits start at 2 (docs/facts.md 2)."""

@@ -17,7 +17,7 @@ NEUTRAL, LEFT, RIGHT, DOWN = range(4)
 """States of a marker, in the order of `MARKER_STATES`. A seat's own state is its index + 1."""
 
 Claim = tuple[int, str]
-"""(seat, marker) of an event that a referee strikes out (rules 4, take-back)."""
+"""(seat, marker) of an event that a referee strikes out (rules 4.1)."""
 
 
 class NoSuchState(ValueError):
@@ -75,7 +75,7 @@ class GameEvent(msgspec.Struct, frozen=True, kw_only=True):
     marker: str
     """The marker that was claimed; with `seat` it names the claim."""
     also: tuple[str, ...] = ()
-    """Markers that changed together with it (the runs of rules 5)."""
+    """Further markers that changed with the claimed one, such as the runs of rules 5."""
     points: int = 0
     """Points that the seat gains."""
     said: Phrase

@@ -24,7 +24,7 @@ _POSE = Struct("<7f")
 _FLOAT_BYTES = 4
 
 _STRAY_RAD = math.radians(16)
-"""Half the angle that one turn sequence turns by: within this bearing the robot walks."""
+"""Half the angle of one turn sequence: if the bearing is smaller than this, the robot walks."""
 _NEAR_M = 0.10
 """This near to the target the bearing changes fast: the robot walks until `_NEAR_STRAY_RAD`."""
 _NEAR_STRAY_RAD = math.radians(45)
@@ -35,7 +35,7 @@ _TANGLED_M = 0.36
 """Two robots this near for `_TANGLED_TICKS` have caught each other's legs."""
 _STUCK_TICKS = 4 * BEATS_PER_S
 _STUCK_M = 0.06
-"""A robot that walks for `_STUCK_TICKS` and comes less far than this is blocked."""
+"""A robot that walks for `_STUCK_TICKS` and moves less than this is blocked."""
 _EVADE_TICKS = 6 * BEATS_PER_S
 
 _PASS_M = 0.42
@@ -57,7 +57,7 @@ class Pose(NamedTuple):
     """World z of the body's upward direction: 1 upright, -1 on its back."""
 
     def bearing_rad(self, x_m: float, y_m: float) -> float:
-        """Return the angle to turn left to face a point, -pi to pi."""
+        """Return the angle by which to turn left to face a point [rad], from -pi to pi."""
         angle = math.atan2(y_m - self.y_m, x_m - self.x_m) - self.heading_rad
         return math.remainder(angle, math.tau)
 
@@ -94,7 +94,7 @@ def _pose(x: float, y: float, z: float, qw: float, qx: float, qy: float, qz: flo
 class Pilot:
     """Brings one robot to points: turns, walks, passes the other robot, frees itself.
 
-    It changes the key only where a sequence ends: half a step brings a robot nowhere, and
+    It changes the key only where a sequence ends: half a step does not move the robot forward, and
     half a turn turns it the wrong way.
     """
 

@@ -197,7 +197,7 @@ class Controller:
         return joined.notes
 
     def ready(self, ready: bool = True) -> Phrase | None:
-        """Say ready, or take it back.
+        """Tell the court that the team is ready, or no longer ready.
 
         Returns:
             A sentence of the court, if it has one.
@@ -356,9 +356,9 @@ class Controller:
     def _join_again(self) -> None:
         try:
             self.join(_REJOIN_TIMEOUT_S)
-        except NoCourt:  # it may have made a session: the next health message decides
+        except NoCourt:  # the court may have made a session: its next health message decides
             self.hold, self.reason, self._joined = Hold.LOST, None, None
-        except NotNow as error:  # it has made none: another session may hold the seat now
+        except NotNow as error:  # the court has made none: another session may hold the seat now
             self.hold, self.reason = Hold.LOST, error.phrase
         except FileRefused:
             self.hold, self.reason = Hold.REFUSED, say("hold.files-refused")

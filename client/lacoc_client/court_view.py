@@ -1,7 +1,7 @@
-"""What a court has sent, and what of it is missing here. No I/O, no clock.
+"""What a court has sent, and what part of it is missing here. No I/O, no clock.
 
-A spectator and a gateway each hold one: they pass it what arrives, and ask the court for what is
-missing.
+A spectator and a gateway each hold a `CourtView`: they pass it what arrives, and ask the court for
+what is missing.
 """
 
 from collections.abc import Callable
@@ -74,7 +74,7 @@ class CourtView(Generic[T]):
 
     @property
     def lacks_sheet(self) -> bool:
-        """True if the court has another sheet, or may have."""
+        """True if the court has, or may have, another sheet."""
         return self._doubt or self.has_older_sheet or not self.fits
 
     @property

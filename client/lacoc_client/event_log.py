@@ -13,8 +13,8 @@ T = TypeVar("T")
 class EventLog(Generic[T]):
     """Keeps something for each event: the event itself, or its bytes.
 
-    Events that a restarted court sends again are not new. They come in order, so at the first one
-    that differs, those before it are still true and those after it are not.
+    Events that a restarted court sends again are not new. Events come in order. So if one differs
+    from the known one, those before it stay valid and those after it are dropped.
     """
 
     def __init__(self) -> None:
@@ -33,8 +33,8 @@ class EventLog(Generic[T]):
         Args:
             match: number of the open match, from the court's health.
             beat: beat of that health.
-            number: number of the newest event then, counted from 1 without a gap; 0: it does not
-                say.
+            number: number of the newest event then, counted from 1 without a gap; 0: the health
+                does not say.
         """
         newest = self._known[max(self._known)][0] if self._known else None
         if newest is not None and len(self._known) <= newest.number - self._first:

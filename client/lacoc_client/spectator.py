@@ -19,7 +19,7 @@ _EVENTS_DEPTH = 4096
 _FETCH_TRIES = 3
 _STRAYS = 5
 _SHEET_S = 0.2
-"""Longest wait for a frame's sheet, which follows the frame; after it the sheet is requested."""
+"""Longest time between a frame and the sheet that follows it [s]; then the sheet is requested."""
 _OTHER_SCENE_S = 3.0
 _ANSWER_S = 2.0
 """Time after which an unanswered request is sent again."""
@@ -28,8 +28,9 @@ _ANSWER_S = 2.0
 class Spectator:
     """Everything public about a court; complete at once, also for a late comer.
 
-    One thread uses it. Only `poll` and `wait_frame` change the attributes. What did not arrive is
-    requested and comes later: neither frames nor the commands of a controller wait for it.
+    One thread uses it. Only `poll` and `wait_frame` change the attributes. Messages that did not
+    arrive are requested and come later: neither frames nor the commands of a controller wait for
+    them.
 
     Args:
         session: an open client session.
@@ -60,7 +61,7 @@ class Spectator:
         self.frame_s = time.monotonic()
         """When the newest frame arrived; before the first: when this began to wait."""
         self._other_since_s: float | None = None
-        """Since when frames come without their sheet; None: they have it."""
+        """Time since which frames have come without their sheet; None: the sheet fits them."""
         self.health: Health | None = None
         """The newest health."""
         self._strays = 0
@@ -145,8 +146,8 @@ class Spectator:
     def _read(self, mail: Mail, kind: type[T]) -> T | None:
         """Decode a message of the court; None if it can't be decoded.
 
-        Then the sheet is requested: it says whether this court speaks another version. A single bad
-        message does not end the session.
+        In that case the sheet is requested, because the sheet says whether this court speaks
+        another version. A single bad message does not end the session.
 
         Raises:
             UserError: if too many messages in a row can't be decoded.
@@ -173,7 +174,7 @@ class Spectator:
         self.sheet = understand(payload, Sheet)
 
     def _ask_for_what_lacks(self, told: Health) -> None:
-        """Request what was sent while this was away, or was lost on a slow link."""
+        """Request messages that did not arrive, such as those lost on a slow link."""
         self._view.see_health(Told(told.match, told.beat, told.events, told.sheet))
         if self._view.lacks_events:
             self._lacking_events.ask()
@@ -213,7 +214,7 @@ class Spectator:
             self._read_sheet(sheet)
 
     def _take_events(self) -> None:
-        """Take in new events, unless a list is under way: it is older, so they wait for it."""
+        """Take in new events; they wait while a requested list, which is older, is under way."""
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
             if event is not None and self._view.add_event(event, mail.payload):

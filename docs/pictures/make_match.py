@@ -1,7 +1,7 @@
 """Render docs/pictures/match-*.png: moments of real matches between two bots.
 
-Run from the checkout, with MUJOCO_GL=egl or osmesa on a machine without a screen:
-python docs/pictures/make_match.py
+Run it from the checkout: python docs/pictures/make_match.py On a machine without a screen, set
+MUJOCO_GL to egl or osmesa.
 """
 
 import os
@@ -25,7 +25,7 @@ from lacoc_shared.record.schema import Setup
 
 SIZE = 1280, 720
 SCALE = 2
-"""Rendered larger and averaged down, for smooth edges."""
+"""The picture is rendered this many times larger and averaged down, for smooth edges."""
 
 MOMENTS = {"othello": 118.0, "flag-strike": 70.0}
 """Arena -> seconds of the clock at which its picture is taken."""

@@ -1,7 +1,7 @@
 """Render docs/pictures/page-*.png: every page as it looks, in real matches at real courts.
 
-Run from the checkout, with what its tests need: python docs/pictures/make_pages.py
-It takes some minutes without a graphics card; words such as "replay" take only a part of them.
+Run it from the checkout, with the packages of its tests: python docs/pictures/make_pages.py It
+takes some minutes without a graphics card. Arguments such as "replay" choose some pictures.
 """
 
 import subprocess
@@ -53,7 +53,7 @@ def main() -> None:
 
 @contextmanager
 def pages(browser: Browser) -> Iterator[Open]:
-    """Opens pages, each of another person, drawn as finely as they can be."""
+    """Give a function that opens a page for a new person, drawn in the finest quality."""
     with ExitStack() as stack:
 
         def opened(**options: Any) -> Page:
@@ -66,7 +66,7 @@ def pages(browser: Browser) -> Iterator[Open]:
 
 
 def practice(folder: Path, open_page: Open) -> None:
-    """A student's first minutes."""
+    """Take the picture of a student's first minutes."""
     with own_page(folder, "practice") as (url, key):
         page = Contestant(open_page, url, viewport=LAPTOP)
         page.page.goto(f"{url}/practice#key={key}")
@@ -79,7 +79,7 @@ def practice(folder: Path, open_page: Open) -> None:
 
 
 def replay(folder: Path, open_page: Open) -> None:
-    """A recording, in the middle of it."""
+    """Take the picture of a recording, in the middle of its match."""
     arena = arenas.load("othello", {"match": {"duration_s": 180}})
     setup = Setup(
         match_id="final", court="hall", match=7, arena="othello", settings=arena.settings, limits={}
@@ -97,7 +97,7 @@ def replay(folder: Path, open_page: Open) -> None:
 
 
 def contest(folder: Path, open_page: Open) -> None:
-    """A contestant and the referee, in one match."""
+    """Take the pictures of a contestant and of the referee, in one match."""
     with venue(folder, "flag-strike") as (place, bot):
         court = place.court("--seconds", "180")
         place.web()
@@ -128,7 +128,7 @@ def contest(folder: Path, open_page: Open) -> None:
 
 
 def broadcast(folder: Path, open_page: Open) -> None:
-    """Spectators and the stream, while something happens."""
+    """Take the pictures of spectators and of the stream, while something happens."""
     with venue(folder, "othello") as (place, bot):
         court = place.court("--seconds", "180")
         place.web()
@@ -159,7 +159,7 @@ def broadcast(folder: Path, open_page: Open) -> None:
 def venue(
     folder: Path, arena: str = "othello"
 ) -> Iterator[tuple[Venue, Callable[[str, str, str, str], None]]]:
-    """A contest, and what puts a bot into a seat: address, seat, bot, team."""
+    """Give a contest, and a function that seats a bot: (address, seat, bot, team)."""
     with ExitStack() as stack:
         place = Venue(folder, stack)
         place.contest.write_text(place.contest.read_text("utf-8").replace("othello", arena))
@@ -178,14 +178,14 @@ def venue(
 
 
 def look(page: Page) -> Show:
-    """The means of `Show` for a page that is open."""
+    """Return a `Show` for a page that is open already."""
     show = object.__new__(Show)
     show.page = page
     return show
 
 
 def played_s(page: Page) -> float:
-    """Seconds of a match of three minutes that its clock has used."""
+    """Return how many seconds the clock of a three-minute match has used."""
     minutes, seconds = page.locator(".score-bug .clock").inner_text().split(":")
     return 180 - 60 * int(minutes) - int(seconds)
 
@@ -195,9 +195,9 @@ def picture(page: Page, name: str, drawn: bool = True, moment: str = "main") -> 
 
     Args:
         page: the page.
-        name: of the picture.
-        drawn: wait until the scene was drawn finely.
-        moment: wait until the page has this.
+        name: name of the picture.
+        drawn: whether to wait until the scene is drawn in its finest quality.
+        moment: selector of an element; the picture is taken when the page has it.
     """
     show = look(page)
     if drawn:

@@ -38,9 +38,9 @@ _Robot = Annotated[
 def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json = False) -> None:
     """Weigh a robot in: name every mistake in its file, or say what it is.
 
-    It is tried in physics whether it stays where it is when it is told to stand: with the gait
-    files beside it, or in its start posture. With --contest the contest's limits count, else
-    those of the rules. With --json the mistakes are a list, empty for a robot that is right.
+    The robot is tried in physics: it must stay in place when it stands, with the gait files beside
+    it or in its start posture. With --contest the contest's limits count, else those of the rules.
+    With --json the mistakes are a list, empty for a robot that is right.
     """
     notes: list[Phrase] = []
     try:

@@ -42,7 +42,7 @@ app = typer.Typer(
 
 _SAMPLE_KEYS_TEXT = ";".join(",".join(map(str, sequence)) for sequence in SAMPLE_KEYS)
 _KEYS = re.compile(r"\d(,\d)*(;\d(,\d)*)*", re.ASCII)
-_LIFTED = 0.1  # times a link's length above the lowest foot: 7 mm on the workshop's robot
+_LIFTED = 0.1  # link lengths above the lowest foot: 7 mm on the workshop's robot
 
 
 class CheckedFile(msgspec.Struct, frozen=True):
@@ -244,7 +244,8 @@ def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
 def _lifted(posture: Posture, labels: Sequence[str]) -> tuple[str, ...]:
     """Return the legs whose feet are above the lowest, on a level body with links of one length."""
     legs = len(labels)
-    # Rules 1: 1st + lifts the link, 2nd + swings the shank up; both 0: it hangs straight down.
+    # A positive 1st joint lifts the leg, and a positive 2nd joint swings the shank up (rules 1).
+    # With both at 0 the shank hangs straight down.
     heights = [
         math.sin(first) - math.cos(first + second)
         for first, second in zip(posture[legs : 2 * legs], posture[2 * legs :], strict=True)

@@ -1,7 +1,7 @@
 """A leg: three links on three hinges (workshop Fig. 3-2, rules 1).
 
-The body frame has +x right, +y forward and +z up; its origin is the middle of the body's
-box. A link is a capsule. Its length goes from hinge to hinge, at the last link to the tip.
+The body frame has +x right, +y forward and +z up; its origin is the middle of the body's box. A
+link is a capsule. Its length is measured from hinge to hinge; for the last link, from hinge to tip.
 """
 
 import math
@@ -64,9 +64,10 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
         """Compute the positions of the leg's hinges and its tip.
 
         Args:
-            root: angle [rad]; + swings the leg forward.
-            first: angle [rad]; + lifts the 1st link, 0 is horizontal.
-            second: angle [rad]; + swings the 2nd link outward and up, 0 is square to the 1st.
+            root: angle [rad]; a positive one swings the leg forward.
+            first: angle [rad]; a positive one lifts the 1st link, 0 is horizontal.
+            second: angle [rad]; a positive one swings the 2nd link outward and up, 0 is square to
+                the 1st link.
 
         Returns:
             Root hinge, 1st hinge, 2nd hinge and tip, in the body frame [m].
@@ -86,10 +87,10 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
         return points[0], points[1], points[2], points[3]
 
     def capsules(self, root: float, first: float, second: float) -> tuple[Capsule, ...]:
-        """Compute the shapes of the three links, each from tip to tip of its length.
+        """Compute the shapes of the three links; a shape is as long as its link, ends included.
 
-        The root link begins with its middle on the root hinge. The workshop's root link is as
-        long as its radius, so its shape is a sphere there.
+        The root link begins with its middle on the root hinge. The workshop's root link is as long
+        as its radius, so its shape is a sphere there.
         """
         points = self.points(root, first, second)
         shapes = []

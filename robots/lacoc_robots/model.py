@@ -48,7 +48,7 @@ def set_options(parent: mj.MjSpec) -> None:
 
 
 def collision_bits(seat: int, seats: int) -> tuple[int, int]:
-    """Compute contype and conaffinity of a robot: floor, walls and other robots, not itself.
+    """Compute contype and conaffinity of a robot, which collides with everything but itself.
 
     Raises:
         ValueError: if there is no such seat, or there are too many seats.
@@ -205,7 +205,8 @@ def _add_leg(
         if level == 0:
             link.quat = [math.cos(half_turn), 0, 0, math.sin(half_turn)]
         link.add_joint(name=hinge_name, axis=axes[level], **hinge)
-        # From tip to tip, as in `LegSpec.capsules`; the workshop's root link is a sphere.
+        # As long as the link, with round ends (`LegSpec.capsules`); the workshop's root link is a
+        # sphere.
         radius = leg.radius_m
         near, far = (0.0 if level == 0 else radius), leg.lengths_m[level] - radius
         ends = [x * near for x in along[level]] + [x * far for x in along[level]]

@@ -1,7 +1,7 @@
 """Read a robot file: TOML in degrees, metres and kilograms (rules 1, workshop 4-3).
 
-First every entry is checked by itself, then the robot as a whole. A wrong entry becomes
-NaN, and a check of the whole robot counts only if all its numbers are known.
+First every entry is checked by itself, then the robot as a whole. A wrong entry becomes NaN, and a
+check of the whole robot finds a mistake only if all its numbers are known.
 """
 
 import math
@@ -21,7 +21,7 @@ from lacoc_shared.words import say
 __all__ = ["Capsule", "LegSpec", "Limits", "Point", "RobotSpec", "read_robot"]
 
 LARGEST_FILE = 32 * 1024
-"""Bytes, as for gait files (rules 2)."""
+"""Largest robot file [bytes], the same as for gait files (rules 2)."""
 
 _ROUNDING_KG = 1e-9  # rounding error of a sum of decimal masses
 _ROUNDING_M = 1e-6  # lets a foot stand exactly on the floor

@@ -1,3 +1,3 @@
-"""Definitions that both ends of a match share."""
+"""Definitions that courts and their clients share."""
 
 __version__ = "0.1.0"

@@ -1,7 +1,7 @@
-"""Bytes to messages and back: msgpack with checks of types and size, and one error class.
+"""Encode messages and decode bytes: msgpack with checks of types and size, and one error class.
 
-`msgspec` reads and writes the same bytes as `msgpack`. It also checks every type, so
-nothing that arrives is used before its type is known.
+`msgspec` reads and writes the same bytes as `msgpack`. It also checks every type, so nothing that
+arrives is used before its type is known.
 """
 
 import hashlib

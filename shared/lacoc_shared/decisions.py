@@ -1,8 +1,8 @@
-"""The referee's decisions (rules 4; workshop 5-1 rule 8, 5-2 rule 9), as small values.
+"""The referee's decisions (rules 4.1; workshop 5-1 rule 8, 5-2 rule 9), as small values.
 
-The court defines what each decision does and when it is legal (`lacoc_server.match.referee`).
-This module defines what both ends share: the names and the arguments. A seat is
-named by its id ("left"), a marker by its name ("c2r3", "corner0", "flag7").
+The court defines what each decision does and when it is legal (`lacoc_server.match.referee`). This
+module defines the names and arguments, which both ends share. A seat is named by its id ("left"), a
+marker by its name ("c2r3", "corner0", "flag7").
 """
 
 from typing import get_args

@@ -1,9 +1,9 @@
-"""The inputs of a match: what enters it from outside, each at a beat; the record keeps them.
+"""The inputs of a match: all that enters it from outside, each at its beat. The record has them.
 
-A match is a pure function of its setup and its inputs, beat by beat: the same inputs
-give the same match, bit for bit, live or headless, at any speed (rules 4). Inputs have
-passed the court's checks (token, session, sequence number). The match then decides
-whether an input has an effect, and a replay decides the same.
+A match is a pure function of its setup and its inputs, beat by beat: the same inputs give the same
+match, bit for bit, live or headless, at any speed (rules 4). Inputs have passed the court's checks
+(token, session, sequence number). The match then decides whether an input has an effect, and a
+replay decides the same.
 """
 
 import msgspec
@@ -30,7 +30,7 @@ class JoinSeat(_Input, frozen=True, tag="join"):
 
 
 class ReadySeat(_Input, frozen=True, tag="ready"):
-    """A contestant said ready, or took it back."""
+    """A contestant said that the team is ready, or no longer ready."""
 
     seat: int
     ready: bool
@@ -52,9 +52,10 @@ class KeySeat(_Input, frozen=True, tag="key"):
     seen: int = 0
     """Beat of the newest frame when the key was pressed; 0: no frame of this match yet."""
     held: int = 0
-    """Beats for which the court delayed it, to make the seats' links equal."""
+    """Beats for which the court delayed the command, to make the seats' links equal."""
     late: int = 0
-    """Beats (20 ms each) by which it took effect later than the common delay allows."""
+    """Beats (20 ms each) between the end of the common delay and the command's effect; 0: in time.
+    """
 
 
 class SilentSeat(_Input, frozen=True, tag="silent"):
@@ -82,8 +83,9 @@ class Advice(_Input, frozen=True, tag="advice"):
     """The court measured that the match ran badly, or that it ran well enough after all."""
 
     reasons: tuple[Phrase | str, ...]
-    """Why a replay is advised (`health.*`; a text in a record of protocol 1); empty: no replay is
-    advised any more."""
+    """Why the match should be played again (`health.*`; a text in a record of protocol 1). Empty:
+    it need not be played again.
+    """
 
 
 Input = JoinSeat | ReadySeat | LeaveSeat | KeySeat | SilentSeat | HeardSeat | Decide | Advice

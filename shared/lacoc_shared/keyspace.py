@@ -7,7 +7,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 EVERY_COURT = "lacoc/*/live/court"
-"""Liveliness: the announcements of all courts that can be reached."""
+"""Key expression for the announcements of all courts that can be reached (Zenoh's liveliness)."""
 COMMAND_MAX_BYTES = 1024
 """Largest command, ready or leave that is read."""
 ENTER = "enter"
@@ -44,32 +44,32 @@ class Keys:
 
     @property
     def frame(self) -> str:
-        """Court to all, 50 Hz; only the newest counts."""
+        """Key expression of frames: the court sends 50 a second, and only the newest matters."""
         return f"{self.root}/frame"
 
     @property
     def event(self) -> str:
-        """Court to all, numbered, must arrive; a query returns all events of the match."""
+        """Key expression of events: numbered and never lost; a query returns all of the match."""
         return f"{self.root}/event"
 
     @property
     def sheet(self) -> str:
-        """Court to all when it changes, and by query."""
+        """Key expression of the sheet: the court sends each new one, and answers queries."""
         return f"{self.root}/sheet"
 
     @property
     def scene(self) -> str:
-        """By query; a new scene hash in a frame tells that it changed."""
+        """Key expression of queries for the scene; frames have the hash of the newest scene."""
         return f"{self.root}/scene"
 
     @property
     def health(self) -> str:
-        """Court to all, 2 Hz; only the newest counts."""
+        """Key expression of health: the court sends it twice a second; only the newest matters."""
         return f"{self.root}/health"
 
     @property
     def alive(self) -> str:
-        """Liveliness: announced while the court is connected."""
+        """Key expression that is announced while the court is connected (Zenoh's liveliness)."""
         return f"{self.root}/live/court"
 
     def command(self, seat: str) -> str:
@@ -82,7 +82,7 @@ class Keys:
 
     @property
     def enter(self) -> str:
-        """Referee to court, with a reply: whether this is a referee's token."""
+        """Key expression of the question whether a token is a referee's."""
         return f"{self.root}/referee/{ENTER}"
 
     def decision(self, name: str) -> str:

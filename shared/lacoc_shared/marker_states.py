@@ -10,5 +10,5 @@ def pack_states(states: tuple[int, ...]) -> bytes:
 
 
 def unpack_states(packed: bytes, count: int) -> tuple[int, ...]:
-    """Unpack the states of `count` markers from the bytes of `pack_states`."""
+    """Unpack the states of `count` markers from bytes that `pack_states` made."""
     return tuple(packed[index >> 2] >> (index & 3) * 2 & 3 for index in range(count))

@@ -40,7 +40,7 @@ class SeatFrame(msgspec.Struct, frozen=True, array_like=True):
     applied_seq: int
     """Sequence number of the seat's newest command that took effect; 0: none yet."""
     applied_beat: int
-    """Beat at which it took effect."""
+    """Beat at which that command took effect."""
     refused_seq: int
     """Sequence number of the seat's newest command that was refused; 0: none."""
     refused_why: int
@@ -74,12 +74,12 @@ class Frame(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):
-    """A key of a seat, repeated 10 times a second with the same sequence number (rules 3)."""
+    """A seat's newest key; the controller repeats it 10 times a second with the same number."""
 
     session: int
     """Number that the court gave in its reply to the join."""
     seq: int
-    """Counts the seat's commands from 1; 0: no key yet, only a sign of life."""
+    """Sequence number of the command, from 1 for each seat; 0: no key yet, only a sign of life."""
     level: int
     key: int
     """0-9, or `RESTART_KEY` for [x]."""
@@ -126,11 +126,11 @@ class Joined(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Say ready, take it back, or leave; proven by the session's secret, not by the token."""
+    """A request to be ready, or no longer ready, or to leave; sealed with the session's secret."""
 
     session: int
     seq: int
-    """Counts the session's requests from 1."""
+    """Sequence number of the request, from 1 in each session."""
     ready: bool = True
     mac: bytes
 
@@ -190,7 +190,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     """Something that happened; numbered, and never lost."""
 
     number: int
-    """Counts the events of a match from 1."""
+    """Number of the event, from 1 in each match."""
     match: int
     beat: int
     clock_ticks: int
@@ -261,7 +261,7 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A body in the tree; `Frame.poses` moves the root bodies, its joint angles the others."""
+    """A body in the tree; `Frame.poses` has poses for root bodies and joint angles for others."""
 
     name: str
     parent: int
@@ -360,8 +360,9 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
     """Number of times that the match continued after its court was killed."""
     seats: tuple[LinkVerdict, ...]
     advice: tuple[Phrase | str, ...]
-    """Why a replay is advised: the limits of the contest that were broken (`health.*`; a text in a
-    record of protocol 1). Empty: it is not advised."""
+    """Why the match should be played again: the limits of the contest that were broken (`health.*`;
+    a text in a record of protocol 1). Empty: it need not be played again.
+    """
 
 
 class Health(msgspec.Struct, frozen=True, kw_only=True):
@@ -390,4 +391,6 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     events: int = 0
     """Number of the newest event: a client that has fewer asks for the rest."""
     sheet: bytes = b""
-    """8 bytes of BLAKE2 over the newest sheet: a client that has another asks for it."""
+    """Hash of the newest sheet: 8 bytes of BLAKE2. A client that has another sheet asks for this
+    one.
+    """

@@ -40,7 +40,7 @@ def verify_token(token: str, token_hash: str) -> bool:
 def password(user: str, token: str) -> str:
     """Derive a user's network password from the token: 40 hexadecimal digits.
 
-    It reveals nothing about the token, nor does another user's password.
+    Neither the token nor another user's password can be computed from it.
     """
     data = f"{user} {token}".encode("utf-8", "surrogatepass")
     return hashlib.blake2b(data, digest_size=_PASSWORD_BYTES, person=b"lacoc password").hexdigest()

@@ -40,7 +40,7 @@ class SeatFlag(IntFlag):
     SILENT = 4
     """Its controller has not been heard for a second, so its robot stands (rules 3)."""
     FROZEN = 8
-    """A referee froze it."""
+    """A referee froze its robot."""
 
 
 class No(IntEnum):
@@ -67,14 +67,14 @@ RESTART_KEY = 10
 """The key number of [x] in a command; digits are 0-9."""
 
 NOBODY = -1
-"""Used in place of a seat's index: no seat."""
+"""Index of a seat that means "no seat"."""
 
 BEAT_S = 0.02
-"""Time between beats, in every phase (rules 4)."""
+"""Time between beats, in every phase [s]."""
 BEAT_US = 20_000
 BEATS_PER_S = 50
 REPEATS_HZ = 10
-"""How often a controller repeats its last command (rules 3)."""
+"""How often a controller repeats its last command [Hz]."""
 SILENT_AFTER_S = 1.0
 """A sender that has sent nothing for longer than this is silent: a seat's controller for its
 court (rules 3), and a court for its clients."""

@@ -1,4 +1,4 @@
-"""Arena files: every setting counts, a wrong one is named, and others bring their own games."""
+"""Arena files: every setting has an effect, and a wrong setting is named."""
 
 import copy
 from collections.abc import Callable
@@ -19,7 +19,7 @@ INSTALLED = ["othello", "flag-strike", "practice"]
 
 
 def look(name: str, overrides: dict[str, Any] | None = None) -> bytes:
-    """All that a game and its field say, as bytes."""
+    """Return all that a game and its field tell, as bytes."""
     ground = arena.load(name, overrides)
     game = ground.game
     spec = mujoco.MjSpec()
@@ -45,7 +45,7 @@ def _all_left(game: Any) -> Any:
 
 
 def _flanked(game: Any) -> Any:
-    """The board after the left robot of Robot-Othello walked into a row that it closes."""
+    """Return the Robot-Othello board after the left robot closed a row; None for other games."""
     if not game.markers or game.markers[0].kind != "disc":
         return None
     state = game.start()
@@ -79,12 +79,12 @@ SETTINGS: list[tuple[str, str, Any]] = [
 
 @pytest.mark.parametrize(("name", "key", "value"), SETTINGS)
 def test_setting_changes_what_it_says(name: str, key: str, value: Any) -> None:
-    """Rules 5 and 6: each is a setting of the arena file; rules 1: the contest may override it."""
+    """Each entry of [game], when overridden, changes the game or its field."""
     assert look(name, {"game": {key: value}}) != look(name)
 
 
 def test_every_setting_is_tested() -> None:
-    """Rules 5 and 6: the table above leaves out no entry of [game] but those tested below."""
+    """The table above has every entry of [game], except two that have tests of their own."""
     for name in INSTALLED:
         tested = {key for arena_name, key, _ in SETTINGS if arena_name == name}
         tested |= {"clearance_m", "colour"} if name == "flag-strike" else set()
@@ -92,7 +92,7 @@ def test_every_setting_is_tested() -> None:
 
 
 def test_layout_in_the_file_is_the_layout() -> None:
-    """Rules 6 strike: "the layout in the arena file is the layout", colours and points too."""
+    """Places, points and colours of the flags are those of the settings."""
     colours = copy.deepcopy(arena.load("flag-strike").settings["game"]["colour"])
     colours[0]["flags"][0:2] = [[-0.1, 0.5], [0.1, -0.5]]
     colours[1]["points"] = 4
@@ -106,7 +106,7 @@ def test_layout_in_the_file_is_the_layout() -> None:
 
 
 def test_match_settings() -> None:
-    """Rules 4: length, countdown, freeze and open levels are the arena's."""
+    """A contest may override a match's length and open levels; the arena's other values stay."""
     ground = arena.load("othello", {"match": {"duration_s": 60, "levels": ["A", "B"]}})
     assert ground.match.duration_s == 60.0
     assert ground.match.open_levels == (Level.POSTURE, Level.LOCOMOTION)
@@ -114,7 +114,7 @@ def test_match_settings() -> None:
 
 
 def test_practice_match() -> None:
-    """Rules 3 and 4: practice has one seat, both levels, no end, no freeze, no referee."""
+    """Practice has one seat, both levels, no time limit and no referee (rules 7)."""
     ground = arena.load("practice")
     assert [seat.id for seat in ground.seats] == ["solo"]
     match = ground.match
@@ -125,7 +125,7 @@ def test_practice_match() -> None:
 
 @pytest.mark.parametrize("name", ["othello", "flag-strike"])
 def test_seats_of_the_games(name: str) -> None:
-    """Rules 4: left is blue and right is orange; their patterns differ too."""
+    """The left seat is blue and plain; the right seat is orange and striped."""
     seats = arena.load(name).seats
     assert [(seat.id, seat.colour, seat.pattern) for seat in seats] == [
         ("left", "#0072b2", "plain"),
@@ -134,7 +134,7 @@ def test_seats_of_the_games(name: str) -> None:
 
 
 def test_file_is_the_only_source() -> None:
-    """Rules 5 and 6: no entry of [game] has a second value in the code: all must be given."""
+    """The code has no defaults for entries of [game]: leaving one out is an error."""
     for name in INSTALLED:
         for key in arena.load(name).settings["game"]:
             settings = copy.deepcopy(arena.load(name).settings)
@@ -250,13 +250,13 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
     ],
 )
 def test_a_field_of_other_measures(game: dict[str, Any]) -> None:
-    """Rules 6 field: what fits within the walls, apart from one another, is a field."""
+    """A field of other measures is accepted if its parts are within the walls and don't overlap."""
     assert arena.load("flag-strike", {"game": game}).game.markers
 
 
 @pytest.mark.parametrize(("name", "game", "says"), WRONG)
 def test_wrong_game_setting(name: str, game: dict[str, Any], says: str) -> None:
-    """Rules 5 and 6: a wrong arena file is refused; the message names the setting or the flag."""
+    """A wrong entry of [game] is refused, and the message names the setting or the flag."""
     with pytest.raises(UserError) as refused:
         arena.load(name, {"game": game})
     assert f'The table [game] of arena "{name}" is wrong: ' in str(refused.value)
@@ -278,7 +278,7 @@ def test_wrong_game_setting(name: str, game: dict[str, Any], says: str) -> None:
     ],
 )
 def test_wrong_common_setting(overrides: dict[str, Any], says: str) -> None:
-    """Rules 4: what every game shares is checked the same way."""
+    """A wrong setting that all games have is refused, and the message names it."""
     with pytest.raises(UserError) as refused:
         arena.load("othello", overrides)
     assert 'The file of arena "othello" is wrong: ' in str(refused.value)
@@ -286,13 +286,13 @@ def test_wrong_common_setting(overrides: dict[str, Any], says: str) -> None:
 
 
 def test_unknown_arena() -> None:
-    """An arena that is not there: the message lists the ones that are."""
+    """Loading an unknown arena raises UserError, which lists the installed ones."""
     with pytest.raises(UserError, match=r"no arena .chess.\. Installed: .*othello.*practice"):
         arena.load("chess")
 
 
 def test_unreadable_file(tmp_path: Path) -> None:
-    """When a file is not valid TOML, the message names it."""
+    """The message about an arena file that is not valid TOML names the file."""
     for name in ("rules.py", "field.py", "bots.py"):
         (tmp_path / name).touch()
     (tmp_path / "arena.toml").write_text("title =")
@@ -301,7 +301,7 @@ def test_unreadable_file(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_no_whole_arena(tmp_path: Path) -> None:
-    """One sentence: what the folder lacks, what it needs, and where numbers alone are changed."""
+    """One sentence tells which files a folder lacks, and where only numbers can be changed."""
     with pytest.raises(UserError, match=r"lacks arena\.toml, rules\.py, field\.py and bots\.py\. "):
         arena.load(str(tmp_path))
     (tmp_path / "arena.toml").write_text("title = ''")
@@ -316,7 +316,7 @@ def test_a_folder_that_is_no_whole_arena(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", INSTALLED)
 def test_settings_make_the_same_arena_again(name: str) -> None:
-    """The settings in a record make the arena it was played on, through msgpack too."""
+    """The settings that a record keeps make the same arena again."""
     first = arena.load(name)
     settings = msgspec.msgpack.decode(msgspec.msgpack.encode(first.settings))
     again = arena.from_settings(first.name, settings)
@@ -327,13 +327,13 @@ def test_settings_make_the_same_arena_again(name: str) -> None:
 
 @pytest.mark.parametrize("name", INSTALLED)
 def test_state_survives_the_record(name: str) -> None:
-    """Snapshots: the state of a match goes through msgpack and comes back the same."""
+    """The start state of a game is the same after packing with msgpack and unpacking."""
     game = arena.load(name).game
     packed = msgspec.msgpack.encode(game.start())
     assert msgspec.msgpack.decode(packed, type=game.state_type) == game.start()
 
 
 def test_merge_replaces_single_entries() -> None:
-    """Rules 1, "where each number lives": nested tables are merged, lists replaced whole."""
+    """Merging settings merges nested tables and replaces whole lists."""
     merged = arena.merge({"a": {"b": 1, "c": [1, 2]}, "d": 3}, {"a": {"c": [4]}, "e": 5})
     assert merged == {"a": {"b": 1, "c": [4]}, "d": 3, "e": 5}

@@ -1,4 +1,4 @@
-"""Bots of both games on a field where robots glide: a fast ladder without physics."""
+"""Bots of both games, tried on a simple field where robots glide without physics."""
 
 import math
 import random
@@ -26,11 +26,11 @@ from lacoc_shared.seat import BEATS_PER_S, RESTART_KEY, Phase
 
 TICK_S = 0.02
 POSTURE_TICKS = 18
-"""How long a gliding robot takes for each of the four postures of a key."""
+"""Ticks that a gliding robot takes for each of the four postures of a key."""
 SPEED_M_S, TURN_RAD_S = 0.057, math.radians(20)
 LEGS = ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")
 STRIKE_M = 0.14
-"""How far the legs of a gliding robot reach."""
+"""Distance that the legs of a gliding robot reach [m]."""
 
 
 def make_sheet(ground: arena.Arena) -> Sheet:
@@ -71,7 +71,7 @@ def make_frame(
     upside_down: bool = False,
     postures: tuple[int, ...] = (0, 0),
 ) -> Frame:
-    """A frame of PLAYING with robots at (x, y, heading)."""
+    """Return a frame of PLAYING with robots at (x, y, heading) [m, m, rad]."""
     packed = b""
     for x, y, heading in poses:
         half = (heading - math.pi / 2) / 2
@@ -108,7 +108,7 @@ def make_frame(
 
 
 def glide(ground: arena.Arena, names: tuple[str, str], seed: int) -> tuple[int, ...]:
-    """Play a match of gliding robots, which pass through one another; returns the scores."""
+    """Play a match of gliding robots, which pass through one another; return the scores."""
     game, sheet = ground.game, make_sheet(ground)
     chance = random.Random(seed)
     brains: list[Brain] = [ground.bots[name](sheet, seat) for seat, name in enumerate(names)]
@@ -118,7 +118,7 @@ def glide(ground: arena.Arena, names: tuple[str, str], seed: int) -> tuple[int, 
     ]
     paces = [chance.uniform(0.95, 1.05) for _ in poses]
     state, keys, ticks = game.start(), [STAND, STAND], 0
-    since = [0, 0]  # when each standing key was pressed
+    since = [0, 0]  # the tick at which each robot's present key was pressed
     limits = [size / 2 - 0.15 for size in game.size_m]
     while ticks < ground.match.duration_s / TICK_S and not game.over(state):
         frame = make_frame(
@@ -174,7 +174,7 @@ def glide(ground: arena.Arena, names: tuple[str, str], seed: int) -> tuple[int, 
 @pytest.mark.parametrize("name", ["othello", "flag-strike"])
 @pytest.mark.parametrize(("weak", "strong"), [("straight", "nearest"), ("nearest", "planner")])
 def test_ladder(name: str, weak: str, strong: str) -> None:
-    """The stronger bot beats the weaker in most pairs of matches with seats swapped."""
+    """Of six matches, three from each seat, the stronger bot wins at least four."""
     ground = arena.load(name)
     wins = 0
     for seed in range(3):
@@ -189,7 +189,7 @@ def test_ladder(name: str, weak: str, strong: str) -> None:
 @pytest.mark.parametrize("name", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
 @pytest.mark.parametrize(("weak", "strong"), [("straight", "nearest"), ("nearest", "planner")])
 def test_ladder_with_physics(name: str, weak: str, strong: str) -> None:
-    """The same with walking hexapods, which get in one another's way."""
+    """The stronger bot also wins with physics, where walking hexapods hinder each other."""
     simulate = pytest.importorskip("lacoc_server.simulate")
     ground = arena.load(name, {"match": {"duration_s": 100.0}})
     setup = Setup(court="main", match=1, arena=name, settings=ground.settings, limits={})
@@ -199,12 +199,12 @@ def test_ladder_with_physics(name: str, weak: str, strong: str) -> None:
     assert result.scores[0] > result.scores[1]
 
 
-# steering
+# Steering
 
 
 SHEET = make_sheet(arena.load("othello"))
 AWAY = (0.8, -0.8, math.pi)
-"""A place for the other robot, out of the way."""
+"""A pose (x, y, heading) for the other robot, out of the way."""
 
 
 def pilot() -> Pilot:
@@ -216,14 +216,14 @@ def key_for(
     here: tuple[float, float, float] = (0.0, 0.0, 0.0),
     other: tuple[float, float, float] = AWAY,
 ) -> Key | None:
-    """The first key of a robot that stands at `here`."""
+    """Return the first key that a pilot presses for a robot that stands at `here`."""
     frame = make_frame([here, other], [STAND, STAND])
     return pilot().toward(frame, Eyes(SHEET).poses(frame), target_m)
 
 
 @pytest.mark.parametrize("heading", [-3.0, -1.0, 0.0, 0.5, 2.0, 3.1])
 def test_eyes_read_poses(heading: float) -> None:
-    """Poses come out of the bytes of a frame; forward is the body's +y (rules 1)."""
+    """Eyes read the poses from a frame's bytes; a robot's forward is its body's +y."""
     frame = make_frame([(0.1, -0.2, heading), AWAY], [STAND, STAND])
     pose, other = Eyes(SHEET).poses(frame)
     assert (pose.x_m, pose.y_m, pose.up) == pytest.approx((0.1, -0.2, 1.0))
@@ -244,7 +244,7 @@ def test_eyes_read_poses(heading: float) -> None:
     ],
 )
 def test_turn_to_a_point_then_walk(target_m: tuple[float, float] | None, key: Key | None) -> None:
-    """A pilot turns the short way until the point lies ahead; without a point it stands."""
+    """A pilot turns the shorter way until the point is ahead; without a point it stands."""
     assert key_for(target_m) == key
 
 
@@ -260,7 +260,7 @@ def test_turn_to_a_point_then_walk(target_m: tuple[float, float] | None, key: Ke
 def test_pass_the_other_robot(
     other: tuple[float, float, float], here: tuple[float, float, float], key: Key
 ) -> None:
-    """Robots in each other's way keep to the right, but where the wall is."""
+    """A pilot passes the other robot on the right, or on the left where a wall is on the right."""
     assert key_for((0.9, here[1]), here, other) == key
 
 
@@ -279,7 +279,7 @@ def frames(
 
 
 def test_key_is_left_at_the_end_of_its_sequence() -> None:
-    """A step is not broken off: the key changes where the posture comes back to the first."""
+    """A pilot changes its key only when the sequence is back at its first posture."""
     turned_away = (0.0, 0.0, math.pi / 2)
     seen = [
         make_frame([turned_away, AWAY], [FORWARD, STAND], ticks=tick, postures=(posture, 0))
@@ -289,25 +289,25 @@ def test_key_is_left_at_the_end_of_its_sequence() -> None:
 
 
 def test_restart_when_it_lies_on_its_back() -> None:
-    """Rules 4: [x] is allowed when a robot lies on its back; a bot waits two seconds first."""
+    """When a robot lies on its back, its pilot waits two seconds before it presses [x]."""
     keys = fly(pilot(), frames(2 * BEATS_PER_S + 1, STAND, upside_down=True))
     assert RESTART not in keys[:-1]
     assert keys[-1] == RESTART
 
 
 def test_restart_when_tangled() -> None:
-    """A bot that hangs on the other robot for eight seconds goes back to its start."""
+    """A pilot presses [x] when its robot has been tangled with the other for eight seconds."""
     keys = fly(pilot(), frames(8 * BEATS_PER_S + 1, FORWARD, other=(0.3, 0.0, math.pi)))
     assert keys.index(RESTART) == 8 * BEATS_PER_S
 
 
 def test_no_key_while_keys_are_refused() -> None:
-    """Rules 4: after [x] keys are refused for a while; a bot waits."""
+    """A pilot presses nothing while keys are refused after [x] (rules 3)."""
     assert fly(pilot(), frames(10, STAND, locked=100)) == [None] * 10
 
 
 def test_stuck_at_a_wall() -> None:
-    """A robot that walks and comes nowhere turns to the middle for a while."""
+    """A pilot turns when its robot has walked for a while without moving."""
     at_wall = (0.9, 0.5, 0.0)
     stuck = [
         make_frame([at_wall, AWAY], [FORWARD, STAND], ticks=tick, postures=(tick // 18 % 4, 0))
@@ -318,7 +318,7 @@ def test_stuck_at_a_wall() -> None:
 
 
 def test_straight_walks_on() -> None:
-    """The weakest bot presses one key, and again after a restart."""
+    """The bot `straight` presses "forward" when its robot stands and keys are accepted."""
     brain = arena.load("othello").bots["straight"](SHEET, 0)
     assert brain(frames(1, STAND)[0]) == FORWARD
     assert brain(frames(1, FORWARD)[0]) is None
@@ -326,7 +326,7 @@ def test_straight_walks_on() -> None:
 
 
 def test_walk_shows_every_key() -> None:
-    """Practice: its bot presses each key of its gait in turn."""
+    """The practice bot `walk` presses each key of its gait in turn."""
     ground = arena.load("practice")
     brain = ground.bots["walk"](make_sheet(ground), 0)
     pressed, key = [], STAND
@@ -340,7 +340,7 @@ def test_walk_shows_every_key() -> None:
 
 @pytest.mark.parametrize("name", ["othello", "flag-strike", "practice"])
 def test_bots_are_pure(name: str) -> None:
-    """The same frames give the same keys: a bot has no clock and no dice."""
+    """A bot gives the same keys for the same frames: it uses no clock and no chance."""
     ground = arena.load(name)
     sheet = make_sheet(ground)
     poses = [(p.x_m, p.y_m, p.heading_rad) for p in (places[0] for places in ground.game.starts)]
@@ -354,7 +354,7 @@ def test_bots_are_pure(name: str) -> None:
 
 
 def test_planner_leaves_the_corner_that_would_lose() -> None:
-    """Workshop 5-2 rule 4: four corners end the match, so a bot that is behind leaves the last."""
+    """A planner that is behind leaves the fourth corner, the match's end (workshop 5-2 rule 4)."""
     ground = arena.load("flag-strike")
     sheet = make_sheet(ground)
     game = ground.game

@@ -1,4 +1,4 @@
-"""Fields: the names of model, file and rules agree; what is only to be seen is only seen."""
+"""Fields: shapes in the model match the markers of the game, and robots pass through markers."""
 
 from typing import Any
 
@@ -31,7 +31,7 @@ def geoms(model: Any) -> list[Any]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_names_agree(name: str) -> None:
-    """Rules 6, last paragraph: each marker has shapes for its states, and no other marker has."""
+    """A field has shapes for all states of each marker, and for nothing else."""
     game = arena.load(name).game
     shown = {
         tuple(geom.name.split(":")[1:3])
@@ -48,7 +48,7 @@ def test_names_agree(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_states_of_the_rules_have_a_shape(name: str) -> None:
-    """Rules 4 `set`: a state that the rules allow is one that can be seen."""
+    """A referee can set a marker to exactly those states that have a shape."""
     game = arena.load(name).game
     for index, marker in enumerate(game.markers):
         for state in range(4):
@@ -60,7 +60,7 @@ def test_states_of_the_rules_have_a_shape(name: str) -> None:
 
 
 def test_probes_are_the_poles() -> None:
-    """Rules 6 strike: one pole a flag, radius 0.01 m and height 0.25 m, where the flag stands."""
+    """Each flag has an invisible probe: a pole of radius 0.01 m and height 0.25 m (rules 6)."""
     game = arena.load("flag-strike").game
     model = build("flag-strike").compile()
     flags = {marker.name: marker for marker in game.markers if marker.kind == "flag"}
@@ -74,7 +74,7 @@ def test_probes_are_the_poles() -> None:
 
 
 def test_pole_settings_reach_the_model() -> None:
-    """Rules 6 strike: radius and height of a pole are settings."""
+    """The settings of a pole's radius and height change the model."""
     model = build("flag-strike", {"game": {"pole_radius_m": 0.02, "pole_height_m": 0.5}}).compile()
     assert tuple(model.geom("probe:flag3").size[:2]) == (0.02, 0.25)
     assert model.geom("probe:flag3").pos[2] == 0.25
@@ -82,7 +82,7 @@ def test_pole_settings_reach_the_model() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_walls_stand_where_the_rules_say(name: str) -> None:
-    """Rules 5 and 6: four wall planes look inward from the edges of the field."""
+    """Four wall planes stand at the edges of the field and face inward."""
     half_m = [size / 2 for size in arena.load(name).game.size_m]
     model = build(name).compile()
     data = mujoco.MjData(model)
@@ -98,7 +98,7 @@ def test_walls_stand_where_the_rules_say(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_only_floor_and_walls_can_be_touched(name: str) -> None:
-    """Rules 6 strike: nothing else hinders a robot; floor and walls meet every robot's bits."""
+    """Only the floor and the walls stop robots, and both collide with every robot."""
     model = build(name).compile()
     solid = {g.name for g in geoms(model) if g.contype[0] or g.conaffinity[0]}
     assert solid == {"floor", "wall:east", "wall:west", "wall:north", "wall:south"}
@@ -111,7 +111,7 @@ def test_only_floor_and_walls_can_be_touched(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["othello", "flag-strike"])
 def test_markers_change_no_bit_of_a_path(name: str) -> None:
-    """Rules 6 strike: a body that tumbles over the field takes the same path without markers."""
+    """A body that tumbles over the field takes the same path with and without markers."""
     paths = []
     for bare in (False, True):
         spec = build(name)
@@ -143,7 +143,7 @@ def colour_of(geom: Any, swap: bool) -> tuple[float, ...]:
 
 
 def looks(name: str, turn: bool) -> Any:
-    """Every geom as numbers that do not depend on how its shape is written down."""
+    """Return each geom as numbers that depend only on how it looks; `turn`: of the turned field."""
     model = build(name).compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -168,7 +168,7 @@ def looks(name: str, turn: bool) -> Any:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_field_turned_is_the_same_field(name: str) -> None:
-    """Rules 4: the field turned by 180 degrees with the seats swapped is the same field."""
+    """The field turned by 180 degrees with the seats swapped is the same field (rules 4)."""
     here, there = looks(name, turn=False), looks(name, turn=True)
     same = abs(here[:, None] - there[None]).max(axis=2) < 1e-8
     assert (same.sum(axis=0) == 1).all()

@@ -50,11 +50,11 @@ def claims(events: tuple[GameEvent, ...]) -> list[Claim]:
     return [(event.seat, event.marker) for event in events]
 
 
-# rules 6 "field", "corners", "flags", "start"
+# Field, corners, flags and start places (rules 6)
 
 
 def test_field() -> None:
-    """Rules 6 field: 2.0 x 2.0 m, four circles of radius 0.15 m, 0.20 m from both walls."""
+    """The field is 2.0 x 2.0 m, with a circle of radius 0.15 m in each corner (rules 6)."""
     assert GAME.size_m == (2.0, 2.0)
     assert CORNERS == [(-0.8, -0.8), (0.8, -0.8), (-0.8, 0.8), (0.8, 0.8)]
     assert {(marker.kind, marker.radius_m) for marker in GAME.markers[:4]} == {("corner", 0.15)}
@@ -68,7 +68,7 @@ def test_field() -> None:
 
 
 def test_twenty_flags_in_four_colours() -> None:
-    """Workshop 5-2 rule 6, rules 6 flags: 8 x 1, 6 x 2, 4 x 3 and 2 x 5 are 42 points."""
+    """The 20 flags (8, 6, 4 and 2 of 1, 2, 3 and 5 points) make 42 points (workshop 5-2 rule 6)."""
     flags = [marker for marker in GAME.markers if marker.kind == "flag"]
     worth = [flag.points for flag in flags]
     assert {points: worth.count(points) for points in set(worth)} == {1: 8, 2: 6, 3: 4, 5: 2}
@@ -79,7 +79,7 @@ def test_twenty_flags_in_four_colours() -> None:
 
 
 def test_starts() -> None:
-    """Rules 6 start: left at (-0.6, 0), then 0.4 and -0.4, facing +x; right turned."""
+    """Each side has three start places; the right ones are the left ones turned (rules 6)."""
     left, right = GAME.starts
     assert [(p.x_m, p.y_m, p.heading_rad) for p in left] == [
         (-0.6, 0.0, 0.0),
@@ -94,24 +94,24 @@ def test_starts() -> None:
 
 
 def test_neutral_at_the_start() -> None:
-    """Rules 6 corners and flags: all neutral, no points."""
+    """At the start all markers are neutral and nobody has points."""
     assert set(GAME.board(START)) == {NEUTRAL}
     assert GAME.score(START) == (0, 0)
 
 
 def test_lasts_three_minutes() -> None:
-    """Workshop 5-2 rule 1: the time limit is 3 minutes; rules 4: freeze 5 s, countdown 3 s."""
+    """A match lasts 3 minutes (workshop 5-2 rule 1); the countdown is 3 s, the freeze 5 s."""
     match = arena.load("flag-strike").match
     assert (match.duration_s, match.countdown_s, match.restart_freeze_s) == (180.0, 3.0, 5.0)
     assert match.levels == ("B",)
 
 
-# 5-2 rules 2 and 3, rules 6 "corners"
+# Corners (workshop 5-2 rules 2 and 3, rules 6)
 
 
 @pytest.mark.parametrize("corner", range(4))
 def test_corner_takes_the_colour(corner: int) -> None:
-    """Workshop 5-2 rule 2: the centre of the body comes in, and the corner is that robot's."""
+    """A robot whose middle comes into a corner takes it (workshop 5-2 rule 2)."""
     after, events = tick(START, view(CORNERS[corner]))
     assert claims(events) == [(0, f"corner{corner}")]
     assert events[0].kind == "capture"
@@ -125,7 +125,7 @@ def test_corner_takes_the_colour(corner: int) -> None:
     ("x_m", "inside"), [(0.75, True), (0.9375, True), (0.5625, True), (0.5624, False)]
 )
 def test_corner_edge(x_m: float, inside: bool) -> None:
-    """Rules 6 corners: a circle; its edge belongs to it."""
+    """A corner is a circle, and its edge belongs to it."""
     game = arena.load(
         "flag-strike",
         {"game": {"corner_inset_m": 0.25, "corner_radius_m": 0.1875, "clearance_m": 0.2}},
@@ -135,12 +135,12 @@ def test_corner_edge(x_m: float, inside: bool) -> None:
 
 
 def test_corner_is_nowhere_for_no_number() -> None:
-    """Rules 6 corners: a position that is not a number is in no corner."""
+    """A position that is not a number is in no corner."""
     assert GAME.corner_at(math.nan, 0.8) == NO_CORNER
 
 
 def test_corner_can_be_retaken() -> None:
-    """Workshop 5-2 rule 3: the other robot can regain it, though the first stays inside."""
+    """The other robot can take a corner while the first is inside (workshop 5-2 rule 3)."""
     held, _ = tick(START, view(CORNERS[0]))
     after, events = tick(held, view(CORNERS[0]), view(CORNERS[0]))
     assert claims(events) == [(1, "corner0")]
@@ -155,7 +155,7 @@ def test_corner_can_be_retaken() -> None:
 
 
 def test_own_corner_is_no_event() -> None:
-    """Rules 6 corners: to come into one's own corner again changes nothing."""
+    """A robot that comes into its own corner again changes nothing."""
     held, _ = tick(START, view(CORNERS[2]))
     outside, _ = tick(held)
     assert GAME.board(outside)[2] == LEFT
@@ -164,7 +164,7 @@ def test_own_corner_is_no_event() -> None:
 
 
 def test_both_come_in_one_tick() -> None:
-    """Rules 6 corners: if both robots come in within one tick, the corner stays as it was."""
+    """If both robots come into a corner in the same tick, it stays as it was (rules 6)."""
     for owner in (NEUTRAL, LEFT, RIGHT):
         before = GAME.set(START, 1, owner)
         after, events = tick(before, view(CORNERS[1]), view(CORNERS[1]))
@@ -174,13 +174,13 @@ def test_both_come_in_one_tick() -> None:
 
 
 def test_both_take_other_corners_in_one_tick() -> None:
-    """Rules 4: what both do in one tick comes in the order of the markers."""
+    """Captures in the same tick are listed in the order of the markers, not of the seats."""
     _, events = tick(START, view(CORNERS[3]), view(CORNERS[1]))
     assert claims(events) == [(1, "corner1"), (0, "corner3")]
 
 
 def test_put_down_outside_and_in_again_in_one_tick() -> None:
-    """Rules 4 and 6: after [x], "outside in the tick before" is asked at the start place."""
+    """After [x], a robot captures a corner only if its start place is outside this corner."""
     held, _ = tick(START, view(CORNERS[0]), view())
     lost = GAME.set(held, 0, RIGHT)
     _, events = tick(lost, view(CORNERS[0], placed=(-0.6, 0.0)))
@@ -190,7 +190,7 @@ def test_put_down_outside_and_in_again_in_one_tick() -> None:
 
 
 def test_start_inside_a_corner_takes_nothing() -> None:
-    """Rules 6 corners: a robot that starts inside has not come in."""
+    """A robot that starts inside a corner does not take it (rules 6)."""
     game = arena.load("flag-strike", {"game": {"starts": [[-0.8, 0.8]]}}).game
     _, events = tick(game.start(), view((-0.8, 0.8)), game=game)
     assert game.start().inside == (2, 1)
@@ -198,14 +198,14 @@ def test_start_inside_a_corner_takes_nothing() -> None:
 
 
 def test_corner_points_are_a_setting() -> None:
-    """Rules 6 corners: a held corner counts 5 points, or the number in the arena file."""
+    """The points of a held corner are a setting."""
     game = arena.load("flag-strike", {"game": {"corner_points": 7}}).game
     after, events = tick(game.start(), view(CORNERS[0]), game=game)
     assert game.score(after) == (7, 0)
     assert events[0].points == 7
 
 
-# 5-2 rule 4, rules 6 "all four"
+# All four corners (workshop 5-2 rule 4, rules 6)
 
 
 def all_corners_for_left(game: FlagStrike = GAME) -> State:
@@ -217,7 +217,7 @@ def all_corners_for_left(game: FlagStrike = GAME) -> State:
 
 
 def test_all_four_end_the_match() -> None:
-    """Workshop 5-2 rule 4: at once when one robot holds all four; rule 8 decides by points."""
+    """The match ends when one robot holds all four corners, and points decide who wins."""
     state = all_corners_for_left()
     assert GAME.over(state) == say("over.all-corners", seat="left")
     assert GAME.winner(state, (20, 22)) == 1
@@ -230,7 +230,7 @@ def test_all_four_end_the_match() -> None:
 
 
 def test_ends_after_all_events_of_the_tick() -> None:
-    """Rules 4: end conditions are looked at after all events of the tick."""
+    """The end is checked after all events of a tick: a corner lost in that tick prevents it."""
     three = GAME.set(all_corners_for_left(), 3, NEUTRAL)
     after, events = tick(three, view(CORNERS[3]), view(CORNERS[0]))
     assert claims(events) == [(1, "corner0"), (0, "corner3")]
@@ -238,18 +238,18 @@ def test_ends_after_all_events_of_the_tick() -> None:
 
 
 def test_all_corners_win() -> None:
-    """Rules 6 all four: with `all_corners_win` the holder has won, whatever the points."""
+    """With `all_corners_win`, the robot that holds all corners wins with any score."""
     game = arena.load("flag-strike", {"game": {"all_corners_win": True}}).game
     assert game.winner(all_corners_for_left(game), (20, 22)) == 0
     assert game.winner(game.start(), (20, 22)) == 1
 
 
-# 5-2 rule 5, rules 6 "strike"
+# Flags (workshop 5-2 rule 5, rules 6)
 
 
 @pytest.mark.parametrize(("flag", "points"), [("flag0", 1), ("flag8", 2), ("flag19", 5)])
 def test_strike(flag: str, points: int) -> None:
-    """Workshop 5-2 rule 5: a flag that one robot touches falls, and its points are kept."""
+    """A flag that one robot touches falls, and its points stay (workshop 5-2 rule 5)."""
     after, events = tick(START, view(touched=(flag,)))
     assert claims(events) == [(0, flag)]
     assert events[0].kind == "strike"
@@ -263,7 +263,7 @@ def test_strike(flag: str, points: int) -> None:
 
 
 def test_touched_by_both_it_stands() -> None:
-    """Rules 6 strike: touched by both in one tick it stands, until one of them lets go."""
+    """A flag that both robots touch stands until one of them lets go (rules 6)."""
     both = view(touched=("flag4",))
     after, events = tick(START, both, both)
     assert events == ()
@@ -273,32 +273,32 @@ def test_touched_by_both_it_stands() -> None:
 
 
 def test_several_flags_in_one_tick() -> None:
-    """Rules 4 and 6: all flags touched in a tick fall, in the order of the markers."""
+    """All flags touched in a tick fall, and their events follow the order of the markers."""
     _, events = tick(START, view(touched=("flag9", "flag3")), view(touched=("flag5", "flag3")))
     assert claims(events) == [(1, "flag5"), (0, "flag9")]
 
 
 def test_capture_and_strike_in_one_tick() -> None:
-    """Rules 7: the score is the points of corners and flags together."""
+    """The score is the sum of corners and flags (workshop 5-2 rule 7)."""
     after, events = tick(START, view(CORNERS[0], touched=("flag19",)))
     assert claims(events) == [(0, "corner0"), (0, "flag19")]
     assert GAME.score(after) == (10, 0)
 
 
-# 5-2 rule 8
+# Winner (workshop 5-2 rule 8)
 
 
 @pytest.mark.parametrize(("scores", "winner"), [((9, 8), 0), ((8, 9), 1), ((8, 8), None)])
 def test_winner_has_more_points(scores: tuple[int, int], winner: int | None) -> None:
-    """Workshop 5-2 rule 8, rules 6 end: more points win, equal is a draw."""
+    """The team with more points wins, and equal points are a draw (workshop 5-2 rule 8)."""
     assert GAME.winner(START, scores) == winner
 
 
-# 5-2 rule 9, rules 4 "referee"
+# Referee (workshop 5-2 rule 9, rules 4.1)
 
 
 def test_referee_sets_corners_and_flags() -> None:
-    """Workshop 5-2 rule 9, rules 4: a set marker counts; only a flag can be down."""
+    """A marker that the referee sets changes the score; only a flag can be down."""
     state = GAME.set(GAME.set(START, 0, LEFT), INDEX["flag19"], RIGHT)
     assert GAME.score(state) == (5, 5)
     down = GAME.set(state, INDEX["flag19"], DOWN)
@@ -313,7 +313,7 @@ def test_referee_sets_corners_and_flags() -> None:
 
 
 def test_struck_capture() -> None:
-    """Rules 4 take-back: no capture, but the robot is inside until it leaves."""
+    """A capture that was taken back does not happen again until the robot has left the corner."""
     after, events = tick(START, view(CORNERS[0]), struck=frozenset({(0, "corner0")}))
     assert events == ()
     assert after.inside == (0, NO_CORNER)
@@ -323,7 +323,7 @@ def test_struck_capture() -> None:
 
 
 def test_struck_touch_is_void_until_let_go() -> None:
-    """Rules 4 take-back: a struck touch does not strike one tick later either."""
+    """A strike that was taken back does not happen again until the robot has let go of the flag."""
     touching = view(touched=("flag6",))
     after, events = tick(START, touching, struck=frozenset({(0, "flag6")}))
     assert events == ()
@@ -335,7 +335,7 @@ def test_struck_touch_is_void_until_let_go() -> None:
 
 
 def test_void_touch_does_not_protect_the_flag() -> None:
-    """Rules 4 take-back: the other robot can strike the flag meanwhile."""
+    """While one robot's touch is taken back, the other robot can strike the same flag."""
     touching = view(touched=("flag6",))
     after, _ = tick(START, touching, struck=frozenset({(0, "flag6")}))
     fallen, events = tick(after, touching, touching)
@@ -345,7 +345,7 @@ def test_void_touch_does_not_protect_the_flag() -> None:
 
 
 def test_nothing_happens() -> None:
-    """Rules 6: a tick in which nothing happens gives the same state."""
+    """A tick without events returns the same state."""
     before = tick(START)[0]
     assert tick(before, view((0.1, 0.1)), view((-0.3, 0.3))) == (before, ())
     assert tick(before)[0] is before

@@ -29,7 +29,7 @@ def with_settings(**settings: object) -> Othello:
 
 
 def view(where: str, placed: str | None = None, game: Othello = GAME) -> RobotView:
-    """A robot on a disc's middle, or between the four discs in the middle of the field."""
+    """Return a robot on the middle of a disc, or in the gap at the middle of the field."""
     x_m, y_m = (0.0, 0.0) if where == GAP else middle(where, game)
     start = None if placed is None else Place(*middle(placed, game), 0.0)
     return RobotView(x_m, y_m, 0.07, 1.0, 0.0, 0.0, 0.0, start)
@@ -41,7 +41,7 @@ def middle(name: str, game: Othello = GAME) -> tuple[float, float]:
 
 
 def board(*rows: str) -> tuple[int, ...]:
-    """The cells of a picture, row 5 first; rows left out below are neutral."""
+    """Return the cells of a picture, row 5 first; rows that it leaves out are neutral."""
     filled = [*rows, *["......"] * (6 - len(rows))]
     return tuple(".LR".index(cell) for row in reversed(filled) for cell in row)
 
@@ -66,11 +66,11 @@ def tick(
     return game.step(before, (view(left, game=game), view(right, game=game)), 0.02, struck)
 
 
-# 5-1 rule 1, rules 5 "board"
+# Board (workshop 5-1 rule 1, rules 5)
 
 
 def test_board_is_six_by_six() -> None:
-    """Workshop 5-1 rule 1, rules 5 board: 6 x 6 cells around the origin, c0r0 at the lower left."""
+    """The board has 6 x 6 discs (workshop 5-1 rule 1); c0r0 is at the lower left."""
     assert len(GAME.markers) == 36
     assert {(disc.kind, disc.points) for disc in GAME.markers} == {("disc", 1)}
     assert middle("c0r0") == (-0.75, -0.75)
@@ -82,12 +82,12 @@ def test_board_is_six_by_six() -> None:
 
 
 def test_wall_stands_outside_the_outer_discs() -> None:
-    """Rules 5 board: a wall 0.15 m outside the outer discs' edge."""
+    """The walls stand 0.15 m outside the edge of the outer discs (rules 5)."""
     assert GAME.size_m == pytest.approx((2.04, 2.04))
     assert with_settings(wall_m=0.3).size_m == pytest.approx((2.34, 2.34))
 
 
-# rules 5 "opening"
+# Opening (rules 5)
 
 OPENINGS = {
     "halves": ("LLLRRR",) * 6,
@@ -99,19 +99,19 @@ OPENINGS = {
 
 @pytest.mark.parametrize("name", OPENINGS)
 def test_opening(name: str) -> None:
-    """Rules 5 opening: the four boards."""
+    """Each of the four openings has its board."""
     assert picture(with_settings(opening=name).start().cells) == OPENINGS[name]
 
 
 @pytest.mark.parametrize("name", OPENINGS)
 def test_opening_is_fair(name: str) -> None:
-    """Rules 5 opening: each turned by 180 degrees is the same with colours swapped."""
+    """Each opening turned by 180 degrees is the same with the colours swapped."""
     cells = with_settings(opening=name).start().cells
     assert tuple((NEUTRAL, RIGHT, LEFT)[cell] for cell in reversed(cells)) == cells
 
 
 def test_start_cells_are_owned_where_they_are_set() -> None:
-    """Rules 5 opening and start: `neutral` owns the start cells, wherever the file puts them."""
+    """The opening `neutral` gives each team only its first start cell, wherever that is."""
     game = with_settings(opening="neutral", start_cells=[[2, 5], [0, 0]])
     cells = game.start().cells
     assert cells[INDEX["c2r5"]] == LEFT
@@ -119,11 +119,11 @@ def test_start_cells_are_owned_where_they_are_set() -> None:
     assert cells.count(NEUTRAL) == 34
 
 
-# 5-1 rule 3, rules 5 "start"
+# Start places (workshop 5-1 rule 3, rules 5)
 
 
 def test_starts() -> None:
-    """Workshop 5-1 rule 3, rules 5 start: left on column 0 facing +x, right on column 5, -x."""
+    """The left robot starts on column 0 and faces +x; the right one on column 5, -x (rules 5)."""
     left, right = GAME.starts
     assert [GAME.markers[GAME.cell_at(p.x_m, p.y_m)].name for p in left] == [
         "c0r2",
@@ -146,7 +146,7 @@ def test_starts() -> None:
 
 
 def test_start_cell_is_the_last_cell() -> None:
-    """Rules 5 start: the cell a robot is put on is its last cell, so it can flip from there."""
+    """The cell on which a robot starts is its last cell, so it can flip from there (rules 5)."""
     game = with_settings(opening="neutral")
     assert game.start().last == (INDEX["c0r2"], INDEX["c5r3"])
     after, events = tick(game.start(), "c1r2", game=game)
@@ -155,7 +155,7 @@ def test_start_cell_is_the_last_cell() -> None:
 
 
 def test_being_put_down_flips_nothing() -> None:
-    """Rules 5 start: after [x] the start cell is the last cell; nothing flips, not even it."""
+    """After [x] the start cell is the last cell, and nothing flips (rules 5)."""
     before = state(board("......", "......", "......", "RL...."), "c1r2")
     after, events = GAME.step(before, (view("c0r2", placed="c0r2"), view(GAP)), 0.02)
     assert events == ()
@@ -166,7 +166,7 @@ def test_being_put_down_flips_nothing() -> None:
 
 
 def test_being_put_down_and_in_a_gap_at_once() -> None:
-    """Rules 5 start: the start cell is the last cell, for either robot, wherever it stands now."""
+    """After [x] the start cell is the last cell even if the robot is in a gap in that tick."""
     before = state(board("LR...."), "c0r5", "c1r5")
     after, _ = GAME.step(before, (view(GAP, placed="c0r2"), view(GAP)), 0.02)
     assert after.last == (INDEX["c0r2"], INDEX["c1r5"])
@@ -175,19 +175,19 @@ def test_being_put_down_and_in_a_gap_at_once() -> None:
 
 
 def test_walking_off_the_start_in_the_tick_of_being_put_down() -> None:
-    """Rules 5 start: in that very tick the start cell is already the last one."""
+    """A robot that leaves its start cell in the tick of [x] can already flip from it."""
     before = state(board("......", "......", "......", "LR...."), "c4r4")
     after, events = GAME.step(before, (view("c1r2", placed="c0r2"), view(GAP)), 0.02)
     assert [event.marker for event in events] == ["c1r2"]
     assert after.last[0] == INDEX["c1r2"]
 
 
-# rules 5 "entering"
+# Entering a disc (rules 5)
 
 
 @pytest.mark.parametrize(("offset_m", "inside"), [(0.0, True), (0.125, True), (0.1250001, False)])
 def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
-    """Rules 5 entering: the centre comes within the disc's radius, the edge included."""
+    """A robot is on a disc when its middle is within the radius, edge included."""
     game = with_settings(pitch_m=0.5, disc_radius_m=0.125)
     x_m, y_m = 0.25, -0.25
     cell = INDEX["c3r2"]
@@ -203,7 +203,7 @@ def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
         (0.0, 0.15),
         (0.3, 0.15),
         (0.9, 0.15),
-        (1.05, 0.15),  # where the middles of more columns and rows would be
+        (1.05, 0.15),  # where a seventh column would have its middle
         (-0.15, -1.05),
         (-3.15, 0.15),
         (math.nan, 0.0),
@@ -211,12 +211,12 @@ def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
     ],
 )
 def test_between_and_outside_the_discs(x_m: float, y_m: float) -> None:
-    """Rules 5 entering: a place between two discs, outside the board or nowhere is no cell."""
+    """A place that is between discs, outside the board or not a number is no cell."""
     assert GAME.cell_at(x_m, y_m) == NO_CELL
 
 
 def test_touching_discs_share_no_point() -> None:
-    """Rules 5 entering: where discs touch, the point between belongs to the outer one."""
+    """Where two discs touch, the shared point belongs to the outer disc."""
     game = with_settings(pitch_m=0.5, disc_radius_m=0.25)
     assert game.cell_at(0.5, 0.25) == INDEX["c4r3"]
     assert game.cell_at(-0.5, -0.25) == INDEX["c1r2"]
@@ -225,7 +225,7 @@ def test_touching_discs_share_no_point() -> None:
 
 
 def test_entered_cell_becomes_the_last_whatever_happens() -> None:
-    """Rules 5 entering: entering diagonally flips nothing, but the disc is the last cell now."""
+    """A disc that is entered diagonally does not flip but becomes the last cell (rules 5)."""
     before = state(board("......", "......", "......", ".R....", "L....."), "c0r1")
     after, events = tick(before, "c1r2")
     assert events == ()
@@ -233,7 +233,7 @@ def test_entered_cell_becomes_the_last_whatever_happens() -> None:
 
 
 def test_nothing_happens_on_the_last_cell() -> None:
-    """Rules 5 entering: leaving a disc for a gap and coming back does not count as entering."""
+    """A robot that leaves a disc for a gap and comes back has not entered it again."""
     before = state(board("......", "......", "......", "R....."), "c0r2")
     for where in (GAP, "c0r2"):
         after, events = tick(before, where, "c5r0")
@@ -241,7 +241,7 @@ def test_nothing_happens_on_the_last_cell() -> None:
         assert events == ()
 
 
-# 5-1 rules 4 and 5, rules 5 "flip by walking"
+# Flips by walking (workshop 5-1 rules 4 and 5, rules 5)
 
 WALKS = {
     "the other's colour along the row": ("LR....", "c0r5", "c1r5", True),
@@ -256,7 +256,7 @@ WALKS = {
 
 @pytest.mark.parametrize("what", WALKS)
 def test_flip_by_walking(what: str) -> None:
-    """Workshop 5-1 rules 4 and 5, rules 5: enter a neighbour from a last cell of one's own."""
+    """A robot flips a disc that it enters from a neighbour of its colour (workshop 5-1 rule 4)."""
     row, origin, cell, flips = WALKS[what]
     before = state(board(row), origin)
     after, events = tick(before, cell)
@@ -269,7 +269,7 @@ def test_flip_by_walking(what: str) -> None:
 
 @pytest.mark.parametrize("cell", ["c2r3", "c2r1", "c1r2", "c3r2"])
 def test_flip_vertically_and_horizontally(cell: str) -> None:
-    """Workshop 5-1 rule 5: along the column and along the row, both ways."""
+    """Discs flip along the column and along the row, in both directions (workshop 5-1 rule 5)."""
     before = state(board("......", "......", "..R...", ".RLR..", "..R..."), "c2r2")
     after, events = tick(before, cell)
     assert [event.marker for event in events] == [cell]
@@ -278,7 +278,7 @@ def test_flip_vertically_and_horizontally(cell: str) -> None:
 
 @pytest.mark.parametrize("cell", ["c1r1", "c1r3", "c3r1", "c3r3"])
 def test_never_diagonally(cell: str) -> None:
-    """Workshop 5-1 rule 5, rules 5: entered diagonally, a disc stays as it is."""
+    """A disc that is entered diagonally stays as it is (rules 5)."""
     before = state(board("......", "......", ".RRR..", ".RLR..", ".RRR.."), "c2r2")
     after, events = tick(before, cell)
     assert events == ()
@@ -286,7 +286,7 @@ def test_never_diagonally(cell: str) -> None:
 
 
 def test_colour_of_the_last_cell_counts_now() -> None:
-    """Rules 5 flip by walking: the last cell must have its own colour at that moment."""
+    """The last cell must have the robot's colour at the moment of the step (rules 5)."""
     before = state(board("LR...."), "c0r5")
     lost = GAME.set(before, INDEX["c0r5"], RIGHT)
     assert tick(lost, "c1r5")[1] == ()
@@ -294,14 +294,14 @@ def test_colour_of_the_last_cell_counts_now() -> None:
 
 
 def test_right_robot_flips_too() -> None:
-    """Workshop 5-1 rule 4: "your robot" is either robot."""
+    """The right robot flips discs as the left one does."""
     before = state(board("....LR"), "c0r0", "c5r5")
     after, events = tick(before, right="c4r5")
     assert [(event.seat, event.marker, event.points) for event in events] == [(1, "c4r5", 1)]
     assert after.cells[INDEX["c4r5"]] == RIGHT
 
 
-# 5-1 rule 5, rules 5 "flip in a row"
+# Runs (workshop 5-1 rule 5, rules 5)
 
 RUNS = {
     "one disc to one's own": ("LRRL..", "LLLL..", ("c2r5",)),
@@ -316,7 +316,7 @@ RUNS = {
 
 @pytest.mark.parametrize("what", RUNS)
 def test_flip_in_a_row(what: str) -> None:
-    """Workshop 5-1 rule 5, rules 5: runs of the other colour up to a disc of one's own."""
+    """A run of the other colour flips, up to the next disc of the robot's own colour (rules 5)."""
     row, expected, also = RUNS[what]
     after, events = tick(state(board(row), "c0r5"), "c1r5")
     assert picture(after.cells)[0] == expected
@@ -326,7 +326,7 @@ def test_flip_in_a_row(what: str) -> None:
 
 
 def test_flip_in_row_and_column_at_once() -> None:
-    """Rules 5 flip in a row: along the row and the column from the new disc, never diagonally."""
+    """Runs flip along the row and the column of the new disc, never diagonally (rules 5)."""
     before = state(
         board(
             "..L..L",
@@ -351,7 +351,7 @@ def test_flip_in_row_and_column_at_once() -> None:
 
 
 def test_no_run_without_a_flip_by_walking() -> None:
-    """Rules 5 flip in a row: only "with such a flip"."""
+    """Without a flip by walking, no run flips (rules 5)."""
     before = state(board("......", "RRRL.."), "c0r3")
     after, events = tick(before, "c0r4")
     assert events == ()
@@ -359,18 +359,18 @@ def test_no_run_without_a_flip_by_walking() -> None:
 
 
 def test_flank_off() -> None:
-    """Rules 5 flip in a row: `flank = false` leaves the runs alone."""
+    """With `flank = false`, no runs flip."""
     game = with_settings(flank=False)
     after, events = tick(state(board("LRRL.."), "c0r5"), "c1r5", game=game)
     assert picture(after.cells)[0] == "LLRL.."
     assert events[0].also == ()
 
 
-# rules 4 and 5 "both at once"
+# Both robots in the same tick (rules 4 and 5)
 
 
 def test_both_enter_the_same_neutral_disc() -> None:
-    """Rules 5 both at once: neither claims anything, and it is the last cell of both."""
+    """A neutral disc that both enter stays neutral and becomes the last cell of both (rules 5)."""
     before = state(board("L.R..."), "c0r5", "c2r5")
     after, events = tick(before, "c1r5", "c1r5")
     assert events == ()
@@ -379,14 +379,14 @@ def test_both_enter_the_same_neutral_disc() -> None:
 
 
 def test_second_robot_may_claim_a_disc_the_first_stands_on() -> None:
-    """Rules 5 both at once: only robots that enter in the same tick block one another."""
+    """A robot may take a neutral disc on which the other robot already stands."""
     before = state(board("..R..."), "c1r5", "c2r5")
     _, events = tick(before, "c1r5", "c1r5")
     assert [event.seat for event in events] == [1]
 
 
 def test_a_disc_that_is_the_others_last_cell_can_be_entered() -> None:
-    """Rules 5 entering: a robot's last cell says nothing about the other's."""
+    """A robot can flip a disc that is the other robot's last cell."""
     before = state(board("LR...."), "c0r5", "c1r5")
     after, events = tick(before, "c1r5")
     assert [(event.seat, event.marker) for event in events] == [(0, "c1r5")]
@@ -394,7 +394,7 @@ def test_a_disc_that_is_the_others_last_cell_can_be_entered() -> None:
 
 
 def test_last_cell_that_flips_in_the_same_tick_still_counts() -> None:
-    """Rules 5 both at once: claims are worked out on the board before the tick."""
+    """Flips are judged on the board before the tick, so robots can swap discs (rules 5)."""
     before = state(board("LR....", "RL...."), "c0r5", "c1r5")
     after, events = tick(before, "c1r5", "c0r5")
     assert {(event.seat, event.marker) for event in events} == {(0, "c1r5"), (1, "c0r5")}
@@ -402,7 +402,7 @@ def test_last_cell_that_flips_in_the_same_tick_still_counts() -> None:
 
 
 def test_end_disc_that_flips_in_the_same_tick_still_counts() -> None:
-    """Rules 5 both at once: the end of a run counts although the other robot takes it now."""
+    """A run still flips when the other robot takes the disc at its end in the same tick."""
     before = state(board("LRRLR.", "......"), "c0r5", "c4r5")
     after, events = tick(before, "c1r5", "c3r5")
     assert picture(after.cells)[0] == "LLLRR."
@@ -410,7 +410,7 @@ def test_end_disc_that_flips_in_the_same_tick_still_counts() -> None:
 
 
 def test_events_come_in_the_order_of_the_discs() -> None:
-    """Rules 4: what both do in a tick has an order that says nothing about the seats."""
+    """Events of the same tick are listed in the order of the discs, not of the seats."""
     before = state(board("RL....", "LR...."), "c0r4", "c0r5")
     _, events = tick(before, "c1r4", "c1r5")
     assert [event.marker for event in events] == ["c1r4", "c1r5"]
@@ -420,11 +420,11 @@ def test_events_come_in_the_order_of_the_discs() -> None:
     assert [event.seat for event in events] == [1, 0]
 
 
-# 5-1 rules 6 and 7, rules 5 "score" and "end"
+# Score and end (workshop 5-1 rules 6 and 7, rules 5)
 
 
 def test_score_is_the_number_of_discs() -> None:
-    """Workshop 5-1 rule 6, rules 5 score: neutral discs count for nobody."""
+    """The score is a team's number of discs, without neutral ones (workshop 5-1 rule 6)."""
     before = state(board("LLL.RR"), "c0r5")
     assert GAME.score(before) == (3, 2)
     assert GAME.score(GAME.start()) == (18, 18)
@@ -434,19 +434,19 @@ def test_score_is_the_number_of_discs() -> None:
     ("scores", "winner"), [((19, 17), 0), ((17, 19), 1), ((18, 18), None), ((0, 0), None)]
 )
 def test_winner_has_more_discs(scores: tuple[int, int], winner: int | None) -> None:
-    """Workshop 5-1 rule 7, rules 5 end: more discs win, equal is a draw."""
+    """The team with more discs wins, and equal numbers are a draw (workshop 5-1 rule 7)."""
     assert GAME.winner(GAME.start(), scores) == winner
 
 
 def test_lasts_three_minutes() -> None:
-    """Workshop 5-1 rule 2: the time limit is 3 minutes; rules 4: freeze 5 s, countdown 3 s."""
+    """A match lasts 3 minutes (workshop 5-1 rule 2); the countdown is 3 s, the freeze 5 s."""
     match = arena.load("othello").match
     assert (match.duration_s, match.countdown_s, match.restart_freeze_s) == (180.0, 3.0, 5.0)
     assert match.levels == ("B",)
 
 
 def test_over_when_a_team_has_no_disc_left() -> None:
-    """Rules 5 end: at once when a team has no disc left."""
+    """The match ends as soon as a team has no disc left (rules 5)."""
     before = state(board("LR...."), "c0r5")
     assert GAME.over(before) is None
     after, _ = tick(before, "c1r5")
@@ -455,11 +455,11 @@ def test_over_when_a_team_has_no_disc_left() -> None:
     assert GAME.over(state(board("R....."), "c1r5")) == say("over.no-disc", seat="left")
 
 
-# 5-1 rule 8, rules 4 "referee"
+# Referee (workshop 5-1 rule 8, rules 4.1)
 
 
 def test_referee_sets_a_disc() -> None:
-    """Workshop 5-1 rule 8, rules 4: a set disc counts; a disc can't be down."""
+    """A disc that the referee sets changes the score; a disc can't be down."""
     before = GAME.start()
     after = GAME.set(before, INDEX["c5r5"], LEFT)
     assert GAME.score(after) == (19, 17)
@@ -472,7 +472,7 @@ def test_referee_sets_a_disc() -> None:
 
 
 def test_struck_flip_has_no_effect_but_the_step() -> None:
-    """Rules 4 take-back: the flip and its runs do not happen; the disc is the last cell."""
+    """A flip that was taken back does not happen, but its disc becomes the last cell."""
     before = state(board("LRRL.."), "c0r5")
     after, events = tick(before, "c1r5", struck=frozenset({(0, "c1r5")}))
     assert events == ()
@@ -482,14 +482,14 @@ def test_struck_flip_has_no_effect_but_the_step() -> None:
 
 
 def test_struck_is_one_claim_only() -> None:
-    """Rules 4 take-back: the other seat's claim on another disc in that tick stays."""
+    """Taking back one seat's flip leaves the other seat's flip in the same tick."""
     before = state(board("LR....", "....LR"), "c0r5", "c5r4")
     _, events = tick(before, "c1r5", "c4r4", struck=frozenset({(0, "c1r5"), (0, "c4r4")}))
     assert [(event.seat, event.marker) for event in events] == [(1, "c4r4")]
 
 
 def test_event_says_what_happened() -> None:
-    """Rules 5: what is said of a flip names the team, the disc and its run."""
+    """The event of a flip names the team, the disc and its runs."""
     _, events = tick(state(board("LRRL.."), "c0r5"), "c1r5")
     assert events[0].said == say("event.flip", team="", marker="c1r5", also=["c2r5"])
     assert events[0].kind == "flip"

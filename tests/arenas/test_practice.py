@@ -1,4 +1,4 @@
-"""Practice: an open field with nothing to win (rules 4)."""
+"""Practice: an open field with nothing to win (rules 7)."""
 
 import math
 
@@ -11,19 +11,19 @@ GAME = arena.load("practice").game
 
 
 def test_field() -> None:
-    """Rules 4: one seat in practice; about 2.4 m, the robot in the middle, looking up."""
+    """The field is 2.4 x 2.4 m, and the robot starts in the middle and faces +y (rules 7)."""
     assert GAME.size_m == (2.4, 2.4)
     assert GAME.starts == ((Place(0.0, 0.0, math.pi / 2),),)
 
 
 def test_the_start_may_be_anywhere_within_the_walls() -> None:
-    """Rules 4: the start is a setting, in a field of 2.4 m up to 1.2 m from the middle."""
+    """The start place is a setting and may be anywhere within the walls."""
     game = arena.load("practice", {"game": {"start": [1.1, -1.1]}}).game
     assert game.starts[0][0][:2] == (1.1, -1.1)
 
 
 def test_nothing_happens() -> None:
-    """Rules 4: no markers, no points, no end, no winner, nothing to set."""
+    """Practice has no markers, points, end or winner, and a referee can set nothing."""
     state = GAME.start()
     view = RobotView(1.0, -1.0, 0.07, 1.0, 0.0, 0.0, 0.0, GAME.starts[0][0])
     assert GAME.step(state, (view,), 0.02, frozenset({(0, "x")})) == (state, ())

@@ -1,4 +1,4 @@
-"""Arenas of others: the game of docs/write-an-arena.md, and what is said of a wrong one."""
+"""Arenas of other people: the guide's game is played, and mistakes in an arena are reported."""
 
 import inspect
 import os
@@ -27,13 +27,13 @@ simulation = pytest.importorskip("lacoc_server.simulate")
 scenes = pytest.importorskip("lacoc_server.world.scene")
 
 GUIDE = (Path(__file__).parents[2] / "docs" / "write-an-arena.md").read_text(encoding="utf-8")
-"""What a stranger writes an arena from; its game is played here as it stands there."""
+"""The guide for writing an arena. The game is cut out of it and played unchanged."""
 PARTS = dict(re.findall(r"^`(\w+\.\w+)`:\n\n```\w+\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL))
 
 
 @pytest.fixture
 def race(tmp_path: Path) -> Path:
-    """The game of the guide, as a folder."""
+    """Give a folder with the guide's game."""
     folder = tmp_path / "race_of_another"
     folder.mkdir()
     assert set(PARTS) == {"arena.toml", "rules.py", "field.py", "bots.py"}
@@ -55,7 +55,7 @@ def play_race(ground: arena.Arena) -> None:
 
 
 def test_game_in_a_folder(race: Path) -> None:
-    """A third-party game is played by pointing at its folder."""
+    """A game in a folder is played by naming the folder."""
     ground = arena.load(str(race), {"game": {"length_m": 4}})
     assert ground.game.size_m == (4.0, 1.0)
     assert ground.name == str(race)
@@ -64,7 +64,7 @@ def test_game_in_a_folder(race: Path) -> None:
 
 
 def test_a_folder_runs_no_code_because_a_record_names_it(race: Path) -> None:
-    """A record may come from anybody: only what is installed, or the user names, is imported."""
+    """A record can't make a court import a folder; only the user can, by naming it."""
     (race / "__init__.py").write_text("raise SystemExit('code of a stranger')")
     settings = tomllib.loads((race / "arena.toml").read_text())
     for name in (str(race), os.path.relpath(race)):
@@ -77,7 +77,7 @@ def test_a_folder_runs_no_code_because_a_record_names_it(race: Path) -> None:
 
 
 def test_game_installed_by_entry_point(race: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A third-party game is played by its name once its package is installed."""
+    """A game whose package is installed is played by its name."""
     info = race.parent / "race_of_another-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: race-of-another\nVersion: 1.0\n")
@@ -93,7 +93,7 @@ def test_game_installed_by_entry_point(race: Path, monkeypatch: pytest.MonkeyPat
 
 @pytest.mark.parametrize("name", ["othello", "flag_strike", "practice"])
 def test_copied_folder_is_a_game(name: str, tmp_path: Path) -> None:
-    """An organiser copies a game's folder, changes its file and plays it."""
+    """A copy of a game's folder with a changed file is a game of its own."""
     original = plugins.folder_of(plugins.package("lacoc.arenas", "arena", name.replace("_", "-")))
     folder = tmp_path / name
     shutil.copytree(original, folder, ignore=shutil.ignore_patterns("__pycache__"))
@@ -108,7 +108,7 @@ def test_copied_folder_is_a_game(name: str, tmp_path: Path) -> None:
 
 
 def test_the_guide_names_all_that_a_game_has() -> None:
-    """docs/write-an-arena.md: every rule, every field, every piece of a field, every setting."""
+    """docs/write-an-arena.md names every rule, field, setting and building block of a game."""
     rules = {name for name in vars(Game) if not name.startswith("_")} | set(Game.__annotations__)
     fields = {name for kind in (RobotView, Place) for name in kind._fields}
     fields |= {f.name for kind in (GameEvent, MarkerInfo) for f in msgspec.structs.fields(kind)}
@@ -119,7 +119,7 @@ def test_the_guide_names_all_that_a_game_has() -> None:
 
 
 def test_the_key_of_the_guide_s_bot_is_one(race: Path) -> None:
-    """The second bot on the page works exactly as printed."""
+    """The guide's second bot works exactly as printed."""
     (turner,) = re.findall(r"```python\n(from lacoc_arenas.bot.*?)^```", GUIDE, re.M | re.S)
     bots = race / "bots.py"
     bots.write_text(turner + "\nBOTS = {'turner': turner}\n")
@@ -129,7 +129,7 @@ def test_the_key_of_the_guide_s_bot_is_one(race: Path) -> None:
 
 
 def use(folder: Path) -> None:
-    """All that a court takes from an arena before a match."""
+    """Use every part of an arena that a court uses before a match."""
     ground = arena.load(str(folder))
     assert ground.bots
     spec = mujoco.MjSpec()
@@ -185,7 +185,7 @@ WRONG = {
 
 @pytest.mark.parametrize("case", WRONG)
 def test_a_wrong_arena_is_told_in_one_sentence(race: Path, case: str) -> None:
-    """Which rule, what it returned, what is expected, the line: no traceback."""
+    """One sentence tells which part of the arena is wrong, what it gave and what is expected."""
     name, was, now, says = WRONG[case]
     text = (race / name).read_text()
     assert text.count(was) == 1
@@ -206,7 +206,7 @@ def test_a_wrong_arena_is_told_in_one_sentence(race: Path, case: str) -> None:
     ],
 )
 def test_a_wrong_answer_in_a_match_is_told(race: Path, was: str, now: str, says: str) -> None:
-    """A mistake that only a tick can show is reported in that tick."""
+    """A wrong answer that a rule gives during a match is reported in that tick."""
     text = (race / "rules.py").read_text()
     assert text.count(was) == 1
     (race / "rules.py").write_text(text.replace(was, now))
@@ -215,14 +215,14 @@ def test_a_wrong_answer_in_a_match_is_told(race: Path, was: str, now: str, says:
 
 
 def test_a_referee_s_wrong_state_stays_a_value_error(race: Path) -> None:
-    """The rules refuse it with a sentence; it is not reported as a mistake of the arena."""
+    """A state that a referee can't set is refused as such, not as a mistake of the arena."""
     game = arena.load(str(race)).game
     with pytest.raises(NoSuchState, match="neutral, left or right"):
         game.set(game.start(), 0, 3)
 
 
 def test_the_guide_s_game_is_played(race: Path, tmp_path: Path) -> None:
-    """Two of its bots walk with the sample gait until the first is past the line."""
+    """Two bots walk the guide's race, and the left one wins."""
     overrides = {"game": {"length_m": 1.2}, "match": {"duration_s": 20.0}}
     ground = arena.load(str(race), overrides)
     setup = Setup(

@@ -1,4 +1,4 @@
-"""Fairness: the field turned by 180 degrees with seats swapped gives the turned match."""
+"""Fairness: if the field is turned and the seats are swapped, the rules give the turned match."""
 
 import math
 from typing import Any
@@ -21,7 +21,7 @@ SWAPPED = {NEUTRAL: NEUTRAL, LEFT: RIGHT, RIGHT: LEFT, 3: 3}
 
 
 def opposites(game: AnyGame) -> list[int]:
-    """Return for each marker the one at its place after the field is turned."""
+    """Return for each marker the index of the one at its place after the field is turned."""
     at = {(marker.x_m, marker.y_m): index for index, marker in enumerate(game.markers)}
     return [at[-marker.x_m, -marker.y_m] for marker in game.markers]
 
@@ -50,17 +50,17 @@ def turn_claim(claim: Claim, game: AnyGame, opposite: list[int]) -> Claim:
 
 
 def said(events: tuple[GameEvent, ...]) -> set[tuple[Any, ...]]:
-    """Events as a set: their order in a tick says nothing."""
+    """Return events as a set, because their order within a tick does not matter."""
     return {(e.kind, e.seat, e.marker, frozenset(e.also), e.points) for e in events}
 
 
 @st.composite
 def observations(draw: st.DrawFn, game: AnyGame) -> list[tuple[tuple[RobotView, ...], bool]]:
-    """Walks of both robots over markers and gaps; with each tick, whether to strike its claims."""
+    """Draw walks of both robots, and for each tick whether the referee takes back a claim."""
     flags = [index for index, marker in enumerate(game.markers) if marker.kind == "flag"]
     spots = [(marker.x_m, marker.y_m) for marker in game.markers if marker.kind != "flag"]
     at = [draw(st.integers(0, len(spots) - 1)) for _ in range(2)]
-    stride = st.sampled_from([0, 1, -1, 6, -6, 7])  # neighbours of a 6 x 6 board, and a diagonal
+    stride = st.sampled_from([0, 1, -1, 6, -6, 7])  # neighbours on a 6 x 6 board, and a diagonal
     offset = st.sampled_from([0.0, 0.0, 0.0, 0.05, -0.05, 0.12, -0.15])
     touches = st.sets(st.sampled_from(flags), max_size=3) if flags else st.just(set())
     walk = []
@@ -81,7 +81,7 @@ def observations(draw: st.DrawFn, game: AnyGame) -> list[tuple[tuple[RobotView, 
 @pytest.mark.parametrize("name", GAMES)
 @given(data=st.data())
 def test_turned_match(name: str, data: st.DataObject) -> None:
-    """Rules 4: exactly antisymmetric under turning the field and swapping the seats."""
+    """The rules give exactly the turned match for turned robots with swapped seats (rules 4)."""
     game = GAMES[name]
     opposite = opposites(game)
     state = mirror = game.start()
@@ -116,7 +116,7 @@ def test_turned_match(name: str, data: st.DataObject) -> None:
 @pytest.mark.parametrize("name", GAMES)
 @given(data=st.data())
 def test_score_is_the_board(name: str, data: st.DataObject) -> None:
-    """Rules 5 and 6 score: markers are conserved, and the score is what the board shows."""
+    """Only markers named by events change, and the score is the sum of a team's markers."""
     game = GAMES[name]
     state = game.start()
     for views, _ in data.draw(observations(game)):
@@ -142,7 +142,7 @@ def test_score_is_the_board(name: str, data: st.DataObject) -> None:
 
 @pytest.mark.parametrize("name", GAMES)
 def test_starts_are_turned(name: str) -> None:
-    """Rules 4: seats are placed point-symmetrically, each start place with its partner."""
+    """Each start place of the right seat is the turned place of the left seat."""
     left, right = GAMES[name].starts
     assert tuple(turned(place) for place in left) == right
     for here, there in zip(left, (turned(place) for place in right), strict=True):

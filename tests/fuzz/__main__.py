@@ -1,4 +1,4 @@
-"""`make fuzz`: the long run. Every input is made from the seed, so a run can be made again."""
+"""`make fuzz`: the long run. All inputs come from the seed, so the same seed repeats a run."""
 
 import argparse
 import faulthandler

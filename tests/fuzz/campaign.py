@@ -1,4 +1,4 @@
-"""Feeds a target: counts what becomes of the inputs, and nothing may take a second."""
+"""Feeds inputs to a target, counts the outcomes, and stops each input after a second."""
 
 import signal
 import time
@@ -12,16 +12,16 @@ from mutate import Mutator
 from targets import Target
 
 MOST_S = 1.0
-"""Of CPU time, for one input."""
+"""CPU time allowed for one input [s]."""
 
 
 class Hang(BaseException):
-    """An input takes too long; no `except Exception` hides it."""
+    """An input takes too long. It is a BaseException, so that no `except Exception` hides it."""
 
 
 @dataclass
 class Figures:
-    """Counts of a target's inputs by their result."""
+    """How many inputs a target got, and how many had each outcome."""
 
     name: str
     inputs: int = 0
@@ -31,11 +31,11 @@ class Figures:
     state_changes: int = 0
     worst_s: float = 0.0
     findings: dict[str, bytes] = field(default_factory=dict)
-    """One input for each place in the code where something was wrong, by its traceback."""
+    """One input for each place in the code where something went wrong, by its traceback."""
 
     @property
     def refused(self) -> int:
-        """Inputs met with a documented refusal."""
+        """Number of inputs that were refused with a documented error."""
         return self.inputs - self.accepted - self.crashes - self.hangs - self.state_changes
 
 
@@ -43,7 +43,7 @@ def feed(target: Target, count: int, seed: int) -> Iterator[Figures]:
     """Feed a number of inputs to a target.
 
     Yields:
-        The figures so far, now and then, and at the end.
+        The figures so far, after every 1000 inputs and at the end.
     """
     figures = Figures(target.name)
     mutator = Mutator(target.seeds, target.kind, f"{seed} {target.name}")
@@ -97,7 +97,7 @@ def _limited(seconds: float) -> Iterator[None]:
 
 
 def arm() -> None:
-    """Let an input that takes too long raise `Hang`."""
+    """Set the signal handler that raises `Hang` in an input that takes too long."""
 
     def ring(*_: object) -> None:
         raise Hang(f"more than {MOST_S:g} s of CPU time")

@@ -1,4 +1,4 @@
-"""Makes the modules of this folder, and the court's builders, importable."""
+"""Makes the modules of this folder and the builders of tests/server importable."""
 
 import sys
 from pathlib import Path

@@ -1,7 +1,7 @@
-"""A court's doors under fire: a real network module, inbox, desk and match; only Zenoh is missing.
+"""A court that gets hostile packets: real network module, inbox, desk and match, but no Zenoh.
 
-A second match gets nothing but what came by right: by a token, or sealed by the seat that holds
-it. After every beat both must show the same frame, bit for bit.
+A second match, the twin, gets only inputs whose sender had the right to them: by a token, or by a
+seal with the seat's secret. After every beat both matches must publish the same frame, bit for bit.
 """
 
 import hashlib
@@ -45,13 +45,13 @@ REFEREE = "the-referee-has-this"
 SESSIONS = (4_000_000_001, 4_000_000_002)
 SECRETS = (b"left's secret...", b"right's secret..")
 BATCH = 12
-"""Packets a beat; a court looks at no more of a seat's commands than this and four."""
+"""Packets that arrive together, before the court has its next beat."""
 PHASES = (Phase.LOBBY, Phase.HALTED, Phase.PLAYING, Phase.READY, Phase.FINISHED)
 _BEATS_A_MATCH = 1500
 
 
 class StateChanged(AssertionError):
-    """A message without the right to it had an effect."""
+    """A message had an effect, though its sender had no right to it."""
 
 
 class _Request:
@@ -63,12 +63,12 @@ class _Request:
         self.answers.append(payload)
 
     def refuse(self, payload: bytes) -> None:
-        codec.decode(payload, Refusal, 1 << 20)  # a client can read it
+        codec.decode(payload, Refusal, 1 << 20)  # check that a client can read it
         self.answers.append(b"")
 
 
 class _Queue:
-    """A ring or a desk."""
+    """Stands for a ring or a desk: a queue of packets that wait."""
 
     def __init__(self, depth: int) -> None:
         self.waiting: deque[Any] = deque(maxlen=depth)
@@ -98,7 +98,7 @@ class _Session:
 
 
 class _Sessions(Sessions):
-    """Gives the same session numbers and secrets every time: then the seeds stay good."""
+    """Gives the same session numbers and secrets each time, so that stored seeds stay valid."""
 
     def begin(self, seat: int) -> tuple[int, bytes]:
         self.end(seat, Why.REPLACED)
@@ -107,14 +107,14 @@ class _Sessions(Sessions):
 
 
 def command(seat: int, seq: int, level: int, key: int, match: int = 0, seen: int = 0) -> bytes:
-    """A command that its seat has sealed."""
+    """Return a command with the seat's seal."""
     numbers = (SESSIONS[seat], seq, level, key, match, seen)
     mac = seal.command_mac(SECRETS[seat], KEYS.command(SEATS[seat]), *numbers)
     return codec.encode(Command(*numbers, mac))
 
 
 def request(seat: int, what: str, ready: bool, seq: int) -> bytes:
-    """A ready or leave that its seat has sealed."""
+    """Return a ready or leave request with the seat's seal."""
     mac = _request_mac(seat, what, ready, seq)
     return codec.encode(SeatRequest(session=SESSIONS[seat], seq=seq, ready=ready, mac=mac))
 
@@ -125,12 +125,12 @@ def _request_mac(seat: int, what: str, ready: bool, seq: int) -> bytes:
 
 
 def join(token: str, **more: Any) -> bytes:
-    """A join."""
+    """Return a join request with this token."""
     return codec.encode(Join(protocol=PROTOCOL, token=token, name="Fuzzers", **more))
 
 
 class Doors:
-    """A court with two seated teams; packets come in batches of a beat."""
+    """A court with two seated teams, which gets its packets in batches."""
 
     def __init__(self) -> None:
         robot, data = find_robot("hexapod")
@@ -161,13 +161,13 @@ class Doors:
             self._inbox.seated(seat)
 
     def feed(self, key: str, payload: bytes) -> None:
-        """Let a packet arrive under a key expression; the beat comes when enough have."""
+        """Let a packet arrive under a key expression; a full batch starts a beat."""
         self._batch.append((key, payload))
         if len(self._batch) >= BATCH:
             self.beat()
 
     def beat(self) -> None:
-        """Let the court have a beat.
+        """Let the court handle the waiting packets.
 
         Raises:
             StateChanged: if anything happened without a right to it.
@@ -181,7 +181,7 @@ class Doors:
             asked = KEYS.decision("*") if "/referee/" in key else key
             desks[asked] = desks.get(asked, 0) + 1
             self._session.queues[asked].waiting.append(_Request(key, payload))
-        # A desk gives a beat four, and no more once one has entered the match.
+        # A desk handles at most four requests a beat, and none after one that entered the match.
         beats = max(1, *desks.values()) if desks else 1
         for number in range(beats):
             self._one_beat()
@@ -215,7 +215,7 @@ class Doors:
             if arrival.answer is not None:
                 self.accepted += 1
                 arrival.answer(outcome)
-        for seat in (0, 1):  # whose seat was left or joined by right comes back
+        for seat in (0, 1):  # a seat that was left gets its session back
             if self._inbox._sessions.holder(seat) != SESSIONS[seat]:
                 self._inbox.seated(seat)
         over = self._match.phase in (Phase.OFFICIAL, Phase.VOID) or self._match.match.next_wanted
@@ -223,18 +223,18 @@ class Doors:
             self._open()
 
     def _own_keys(self) -> set[KeySeat]:
-        """The seats' own controllers: a sign of life each beat, and a new key now and then."""
+        """Queue the commands of the seats' own controllers; return the new keys among them."""
         new: set[KeySeat] = set()
         for seat in (0, 1):
             key = KEYS.command(SEATS[seat])
             last = max(self._inbox._seats[seat].last_seq, _FIRST_OWN)
-            # A court that has just begun knows no frame that could have been seen.
+            # A court that has just begun has not sent a frame that could have been seen.
             seen = max(0, self._match.match.beats - seat) if self._beats else 0
             if self._beats % 10 == 5 * seat:
                 last += 1
                 item = KeySeat(seat, last, 1, last % 4, seen)
                 new.add(item)
-            # The newest wins: after all that the batch has for the seat.
+            # The newest command wins, so this one comes after the batch's packets for the seat.
             self._session.queues[key].waiting.append(command(seat, last, 1, last % 4, 1, seen))
         return new
 
@@ -248,7 +248,7 @@ class Doors:
     def _has_right(self, arrival: Arrival) -> bool:
         item = arrival.input
         if isinstance(item, SilentSeat | HeardSeat):
-            return True  # of the clock, not of a packet
+            return True  # these come from the clock, not from a packet
         if isinstance(item, KeySeat):
             own = (item.level, item.key) == (1, item.seq % 4) and item.seq > _FIRST_OWN - 1
             return own or (item.seat == 0 and (item.seq, item.level, item.key) in _SEALED)
@@ -269,19 +269,19 @@ class Doors:
 _SEALED = {(1, 1, 2), (3, 1, RESTART_KEY), (2, 0, 3)}
 """Sequence number, level and key of the left seat's sealed seeds."""
 _FIRST_OWN = 10
-"""The sequence numbers of the seats' own controllers begin after the seeds'."""
+"""First sequence number of the seats' own controllers; the seeds have smaller ones."""
 _REQUESTS = (("ready", True, 1), ("ready", False, 2), ("leave", True, 3), ("leave", False, 4))
-"""What is asked, ready and sequence number of each seat's sealed seeds."""
+"""Request, ready and sequence number of each seat's sealed seeds."""
 
 
 def _hash(token: str) -> str:
-    """As `seal.hash_token`, with a salt that is always the same."""
+    """Return the hash of a token as `seal.hash_token` does, but with a fixed salt."""
     digest = hashlib.blake2b(token.encode(), salt=bytes(16), digest_size=32, person=b"lacoc token")
     return f"{bytes(16).hex()}${digest.hexdigest()}"
 
 
 def command_seeds() -> list[bytes]:
-    """Commands: of the seat, of the other one, of nobody, old ones and sealed nonsense."""
+    """Return commands of both seats with good and bad seals, old numbers and nonsense."""
     seeds = [command(0, 1, 1, 2), command(0, 3, 1, RESTART_KEY), command(0, 2, 0, 3)]
     seeds += [command(1, 9, 1, 2), command(0, 0, 1, 2), command(0, 2**60, 1, 2)]
     seeds += [command(0, 7, 1, 2)[:-1] + b"\0", command(0, -5, 1, 2), command(0, 8, 9, 99)]
@@ -291,13 +291,13 @@ def command_seeds() -> list[bytes]:
 
 
 def request_seeds() -> list[bytes]:
-    """Ready and leave: of the seat, of the other, sealed for something else."""
+    """Return ready and leave requests of both seats, each with its seal and with a broken seal."""
     good = [request(seat, *one) for seat in (0, 1) for one in _REQUESTS]
     return [*good, *(one[:-1] + b"\0" for one in good)]
 
 
 def join_seeds() -> list[bytes]:
-    """Joins with all files, with few, with a wrong token, of another version."""
+    """Return joins with all files, with few files, with a wrong token and of another version."""
     robot = SentFile(*find_robot("hexapod"))
     postures, locomotion = sample_gait_files("hexapod")
     files = {"robot": robot, "postures": postures, "locomotion": locomotion}
@@ -307,7 +307,7 @@ def join_seeds() -> list[bytes]:
 
 
 def decision_seeds() -> list[bytes]:
-    """Decisions with a guessed token, and a few with the referee's."""
+    """Return decisions with guessed tokens, and some with the referee's token."""
     made = (Start(), Halt(), Adjust("left", 5), Set("c2r3", "left"), TakeBack(3, True), Clock(9.5))
     seeds = [
         codec.encode(DecisionRequest(token=token, by="Kubota", reason="why", decision=one))
@@ -318,18 +318,18 @@ def decision_seeds() -> list[bytes]:
 
 
 def decision_key(payload: bytes) -> str:
-    """The key expression that a decision would come under."""
+    """Return the key expression under which a decision would arrive."""
     name = next((name for name in DECISIONS if name.encode() in payload), "enter")
     return KEYS.decision(name)
 
 
 def seat_key(what: str) -> Callable[[bytes], str]:
-    """The left seat's."""
+    """Return a function that gives the left seat's key expression for any payload."""
     return lambda _: KEYS.request("left", what) if what != "key" else KEYS.command("left")
 
 
 def request_key(payload: bytes) -> str:
-    """That of a seed by its sequence number, if it can be found; the rest comes as ready."""
+    """Return a request's key expression, found by its sequence number; otherwise that of ready."""
     at = payload.find(b"seq") + 3
     asked = next((what for what, _, seq in _REQUESTS if payload[at : at + 1] == bytes((seq,))), "")
     return KEYS.request("left", asked or "ready")

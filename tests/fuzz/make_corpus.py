@@ -1,8 +1,8 @@
 """Makes the seeds of tests/fuzz/corpus: `python tests/fuzz/make_corpus.py`.
 
-Small and good inputs, from the samples and from a short match; and under the name `found-...`
-what once crashed, hung or filled the memory, or would have. Records named `...-protocol-1` were
-made by an older version, which sent sentences; no program can make them again.
+Most seeds are small and good inputs, from the samples and from a short match. Seeds named
+`found-...` once crashed a reader, hung it or filled the memory, or would have. Records named
+`...-protocol-1` were made by an older version, which sent sentences; today's code can't make them.
 """
 
 import io
@@ -47,14 +47,14 @@ CORPUS = HERE / "corpus"
 
 
 def write(folder: str, name: str, data: bytes) -> None:
-    """Write a seed."""
+    """Write one seed into a folder of the corpus."""
     path = CORPUS / folder / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(data)
 
 
 def write_packets() -> None:
-    """Write packets that arrive at a court, a client and a gateway."""
+    """Write packets that arrive at a court, a client or a gateway."""
     made = {
         "commands": doors.command_seeds(),
         "requests": doors.request_seeds(),
@@ -114,7 +114,7 @@ def _page_seeds() -> list[bytes]:
 
 
 def write_files() -> None:
-    """Gaits, robots, arenas, a contest, key scripts."""
+    """Write gaits, robots, arenas, a contest and a key script."""
     for name in installed_robots():
         write("robot", f"{name}.toml", find_robot(name)[1])
         for file in sample_gait_files(name):
@@ -167,7 +167,7 @@ token = "referee-token-of-second"
 
 
 def write_records() -> None:
-    """A short practice as a segment that was closed and one that was not; a match packed."""
+    """Write a short practice as an open and as a closed segment, and a match as a packed record."""
     with tempfile.TemporaryDirectory() as folder:
         journal = Journal(Match(setup("practice"), World), Path(folder))
         journal.beat([join(0)])
@@ -218,7 +218,7 @@ def write_found() -> None:
     for name, part, content in _workbook_bombs():
         write("workbook", f"found-{name}.xlsx", _with_part(part, content))
     packed = (CORPUS / "packed" / "packed.mcap").read_bytes()
-    zeros = bytes(1 << 30)  # 1 GiB in 32 KiB
+    zeros = bytes(1 << 30)  # 1 GiB that compresses to 32 KiB
     for name, told in (("honest", len(zeros)), ("lying", 100)):
         write("packed", f"found-zstd-bomb-{name}.mcap", packed[:8] + _chunk(zeros, told))
     leave = struct.pack("<HIQQ", 2, 0, 0, 0) + b"\x92\xa5leave\x00"
@@ -264,7 +264,7 @@ def _with_part(name: str, content: bytes) -> bytes:
 
 
 def _chunk(inside: bytes, told: int | None) -> bytes:
-    """A chunk and the end of a file; `told`: the size that the chunk says it has."""
+    """Return an MCAP chunk and a file's end; `told` is the size that the chunk claims [bytes]."""
     data = zstandard.ZstdCompressor(19).compress(inside)
     told = len(inside) if told is None else told
     body = struct.pack("<QQQII", 0, 0, told, 0, 4) + b"zstd" + struct.pack("<Q", len(data)) + data
@@ -272,7 +272,7 @@ def _chunk(inside: bytes, told: int | None) -> bytes:
 
 
 def _records_of(packed: bytes, code: int) -> list[bytes]:
-    """The whole records of a kind after a file's chunks."""
+    """Return the records with this code that follow a file's chunks."""
     at, found = 8, []
     while at + 9 <= len(packed) - 8:
         kind, size = struct.unpack_from("<BQ", packed, at)

@@ -1,4 +1,4 @@
-"""Makes hostile bytes of good ones: seeded, so that every run can be made again."""
+"""Makes hostile inputs from good ones. All chance comes from a seed, so a run can be repeated."""
 
 import io
 import random
@@ -13,7 +13,7 @@ import msgpack
 import zstandard
 
 LARGEST = 80_000
-"""A little more than anything that is read from the network may have."""
+"""The usual largest input [bytes], slightly above the largest message from the network."""
 
 INTEGERS = (
     0, 1, -1, 2, 7, 8, 10, 11, 127, 128, 255, 256, -128, -129, 2**15, 2**16, 2**31 - 1, 2**31,
@@ -38,11 +38,11 @@ TOKENS = (
 
 
 class Pairs(list[tuple[Any, Any]]):
-    """A msgpack map as it stands on the wire: keys may come twice."""
+    """A msgpack map as a list of pairs, so that a key may appear twice."""
 
 
 class Raw(bytes):
-    """Bytes that go into the msgpack as they are."""
+    """Bytes that are written into the msgpack unchanged."""
 
 
 _RAWS = (
@@ -66,12 +66,12 @@ _RAWS = (
 
 
 class Mutator:
-    """Gives one hostile input after another.
+    """Makes one hostile input after another.
 
     Args:
         seeds: good inputs.
-        kind: what they are: msgpack, text, zip or mcap.
-        seed: the same gives the same inputs.
+        kind: the inputs' format: msgpack, text, zip or mcap.
+        seed: start of the random numbers; the same seed gives the same inputs.
     """
 
     def __init__(self, seeds: Sequence[bytes], kind: str, seed: int | str) -> None:
@@ -86,7 +86,7 @@ class Mutator:
         self._trees: dict[bytes, Any] = {}
 
     def next(self) -> bytes:
-        """Make an input."""
+        """Return the next input."""
         chance = self._chance
         data = chance.choice(self._seeds)
         roll = chance.random()
@@ -148,7 +148,7 @@ class Mutator:
         return pack(tree)
 
     def _changed(self, node: Any) -> Any:
-        """The same tree with one node changed."""
+        """Return the tree with one node changed."""
         chance = self._chance
         if isinstance(node, list) and node and chance.random() < 0.85:
             copy = type(node)(node)
@@ -157,7 +157,7 @@ class Mutator:
                 key, value = copy[at]
                 roll = chance.random()
                 if roll < 0.1:
-                    copy.append((key, self._value()))  # the same key twice
+                    copy.append((key, self._value()))  # the same key a second time
                 elif roll < 0.2:
                     copy[at] = (self._value(), value)
                 else:
@@ -212,7 +212,7 @@ class Mutator:
         chance = self._chance
         for _ in range(chance.choice((1, 1, 2, 5))):
             match chance.randrange(7):
-                case 0 | 1 | 2:  # another word for one of those there
+                case 0 | 1 | 2:  # replace a word
                     at = chance.randrange(len(data) + 1)
                     while at > 0 and data[at - 1 : at] not in (b"\t", b" ", b"\n", b"=", b","):
                         at -= 1
@@ -259,7 +259,7 @@ class Mutator:
                     parts.append((name, self._bytes(content)))
                 case 2:
                     parts[at] = (self._bytes(name.encode()).decode("latin1")[:60000], content)
-                case 3 | 4:  # a whole element, once more or many times
+                case 3 | 4:  # remove or repeat an element
                     cells = content.split(b"<")
                     one = chance.randrange(len(cells))
                     copies = chance.choice((0, 2, 2, 500, 60_000))
@@ -273,13 +273,13 @@ class Mutator:
                 case _:
                     parts[at] = (name, self._bytes(self._bytes(content)))
         stream = io.BytesIO()
-        warnings.simplefilter("ignore")  # names that come twice are meant
+        warnings.simplefilter("ignore")  # the same name twice is intended
         method = chance.choice((zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED))
         with zipfile.ZipFile(stream, "w", method, compresslevel=1) as archive:
             for name, content in parts:
                 archive.writestr(zipfile.ZipInfo(name or "a"), content, method)
         made = stream.getvalue()
-        if chance.random() < 0.1:  # sizes and offsets that lie
+        if chance.random() < 0.1:  # false sizes and offsets
             at = made.rfind(b"PK\x01\x02") + chance.choice((10, 16, 20, 24, 42))
             number = chance.choice(INTEGERS) % 2**32
             made = made[:at] + struct.pack("<I", number) + made[at + 4 :]
@@ -323,7 +323,7 @@ class Mutator:
         return b"".join([*made, data[-8:]])
 
     def _chunk(self, content: bytes) -> bytes:
-        """A chunk with other records inside, and sizes that are true or lie."""
+        """Return a chunk with changed records inside, and with sizes that may be false."""
         chance = self._chance
         if len(content) < 40:
             return self._bytes(content)
@@ -362,7 +362,7 @@ class Mutator:
 
 
 def pack(node: Any) -> bytes:
-    """Write a tree as msgpack, with what no library would write."""
+    """Write a tree as msgpack, including parts that no library would write."""
     if not isinstance(node, list | Raw):
         try:
             return msgpack.packb(node)  # type: ignore[no-any-return]

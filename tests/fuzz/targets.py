@@ -1,4 +1,4 @@
-"""The code that reads bytes from outside, as functions that pass only documented errors."""
+"""The code that reads bytes from outside, as functions that raise only undocumented errors."""
 
 import os
 import tempfile
@@ -31,29 +31,29 @@ from lacoc_shared.record.reader import Record
 CORPUS = Path(__file__).parent / "corpus"
 _SCRATCH = "/dev/shm" if os.path.isdir("/dev/shm") else None
 _WORLDS = 20
-"""Of the robots and arenas that pass, one in so many is built."""
+"""Of the robots and arenas that are accepted, one in this many is built as a world."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """Something to feed."""
+    """A reader to which inputs are fed."""
 
     name: str
     group: str
-    """packets or files."""
+    """"packets" or "files"."""
     kind: str
-    """What the inputs are to the mutator."""
+    """The inputs' format, which tells the mutator how to change them."""
     corpus: str
-    """Folder of the seeds."""
+    """The folder of the seeds."""
     share: int
-    """Part of its group's inputs."""
+    """How large a part of its group's inputs it gets, relative to the other targets."""
     eat: Callable[[bytes], bool]
-    """Whether the input was accepted; anything raised is a finding."""
+    """Reads an input and returns whether it was accepted; an error that it raises is a finding."""
     finish: Callable[[], None] = lambda: None
 
     @property
     def seeds(self) -> list[bytes]:
-        """Committed inputs: good ones, and those that once were findings."""
+        """The committed inputs: good ones, and former findings."""
         return [path.read_bytes() for path in sorted((CORPUS / self.corpus).iterdir())]
 
 
@@ -123,7 +123,7 @@ def _workbook(data: bytes) -> None:
 @_accepts(FileRefused)
 def _robot(data: bytes) -> None:
     robot = read_robot(data, "robot.toml")
-    if len(data) % _WORLDS == 0:  # what passes can be built, and stands
+    if len(data) % _WORLDS == 0:  # what is accepted can be built and can stand
         posture: Posture = (0.0,) * robot.joints
         world = World(_othello(), (Entry(robot, Gait(PostureTable({0: posture}))),))
         world.step([posture])
@@ -180,7 +180,7 @@ def _keys(data: bytes) -> None:
 
 
 class _file:
-    """The bytes as a file in memory."""
+    """A context manager that writes the bytes to a file, in memory where possible."""
 
     def __init__(self, data: bytes, suffix: str) -> None:
         self._data, self._suffix = data, suffix

@@ -1,4 +1,4 @@
-"""Every decoder and file reader meets hostile bytes: a short run; `make fuzz` has the long one."""
+"""A short run of hostile bytes for every decoder and file reader; `make fuzz` is the long run."""
 
 from collections.abc import Iterator
 from signal import SIGPROF, getsignal, signal
@@ -32,7 +32,7 @@ def hangs_are_seen() -> Iterator[None]:
 @pytest.mark.parametrize("times", [1, pytest.param(20, marks=pytest.mark.long)])
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_nothing_but_the_documented_refusals(target: Target, times: int) -> None:
-    """Good seeds, former findings and hostile bytes: no crash, no hang, no state changes."""
+    """Seeds, former findings and hostile bytes cause no crash, no hang and no change of state."""
     inputs = times * SLOW.get(target.name, INPUTS)
     *_, figures = feed(target, len(target.seeds) + inputs, seed=times)
     assert not figures.findings, "\n".join(figures.findings)
@@ -41,13 +41,13 @@ def test_nothing_but_the_documented_refusals(target: Target, times: int) -> None
 
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_the_same_seed_makes_the_same_inputs(target: Target) -> None:
-    """A run can be made again."""
+    """The same seed makes the same inputs."""
     one, other = (Mutator(target.seeds, target.kind, "7") for _ in range(2))
     assert [one.next() for _ in range(20)] == [other.next() for _ in range(20)]
 
 
 def test_good_packets_get_in() -> None:
-    """The seeds are the court's present messages: what is made of them comes near to being good."""
+    """The committed seeds are the court's present messages, and the court accepts some of them."""
     for folder, seeds in (("requests", request_seeds()), ("commands", command_seeds())):
         kept = [path.read_bytes() for path in sorted((CORPUS / folder).iterdir())]
         assert kept == seeds, "run tests/fuzz/make_corpus.py"
@@ -58,10 +58,10 @@ def test_good_packets_get_in() -> None:
 
 
 def test_a_change_of_state_would_be_seen() -> None:
-    """The check of the doors works: it detects a command that takes effect without a seal."""
+    """The doors' check notices a command that takes effect although no controller sent it."""
     court = Doors()
     court.beat()
-    forged = command(0, 99, 1, 9)  # whoever has the secret can, but neither seat has sent it
+    forged = command(0, 99, 1, 9)  # rightly sealed, but not sent by the seat's controller
     for _ in range(BATCH - 1):
         court.feed(KEYS.command("left"), forged)
     with pytest.raises(StateChanged, match="without a right"):

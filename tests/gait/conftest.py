@@ -1,4 +1,4 @@
-"""The workshop's gait, as rules 2 prints it."""
+"""The workshop's sample gait (Fig. 4-1)."""
 
 import math
 
@@ -6,7 +6,7 @@ import pytest
 
 from lacoc_shared.gait.tables import PostureTable
 
-# Copied from rules 2, columns 16 and 17 restored.
+# The table of Fig. 4-1. Its columns 16 and 17, which the print lacks, follow the gait's pattern.
 _TABLE = """
  0  | 45   0 -45 -45   0  45 | 20  20  20  20  20  20 |  0   0   0   0   0   0
  1  |  0   0 -45   0   0  45 | 20  20  20  20  20  20 | 40   0  40   0  40   0
@@ -22,13 +22,13 @@ _TABLE = """
 
 @pytest.fixture(scope="session")
 def legs() -> tuple[str, ...]:
-    """Labels of the hexapod's legs (rules 1)."""
+    """Give the labels of the hexapod's legs (rules 1)."""
     return ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")
 
 
 @pytest.fixture(scope="session")
 def workshop() -> PostureTable:
-    """The complete sample table of rules 2."""
+    """Give the workshop's complete sample table."""
     postures = {}
     for line in _TABLE.strip().splitlines():
         digit, *angles = line.replace("|", " ").split()

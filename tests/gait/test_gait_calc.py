@@ -1,6 +1,6 @@
-"""Gait files and LibreOffice Calc: what it saves is read, what we write it shows.
+"""Gait files and LibreOffice Calc: we read what Calc saves, and Calc shows what we write.
 
-The files in `files/` were saved by Calc; `files/make_files.py` makes them.
+Calc saved the files in `files/`; `files/make_files.py` makes them.
 """
 
 import io
@@ -22,7 +22,7 @@ TEXTS = {
     "utf-16": FILES / "calc-utf-16-Loco-data.txt",
     "cp932": FILES / "calc-shift-jis-Loco-data.txt",
 }
-# Tab-separated UTF-8 of every sheet, cells as they are shown.
+# Calc's options: write every sheet as tab-separated UTF-8, with the cells as they are shown.
 CSV = "csv:Text - txt - csv (StarCalc):9,34,76,1,,0,false,true,false,false,false,-1"
 
 needs_calc = pytest.mark.skipif(
@@ -32,26 +32,26 @@ needs_calc = pytest.mark.skipif(
 
 @pytest.mark.parametrize("encoding", TEXTS)
 def test_text_saved_by_calc(encoding, workshop, legs):
-    """Calc's text in UTF-8, UTF-16 and Shift-JIS is the table of rules 2."""
+    """Text that Calc saves as UTF-8, UTF-16 or Shift-JIS reads as the workshop's table."""
     path = TEXTS[encoding]
     assert "関節番号" in path.read_bytes().decode(encoding)
     assert read_gait_file(path, legs=legs) == workshop
 
 
 def test_the_texts_differ_as_bytes():
-    """The three files really are in three encodings."""
+    """The three text files differ, so they really are in three encodings."""
     assert len({path.read_bytes() for path in TEXTS.values()}) == 3
 
 
 def test_workbook_saved_by_calc(workshop, legs):
-    """Calc's .xlsx itself is the same gait."""
+    """The workbook that Calc saves reads as the workshop's table."""
     path = FILES / "calc.xlsx"
     assert read_gait_file(path, legs=legs) == workshop
     assert openpyxl.load_workbook(path).sheetnames == ["EX (input)", "Loco-data"]
 
 
 def test_the_workbook_that_ships_with_the_hexapod(workshop, legs):
-    """Workshop 4-1: the sample robot comes with Loco-data.xlsx, in the form we write."""
+    """The hexapod's Loco-data.xlsx holds the workshop's table in the layout that we write."""
     path = package_files("lacoc_robots") / "samples" / "hexapod" / "Loco-data.xlsx"
     data = path.read_bytes()
     assert read_gait_file(Path(str(path)), legs=legs) == workshop
@@ -64,12 +64,12 @@ def test_the_workbook_that_ships_with_the_hexapod(workshop, legs):
 @needs_calc
 @pytest.mark.slow
 def test_calc_shows_the_values_of_our_workbook(tmp_path, workshop, legs):
-    """Rules 2: both sheets show their values, and the formulas follow an edited cell."""
+    """Calc shows the values of both our sheets, and its formulas follow an edited cell."""
     data = write_workbook(workshop, legs)
     (tmp_path / "ours.xlsx").write_bytes(data)
     book = openpyxl.load_workbook(io.BytesIO(data))
     book[INPUT_SHEET]["B2"] = -22.5
-    book[INPUT_SHEET].insert_rows(4)  # a blank row: the mirror goes by place
+    book[INPUT_SHEET].insert_rows(4)  # a blank row: the formulas mirror cells by their place
     book.save(tmp_path / "edited.xlsx")
     subprocess.run(
         [

@@ -1,4 +1,4 @@
-"""`lacoc gait check` and `lacoc gait convert` (rules 2)."""
+"""The commands `lacoc gait check` and `lacoc gait convert` (rules 2)."""
 
 import json
 from pathlib import Path
@@ -14,7 +14,7 @@ from lacoc_shared.gait.workbook import read_gait_file, write_workbook
 
 @pytest.fixture
 def lacoc(capsys):
-    """Runs the command line; returns its exit code, standard output and standard error."""
+    """Give a function that runs a command and returns its exit code, output and errors."""
 
     def run(*words: object) -> tuple[int, str, str]:
         try:
@@ -29,7 +29,7 @@ def lacoc(capsys):
 
 @pytest.fixture
 def folder(tmp_path, workshop, legs) -> Path:
-    """A folder with the workshop's gait in all three kinds of file."""
+    """Give a folder with the workshop's gait in all three kinds of file."""
     (tmp_path / "Loco-data.txt").write_bytes(write_gait(workshop, legs))
     locomotion = to_locomotion(workshop, SAMPLE_KEYS)
     (tmp_path / "LocoTra-data.txt").write_bytes(write_gait(locomotion, legs))
@@ -38,7 +38,7 @@ def folder(tmp_path, workshop, legs) -> Path:
 
 
 def test_check_says_what_each_key_does(lacoc, folder):
-    """A short summary of each file: keys, postures, and which feet are lifted."""
+    """`check` tells each key's number of postures and which feet it lifts."""
     code, out, err = lacoc("gait", "check", *sorted(folder.iterdir()))
     assert (code, err) == (0, "")
     assert "Loco-data.txt: right. Level A, postures, 6 legs." in out
@@ -54,7 +54,7 @@ def test_check_says_what_each_key_does(lacoc, folder):
 
 
 def test_check_lists_every_mistake_of_every_file(lacoc, folder):
-    """Mistakes as a table of file, row, column, joint and leg, found, expected; code 2."""
+    """`check` prints a table of all mistakes of all files, and exits with code 2."""
     for name in ("a.txt", "b.txt"):
         text = (folder / "Loco-data.txt").read_text().replace("-45\t-45", "-451\tx", 1)
         (folder / name).write_text(text)
@@ -72,7 +72,7 @@ def test_check_lists_every_mistake_of_every_file(lacoc, folder):
 
 
 def test_check_shows_right_files_beside_wrong_ones(lacoc, folder):
-    """Every file that is named is looked at."""
+    """`check` still describes a correct file when another file has mistakes."""
     (folder / "bad.txt").write_text("?")
     code, out, err = lacoc("gait", "check", folder / "bad.txt", folder / "Loco-data.txt")
     assert code == 2
@@ -82,7 +82,7 @@ def test_check_shows_right_files_beside_wrong_ones(lacoc, folder):
 
 @pytest.mark.parametrize("kind", ["Loco-data.txt", "Loco-data.xlsx"])
 def test_check_notes_labels_that_are_exchanged(lacoc, tmp_path, workshop, kind):
-    """Rules 2: the legend may be absent, but a note names legs with other labels."""
+    """A legend with exchanged leg labels is no mistake, but `check` prints a note about it."""
     exchanged = ("L,F", "R,C", "R,B", "L,B", "L,C", "R,F")
     write = write_workbook if kind.endswith("xlsx") else write_gait
     (tmp_path / kind).write_bytes(write(workshop, exchanged))
@@ -95,7 +95,7 @@ def test_check_notes_labels_that_are_exchanged(lacoc, tmp_path, workshop, kind):
 
 
 def test_check_for_a_robot(lacoc, folder):
-    """Rules 2: with --legs, a gait for another robot is a mistake."""
+    """With --legs, a gait for another number of legs is a mistake."""
     assert lacoc("gait", "check", folder / "Loco-data.txt", "--legs", 6)[0] == 0
     code, _, err = lacoc("gait", "check", folder / "Loco-data.txt", "--legs", 4)
     assert code == 2
@@ -103,7 +103,7 @@ def test_check_for_a_robot(lacoc, folder):
 
 
 def test_check_takes_a_robot_of_any_number_of_legs(lacoc, folder):
-    """A robot whose legs have no usual labels is shown with numbers."""
+    """`check` accepts a gait for five legs, although the software has no names for five legs."""
     table = PostureTable({0: (0.0,) * 10 + (1.0,) * 5})
     (folder / "five.txt").write_bytes(write_gait(table, leg_labels(5)))
     code, out, _ = lacoc("gait", "check", folder / "five.txt", "--legs", 5)
@@ -111,7 +111,7 @@ def test_check_takes_a_robot_of_any_number_of_legs(lacoc, folder):
 
 
 def test_check_json(lacoc, folder):
-    """--json says it to a program: files without mistakes, and the mistakes."""
+    """With --json, `check` prints the correct files and all mistakes as JSON."""
     (folder / "bad.txt").write_text("Num of Posture\t1\n0 Key" + "\t0" * 17 + "\t200\n")
     code, out, err = lacoc(
         "gait", "check", "--json", folder / "LocoTra-data.txt", folder / "bad.txt"
@@ -143,7 +143,7 @@ def test_check_json(lacoc, folder):
 
 
 def test_check_goes_on_after_a_file_that_is_not_there(lacoc, folder, monkeypatch):
-    """README, for teachers: a pattern that fits no file stays as it is; the others are checked."""
+    """A name that fits no file is reported, and the other files are still checked."""
     monkeypatch.chdir(folder)
     code, out, _ = lacoc("gait", "check", "*.ods", "Loco-data.txt")
     assert code == 2
@@ -160,7 +160,7 @@ KINDS = ("Loco-data.txt", "LocoTra-data.txt", "Loco-data.xlsx")
 @pytest.mark.parametrize("source", KINDS)
 @pytest.mark.parametrize("target", KINDS)
 def test_any_of_the_three_becomes_any_other(lacoc, folder, workshop, source, target):
-    """`convert A B`: the name of B decides its kind; keys are the sample's by default."""
+    """`convert A B` takes B's kind from its name; the default keys are the sample gait's."""
     (folder / "out").mkdir()
     written = folder / "out" / target
     code, out, err = lacoc("gait", "convert", folder / source, written)
@@ -178,7 +178,7 @@ def test_any_of_the_three_becomes_any_other(lacoc, folder, workshop, source, tar
 
 
 def test_convert_with_keys(lacoc, folder, workshop):
-    """--keys says which postures each key takes."""
+    """The option --keys says which postures each key takes."""
     target = folder / "LocoTra-data-new.txt"
     code, *_ = lacoc(
         "gait", "convert", folder / "Loco-data.xlsx", target, "--keys", "0; 1,2,3,4 ;5"
@@ -189,7 +189,7 @@ def test_convert_with_keys(lacoc, folder, workshop):
 
 
 def test_convert_never_overwrites(lacoc, folder, workshop):
-    """Rules 2: the older file is kept with a number, and convert says so."""
+    """`convert` renames an older file with a number, and says so."""
     target = folder / "LocoTra-data.txt"
     before = target.read_bytes()
     code, _, err = lacoc("gait", "convert", folder / "Loco-data.txt", target, "--keys", "0")
@@ -218,7 +218,7 @@ def test_convert_never_overwrites(lacoc, folder, workshop):
     ],
 )
 def test_convert_says_what_is_wrong(lacoc, folder, source, target, keys, message):
-    """One clear message, code 2, nothing written or renamed."""
+    """A wrong `convert` prints one message, exits with code 2, and leaves every file as it was."""
     rows = "".join("\t".join([str(n)] * 18) + "\n" for n in range(11))
     (folder / "many.txt").write_text(f"1\n11\n{rows}")
     (folder / "bad.txt").write_text("no gait")

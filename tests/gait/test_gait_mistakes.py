@@ -1,4 +1,4 @@
-"""Every mistake of a gait file, with its place (rules 2)."""
+"""Every mistake of a gait file is reported with its place (rules 2)."""
 
 import pytest
 
@@ -17,7 +17,7 @@ CSV = (
 
 
 def refused(data: bytes | str, **robot) -> list[Mistake]:
-    """The mistakes for which a file is refused."""
+    """Return the mistakes for which a file is refused."""
     with pytest.raises(FileRefused) as refusal:
         read_gait(data.encode() if isinstance(data, str) else data, "gait.txt", **robot)
     assert all(mistake.file == "gait.txt" for mistake in refusal.value.mistakes)
@@ -25,22 +25,22 @@ def refused(data: bytes | str, **robot) -> list[Mistake]:
 
 
 def places(mistakes: list[Mistake]) -> list[tuple[object, ...]]:
-    """Mistakes as rows of a table."""
+    """Return mistakes as rows of a table."""
     return [(m.row, m.column, m.joint, m.leg, m.found, m.expected) for m in mistakes]
 
 
 def loco(rows: list[str], announced: object = None) -> str:
-    """A Loco-data text."""
+    """Return a Loco-data text with these rows below its header."""
     return f"Num of Posture\t{len(rows) if announced is None else announced}\n" + "\n".join(rows)
 
 
 def posture(label: str = "0 Key", angles: int = 18, **cells: str) -> str:
-    """A row of zeros, but for the joints named j0, j1, ..."""
+    """Return a row of zeros, except for the joints named j0, j1, ..."""
     return "\t".join([label, *(cells.get(f"j{joint}", "0") for joint in range(angles))]).strip()
 
 
 def test_three_planted_mistakes_are_three_mistakes():
-    """Rules 2: every mistake is listed as row, column, joint id and leg, found, expected."""
+    """Three mistakes are all listed, each with row, column, joint, leg, found and expected."""
     text = loco([posture(j3="151"), posture("1 Key", j11="nan"), posture("2 Key", j16="4S")])
     assert places(refused(text, legs=("A", "B", "C", "D", "E", "F"))) == [
         (2, 5, 3, "D", "151", ANGLE),
@@ -50,7 +50,7 @@ def test_three_planted_mistakes_are_three_mistakes():
 
 
 def test_three_planted_mistakes_at_the_locomotion_level():
-    """Rules 2: the same in LocoTra-data, and rows are the lines of the file, blank ones too."""
+    """Mistakes of a LocoTra-data file are listed too; blank lines count as rows."""
     row = posture("", j0="0")
     text = f"2\n\n1\n{posture('', j17='-150.01')}\n3\n{row}\n{posture('', j0='x', j6='')}\n"
     assert places(refused(text)) == [
@@ -73,7 +73,7 @@ def test_three_planted_mistakes_at_the_locomotion_level():
     ["nan", "NaN", "inf", "-inf", "Infinity", "1e999", "-1E+999", "150.0001", "-151", "999999"],
 )
 def test_nothing_is_clamped(cell):
-    """Rules 2: NaN, infinity and angles out of range are mistakes."""
+    """NaN, infinity and angles out of range are mistakes; no angle is clamped."""
     assert [m.place for m in refused(loco([posture(j13=cell)]))] == [
         "row 2, column 15, joint 13 (R,C)"
     ]
@@ -83,7 +83,7 @@ def test_nothing_is_clamped(cell):
     "cell", ["abc", "4 5", "1.2.3", "1,234.5", "--4", "45°", "4²", "½", "0x10", "1_0", "٤٥", "–45"]
 )
 def test_what_is_no_number(cell):
-    """Rules 2: only the listed ways to write a number are numbers."""
+    """A cell that is not a number in one of the forms of rules 2 is a mistake."""
     (mistake,) = refused(loco([posture(j0=cell)]))
     assert (mistake.row, mistake.column, mistake.joint, mistake.leg) == (2, 2, 0, "R,F")
     assert mistake.found == f'"{cell}"'
@@ -243,7 +243,7 @@ def test_what_is_no_number(cell):
     ],
 )
 def test_mistakes_of_loco_data(text, expected):
-    """Rules 2: what is announced must be there; keys 0-9, each once; three columns a leg."""
+    """A mistake in Loco-data is reported with its place, what was found and what is expected."""
     found = [(m.row, m.column, m.found, m.expected) for m in refused(text)]
     assert sorted(found, key=str) == sorted(expected, key=str)
 
@@ -308,13 +308,13 @@ def test_mistakes_of_loco_data(text, expected):
     ],
 )
 def test_mistakes_of_locotra_data(text, expected):
-    """Fig. 4-2, rules 2: 1-10 keys, 1-100 postures, as many rows as the file says above."""
+    """A mistake in LocoTra-data is reported with its place, what was found and what is expected."""
     assert [(m.row, m.column, m.found, m.expected) for m in refused(text)] == expected
 
 
 @pytest.mark.parametrize("legs", [6, ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")])
 def test_a_gait_for_another_robot_is_called_so(legs):
-    """Rules 2: 12 columns for a robot of six legs is one mistake; others are named too."""
+    """All rows with 12 angles instead of 18 make one mistake; other mistakes are still listed."""
     text = loco([posture(angles=12), posture("1 Key", angles=12, j7="x")])
     assert places(refused(text, legs=legs)) == [
         (
@@ -340,7 +340,7 @@ def test_a_gait_for_another_robot_is_called_so(legs):
     ],
 )
 def test_bytes_that_are_no_text(data):
-    """Rules 2: no encoding fits, so the first byte that does not is named."""
+    """Bytes that fit no encoding are refused, and the message names the first wrong byte."""
     (mistake,) = refused(data)
     assert mistake.found.startswith("bytes that are not text (byte ")
     assert mistake.expected == "text in UTF-8, UTF-16 or Shift-JIS"

@@ -1,4 +1,4 @@
-"""Properties: what is written reads back, and no bytes raise anything but FileRefused (rules 2)."""
+"""Properties: what is written reads back, and wrong bytes raise only FileRefused (rules 2)."""
 
 import io
 import math
@@ -29,7 +29,7 @@ degrees = st.one_of(
 
 
 def mistakes_of(read: Callable[[bytes, str], object], data: bytes) -> list[Mistake] | None:
-    """The mistakes for which data are refused; None if they are read."""
+    """Return the mistakes for which data are refused; None if they are read."""
     try:
         read(data, "x")
     except FileRefused as refusal:
@@ -40,12 +40,12 @@ def mistakes_of(read: Callable[[bytes, str], object], data: bytes) -> list[Mista
 def postures(
     legs: int, degrees: st.SearchStrategy[float] = degrees
 ) -> st.SearchStrategy[tuple[float, ...]]:
-    """Angles that a file can hold: those of a number of degrees."""
+    """Draw the angles of a posture [rad], each made from a number of degrees as a file holds it."""
     return st.tuples(*[degrees.map(angle_of)] * (3 * legs))
 
 
 def posture_tables_of(degrees: st.SearchStrategy[float]) -> st.SearchStrategy[PostureTable]:
-    """Posture tables whose angles are such numbers of degrees."""
+    """Draw posture tables whose angles are made from these numbers of degrees."""
     return legs.flatmap(
         lambda n: st.dictionaries(st.integers(0, 9), postures(n, degrees), min_size=1, max_size=10)
     ).map(PostureTable)
@@ -58,7 +58,7 @@ locomotion_tables = legs.flatmap(
     )
 ).map(lambda sequences: LocomotionTable(tuple(sequences)))
 encodings = st.sampled_from(["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp932"])
-# Making a whole table is slow, which says nothing about the code under test.
+# Making a whole table is slow. Hypothesis must not blame the code under test for that.
 patient = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
@@ -69,7 +69,7 @@ patient = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @example(149.99999999999997)
 @example(4.985737865549591e-231)
 def test_an_angle_is_written_without_loss(value_deg):
-    """Rules 2: the number written for an angle of a file reads back as the same bits."""
+    """The number of degrees that is written for an angle reads back as the same bits."""
     angle_rad = angle_of(value_deg)
     written = degrees_of(angle_rad)
     assert angle_of(written) == angle_rad
@@ -78,7 +78,7 @@ def test_an_angle_is_written_without_loss(value_deg):
 
 @given(st.integers(-150_000, 150_000))
 def test_a_short_number_stays_as_it_was(thousandths):
-    """Rules 2: 45 is written as 45, never as 45.00000000000001."""
+    """45 degrees are written as 45, never as 45.00000000000001."""
     assert degrees_of(math.radians(thousandths / 1000)) == thousandths / 1000
 
 
@@ -91,7 +91,7 @@ def test_a_short_number_stays_as_it_was(thousandths):
     st.sampled_from(["\t", "   "]),
 )
 def test_a_written_text_reads_back(table, encoding, line_end, gap):
-    """Rules 2: any table, in any encoding, with any line ends, with tabs or spaces."""
+    """Any table reads back, in any encoding, with any line ends, with tabs or spaces."""
     labels = leg_labels(table.joints // 3)
     text = write_gait(table, labels).decode().replace("\n", line_end).replace("\t", gap)
     assert read_gait(text.encode(encoding), "x", legs=labels) == table
@@ -101,7 +101,7 @@ def test_a_written_text_reads_back(table, encoding, line_end, gap):
 @settings(patient)
 @given(posture_tables_of(degrees.map(lambda value: float(f"{value:.15g}"))))
 def test_a_written_workbook_reads_back(table):
-    """Rules 2: any posture table of the 15 digits that spreadsheets keep, through a workbook."""
+    """A table whose numbers have 15 digits reads back from a workbook, which keeps no more."""
     labels = leg_labels(table.joints // 3)
     assert read_workbook(write_workbook(table, labels), "x", legs=labels) == table
 
@@ -110,7 +110,7 @@ def test_a_written_workbook_reads_back(table):
 @patient
 @given(posture_tables)
 def test_postures_to_locomotion_and_back(table):
-    """The different postures of a locomotion are the postures it was joined from."""
+    """A table turned into locomotion and back has the same postures."""
     keys = tuple((digit,) for digit in table.postures)
     back = to_postures(to_locomotion(table, keys))
     assert set(back.postures.values()) == set(table.postures.values())
@@ -118,7 +118,7 @@ def test_postures_to_locomotion_and_back(table):
 
 @given(st.one_of(st.binary(), st.text().map(str.encode), st.text("01 \t\n,.-4Key\"'\0NumofPsure")))
 def test_any_bytes_are_read_or_refused(data):
-    """Rules 2: bytes that are not a gait raise only FileRefused, with a mistake."""
+    """Any bytes are read as a gait, or refused with at least one mistake."""
     assert mistakes_of(read_gait, data if isinstance(data, bytes) else data.encode()) != []
 
 
@@ -130,7 +130,7 @@ changes = st.lists(
 
 
 def changed(data: bytes, edits: list[tuple[int, int, bytes]]) -> bytes:
-    """Data with bytes put in, taken out or replaced."""
+    """Return the data with bytes put in, taken out or replaced."""
     for place, kind, new in edits:
         end = place + (0, len(new), len(new))[kind]
         data = data[:place] + (b"" if kind == 1 else new) + data[end:]
@@ -141,7 +141,7 @@ def changed(data: bytes, edits: list[tuple[int, int, bytes]]) -> bytes:
 @patient
 @given(st.one_of(posture_tables, locomotion_tables), encodings, changes)
 def test_a_damaged_text_is_read_or_refused(table, encoding, edits):
-    """Rules 2: a file with some bytes wrong is a gait of the same kind of robot, or refused."""
+    """A text with some wrong bytes is read as a gait, or refused with at least one mistake."""
     text = write_gait(table, leg_labels(table.joints // 3)).decode()
     data = changed(text.encode(encoding)[:MAX_BYTES], edits)
     assert mistakes_of(read_gait, data) != []
@@ -150,7 +150,7 @@ def test_a_damaged_text_is_read_or_refused(table, encoding, edits):
 @settings(patient)
 @given(st.binary(max_size=200), st.sampled_from([b"", b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1"]))
 def test_any_bytes_are_no_workbook(data, start):
-    """Rules 2: bytes that are not a workbook raise only FileRefused."""
+    """Any bytes that are not a workbook raise FileRefused."""
     with pytest.raises(FileRefused):
         read_workbook(start + data, "x")
 
@@ -162,7 +162,7 @@ PARTS = sorted(zipfile.ZipFile(io.BytesIO(SAMPLE)).namelist())
 @settings(patient)
 @given(st.integers(0, len(SAMPLE)), st.binary(min_size=1, max_size=4), st.booleans())
 def test_a_damaged_workbook_is_read_or_refused(place, new, cut):
-    """Rules 2: damage to the zip is found, or was where nothing is read."""
+    """A workbook with damaged bytes is read, or refused with at least one mistake."""
     data = SAMPLE[:place] if cut else SAMPLE[:place] + new + SAMPLE[place + len(new) :]
     assert mistakes_of(read_workbook, data) != []
 
@@ -171,7 +171,7 @@ def test_a_damaged_workbook_is_read_or_refused(place, new, cut):
 @settings(patient)
 @given(st.sampled_from(PARTS), st.data())
 def test_a_workbook_with_wrong_parts_is_read_or_refused(part, draw):
-    """Rules 2: whole zips whose XML is wrong in any part."""
+    """A workbook with wrong XML in one part is read, or refused with at least one mistake."""
     stream = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(SAMPLE)) as old, zipfile.ZipFile(stream, "w") as new:
         for name in old.namelist():

@@ -47,30 +47,30 @@ FIGURE_4_2 = """\
 
 
 def _row(first: str) -> bytes:
-    """A Loco-data text of one posture, whose first angle is written in some way."""
+    """Return a Loco-data text of one posture, with the given text as its first angle."""
     return f"Num of Posture\t1\n0 Key\t{first}{chr(9)}0".encode() + b"\t0" * 16 + b"\n"
 
 
 def test_figure_4_1_is_read(workshop, legs):
-    """Fig. 4-1, rules 2: the workshop's Loco-data is its nine postures."""
+    """The text of Fig. 4-1 reads as the workshop's nine postures."""
     assert read_gait(FIGURE_4_1.encode(), "Loco-data.txt", legs=legs) == workshop
 
 
 def test_figure_4_2_is_read(workshop, legs):
-    """Fig. 4-2, rules 2: 18 lines; stand, turn left, forward, turn right."""
+    """The 18 lines of Fig. 4-2 read as the sample keys: stand, turn left, forward, turn right."""
     assert len(FIGURE_4_2.splitlines()) == 18
     table = read_gait(FIGURE_4_2.encode(), "LocoTra-data.txt", legs=legs)
     assert table == to_locomotion(workshop, SAMPLE_KEYS)
 
 
 def test_the_figures_are_written(workshop, legs):
-    """Rules 2: a writer writes the layout of Fig. 4-1 and Fig. 4-2, legend rows and all."""
+    """We write the layout of Fig. 4-1 and Fig. 4-2, legend rows included."""
     assert write_gait(workshop, legs).decode() == FIGURE_4_1
     assert write_gait(to_locomotion(workshop, SAMPLE_KEYS), legs).decode() == FIGURE_4_2
 
 
 def test_writing_for_other_legs_is_an_error(workshop):
-    """A table is never written with labels that don't fit it."""
+    """Writing a table with labels for another number of legs raises ValueError."""
     with pytest.raises(ValueError, match="18 joints is not for 4 legs"):
         write_gait(workshop, ("a", "b", "c", "d"))
 
@@ -104,12 +104,12 @@ def test_writing_for_other_legs_is_an_error(workshop):
     ],
 )
 def test_numbers_may_be_written_in_many_ways(cell, degrees):
-    """Rules 2: points, commas, exponents, full-width digits, minus signs, quotes."""
+    """A number may have a comma, an exponent, full-width digits, any minus sign or quotes."""
     assert read_gait(_row(cell), "x").postures[0][0] == math.radians(degrees)
 
 
 def test_zero_has_one_sign():
-    """A written -0 is 0: equal files give equal bits."""
+    """A written -0.0 reads as +0.0, so that equal files give equal bits."""
     assert math.copysign(1, read_gait(_row("-0.0"), "x").postures[0][0]) == 1
 
 
@@ -155,7 +155,7 @@ def test_zero_has_one_sign():
     ],
 )
 def test_layouts_that_mean_the_same(text, change):
-    """Rules 2: tabs or runs of spaces, line ends, blank lines, trailing cells, legend or none."""
+    """Line ends, blank lines, spaces for tabs and a missing legend do not change what is read."""
     plain = read_gait(text.encode(), "x")
     assert read_gait(change(text).encode(), "x") == plain
 
@@ -174,20 +174,20 @@ def test_layouts_that_mean_the_same(text, change):
     ],
 )
 def test_encodings(text, encode):
-    """Rules 2: BOM, else UTF-16 by its NUL pattern, else strict UTF-8, else cp932."""
+    """A text reads the same in UTF-8, UTF-16 and Shift-JIS, with or without a byte order mark."""
     japanese = text.replace("ID of Joint", "関節").replace("45", "４５").replace("-", "－")
     assert read_gait(encode(japanese), "x") == read_gait(text.encode(), "x")
 
 
 def test_a_row_without_a_tab_is_split_by_spaces_on_its_own():
-    """Rules 2: tabs or spaces is decided for each row."""
+    """Each row is split by tabs or by spaces on its own."""
     lines = FIGURE_4_1.splitlines()
     lines[3] = lines[3].replace("\t", "  ")
     assert read_gait("\n".join(lines).encode(), "x") == read_gait(FIGURE_4_1.encode(), "x")
 
 
 def test_the_order_and_the_choice_of_keys_is_free():
-    """Rules 2: keys 0-9, each once; a file needs not have all, nor in order."""
+    """A file may leave out keys and list them in any order."""
     angles = "\t0" * 18
     table = read_gait(f"Num of Posture\t2\n9 Key{angles}\n3 Key{angles}\n".encode(), "x")
     assert sorted(table.postures) == [3, 9]
@@ -195,7 +195,7 @@ def test_the_order_and_the_choice_of_keys_is_free():
 
 @pytest.mark.parametrize("legs", [4, 6, 8])
 def test_three_columns_a_leg(legs):
-    """Rules 2: a robot with 4, 6 or 8 legs has 12, 18 or 24 columns."""
+    """A robot with 4, 6 or 8 legs has 12, 18 or 24 columns."""
     row = "\t".join(["10"] * (3 * legs))
     data = f"1\n1\n{row}\n".encode()
     for known in (None, legs, [str(leg) for leg in range(legs)]):
@@ -203,7 +203,7 @@ def test_three_columns_a_leg(legs):
 
 
 def test_the_largest_files_are_read():
-    """Rules 2: 10 postures; 10 keys, and 100 postures for a key."""
+    """Loco-data may have 10 postures, and LocoTra-data 10 keys and 100 postures for a key."""
     angles = "\t0" * 18
     rows = "".join(f"{digit} Key{angles}\n" for digit in range(10))
     assert len(read_gait(f"Num of Posture\t10\n{rows}".encode(), "x").postures) == 10
@@ -213,7 +213,7 @@ def test_the_largest_files_are_read():
 
 
 def test_at_most_32_kib():
-    """Rules 2: a file of 32 KiB is read, one of a byte more is refused."""
+    """A file of 32 KiB is read, and one that is a byte longer is refused (rules 2)."""
     data = FIGURE_4_1.encode().ljust(MAX_BYTES, b"\n")
     assert isinstance(read_gait(data, "x"), PostureTable)
     with pytest.raises(FileRefused, match="32769 bytes, expected a gait file of at most 32 KiB"):
@@ -221,7 +221,7 @@ def test_at_most_32_kib():
 
 
 def test_a_range_for_each_joint():
-    """Rules 1: a robot file may allow less than 150 degrees, and differently for each joint."""
+    """A robot file may allow each joint its own range, within the limits of rules 1."""
     data = FIGURE_4_2.encode()
     limits = [(-45.0, 45.0)] * 6 + [(0.0, 20.0)] * 6 + [(0.0, 40.0)] * 6
     assert isinstance(read_gait(data, "x", legs=6, range_deg=limits), LocomotionTable)
@@ -246,14 +246,14 @@ def test_a_range_for_each_joint():
     ids=["lines", "mistakes", "tabs"],
 )
 def test_garbage_is_refused_soon(data: bytes, count: int) -> None:
-    """A court reads files within a beat: it stops where no gait could go on."""
+    """Garbage is refused quickly: reading stops where no gait could follow."""
     with pytest.raises(FileRefused) as refusal:
         read_gait(data, "Loco-data.txt")
     assert len(refusal.value.mistakes) == count
 
 
 def test_a_mirrored_sheet_shows_empty_cells_as_0():
-    """LibreOffice saves them so, in the header, in the legend and in whole rows below it."""
+    """A 0 that LibreOffice saves for an empty cell of the header or legend is ignored."""
     rows = [line.split("\t") for line in [*FIGURE_4_1.splitlines(), "", "", ""]]
     mirrored = "\n".join("\t".join(c or "0" for c in (row + [""] * 19)[:19]) for row in rows)
     assert mirrored.startswith("Num of Posture\t9\t0\t0")
@@ -261,7 +261,7 @@ def test_a_mirrored_sheet_shows_empty_cells_as_0():
 
 
 def test_what_stands_below_the_legend_is_said():
-    """It is not read, and a row of zeros says nothing: a sheet shows empty cells so."""
+    """Text below the legend gives a note that it is not read; a row of zeros there gives none."""
     notes: list[Phrase] = []
     text = f"{FIGURE_4_1.rstrip()}\nmade by Anna\t2026\n" + "\t".join("0" * 19)
     read_gait(text.encode(), "x", notes=notes)
@@ -280,7 +280,7 @@ def test_what_stands_below_the_legend_is_said():
     ],
 )
 def test_a_legend_that_contradicts_the_columns_is_said(was, now, said):
-    """The columns count; a legend that contradicts them is reported before the match."""
+    """A legend that contradicts the order of the columns gives a note, and the order is used."""
     notes: list[Phrase] = []
     assert was in FIGURE_4_1
     text = FIGURE_4_1.replace(was, now)

@@ -22,12 +22,12 @@ from lacoc_shared.mistakes import FileRefused, UserError
 
 @pytest.fixture(scope="module")
 def sample(workshop, legs) -> bytes:
-    """The workshop's table as we write it."""
+    """Give the workshop's table as a workbook that we wrote."""
     return write_workbook(workshop, legs)
 
 
 def edited(data: bytes, sheet: str = INPUT_SHEET, **cells: object) -> bytes:
-    """A workbook with other values in some cells, saved by a program that doesn't calculate."""
+    """Return a workbook with new values in cells, saved by a program that can't calculate."""
     book = openpyxl.load_workbook(io.BytesIO(data))
     for cell, value in cells.items():
         book[sheet][cell] = value
@@ -35,14 +35,14 @@ def edited(data: bytes, sheet: str = INPUT_SHEET, **cells: object) -> bytes:
 
 
 def saved(book: openpyxl.Workbook) -> bytes:
-    """The bytes of a workbook."""
+    """Return the bytes of a workbook."""
     stream = io.BytesIO()
     book.save(stream)
     return stream.getvalue()
 
 
 def refused(data: bytes, **robot: object) -> list[tuple[object, ...]]:
-    """Why a workbook is refused."""
+    """Return the mistakes for which a workbook is refused, as rows of a table."""
     with pytest.raises(FileRefused) as refusal:
         read_workbook(data, "x.xlsx", **robot)
     assert {m.file for m in refusal.value.mistakes} == {"x.xlsx"}
@@ -53,7 +53,7 @@ def refused(data: bytes, **robot: object) -> list[tuple[object, ...]]:
 
 
 def test_both_sheets_have_the_cells_of_figure_4_1(sample, workshop, legs):
-    """Fig. 4-1, rules 2: both sheets hold the table from A1, one as values, one as formulas."""
+    """Both sheets hold the table of Fig. 4-1 from cell A1, one as values and one as formulas."""
     values = openpyxl.load_workbook(io.BytesIO(sample), data_only=True)
     assert values.sheetnames == [INPUT_SHEET, MIRROR_SHEET]
     text = [line.split("\t") for line in write_gait(workshop, legs).decode().splitlines()]
@@ -70,7 +70,7 @@ def test_both_sheets_have_the_cells_of_figure_4_1(sample, workshop, legs):
 
 
 def test_the_mirror_is_made_of_live_formulas_with_values(sample):
-    """Rules 2: live formulas, and cached values for programs that don't calculate."""
+    """The formulas come with their values, for programs that don't calculate."""
     formulas = openpyxl.load_workbook(io.BytesIO(sample))[MIRROR_SHEET]
     values = openpyxl.load_workbook(io.BytesIO(sample), data_only=True)
     for row in formulas["A1:S13"]:
@@ -81,12 +81,12 @@ def test_the_mirror_is_made_of_live_formulas_with_values(sample):
 
 
 def test_a_workbook_is_the_same_file_each_time(sample, workshop, legs):
-    """The same table makes the same bytes: no date, no random name."""
+    """The same table always gives the same bytes, without a date or a random name."""
     assert write_workbook(workshop, legs) == sample
 
 
 def test_the_edited_sheet_is_what_counts(sample, workshop):
-    """Rules 2: "EX (input)" is read with no "Save as" step, whatever the mirror still shows."""
+    """The sheet "EX (input)" is read, even if the formulas' stored values are older (rules 2)."""
     table = read_workbook(edited(sample, B2=-22.5, C2="３０,５"), "x")
     assert table.postures[0][:3] == (
         math.radians(-22.5),
@@ -97,14 +97,14 @@ def test_the_edited_sheet_is_what_counts(sample, workshop):
 
 
 def test_loco_data_alone_is_read(sample, workshop):
-    """Rules 2: the sheet "Loco-data" is read where it is the only one."""
+    """A workbook that has only the sheet "Loco-data" is read."""
     book = openpyxl.load_workbook(io.BytesIO(sample), data_only=True)
     del book[INPUT_SHEET]
     assert read_workbook(saved(book), "x") == workshop
 
 
 def test_formulas_that_show_nothing_are_empty_cells(sample, workshop):
-    """Rules 2: of live formulas the kept values are read, and "" is an empty cell."""
+    """The stored value of a formula is read, and the value "" is read as an empty cell."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     mirror = b'<sheet name="Loco-data" sheetId="2" r:id="rId2"/>'
@@ -115,7 +115,7 @@ def test_formulas_that_show_nothing_are_empty_cells(sample, workshop):
 
 
 def test_a_typed_table_is_read():
-    """Rules 2: a plain workbook is enough: no legend, blank rows, numbers as text."""
+    """A plain workbook without a legend, with blank rows and numbers as text, is read."""
     book = openpyxl.Workbook()
     sheet = book.active
     sheet.title = INPUT_SHEET
@@ -127,7 +127,7 @@ def test_a_typed_table_is_read():
 
 
 def test_three_planted_mistakes_are_three_mistakes_with_their_cells(sample, legs):
-    """Rules 2: every mistake, with row, column, cell, joint id and leg."""
+    """Every mistake is listed with its row, column, cell, joint and leg."""
     data = edited(sample, E3=151, M6="abc", T2=1, S10=True)
     angle = "an angle from -150 to 150 degrees"
     many = "18 angles (3 for each of 6 legs)"
@@ -140,7 +140,7 @@ def test_three_planted_mistakes_are_three_mistakes_with_their_cells(sample, legs
 
 
 def test_empty_cells_and_formulas_without_a_value(sample):
-    """Rules 2: an empty cell is a mistake; a formula that nobody calculated says so."""
+    """An empty cell is a mistake, and so is a formula without a stored value."""
     found = [mistake[4:6] for mistake in refused(edited(sample, B2=None, C2="=D2*2"))]
     assert found == [
         ("EX (input)!B2", "nothing"),
@@ -149,7 +149,7 @@ def test_empty_cells_and_formulas_without_a_value(sample):
 
 
 def test_a_workbook_for_another_robot_is_called_so(sample):
-    """Rules 2: a gait for another robot says so clearly."""
+    """A workbook for another robot is refused; the message has the number of legs of both."""
     ((row, column, *_, found, expected),) = refused(sample, legs=8)
     assert (row, column) == (2, None)
     assert found == "18 angles in a row: a gait for a robot with 6 legs"
@@ -157,7 +157,7 @@ def test_a_workbook_for_another_robot_is_called_so(sample):
 
 
 def test_sequences_are_not_for_workbooks():
-    """Rules 2: a workbook holds Loco-data."""
+    """A workbook with sequences of postures is refused: they belong in LocoTra-data.txt."""
     book = openpyxl.Workbook()
     book.active.title = INPUT_SHEET
     for row in [1], [1], [0] * 18:
@@ -170,13 +170,13 @@ def test_sequences_are_not_for_workbooks():
 
 
 def test_a_workbook_is_not_told_to_be_a_text_file(sample):
-    """Rules 2: a message about a workbook cell gives no advice for text files."""
+    """A message about a workbook gives no advice for text files."""
     mistakes = refused(edited(sample, A1="Number"))
     assert mistakes[0][5:] == ('"Number"', '"Num of Posture" and their number (Loco-data)')
 
 
 def test_other_sheets_are_named():
-    """Rules 2: a workbook without the sheet says which sheets it has."""
+    """A workbook without the expected sheet is refused, and the message names its sheets."""
     book = openpyxl.Workbook()
     book.create_sheet(MIRROR_SHEET)
     assert refused(saved(book))[0][5:] == (
@@ -186,7 +186,7 @@ def test_other_sheets_are_named():
 
 
 def zipped(parts: dict[str, bytes]) -> bytes:
-    """A zip file."""
+    """Return a zip file with these parts."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in parts.items():
@@ -195,7 +195,7 @@ def zipped(parts: dict[str, bytes]) -> bytes:
 
 
 def locked(data: bytes) -> bytes:
-    """A zip whose parts say that they have a password."""
+    """Return a zip with every part marked as protected by a password."""
     data = bytearray(data)
     for signature, flags in ((b"PK\x01\x02", 8), (b"PK\x03\x04", 6)):
         place = data.find(signature)
@@ -242,12 +242,12 @@ WANTED = "an .xlsx workbook without a password, as spreadsheet programs save it"
     ids=["empty", "text", "cut", "old", "zip", "xml", "password", "bomb", "ods", "docx", "large"],
 )
 def test_what_is_no_workbook(data, found, expected):
-    """Rules 2: other files are refused in words."""
+    """A file that is not a workbook is refused with words that say what it seems to be."""
     assert refused(data) == [(None, None, None, None, None, found, expected)]
 
 
 def test_an_entity_bomb_is_refused(sample):
-    """A part that would grow without end when parsed is refused."""
+    """A workbook that defines XML entities is refused, as parsing could need endless memory."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     entities = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 20}">' for n in range(1, 12))
@@ -263,7 +263,7 @@ def test_an_entity_bomb_is_refused(sample):
     "content", ["<si/>" * 60_000, "<si><t>a</t></si>" * 30_000], ids=["empty", "strings"]
 )
 def test_more_xml_than_a_table_has_is_refused(sample, content):
-    """What is small to unpack may still be long to read."""
+    """A workbook of more than 50,000 XML elements is refused, even if it unpacks to few bytes."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
@@ -272,7 +272,7 @@ def test_more_xml_than_a_table_has_is_refused(sample, content):
 
 
 def test_a_row_far_below_costs_nothing(sample):
-    """A sheet that says it is the largest there can be is read at once."""
+    """A sheet that claims the largest possible size is read without delay."""
     with zipfile.ZipFile(io.BytesIO(sample)) as archive:
         parts = {name: archive.read(name) for name in archive.namelist()}
     sheet = parts["xl/worksheets/sheet1.xml"]
@@ -284,7 +284,7 @@ def test_a_row_far_below_costs_nothing(sample):
 
 
 def test_a_file_is_told_by_its_content(tmp_path, sample, workshop, legs):
-    """Rules 2: the content decides whether a file is a text or a workbook, not its name."""
+    """The content decides whether a file is a text or a workbook; its name does not."""
     locomotion = to_locomotion(workshop, SAMPLE_KEYS)
     for name, data, table in (
         ("Loco-data.xlsx", sample, workshop),
@@ -298,6 +298,6 @@ def test_a_file_is_told_by_its_content(tmp_path, sample, workshop, legs):
 
 
 def test_a_file_that_is_not_there(tmp_path):
-    """One sentence with the name and the reason."""
+    """A missing file gives one sentence with its name and the reason."""
     with pytest.raises(UserError, match=r"Cannot read .*none\.txt: No such file or directory\."):
         read_gait_file(tmp_path / "none.txt")

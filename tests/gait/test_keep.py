@@ -1,4 +1,4 @@
-"""Writing never overwrites (workshop 4-1, rules 2)."""
+"""Writing a file never overwrites an older one (workshop 4-1, rules 2)."""
 
 import threading
 
@@ -9,7 +9,7 @@ from lacoc_shared.mistakes import UserError
 
 
 def test_older_files_are_kept_with_numbers(tmp_path):
-    """Rules 2: the older file is kept with a number; a number is used once."""
+    """Saving keeps each older file under the next free number."""
     path = tmp_path / "Loco-data.txt"
     assert save(path, b"one") is None
     assert save(path, b"two") == tmp_path / "Loco-data.1.txt"
@@ -23,7 +23,7 @@ def test_older_files_are_kept_with_numbers(tmp_path):
 
 
 def test_a_number_that_is_taken_is_left_alone(tmp_path):
-    """Rules 2: a file that has a number already is not overwritten either."""
+    """Saving does not overwrite a file that already has the next number."""
     (tmp_path / "a.1").write_bytes(b"mine")
     (tmp_path / "a").write_bytes(b"old")
     assert save(tmp_path / "a", b"new") == tmp_path / "a.2"
@@ -31,14 +31,14 @@ def test_a_number_that_is_taken_is_left_alone(tmp_path):
 
 
 def test_making_room_without_a_file(tmp_path):
-    """Nothing is made where nothing is in the way."""
+    """Making room creates and renames nothing where no file is in the way."""
     assert make_room(tmp_path / "a.txt") is None
     assert make_room(tmp_path / "none" / "a.txt") is None
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_link_is_moved_not_followed(tmp_path):
-    """A link, even to nothing, is kept like a file; what it leads to stays."""
+    """Saving over a link renames the link itself, even when its target is missing."""
     (tmp_path / "a.txt").symlink_to(tmp_path / "gone.txt")
     assert save(tmp_path / "a.txt", b"new") == tmp_path / "a.1.txt"
     assert (tmp_path / "a.1.txt").is_symlink()
@@ -46,7 +46,7 @@ def test_a_link_is_moved_not_followed(tmp_path):
 
 
 def test_what_cannot_be_written_is_said(tmp_path):
-    """A folder of that name, or no folder to write in."""
+    """Saving over a folder, or into a missing folder, raises UserError with the reason."""
     with pytest.raises(UserError, match="a folder has this name"):
         save(tmp_path, b"")
     with pytest.raises(UserError, match="No such file or directory"):
@@ -54,7 +54,7 @@ def test_what_cannot_be_written_is_said(tmp_path):
 
 
 def test_writers_at_once_lose_nothing(tmp_path):
-    """Rules 2: programs that write the same file at once keep every version."""
+    """Threads that save the same file at the same moment keep every version."""
     path = tmp_path / "a.txt"
     writers = [threading.Thread(target=save, args=(path, str(n).encode())) for n in range(8)]
     for writer in writers:

@@ -1,7 +1,7 @@
-"""`make mutants`: change the code of the judges bit by bit, and see whether a test notices.
+"""`make mutants`: change the code of the rules and the match bit by bit, and see if a test notices.
 
-mutmut makes the mutants, in a copy of the tree under build/mutants, and runs for each of them
-the tests that reach it. What it can't reach (class bodies, tables, properties) is not mutated.
+mutmut makes the mutants in a copy of the tree under build/mutants, and runs for each mutant the
+tests that reach it. It does not mutate code that it can't reach: class bodies, tables, properties.
 """
 
 import argparse
@@ -25,7 +25,7 @@ CAUGHT = frozenset({"killed", "timeout", "segfault"})
 
 @dataclass(frozen=True)
 class Area:
-    """Modules that belong together, and the fast tests that hold them."""
+    """Modules that belong together, and the fast tests that check them."""
 
     name: str
     modules: tuple[str, ...]
@@ -105,7 +105,7 @@ PRELOAD = ("hypothesis", "mutation_plugin", "msgspec", "mujoco", "numpy", "pytes
 
 
 def main() -> None:
-    """Mutate, test, and say what survived."""
+    """Make the mutants, run the tests, and print which mutants survived."""
     parser = argparse.ArgumentParser(prog="python tests/mutation", description=__doc__)
     parser.add_argument("names", nargs="*", help="areas or modules (rules, referee.py); else all")
     parser.add_argument("--jobs", type=int, default=1, help="mutants tested at the same time")
@@ -140,7 +140,7 @@ def _run(area: Area, folder: Path, jobs: int) -> None:
     extra = {
         "PYTHONPATH": str(Path(__file__).parent),
         "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
-        "PYTHONDONTWRITEBYTECODE": "",  # every mutant imports all of it
+        "PYTHONDONTWRITEBYTECODE": "",  # compiled files save time
     }
     subprocess.run(
         [mutmut, "run", "--max-children", str(jobs)], cwd=folder, env=os.environ | extra, check=True
@@ -148,7 +148,7 @@ def _run(area: Area, folder: Path, jobs: int) -> None:
 
 
 def _outcomes(area: Area, folder: Path) -> dict[str, dict[str, str]]:
-    """For each module its mutants, and what became of each."""
+    """Return the mutants of each module with their outcomes."""
     return {
         module: {
             mutant: status_by_exit_code[code]

@@ -1,8 +1,8 @@
-"""A pytest plugin for mutmut: fair to what is imported, and quick.
+"""A pytest plugin that makes mutmut count calls at import correctly and run quickly.
 
-mutmut notes which functions each test calls, to run for a mutant only the tests that reach it.
-What a test module calls while it is imported would count for the first test alone; here it
-counts for every test of that module.
+mutmut notes which functions each test calls, so that a mutant runs only the tests that reach it.
+Functions that a test module calls at import would count for its first test only. This plugin counts
+them for every test of that module.
 """
 
 import functools
@@ -22,14 +22,14 @@ def _entries(group: str, path: tuple[str, ...]) -> importlib.metadata.EntryPoint
     return _entry_points(group=group)
 
 
-# Most of what a test of a match takes is reading who is installed.
+# Reading the installed packages takes most of the time of a match's test, so keep the result.
 importlib.metadata.entry_points = lambda group: _entries(group, tuple(sys.path))
 
 _CALLED = pytest.StashKey[frozenset[str]]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Let an example that fails do: no shrinking, no memory, and the same examples each time."""
+    """Run examples that are the same each time, without shrinking a failure or storing it."""
     phases = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
     hypothesis.settings.register_profile(
         "mutants", deadline=None, database=None, derandomize=True, phases=phases
@@ -41,7 +41,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_make_collect_report(
     collector: pytest.Collector,
 ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Note what a test module calls while it is imported."""
+    """Note which functions a test module calls while it is imported."""
     state()._stats.clear()
     report = yield
     collector.stash[_CALLED] = frozenset(state()._stats)
@@ -49,11 +49,11 @@ def pytest_make_collect_report(
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The quick tests first: most mutants fall before the long ones."""
+    """Put the quick tests first, since most mutants fail one of them."""
     items.sort(key=lambda item: state().duration_by_test.get(item.nodeid, 0.0))
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Count it for each of the module's tests."""
+    """Count the functions called at import for each of the module's tests."""
     for collector in item.listchain()[:-1]:
         state()._stats.update(collector.stash.get(_CALLED, ()))

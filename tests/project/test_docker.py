@@ -1,4 +1,4 @@
-"""The composition in docker/ works: each of its commands is run as a process on this machine."""
+"""The services in docker/ work together: each command runs here as a process, without Docker."""
 
 import json
 import os
@@ -28,7 +28,7 @@ PORT, WEB_PORT = "7447", "8080"
 
 
 def order() -> list[str]:
-    """The services, each after those it depends on."""
+    """Return the services' names, each after the services it depends on."""
     ordered: list[str] = []
     while len(ordered) < len(SERVICES):
         ready = [
@@ -42,7 +42,7 @@ def order() -> list[str]:
 
 
 def test_the_image_installs_what_a_court_needs() -> None:
-    """The image's command is lacoc, with an extra and a Python that the project has."""
+    """The image starts `lacoc`, with an extra and a Python version that the project supports."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
     assert 'ENTRYPOINT ["lacoc"]' in DOCKERFILE
@@ -52,7 +52,7 @@ def test_the_image_installs_what_a_court_needs() -> None:
 
 
 def test_the_services_hang_together() -> None:
-    """Every service runs the image; clients connect to the port that is opened."""
+    """All services use one image, and clients connect to the port that the court opens."""
     assert {service["image"] for service in SERVICES.values()} == {"lacoc"}
     assert SERVICES["court"]["ports"] == [f"{PORT}:{PORT}"]
     assert SERVICES["web"]["ports"] == [f"{WEB_PORT}:{WEB_PORT}"]
@@ -65,11 +65,11 @@ def test_the_services_hang_together() -> None:
 
 @pytest.mark.slow
 def test_the_composition_plays(tmp_path: Path) -> None:
-    """Started in their order, the services come to a match that is being played."""
+    """When the services start in their order, a match begins."""
     port, web_port = str(free_port()), str(free_port())
 
     def here(text: str) -> str:
-        """Return this machine's view of a container's folder."""
+        """Replace a container's folders, hosts and ports with those of this machine."""
         text = text.replace("/contest/", f"{tmp_path}/").replace("court:", "127.0.0.1:")
         return text.replace(PORT, port).replace(WEB_PORT, web_port)
 
@@ -97,14 +97,14 @@ def test_the_composition_plays(tmp_path: Path) -> None:
 
     assert any("takes the left seat" in line for line in heard)
     assert any("takes the right seat" in line for line in heard)
-    assert any("compose" in line for line in heard)  # who decided to start
+    assert any("compose" in line for line in heard)  # the name of the referee who started the match
 
 
 @contextmanager
 def lacoc(
     command: list[str], environment: dict[str, str], lines: "queue.Queue[str]", folder: Path
 ) -> Iterator[Lacoc]:
-    """A running subcommand whose output goes to a queue."""
+    """Run a subcommand and put its output lines into a queue."""
     clean = {key: value for key, value in os.environ.items() if not key.startswith("LACOC_")}
     with Lacoc(
         *command,
@@ -136,7 +136,7 @@ def wait_until_healthy(check: list[str], timeout_s: float = 60) -> None:
 
 
 def wait_for(lines: "queue.Queue[str]", word: str, timeout_s: float) -> list[str]:
-    """Return all output up to a word."""
+    """Return all output lines up to the first one that contains a word."""
     heard: list[str] = []
     until_s = time.monotonic() + timeout_s
     while not heard or word not in heard[-1]:

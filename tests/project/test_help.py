@@ -13,7 +13,7 @@ ROOT: Any = typer.main.get_command(cli.app)
 
 
 def walk(command: Any, path: tuple[str, ...]) -> Iterator[tuple[str, Any]]:
-    """Every command below one, with its name as it is typed."""
+    """Yield a command and all commands below it, each with its name as it is typed."""
     yield " ".join(path), command
     for name in command.list_commands(None) if hasattr(command, "list_commands") else ():
         yield from walk(command.get_command(None, name), (*path, name))
@@ -23,7 +23,7 @@ COMMANDS = dict(walk(ROOT, ("lacoc",)))
 
 
 def test_all_commands_of_the_contest_are_there() -> None:
-    """The commands that the README promises."""
+    """All commands that the help groups into panels exist."""
     expected = {name for names in cli._PANELS.values() for name in names}
 
     assert {name.split()[1] for name in COMMANDS if " " in name} >= expected
@@ -31,7 +31,7 @@ def test_all_commands_of_the_contest_are_there() -> None:
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_command_says_what_it_is_for(name: str) -> None:
-    """A first line that is a sentence and fits a list of commands."""
+    """A command's help begins with a sentence that is short enough for a list of commands."""
     text = COMMANDS[name].help or ""
     first = text.partition("\n\n")[0].replace("\n", " ")
 
@@ -42,7 +42,7 @@ def test_a_command_says_what_it_is_for(name: str) -> None:
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_option_and_argument_has_help(name: str) -> None:
-    """No option is left for people to guess."""
+    """Every option and argument has a help text."""
     silent = [
         param.name
         for param in COMMANDS[name].params
@@ -55,7 +55,7 @@ def test_every_option_and_argument_has_help(name: str) -> None:
 def test_help_is_shown_as_it_is_written(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Help runs and loses no words: square brackets are not read as styles."""
+    """`--help` shows words in square brackets, which could be taken for styles."""
     monkeypatch.setenv("COLUMNS", "100")
     with pytest.raises(SystemExit) as stop:
         cli.main([*name.split()[1:], "--help"])

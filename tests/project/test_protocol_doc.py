@@ -1,4 +1,4 @@
-"""docs/protocol.md says what the code says: every key, message and field, and no more."""
+"""docs/protocol.md describes every key expression, message and field of the code, and no others."""
 
 import hashlib
 import re
@@ -28,13 +28,13 @@ INPUTS = {str(kind.__struct_config__.tag): kind for kind in get_args(inputs.Inpu
 
 
 def rows(text: str) -> list[list[str]]:
-    """The cells of a table's rows, without its head."""
+    """Return the cells of a table's rows, without its two header lines."""
     lines = [line for line in text.splitlines() if line.startswith("|")]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
 
 
 def by_name(text: str) -> dict[str, list[str]]:
-    """A table of two key columns: name -> fields; an empty first cell goes on with the last."""
+    """Map each name in a table to its fields; a row without a name belongs to the name above it."""
     found: dict[str, list[str]] = {}
     name = ""
     for first, field, *_ in rows(text):
@@ -54,13 +54,13 @@ def section(title: str) -> str:
 
 
 def test_every_message_has_its_table_and_no_other() -> None:
-    """The messages of the page are those of `lacoc_shared.messages`."""
+    """The page has a section for each message of the code, and for no other."""
     assert set(SECTIONS) - {"Decisions"} == set(MESSAGES)
 
 
 @pytest.mark.parametrize("name", MESSAGES)
 def test_every_field_is_described_in_its_order(name: str) -> None:
-    """A table has the message's fields in their order, each with its unit or range."""
+    """A message's table lists all its fields in order, each with a unit or range."""
     table = rows(SECTIONS[name])
 
     assert [row[0].strip("`") for row in table] == fields(MESSAGES[name])
@@ -69,26 +69,26 @@ def test_every_field_is_described_in_its_order(name: str) -> None:
 
 @pytest.mark.parametrize("name", MESSAGES)
 def test_what_travels_as_an_array_says_so(name: str) -> None:
-    """A reader in another language needs to know which messages are arrays."""
+    """The page says for each message whether it travels as an array."""
     assert SECTIONS[name].lstrip().startswith("Array.") == bool(
         MESSAGES[name].__struct_config__.array_like
     )
 
 
 def test_every_decision_and_its_fields() -> None:
-    """The table of decisions is that of `lacoc_shared.decisions`, in the same order."""
+    """The table of decisions has those of `lacoc_shared.decisions`, in the same order."""
     expected = {name: fields(kind) for name, kind in DECISIONS.items()}
     assert list(by_name(SECTIONS["Decisions"]).items()) == list(expected.items())
 
 
 def test_every_input_and_its_fields() -> None:
-    """The table of inputs is that of `lacoc_shared.inputs`, in the same order."""
+    """The table of inputs has those of `lacoc_shared.inputs`, in the same order."""
     expected = {name: fields(kind) for name, kind in INPUTS.items()}
     assert list(by_name(section("Inputs of the record")).items()) == list(expected.items())
 
 
 def test_every_topic_of_a_record_and_its_message() -> None:
-    """The table of topics is that of `lacoc_shared.record.schema`, in the same order."""
+    """The table of topics has those of `lacoc_shared.record.schema`, in the same order."""
     table = rows(section("The record"))
     assert [row[0].strip("`") for row in table] == list(schema.KINDS)
     for (_, cell, _), kind in zip(table, schema.KINDS.values(), strict=True):
@@ -99,14 +99,14 @@ def test_every_topic_of_a_record_and_its_message() -> None:
 
 
 def test_a_scene_is_named_by_the_hash_that_the_page_says() -> None:
-    """Whoever keeps scenes by their hash makes the same one."""
+    """The page describes the hash that the code uses to name a scene."""
     assert "BLAKE2b of that digest size over the encoded [Scene]" in SECTIONS["Frame"]
     encoded = encode(messages.Scene(bodies=(), geoms=()))
     assert message_hash(encoded) == hashlib.blake2b(encoded, digest_size=8).digest()
 
 
 def test_every_key_expression() -> None:
-    """The key expressions of the page are those of `lacoc_shared.keyspace`."""
+    """The key expressions on the page are those of `lacoc_shared.keyspace`."""
     keys = keyspace.Keys("main")
     expected = {
         keys.frame,
@@ -129,7 +129,7 @@ def test_every_key_expression() -> None:
 
 
 def test_sizes_and_numbers() -> None:
-    """The limits, phases, flags and reasons of the page are the code's."""
+    """The limits, phases, flags and reasons on the page are the code's."""
     table = section("Key expressions")
     assert f"at most {keyspace.COMMAND_MAX_BYTES // 1024} KiB" in table
     assert f"at most {keyspace.DECISION_MAX_BYTES // 1024} KiB" in table

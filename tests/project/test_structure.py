@@ -1,4 +1,4 @@
-"""The packages read from the outside: no circle of imports, few rooms on the first level."""
+"""Imports form no circle, and a package has few modules and folders at its top level."""
 
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -12,18 +12,18 @@ PACKAGES = ("lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lac
 
 @pytest.fixture(scope="module")
 def imports() -> grimp.ImportGraph:
-    """Who imports whom, file by file, also where only types are needed."""
+    """Give the graph of imports between modules, including imports for types only."""
     return grimp.build_graph(*PACKAGES, exclude_type_checking_imports=False, cache_dir=None)
 
 
 def test_no_imports_form_a_circle(imports: grimp.ImportGraph) -> None:
-    """Every file can be understood after those that it imports."""
+    """No imports form a circle, so each file can be understood after the files it imports."""
     before = {name: imports.find_modules_directly_imported_by(name) for name in imports.modules}
 
-    TopologicalSorter(before).prepare()  # names the files of a circle
+    TopologicalSorter(before).prepare()  # raises CycleError with the files of a circle
 
 
 @pytest.mark.parametrize(("package", "most"), [("lacoc_server", 10), ("lacoc_shared", 16)])
 def test_a_newcomer_sees_few_rooms(imports: grimp.ImportGraph, package: str, most: int) -> None:
-    """The first level of a package is its architecture."""
+    """A package has few modules and folders at its top level, which show its architecture."""
     assert len(imports.find_children(package)) <= most

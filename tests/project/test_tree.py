@@ -1,4 +1,4 @@
-"""The tree is as CONTRIBUTING.md and docs/architecture.md say."""
+"""The files of the repository are as CONTRIBUTING.md and docs/architecture.md describe them."""
 
 import re
 import socket
@@ -19,7 +19,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 
 
 def tracked() -> list[Path]:
-    """All files that a clone has."""
+    """Return all files that git tracks."""
     listed = subprocess.run(
         ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=False
     )
@@ -29,18 +29,18 @@ def tracked() -> list[Path]:
 
 
 def test_the_version_is_said_once() -> None:
-    """pyproject.toml and lacoc_shared agree."""
+    """pyproject.toml and lacoc_shared have the same version."""
     assert PROJECT["version"] == lacoc_shared.__version__
 
 
 @pytest.mark.parametrize("package", PACKAGES, ids=lambda path: path.name)
 def test_a_package_is_typed(package: Path) -> None:
-    """Type checkers of other projects look at our types."""
+    """Each package has an empty py.typed file, so that type checkers use its types."""
     assert (package / "py.typed").read_bytes() == b""
 
 
 def test_there_are_five_rooms() -> None:
-    """The five rooms of docs/architecture.md."""
+    """The repository has the five packages of docs/architecture.md."""
     names = [package.name for package in PACKAGES]
     rooms = ["arenas", "client", "robots", "server", "shared"]
     assert sorted(names) == [f"lacoc_{room}" for room in rooms]
@@ -63,7 +63,7 @@ def test_a_sample_robot_is_complete_and_installed(robot: Path) -> None:
 
 
 def test_every_entry_point_is_there() -> None:
-    """No entry names a module that is not in the tree."""
+    """Every entry point names a module that exists."""
     entries = [
         entry.partition(":")[0]
         for group in PROJECT["entry-points"].values()
@@ -85,7 +85,7 @@ def test_nothing_of_the_machine_it_was_made_on_is_in_it() -> None:
     """No tracked text names this checkout's path, this home folder or this host."""
     host = socket.gethostname()
     own = [re.escape(f"{path}/") for path in (ROOT, Path.home()) if len(path.parts) > 1]
-    if len(host) > 3 and host != "localhost":  # "vm" says nothing of anybody
+    if len(host) > 3 and host != "localhost":  # a very short name would match ordinary text
         own.append(rf"\b{re.escape(host)}\b")
     pattern = re.compile("|".join(own).encode())
     found = [
@@ -98,7 +98,7 @@ def test_nothing_of_the_machine_it_was_made_on_is_in_it() -> None:
 
 
 def test_no_library_is_copied_in() -> None:
-    """The repository has no vendored folders, binaries or bundles."""
+    """The repository contains no copied libraries, binaries or bundles."""
     folders = {"vendor", "third_party", "node_modules", "site-packages", "_vendor"}
     suffixes = {".whl", ".so", ".dll", ".dylib", ".jar", ".exe", ".egg"}
     found = [
@@ -110,7 +110,7 @@ def test_no_library_is_copied_in() -> None:
 
 
 def test_links_in_the_documents_lead_somewhere() -> None:
-    """A Markdown link to a file of the project finds it."""
+    """Every Markdown link to a file of the project leads to a file."""
     link = re.compile(r"\]\((?!https?://|mailto:|#)([^)#\s]+)")
     broken = [
         f"{path.relative_to(ROOT)}: {target}"

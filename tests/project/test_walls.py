@@ -1,4 +1,4 @@
-"""The walls between the rooms stand: each is broken once in a copy, and found."""
+"""The import contracts hold, and each one notices an import that is planted to break it."""
 
 import shutil
 import subprocess
@@ -14,10 +14,10 @@ pytestmark = pytest.mark.slow
 
 
 def broken_walls(tree: Path) -> list[str]:
-    """Check the walls of a tree; returns the names of the broken ones.
+    """Check the import contracts of a source tree; return the names of the broken ones.
 
-    A tool's own folder is put before the installed packages: the copy is looked at, not the
-    checkout that is installed for editing.
+    The tree's own folders come first on the path. So the copy is checked, not the installed
+    checkout.
     """
     paths = [str(tree / room) for room in ROOMS]
     code = f"import sys; sys.path[:0] = {paths!r}; from importlinter.cli import lint_imports; "
@@ -39,7 +39,7 @@ def broken_walls(tree: Path) -> list[str]:
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    """A copy of the sources."""
+    """Give a copy of all packages and of pyproject.toml."""
     for room in ROOMS:
         shutil.copytree(
             ROOT / room, tmp_path / room, ignore=shutil.ignore_patterns("__pycache__", "web")
@@ -49,7 +49,7 @@ def tree(tmp_path: Path) -> Path:
 
 
 def test_the_walls_stand(tree: Path) -> None:
-    """Nothing in the project breaks a wall."""
+    """No import in the project breaks a contract."""
     assert broken_walls(tree) == []
 
 
@@ -83,7 +83,7 @@ CLIENT = "A client needs nothing of a court's"
         ("server/lacoc_server/doors/inbox.py", "import secrets", {PURE}),
         ("server/lacoc_server/court/health.py", "import time", {PURE}),
         ("shared/lacoc_shared/messages.py", "import lacoc_shared.gait.tables", {CONTRACT}),
-        ("shared/lacoc_shared/gait/tables.py", "import time", {PURE}),  # the rules stand on it
+        ("shared/lacoc_shared/gait/tables.py", "import time", {PURE}),  # the rules depend on it
         ("shared/lacoc_shared/marker_states.py", "import zenoh", {ZENOH, PURE}),
         ("server/lacoc_server/journal/replay.py", "from mujoco import mj_step", {MUJOCO}),
         ("server/lacoc_server/journal/replay.py", "import zenoh.ext", {ZENOH}),
@@ -94,7 +94,7 @@ CLIENT = "A client needs nothing of a court's"
     ],
 )
 def test_a_broken_wall_is_found(tree: Path, module: str, line: str, walls: set[str]) -> None:
-    """One planted import breaks the wall it goes through."""
+    """A planted import breaks exactly the contracts that forbid it."""
     path = tree / module
     path.write_text(path.read_text(encoding="utf-8") + f"\n{line}\n", encoding="utf-8")
 

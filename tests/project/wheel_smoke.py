@@ -1,8 +1,9 @@
-"""Install what a release ships, in clean environments, and try it: what a checkout never runs.
+"""Install what a release ships into clean environments and try it.
 
     python tests/project/wheel_smoke.py dist
 
-The wheel without MuJoCo is a contestant's machine, the source archive with it a court's.
+The wheel is installed without MuJoCo, as on a contestant's machine. The source archive is installed
+with MuJoCo, as on a court's machine.
 """
 
 import json
@@ -15,7 +16,7 @@ import urllib.request
 import venv
 from pathlib import Path
 
-_LIMIT_S = 300  # no command takes so long, unless it hangs
+_LIMIT_S = 300  # longer than any command needs, unless it hangs
 SAMPLE = "import lacoc_robots.samples.hexapod as robot; print(robot.__path__[0])"
 IMPORT_ALL = """
 import importlib, pkgutil
@@ -55,7 +56,7 @@ class Environment:
 
 
 def try_pages(env: Environment) -> None:
-    """The install contains the pages, and they need no Node."""
+    """Check that the gateway serves the installed pages on a machine without Node."""
     command = [str(env.bin / "lacoc"), "web", "--json", "--connect", "tcp/127.0.0.1:1"]
     with subprocess.Popen(
         command, cwd=env.folder, env={**os.environ, "PATH": str(env.bin)}, stdout=subprocess.PIPE
@@ -72,14 +73,14 @@ def try_pages(env: Environment) -> None:
 
 
 def fetch(url: str) -> str:
-    """What a gateway answers."""
+    """Return the text that a gateway sends for an address."""
     with urllib.request.urlopen(url, timeout=30) as response:
         text: str = response.read().decode()
         return text
 
 
 def try_both(env: Environment) -> None:
-    """Check what must work with and without MuJoCo."""
+    """Try what must work both with and without MuJoCo."""
     try_pages(env)
     env.run("lacoc", "--version")
     assert "practice" in env.run("lacoc", "--help").stdout
@@ -91,7 +92,7 @@ def try_both(env: Environment) -> None:
 
 
 def try_contestant(env: Environment) -> None:
-    """A contestant's machine: no MuJoCo, and a court says in one line how to get it."""
+    """Try a contestant's machine: without MuJoCo, `serve` says in one line how to install it."""
     try_both(env)
     env.run("python", "-c", IMPORT_ALL.format(packages=["lacoc_shared", "lacoc_client"]))
     error = env.run("lacoc", "serve", "--arena", "othello", code=2).stderr
@@ -102,7 +103,7 @@ def try_contestant(env: Environment) -> None:
 
 
 def try_court(env: Environment) -> None:
-    """A court's machine: every module imports, and a short match is played."""
+    """Try a court's machine: every module can be imported, and a short match can be played."""
     try_both(env)
     packages = ["lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lacoc_client"]
     env.run("python", "-c", IMPORT_ALL.format(packages=packages))
@@ -112,7 +113,7 @@ def try_court(env: Environment) -> None:
 
 
 def main(dist: Path) -> None:
-    """Try the newest wheel and source archive of a folder."""
+    """Try the wheel and the source archive in a folder."""
     (wheel,) = dist.glob("*.whl")
     (source,) = dist.glob("*.tar.gz")
     with tempfile.TemporaryDirectory(prefix="lacoc smoke ") as folder:

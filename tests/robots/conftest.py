@@ -13,19 +13,19 @@ Compile = Callable[..., mj.MjModel]
 
 @pytest.fixture
 def hexapod_text() -> str:
-    """The workshop's robot file."""
+    """Give the text of the workshop's robot file."""
     return find_robot("hexapod")[1].decode()
 
 
 @pytest.fixture
 def hexapod(hexapod_text: str) -> RobotSpec:
-    """The workshop's robot."""
+    """Give the workshop's robot."""
     return read_robot(hexapod_text, "robot.toml")
 
 
 @pytest.fixture
 def compile_world() -> Compile:
-    """Compile robots, one a seat, on a floor."""
+    """Give a function that compiles a floor with robots on it, one robot for each seat."""
 
     def compile_world(*robots: RobotSpec, degree: bool = True) -> mj.MjModel:
         world = mj.MjSpec()

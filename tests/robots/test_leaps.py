@@ -8,7 +8,7 @@ from lacoc_robots.standing import FARTHEST_M
 
 @pytest.mark.slow
 def test_no_robot_that_is_let_in_leaps() -> None:
-    """Thirty makers of robots: some break a limit, some can't stand, and those let in stay."""
+    """Among 35 robots made at random, each that the weigh-in accepts stays at its start place."""
     found = [judge(at_random(seed)) for seed in range(30)]
     farthest = max(found, key=lambda one: one.leap_m or 0.0)
     found += [judge(changed(farthest.candidate, seed)) for seed in range(5)]
@@ -16,4 +16,4 @@ def test_no_robot_that_is_let_in_leaps() -> None:
     refused_m = [one.tried_m for one in found if one.is_robot and one.leap_m is None]
     assert len(leaps_m) >= 5
     assert max(leaps_m) <= FARTHEST_M
-    assert max(refused_m) > 2 * FARTHEST_M  # there was something to find
+    assert max(refused_m) > 2 * FARTHEST_M  # some refused robots did leave it

@@ -19,7 +19,7 @@ def lacoc(*words: str) -> int:
 
 
 def test_check_weighs_in(capsys: pytest.CaptureFixture[str]) -> None:
-    """A robot that is right: legs, joints, mass, footprint, AngMin."""
+    """`robot check` prints the legs, joints, mass, size and AngMin of a correct robot."""
     assert lacoc("robot", "check", "hexapod") == 0
     out = capsys.readouterr().out
     for fact in (
@@ -40,7 +40,7 @@ def test_check_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_check_names_every_mistake(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Rules 2: a table of mistakes, exit code 2."""
+    """`robot check` prints a table of all mistakes of a robot file and exits with code 2."""
     file = tmp_path / "mine.toml"
     file.write_text(HEXAPOD.replace("kp = 20.0", "kp = nan").replace('"Hexapod"', "6"))
     assert lacoc("robot", "check", str(file)) == 2
@@ -51,7 +51,7 @@ def test_check_names_every_mistake(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_mistakes_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """--json prints every mistake as `gait check --json` does; a correct robot has none."""
+    """--json prints every mistake as JSON, with its field and what was found."""
     file = tmp_path / "mine.toml"
     file.write_text(HEXAPOD.replace("kp = 20.0", "kp = nan").replace('"Hexapod"', "6"))
     assert lacoc("robot", "check", "--json", str(file)) == 2
@@ -66,7 +66,7 @@ def test_mistakes_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_a_robot_file_that_is_not_utf_8(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], encoding: str
 ) -> None:
-    """An old editor saves Shift-JIS or UTF-16: the mistake says how to save it."""
+    """For a robot file in Shift-JIS or UTF-16, the mistake says to save it as UTF-8."""
     file = tmp_path / "mine.toml"
     file.write_bytes(HEXAPOD.replace("Hexapod", "六足").encode(encoding, "ignore"))
     assert lacoc("robot", "check", "--json", str(file)) == 2
@@ -78,7 +78,7 @@ def test_a_robot_file_that_is_not_utf_8(
 
 
 def test_an_integer_of_many_digits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Python refuses to read one of 6,000 digits; the mistake names the line and what to write."""
+    """A number with 6,000 digits is a mistake that names its line and what to write."""
     file = tmp_path / "mine.toml"
     file.write_text(HEXAPOD.replace("kp = 20.0", "kp = 2" + "0" * 6000))
     assert lacoc("robot", "check", "--json", str(file)) == 2
@@ -89,7 +89,7 @@ def test_an_integer_of_many_digits(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_check_by_a_contest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Rules 1: with --contest the contest's limits count."""
+    """With --contest, the limits of that contest apply."""
     contest = tmp_path / "contest.toml"
     assert lacoc("contest", "init", str(contest)) == 0
     assert lacoc("robot", "check", "hexapod", "--contest", str(contest)) == 0
@@ -99,7 +99,7 @@ def test_check_by_a_contest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 
 
 def test_list(capsys: pytest.CaptureFixture[str]) -> None:
-    """Every installed robot, with its legs, mass and AngMin."""
+    """`robot list` shows every installed robot; --json prints their facts, such as the legs."""
     assert lacoc("robot", "list") == 0
     out = capsys.readouterr().out
     assert all(name in out for name in ("hexapod", "long-legs", "octopod", "quadruped"))
@@ -108,7 +108,7 @@ def test_list(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_export_keeps_the_older_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Plain MJCF is written; rules 2: writing never overwrites a file."""
+    """`robot export` writes MJCF and keeps an older file under a number."""
     out = tmp_path / "out.xml"
     out.write_text("mine")
     assert lacoc("robot", "export", "hexapod", str(out)) == 0
@@ -120,7 +120,7 @@ def test_export_keeps_the_older_file(tmp_path: Path, capsys: pytest.CaptureFixtu
 def test_export_without_mujoco(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without MuJoCo one line says how to install it."""
+    """Without MuJoCo, `robot export` says in one line how to install it."""
     monkeypatch.delitem(sys.modules, "lacoc_robots.model", raising=False)
     monkeypatch.setitem(sys.modules, "mujoco", None)
     assert lacoc("robot", "export", "hexapod", str(tmp_path / "out.xml")) == 2
@@ -129,7 +129,7 @@ def test_export_without_mujoco(
 
 
 def test_nothing_there(capsys: pytest.CaptureFixture[str]) -> None:
-    """For an unknown robot the command prints one line and exits with 2."""
+    """For an unknown robot the command prints one line and exits with code 2."""
     assert lacoc("robot", "check", "centipede") == 2
     printed = capsys.readouterr()
     assert printed.err.count("\n") == 1

@@ -22,13 +22,13 @@ def mistakes_of(text: str | bytes, limits: Limits | None = None) -> list[Mistake
 
 
 def changed(old: str, new: str, count: int = 1) -> str:
-    """The hexapod's file with a line changed; `old` is matched as it stands."""
+    """Return the hexapod's file with a piece of text replaced."""
     assert old in HEXAPOD
     return HEXAPOD.replace(old, new, count)
 
 
 def test_workshop_robot(hexapod: RobotSpec) -> None:
-    """Rules 1: 6 legs of 3 joints, 1.115 kg, AngMin 1.2 degrees per 10 ms, +-150 degrees."""
+    """The workshop's robot has six legs of three joints, 1.115 kg, and turns 120 degrees/s."""
     assert hexapod.labels == ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")
     assert hexapod.joints == 18
     assert hexapod.size_m == (0.10, 0.12, 0.05)
@@ -40,7 +40,7 @@ def test_workshop_robot(hexapod: RobotSpec) -> None:
 
 
 def test_a_robot_of_exactly_3_kg() -> None:
-    """Rules 1, contest limits: a sum of decimal masses may miss the limit by a bit of binary."""
+    """Masses that add up to exactly 3 kg are allowed, in spite of rounding in binary (rules 1)."""
     text = changed("mass_kg = 0.125", "mass_kg = 0.048")
     heavy = text.replace("[0.055, 0.055, 0.055]", "[0.164, 0.164, 0.164]")
     assert read_robot(heavy.encode(), "mine.toml").mass_kg == pytest.approx(3)
@@ -49,7 +49,7 @@ def test_a_robot_of_exactly_3_kg() -> None:
 
 
 def test_start(hexapod: RobotSpec) -> None:
-    """Workshop 4-3.2: the body's underside starts at LEG_L + LEG_R above the floor."""
+    """The body's underside starts at LEG_L + LEG_R above the floor (workshop 4-3)."""
     assert hexapod.start_height_m == pytest.approx(0.04 + 0.015)
     assert hexapod.start_z_m == pytest.approx(0.055 + 0.025)
     assert hexapod.advance == "reached"
@@ -57,7 +57,7 @@ def test_start(hexapod: RobotSpec) -> None:
 
 
 def test_hold_is_whole_microseconds() -> None:
-    """Rules 3: advance "time" holds every posture for hold_s exactly."""
+    """With `advance = "time"`, hold_s is kept as whole microseconds."""
     text = changed('advance = "reached"', 'advance = "time"').replace(
         "hold_s = 0.0 ", "hold_s = 0.2 "
     )
@@ -66,7 +66,7 @@ def test_hold_is_whole_microseconds() -> None:
 
 
 def test_what_may_be_left_out() -> None:
-    """Drive, servo and surface are the workshop's where a file does not say them."""
+    """A robot file that leaves out drive, servo and surface gets the workshop's values."""
     lines = re.sub(r"(?ms)^\[drive\].*?(?=^# All legs)", "", HEXAPOD)
     assert "[servo]" not in lines
     assert read_robot(lines, "mine.toml") == read_robot(HEXAPOD, "mine.toml")
@@ -111,7 +111,7 @@ def test_what_may_be_left_out() -> None:
     ],
 )  # fmt: skip
 def test_one_mistake(old: str, new: str, field: str, found: str) -> None:
-    """Rules 2: a mistake has its place and says what was found there."""
+    """A mistake names the field that is wrong and what was found there."""
     places = {(m.field, found in m.found) for m in mistakes_of(changed(old, new))}
     assert (field, True) in places
 
@@ -143,7 +143,7 @@ def test_one_mistake(old: str, new: str, field: str, found: str) -> None:
     ],
 )  # fmt: skip
 def test_limits(old: str, inside: str, outside: str, field: str) -> None:
-    """Rules 1, contest limits: on the limit is allowed, beyond it is refused."""
+    """A value on a limit is allowed, and one beyond the limit is refused (rules 1)."""
     text = HEXAPOD.replace("height_m = 0.055", "height_m = 0.12") if "0.120" in inside else HEXAPOD
     if "hold_s = 0.02" in inside:
         text = text.replace("hold_s = 0.0 ", "# hold_s = 0.0 ")
@@ -154,7 +154,7 @@ def test_limits(old: str, inside: str, outside: str, field: str) -> None:
 
 @pytest.mark.parametrize(("legs", "allowed"), [(2, False), (4, True), (5, False), (6, True)])
 def test_number_of_legs(legs: int, allowed: bool) -> None:
-    """Rules 1: 4, 6 or 8 legs of 3 joints."""
+    """A robot must have 4, 6 or 8 legs of 3 joints (rules 1)."""
     head, *blocks = HEXAPOD.split("[[leg]]\n")
     kept = blocks[: legs - legs // 2] + blocks[6 - legs // 2 :]
     posture = f"posture_deg = {[20.0 * (legs <= j < 2 * legs) for j in range(3 * legs)]}"
@@ -167,7 +167,7 @@ def test_number_of_legs(legs: int, allowed: bool) -> None:
 
 
 def test_footprint_of_the_workshop_robot(hexapod: RobotSpec) -> None:
-    """Rules 1: extents at angle 0, with legs and their radius."""
+    """With every angle 0, the workshop's robot is 0.300 x 0.120 x 0.105 m, legs included."""
     low, high = hexapod.bounds((0.0,) * 18)
     extents_m = [b - a for a, b in zip(low, high, strict=True)]
     assert extents_m == pytest.approx([0.300, 0.120, 0.105])
@@ -178,7 +178,7 @@ def test_footprint_of_the_workshop_robot(hexapod: RobotSpec) -> None:
     [("wide", "width_m", 0.300), ("long", "length_m", 0.122), ("high", "height_m", 0.105)],
 )
 def test_footprint(axis: str, limit: str, extent_m: float) -> None:
-    """Rules 1: the robot at angle 0 fits in a box; one that fills it fits."""
+    """A robot that just fits the contest's box is allowed; in a box 1 mm smaller it is refused."""
     text = HEXAPOD.replace("[0.05, 0.045,", "[0.05, 0.047,")
     read_robot(text, "mine.toml", Limits(**{limit: extent_m}))
     (mistake,) = mistakes_of(text, Limits(**{limit: extent_m - 0.001}))
@@ -186,7 +186,7 @@ def test_footprint(axis: str, limit: str, extent_m: float) -> None:
 
 
 def test_a_leg_of_its_own(hexapod: RobotSpec) -> None:
-    """Workshop 4-3: a leg may have its own links; the others keep those of [link]."""
+    """A leg may have its own links and ranges; the other legs keep those of [link]."""
     own = "lengths_m = [0.02, 0.06, 0.07]\nmasses_kg = [0.1, 0.05, 0.05]\nrange_deg = [-90, 90]\n"
     text = HEXAPOD.replace('label = "R,C"\n', f'label = "R,C"\nradius_m = 0.014\n{own}')
     robot = read_robot(text, "mine.toml")
@@ -198,7 +198,7 @@ def test_a_leg_of_its_own(hexapod: RobotSpec) -> None:
 
 
 def test_all_mistakes_at_once() -> None:
-    """Rules 2: a file is refused whole, with every mistake listed, each once."""
+    """A file is refused as a whole, and every mistake is listed once (rules 2)."""
     text = changed("mass_kg = 0.125", "mass_kg = nan\ncolour = 1")
     text = text.replace("radius_m = 0.015", "radius_m = -1").replace("0.12, 0.05]", '0.12, "x"]')
     text = text.replace('"L,B"', '"R,B"').replace("45,  0, -45", "45, nan, 200")
@@ -218,20 +218,20 @@ def test_all_mistakes_at_once() -> None:
 
 
 def test_entries_of_a_short_list_are_looked_at() -> None:
-    """Rules 2: NaN is named in a list that is too short, too."""
+    """In a list that is too short, an entry that is not a number is still named."""
     fields = {(m.field, m.column) for m in mistakes_of(changed("[0.10, 0.12, 0.05]", "[0.1, nan]"))}
     assert fields == {("body.size_m", None), ("body.size_m", 2)}
 
 
 def test_on_the_edge_of_a_range() -> None:
-    """A range of whole degrees holds its ends, though 60 degrees in radians and back are not 60."""
+    """A posture at the ends of a range of whole degrees is allowed, in spite of rounding."""
     text = changed("[-150, 150]", "[-60, 60]").replace("-45, -45,  0, 45", "-60, -45,  0, 60")
     robot = read_robot(text, "mine.toml")
     assert robot.ranges_deg == ((-60.0, 60.0),) * 18
 
 
 def test_no_mistake_of_a_mistake() -> None:
-    """An unreadable number gives one mistake, not further ones that follow from it."""
+    """An unreadable number gives one mistake, without others that follow from it."""
     text = re.sub(r"(?s)posture_deg = \[.*?\n\]", f"posture_deg = {['nan'] * 18}", HEXAPOD)
     text = text.replace("height_m = 0.055", "height_m = 0.5").replace("'nan'", "nan", 17)
     assert {mistake.field for mistake in mistakes_of(text)} == {"start.posture_deg"}
@@ -270,18 +270,18 @@ def test_broken_toml_names_the_line() -> None:
     ],
 )
 def test_hostile_bytes(data: bytes, found: str) -> None:
-    """Bytes that are not a robot file give a mistake like any other."""
+    """Hostile bytes that are not a robot file give a mistake like any other."""
     assert any(found in mistake.found for mistake in mistakes_of(data))
 
 
 def test_mistakes_are_safe_to_print() -> None:
-    """A file can't send control characters to the terminal of the person who checks it."""
+    """A mistake never contains control characters that could reach a terminal."""
     for mistake in mistakes_of('"\\u001b[2J" = 1\nname = "\\u001b[31m"\n'):
         assert str(mistake).isprintable()
 
 
 def test_byte_order_mark() -> None:
-    """Windows' Notepad begins a UTF-8 file with a byte order mark; a robot file may have one."""
+    """A robot file may begin with a byte order mark, as Windows' Notepad writes it."""
     data = HEXAPOD.replace("\n", "\r\n").encode("utf-8-sig")
     assert read_robot(data, "mine.toml") == read_robot(HEXAPOD, "mine.toml")
 
@@ -299,7 +299,7 @@ def never_raises_otherwise(data: str | bytes) -> None:
 
 @given(st.binary(max_size=300) | st.text(max_size=300))
 def test_any_bytes(data: bytes | str) -> None:
-    """Whatever arrives, only FileRefused is raised."""
+    """Any bytes or text are read as a robot, or raise FileRefused."""
     never_raises_otherwise(data)
 
 
@@ -312,7 +312,7 @@ SCALARS = st.one_of(
 
 @given(st.data())
 def test_any_entry_replaced(data: st.DataObject) -> None:
-    """Whatever stands for a number in a robot file, only FileRefused is raised."""
+    """Any value in place of a number is read, or raises FileRefused."""
     numbers = list(re.finditer(r"(?m)(?<=[=\[,] )\s*-?\d+(\.\d+)?", HEXAPOD))
     text = HEXAPOD
     for at in sorted(data.draw(st.sets(st.integers(0, len(numbers) - 1), max_size=4)))[::-1]:
@@ -323,14 +323,14 @@ def test_any_entry_replaced(data: st.DataObject) -> None:
 
 @given(st.data())
 def test_any_lines_left_out(data: st.DataObject) -> None:
-    """Whatever lines a robot file lacks, only FileRefused is raised."""
+    """A robot file without some of its lines is read, or raises FileRefused."""
     lines = HEXAPOD.splitlines()
     out = data.draw(st.sets(st.integers(0, len(lines) - 1), max_size=8))
     never_raises_otherwise("\n".join(line for i, line in enumerate(lines) if i not in out))
 
 
 def test_limits_from_a_contest_file() -> None:
-    """Rules 1: each limit is a setting; a wrong one is named."""
+    """Each limit is a setting of the contest; an unknown name or wrong value raises UserError."""
     assert Limits.of({"mass_max_kg": 5}).mass_max_kg == 5.0
     with pytest.raises(UserError, match=r"mass_max\b.*mass_max_kg"):
         Limits.of({"mass_max": 5})
@@ -339,7 +339,7 @@ def test_limits_from_a_contest_file() -> None:
 
 
 def test_an_override_counts() -> None:
-    """Rules 1: a contest may allow more, or less, than the defaults."""
+    """A contest may allow more or less than the default limits (rules 1)."""
     fast = changed("ang_min_deg_s = 120", "ang_min_deg_s = 300")
     read_robot(fast, "mine.toml", Limits.of({"ang_min_deg_s": 300}))
     (mistake,) = mistakes_of(HEXAPOD, Limits.of({"ang_min_deg_s": 100}))

@@ -1,4 +1,4 @@
-"""Signs and lengths of rules 1, by pure forward kinematics."""
+"""The signs of joints (rules 1) and the lengths of links, checked by pure forward kinematics."""
 
 import math
 from itertools import pairwise
@@ -20,14 +20,14 @@ def turned(*joints: int, by_deg: float = 30.0) -> tuple[float, ...]:
 
 
 def test_feet_on_the_floor_at_angle_zero(hexapod: RobotSpec) -> None:
-    """Rules 1, lengths: with every angle 0 the foot is exactly on the floor, 135 mm out."""
+    """With every angle 0 the feet are exactly on the floor, 135 mm to the side of the middle."""
     for index, (*_, foot) in enumerate(hexapod.points(ZERO)):
         assert foot.z + hexapod.start_z_m == pytest.approx(0.0, abs=1e-12)
         assert foot.x == pytest.approx(0.135 if index in RIGHT else -0.135)
 
 
 def test_lengths_between_hinges(hexapod: RobotSpec) -> None:
-    """Rules 1, lengths: L0 = 15 mm, L1 = L2 = 70 mm from hinge to hinge, in any posture."""
+    """From hinge to hinge the links are 15, 70 and 70 mm long in any posture."""
     posture = tuple(math.radians(7 * j - 60) for j in range(18))
     for points in hexapod.points(posture):
         lengths = [math.dist(a, b) for a, b in pairwise(points)]
@@ -35,7 +35,7 @@ def test_lengths_between_hinges(hexapod: RobotSpec) -> None:
 
 
 def test_capsules_are_the_workshops(hexapod: RobotSpec) -> None:
-    """Rules 1, lengths: a link is 0.04 m of cylinder and two caps of 0.015 m; L0 is a sphere."""
+    """A link is a cylinder of 0.04 m with two caps of radius 0.015 m; the root link is a sphere."""
     for index, capsule in enumerate(hexapod.capsules(turned(*range(18)))):
         cylinder_m = math.dist(capsule.start, capsule.end)
         assert cylinder_m == pytest.approx(0.0 if index % 3 == 0 else 0.04, abs=1e-12)
@@ -43,7 +43,7 @@ def test_capsules_are_the_workshops(hexapod: RobotSpec) -> None:
 
 
 def test_legs_go_clockwise_from_the_right_front(hexapod: RobotSpec) -> None:
-    """Rules 1, leg numbers: 0 R,F - 1 R,C - 2 R,B - 3 L,B - 4 L,C - 5 L,F, by body axes."""
+    """Legs are numbered clockwise from the right front: R,F R,C R,B L,B L,C L,F (rules 1)."""
     for index, label in enumerate(hexapod.labels):
         side, place = label.split(",")
         foot = hexapod.points(ZERO)[index][3]
@@ -53,7 +53,7 @@ def test_legs_go_clockwise_from_the_right_front(hexapod: RobotSpec) -> None:
 
 @pytest.mark.parametrize("leg", range(6))
 def test_root_swings_forward_on_both_sides(hexapod: RobotSpec, leg: int) -> None:
-    """Rules 1, frames: root angle + swings the leg forward (+y) on both sides."""
+    """A positive angle of joints 0-5 swings the leg forward (+y), on both sides (rules 1)."""
     before, after = (hexapod.points(posture)[leg][3] for posture in (ZERO, turned(leg)))
     assert after.y - before.y == pytest.approx((0.135 - 0.05) * math.sin(math.radians(30)))
     assert after.z == pytest.approx(before.z)
@@ -62,7 +62,7 @@ def test_root_swings_forward_on_both_sides(hexapod: RobotSpec, leg: int) -> None
 
 @pytest.mark.parametrize("leg", range(6))
 def test_first_lifts_the_link(hexapod: RobotSpec, leg: int) -> None:
-    """Rules 1, frames: 1st + lifts the link."""
+    """A positive angle of joints 6-11 lifts the leg (rules 1)."""
     before, after = (hexapod.points(posture)[leg] for posture in (ZERO, turned(leg + 6)))
     assert after[2].z - before[2].z == pytest.approx(0.070 * math.sin(math.radians(30)))
     assert after[1] == before[1]
@@ -70,7 +70,7 @@ def test_first_lifts_the_link(hexapod: RobotSpec, leg: int) -> None:
 
 @pytest.mark.parametrize("leg", range(6))
 def test_second_swings_the_shank_outward_and_up(hexapod: RobotSpec, leg: int) -> None:
-    """Rules 1, frames: 2nd + swings the shank outward and up, from straight down at 0."""
+    """A positive angle of joints 12-17 swings the shank outward and up (rules 1)."""
     before, after = (hexapod.points(posture)[leg] for posture in (ZERO, turned(leg + 12)))
     assert before[3].x == before[2].x
     assert abs(after[3].x) - abs(before[3].x) == pytest.approx(0.070 * math.sin(math.radians(30)))
@@ -79,13 +79,13 @@ def test_second_swings_the_shank_outward_and_up(hexapod: RobotSpec, leg: int) ->
 
 
 def test_joint_ids_go_level_by_level(hexapod: RobotSpec) -> None:
-    """Rules 1, joint ids: id = leg + legs * level; joint 13 is the 2nd of leg 1 (R,C)."""
+    """A joint's id is leg + legs x level, so joint 13 of a hexapod moves leg 1 (R,C)."""
     moved = [a != b for a, b in zip(hexapod.points(ZERO), hexapod.points(turned(13)), strict=True)]
     assert moved == [False, True, False, False, False, False]
 
 
 def test_fig_1_3_posture(hexapod: RobotSpec) -> None:
-    """Workshop 3-1: root 0, 1st 30, 2nd 30 degrees: the shank leans 60 degrees outward."""
+    """With 1st and 2nd joint at 30 degrees the shank leans 60 degrees outward (workshop 3-1)."""
     _, _, knee, foot = hexapod.points(turned(6, 12))[0]
     assert (foot.x - knee.x, foot.z - knee.z) == pytest.approx(
         (0.070 * math.sin(math.radians(60)), -0.070 * math.cos(math.radians(60)))
@@ -94,7 +94,7 @@ def test_fig_1_3_posture(hexapod: RobotSpec) -> None:
 
 @given(st.lists(st.floats(-2.6, 2.6), min_size=18, max_size=18))
 def test_bounds_hold_every_part(angles: list[float]) -> None:
-    """Bounds and radius hold every hinge and tip in any posture."""
+    """The bounds contain every hinge and foot in any posture."""
     robot = read_robot(find_robot("hexapod")[1], "robot.toml")
     low, high = robot.bounds(tuple(angles))
     for points in robot.points(tuple(angles)):
@@ -103,7 +103,7 @@ def test_bounds_hold_every_part(angles: list[float]) -> None:
 
 
 def test_radius_in_the_start_posture(hexapod: RobotSpec) -> None:
-    """The radius reaches to the outermost shape of the start posture, not of angle 0."""
+    """The radius reaches the outermost shape of the start posture, not that of angle 0."""
     _, _, knee, foot = hexapod.points(hexapod.start_posture)[0]
     assert math.hypot(foot.x, foot.y) < hexapod.radius_m < math.hypot(foot.x, foot.y) + 0.015
     assert hexapod.radius_m > math.hypot(knee.x, knee.y)

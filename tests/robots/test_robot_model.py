@@ -1,4 +1,4 @@
-"""The robot file's numbers against the compiled model."""
+"""The compiled model has the numbers of the robot file."""
 
 import itertools
 import math
@@ -39,7 +39,7 @@ def pose(model: mj.MjModel, robot: RobotSpec, posture: tuple[float, ...]) -> mj.
 
 
 def test_official_options(hexapod: RobotSpec, compile_world: Compile) -> None:
-    """Ten steps of 2 ms a tick; implicitfast, Newton, elliptic cone, sparse, default iterations."""
+    """A tick has ten steps of 2 ms, and the solver has the options that we chose."""
     option = compile_world(hexapod).opt
     assert pytest.approx(BEAT_S) == TIMESTEP_S * STEPS_PER_TICK
     assert option.timestep == TIMESTEP_S
@@ -52,7 +52,7 @@ def test_official_options(hexapod: RobotSpec, compile_world: Compile) -> None:
 
 @pytest.mark.parametrize("degree", [True, False])
 def test_joints_and_servos(hexapod: RobotSpec, compile_world: Compile, degree: bool) -> None:
-    """Rules 1: +-150 degrees, servos by joint id, whatever unit the world writes angles in."""
+    """Joints and servos have the file's values, whether the world is in degrees or radians."""
     model = compile_world(hexapod, degree=degree)
     assert (model.njnt, model.nu) == (19, 18)
     for joint in range(18):
@@ -71,7 +71,7 @@ def test_joints_and_servos(hexapod: RobotSpec, compile_world: Compile, degree: b
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_masses(name: str, compile_world: Compile) -> None:
-    """Rules 1: 1 body and 3 links a leg, with the masses of the robot file, and nothing else."""
+    """A model has one body and three links for each leg, with the masses of the robot file."""
     robot = sample(name)
     model = compile_world(robot)
     assert model.body_mass.sum() == pytest.approx(robot.mass_kg)
@@ -84,7 +84,7 @@ def test_masses(name: str, compile_world: Compile) -> None:
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_kinematics_agree(name: str, compile_world: Compile) -> None:
-    """Pure forward kinematics and the compiled model agree on every hinge and shape."""
+    """Our forward kinematics and the compiled model agree on every hinge and shape."""
     robot = sample(name)
     model = compile_world(robot)
     posture = tuple(math.radians(angle) for angle in itertools.islice(itertools.cycle(
@@ -106,7 +106,7 @@ def test_kinematics_agree(name: str, compile_world: Compile) -> None:
 
 
 def test_feet_touch_the_floor_at_angle_zero(hexapod: RobotSpec, compile_world: Compile) -> None:
-    """Rules 1, lengths: in the compiled model too all six feet are at z = 0.000, x = +-0.135."""
+    """In the compiled model, with every angle 0, all six feet touch the floor at x = ±0.135 m."""
     model = compile_world(hexapod)
     data = pose(model, hexapod, (0.0,) * 18)
     for leg in range(6):
@@ -116,7 +116,7 @@ def test_feet_touch_the_floor_at_angle_zero(hexapod: RobotSpec, compile_world: C
 
 
 def test_collisions(hexapod: RobotSpec) -> None:
-    """Rules 1, collisions: a robot collides with floor, walls and the others, not with itself."""
+    """A robot collides with the floor and with other robots, but not with itself (rules 1)."""
     bits = [(FLOOR_CONTYPE, FLOOR_CONAFFINITY), *(collision_bits(seat, 15) for seat in range(15))]
     for (i, one), (j, other) in itertools.product(enumerate(bits), repeat=2):
         collide = bool(one[0] & other[1] or other[0] & one[1])
@@ -126,7 +126,7 @@ def test_collisions(hexapod: RobotSpec) -> None:
 
 
 def test_two_robots_in_a_world(hexapod: RobotSpec, compile_world: Compile) -> None:
-    """Each robot has its own names; servos go seat by seat, in joint id order."""
+    """Two robots in a world have different names; servos are ordered by seat, then by joint."""
     model = compile_world(hexapod, sample("octopod"))
     names = [model.actuator(i).name for i in range(model.nu)]
     assert names == [f"r0_a{j}" for j in range(18)] + [f"r1_a{j}" for j in range(24)]
@@ -135,7 +135,7 @@ def test_two_robots_in_a_world(hexapod: RobotSpec, compile_world: Compile) -> No
 
 
 def test_accent_legs_look_different(hexapod: RobotSpec, compile_world: Compile) -> None:
-    """Workshop 3-1, rules 1, colour: the 1st and 6th leg are drawn in another colour."""
+    """The two front legs have another colour than the rest (workshop 3-1, rules 1)."""
     model = compile_world(hexapod)
     rgba = {i: tuple(model.geom_rgba[model.body(f"r0_leg{i}_1").geomadr[0]]) for i in range(6)}
     assert rgba[0] == rgba[5] != rgba[1] == rgba[2] == rgba[3] == rgba[4]
@@ -143,14 +143,14 @@ def test_accent_legs_look_different(hexapod: RobotSpec, compile_world: Compile) 
 
 @pytest.mark.parametrize("colour", [(0, 0, 0), (1, 1, 1), (0.2, 0.4, 0.9), (1, 0.6, 0)])
 def test_accent_of_any_colour(colour: tuple[float, float, float]) -> None:
-    """The accent differs visibly from any team's colour."""
+    """The accent colour differs visibly from any team's colour."""
     accent = accent_colour((*colour, 1.0))
     assert math.dist(accent[:3], colour) > 0.4
     assert accent[3] == 1.0
 
 
 def test_friction_is_the_robots(hexapod_text: str, compile_world: Compile) -> None:
-    """The robot file's friction counts in a contact, whatever the floor's is."""
+    """In a contact the robot file's friction is used, whatever friction the floor has."""
     slippery = read_robot(hexapod_text.replace("friction = 1.0", "friction = 0.3"), "robot.toml")
     model = compile_world(slippery)
     data = mj.MjData(model)
@@ -160,7 +160,7 @@ def test_friction_is_the_robots(hexapod_text: str, compile_world: Compile) -> No
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_export_opens_and_stands(name: str) -> None:
-    """Plain MJCF that any MuJoCo opens, standing on its feet in the keyframe "stand"."""
+    """MuJoCo opens the exported MJCF, and the robot stands in its keyframe "stand"."""
     robot = sample(name)
     model = mj.MjModel.from_xml_string(export_mjcf(robot))
     data = mj.MjData(model)
@@ -182,7 +182,7 @@ def test_export_opens_and_stands(name: str) -> None:
 def test_no_warnings_at_the_limits(
     ang_min_deg_s: str, kp: str, kv: str, hexapod_text: str, compile_world: Compile
 ) -> None:
-    """The lightest robot with undamped joints stays finite under wild commands at any servo."""
+    """The lightest robot without joint damping stays finite under random commands."""
     text = hexapod_text.replace("kp = 20.0", f"kp = {kp}").replace("kv = 0.5", f"kv = {kv}")
     text = text.replace("damping = 0.02", "damping = 0.0").replace("= 0.125", "= 0.210")
     text = text.replace("ang_min_deg_s = 120", f"ang_min_deg_s = {ang_min_deg_s}")
@@ -201,7 +201,7 @@ def test_no_warnings_at_the_limits(
 
 @pytest.mark.parametrize("kv", [0.0, 0.1, 0.5])
 def test_a_motor_has_a_highest_speed(kv: float, hexapod_text: str, compile_world: Compile) -> None:
-    """However stiff its servo and light its leg, a motor turns no faster than three AngMins."""
+    """A stiff servo on a light leg turns no faster than three times AngMin (rules 1)."""
     text = hexapod_text.replace("kp = 20.0", "kp = 200.0").replace("kv = 0.5", f"kv = {kv}")
     text = text.replace("damping = 0.02", "damping = 0.0").replace("= 0.125", "= 0.9")
     text = text.replace("[0.055, 0.055, 0.055]", "[0.005, 0.005, 0.005]")
@@ -210,7 +210,7 @@ def test_a_motor_has_a_highest_speed(kv: float, hexapod_text: str, compile_world
     model.opt.gravity[:] = 0
     data = pose(model, robot, (0.0,) * 18)
     data.qpos[2] = 1.0
-    data.ctrl[12] = math.radians(150)  # as no drive commands it: at once
+    data.ctrl[12] = math.radians(150)  # the whole angle at once, as no drive commands it
     fastest_rad_s = 0.0
     for _ in range(400):
         mj.mj_step(model, data)
@@ -221,7 +221,7 @@ def test_a_motor_has_a_highest_speed(kv: float, hexapod_text: str, compile_world
 
 
 def test_a_servo_is_the_files_within_its_torque(hexapod: RobotSpec, compile_world: Compile) -> None:
-    """Below its strongest torque a servo pushes as kp, kv and damping say; above, along a line."""
+    """A servo follows kp, kv and damping up to its largest torque, which falls with speed."""
     model = compile_world(hexapod)
     data = pose(model, hexapod, (0.0,) * 18)
     dof = model.joint("r0_j12").dofadr[0]
@@ -238,5 +238,5 @@ def test_a_servo_is_the_files_within_its_torque(hexapod: RobotSpec, compile_worl
 
 
 def test_every_installed_robot_is_tested() -> None:
-    """The tables above hold every robot that comes with this package."""
+    """All sample robots that the tests above use are installed."""
     assert set(SAMPLES) <= set(installed_robots())

@@ -1,4 +1,4 @@
-"""Every sample robot's folder: its files are there, load, and walk."""
+"""Every sample robot's folder is complete, loads, and walks."""
 
 import itertools
 import math
@@ -59,7 +59,7 @@ def load(folder: Path) -> tuple[RobotSpec, PostureTable, LocomotionTable]:
 def walk(
     model: mj.MjModel, robot: RobotSpec, gait: Gait, digit: int, seconds: float
 ) -> Iterator[mj.MjData]:
-    """Drive a robot with one key of level B, from its start; yields after every tick."""
+    """Drive a robot with one key of level B from its start; yield the physics after every tick."""
     data = mj.MjData(model)
     qpos = [model.joint(f"r0_j{joint}").qposadr[0] for joint in range(robot.joints)]
     data.qpos[qpos] = robot.start_posture
@@ -81,7 +81,7 @@ def heading_rad(data: mj.MjData) -> float:
 
 
 def test_the_samples_there_are() -> None:
-    """The workshop's, a long-legged one, a quadruped, an octopod."""
+    """The sample robots are the workshop's, a long-legged one, an octopod and a quadruped."""
     names = [folder.name for folder in FOLDERS]
     assert names == ["hexapod", "long_legs", "octopod", "quadruped"]
     assert [len(load(folder)[0].legs) for folder in FOLDERS] == [6, 6, 8, 4]
@@ -89,7 +89,7 @@ def test_the_samples_there_are() -> None:
 
 @samples
 def test_folder(folder: Path) -> None:
-    """A sample is a package with a robot file and both gait files, in the shape we write."""
+    """A sample is a package with a robot file and both gait files, in the layout that we write."""
     robot, postures, locomotion = load(folder)
     assert (folder / "__init__.py").read_text().startswith('"""')
     assert (folder / "Loco-data.txt").read_bytes() == write_gait(postures, robot.labels)
@@ -98,14 +98,14 @@ def test_folder(folder: Path) -> None:
 
 @samples
 def test_keys_mean_the_same(folder: Path) -> None:
-    """Fig. 4-2: [0] stand, [1] left = 8 7 6 5, [2] forward = 1 2 3 4, [3] right = 5 6 7 8."""
+    """In each sample [0] stands, [1] turns left, [2] walks and [3] turns right (Fig. 4-2)."""
     robot, postures, locomotion = load(folder)
     assert locomotion == to_locomotion(postures, SAMPLE_KEYS)
     assert postures.postures[0] == pytest.approx(robot.start_posture)
 
 
 def test_workshop_tables() -> None:
-    """Rules 2: the complete sample table, columns 16 and 17 restored; Fig. 4-2 has 18 lines."""
+    """The hexapod's files hold the workshop's complete table and the 18 lines of Fig. 4-2."""
     folder = FOLDERS[0]
     _, postures, _ = load(folder)
     for key, row in enumerate(RULES_2_TABLE.strip().splitlines()):
@@ -120,7 +120,7 @@ def test_workshop_tables() -> None:
 @pytest.mark.slow
 @samples
 def test_walks_forward(folder: Path, compile_world: Compile) -> None:
-    """A sample gait walks at least 20 mm/s for 20 s, upright."""
+    """A sample gait walks straight at 20 mm/s or more for 20 s, with an upright body."""
     robot, postures, locomotion = load(folder)
     gait = Gait(postures, locomotion)
     for data in walk(compile_world(robot), robot, gait, FORWARD, 20.0):
@@ -136,7 +136,7 @@ def test_walks_forward(folder: Path, compile_world: Compile) -> None:
 @samples
 @pytest.mark.parametrize(("digit", "sense"), [(LEFT, 1), (RIGHT, -1)], ids=["left", "right"])
 def test_turns(folder: Path, digit: int, sense: int, compile_world: Compile) -> None:
-    """Fig. 4-2: [1] turns left and [3] right, at 8 degrees/s or more, nearly on the spot."""
+    """[1] turns left and [3] turns right, at 8 degrees/s or more, nearly on the spot."""
     robot, postures, locomotion = load(folder)
     headings = [0.0]
     for data in walk(compile_world(robot), robot, Gait(postures, locomotion), digit, 10.0):
@@ -150,7 +150,7 @@ def test_turns(folder: Path, digit: int, sense: int, compile_world: Compile) -> 
 @pytest.mark.slow
 @samples
 def test_stands(folder: Path, compile_world: Compile) -> None:
-    """Workshop 3-2: [0] is the regular position; the robot stays where it was put."""
+    """With [0] the robot stays where it was put (workshop 3-2: the regular position)."""
     robot, postures, locomotion = load(folder)
     ticks = walk(compile_world(robot), robot, Gait(postures, locomotion), STAND, 4.0)
     (data,) = itertools.islice(ticks, 199, None)
@@ -160,7 +160,7 @@ def test_stands(folder: Path, compile_world: Compile) -> None:
 
 @pytest.mark.slow
 def test_workshop_speed(compile_world: Compile) -> None:
-    """The workshop's gait at level B walks at about 57 mm/s where postures are reached."""
+    """With `advance = "reached"`, the workshop's gait walks at about 57 mm/s on level B."""
     robot, postures, locomotion = load(FOLDERS[0])
     *_, data = walk(compile_world(robot), robot, Gait(postures, locomotion), FORWARD, 20.0)
     assert data.body("r0_body").xpos[1] / 20 == pytest.approx(0.057, abs=0.004)

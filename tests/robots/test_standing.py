@@ -1,4 +1,4 @@
-"""To stand means to stay: the trial at the weigh-in (docs/rules.md 1)."""
+"""The trial at the weigh-in: a robot must be able to stand (rules 1)."""
 
 import json
 import math
@@ -32,7 +32,7 @@ def sample_gait(name: str) -> Gait:
 
 @pytest.mark.parametrize("name", installed_robots())
 def test_every_sample_stands(name: str) -> None:
-    """With key 0 of both levels, and to a tenth of a millimetre where it was put."""
+    """Every sample robot stands with key 0 of both levels and moves less than 0.1 mm."""
     robot = read_robot(find_robot(name)[1], name)
     gait = sample_gait(name)
     assert try_standing(robot, gait, (A, B), name) == []
@@ -41,7 +41,7 @@ def test_every_sample_stands(name: str) -> None:
 
 
 def swept(robot: RobotSpec) -> Posture:
-    """A standing posture with all legs swung back by 90 degrees: on the way the robot rows."""
+    """Return the start posture with all legs swung back by 90 degrees: that rows the robot away."""
     legs = len(robot.legs)
     return tuple(
         angle - math.radians(90) * (joint < legs) for joint, angle in enumerate(robot.start_posture)
@@ -49,7 +49,7 @@ def swept(robot: RobotSpec) -> Posture:
 
 
 def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> None:
-    """The sentence has the level, the distance and what is allowed."""
+    """The mistake names the level, how far the robot went and how far is allowed."""
     gait = Gait(PostureTable({0: hexapod.start_posture}), LocomotionTable(((swept(hexapod),),)))
     assert try_standing(hexapod, gait, (A,), "robot.toml") == []
     mistakes = try_standing(hexapod, gait, (A, B), "robot.toml")
@@ -66,7 +66,7 @@ def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> No
 
 
 def test_a_robot_that_stands_on_one_side_leans(hexapod: RobotSpec) -> None:
-    """Legs of the right pushed down, those of the left lifted."""
+    """A robot that lifts its left legs and pushes with its right ones is refused as leaning."""
     first = dict.fromkeys((6, 7, 8), math.radians(-50)) | dict.fromkeys((9, 10, 11), 1.4)
     posture = tuple(first.get(joint, angle) for joint, angle in enumerate(hexapod.start_posture))
     stood = stand(hexapod, posture)
@@ -76,7 +76,7 @@ def test_a_robot_that_stands_on_one_side_leans(hexapod: RobotSpec) -> None:
 
 
 def test_a_robot_that_is_still_on_its_way_is_not_at_rest(hexapod_text: str) -> None:
-    """Far from key 0 and slow: after two seconds it still moves."""
+    """A slow robot that is still moving to key 0 after two seconds is refused as not at rest."""
     robot = read_robot(
         hexapod_text.replace("ang_min_deg_s = 120", "ang_min_deg_s = 10"), "robot.toml"
     )
@@ -91,7 +91,7 @@ def test_a_robot_that_is_still_on_its_way_is_not_at_rest(hexapod_text: str) -> N
 
 
 def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
-    """Too weak for its posture: after two seconds it is as slow as 2 mm/s, and falls later."""
+    """A robot that sinks at 1.8 mm/s after two seconds is refused, because it would fall later."""
     slow = Stood(moved_m=0.015, tilt_rad=0.18, joint_rad_s=0.0087, centre_m_s=0.0018)
     (mistake,) = mistakes_of(slow, "robot.toml", (B,))
     assert "a joint at 0.5 degrees/s, its middle at 1.8 mm/s" in render(mistake.found)
@@ -111,7 +111,7 @@ def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
     ],
 )
 def test_what_is_told(stood: Stood, words: list[str]) -> None:
-    """Each thing that is wrong, and the bounds themselves are allowed."""
+    """Each value beyond its bound gives one mistake; a value on the bound gives none."""
     mistakes = mistakes_of(stood, "robot.toml", (A, B))
     assert len(mistakes) == len(words)
     for mistake, word in zip(mistakes, words, strict=True):
@@ -121,7 +121,7 @@ def test_what_is_told(stood: Stood, words: list[str]) -> None:
 
 
 def test_the_posture_of_key_0() -> None:
-    """It is the first of key 0's sequence, or the start posture without key 0; each only once."""
+    """A level's key 0 gives its first posture; a level without key 0 gives the start posture."""
     first, other, start = (0.1,) * 12, (0.2,) * 12, (0.3,) * 12
     gait = Gait(PostureTable({0: first, 1: other}), LocomotionTable(((first, other), (other,))))
     assert standing_postures(gait, (B, A), start) == {first: [A, B]}
@@ -131,7 +131,7 @@ def test_the_posture_of_key_0() -> None:
 
 @pytest.fixture
 def leaper(tmp_path: Path, hexapod_text: str) -> Path:
-    """The sample robot, whose legs start in front of where its gait has them."""
+    """Give a folder with the sample robot, whose legs now start far from its gait's key 0."""
     text = hexapod_text.replace(
         "45,  0, -45, -45,  0, 45,  # root", "100, 100, 100, 100, 100, 100,  # root"
     )
@@ -143,7 +143,7 @@ def leaper(tmp_path: Path, hexapod_text: str) -> Path:
 
 
 def test_commands_say_the_same(leaper: Path) -> None:
-    """`robot check` with the gait beside it, and `gait check --robot`, name the same mistake."""
+    """`robot check` and `gait check --robot` report the same mistake about standing."""
     run = CliRunner().invoke
     robot_file, gait_file = leaper / "robot.toml", leaper / "LocoTra-data.txt"
     robot = read_robot(robot_file.read_bytes(), "robot.toml")
@@ -162,7 +162,7 @@ def test_commands_say_the_same(leaper: Path) -> None:
 
 
 def test_a_gait_is_checked_for_a_robot(leaper: Path) -> None:
-    """The robot's legs count, and --legs together with a robot is refused."""
+    """`gait check --robot` uses that robot's number of legs; --legs beside it is refused."""
     gait_file = str(leaper / "Loco-data.txt")
     run = CliRunner().invoke
     assert run(gait_app, ["check", gait_file, "--robot", "hexapod"]).exit_code == 0

@@ -20,7 +20,7 @@ _FLAG_REACH_M, _CORNER_REACH_M = 0.13, 0.12
 _DEPTH, _BEAM = 4, 14
 """How many targets a plan looks ahead, and how many plans are kept at each step."""
 _PATIENCE_S = 30.0
-"""A point gained this much later is worth 1 / e of a point now: the plan may not hold."""
+"""A point gained this much later is worth 1 / e of a point now, because plans often fail."""
 _RIVAL = 0.8
 """Factor on a target's worth if the other robot will be there first."""
 _DECISIVE = 100.0

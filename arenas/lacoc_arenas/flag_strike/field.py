@@ -1,7 +1,7 @@
 """The field of Flag-Strike: corners, flags that stand or lie, and poles to be touched.
 
-A robot touches the pole "probe:NAME": a cylinder without contacts, whose distance to
-the robots is measured after each tick (rules 6, strike).
+A robot touches the pole "probe:NAME": a cylinder without contacts, whose distance to the robots is
+measured after each tick (rules 6).
 """
 
 import math
@@ -66,7 +66,7 @@ def _probe(spec: mujoco.MjSpec, flag: Flag, radius_m: float, height_m: float) ->
 
 
 def _standing(spec: mujoco.MjSpec, flag: Flag, radius_m: float, height_m: float) -> None:
-    """Add the pole and the cloth at its top; seen towards the middle, it blows to the right."""
+    """Add the pole, and at its top a cloth that points counter-clockwise round the field."""
     along = _along(flag)
     length_m, depth_m = _cloth_m(flag, height_m)
     pole = field.marker_geom(flag.name, NEUTRAL, "pole")
@@ -121,7 +121,7 @@ def _lying(spec: mujoco.MjSpec, flag: Flag, state: int, radius_m: float, height_
 
 
 def _along(flag: Flag) -> float:
-    """Return the direction in which the flag blows and falls [rad]: round the field's middle.
+    """Return the direction of a flag's cloth and fall [rad], counter-clockwise round the field.
 
     So the field is the same when it is turned by 180 degrees.
     """

@@ -1,18 +1,17 @@
 """The rules of Flag-Strike (workshop 5-2, rules 6).
 
-The markers are "corner0" to "corner3" (bottom left, bottom right, top left, top right)
-and then "flag0" to "flag19" in the order of the arena file. The board state of a flag:
-NEUTRAL stands; LEFT and RIGHT have fallen for that team; DOWN has fallen for nobody
-(only a referee sets it).
+The markers are "corner0" to "corner3" (bottom left, bottom right, top left, top right) and then
+"flag0" to "flag19" in the order of the arena file. A flag's state on the board is NEUTRAL while it
+stands, LEFT or RIGHT when it has fallen for that team, and DOWN when it has fallen for nobody (only
+a referee sets this).
 
-Struck out claims (rules 4, take-back): after a struck capture the robot counts as inside
-the corner without having taken it, until it leaves and comes back. A struck touch of a
-flag is void from that tick until the robot lets go of the pole; otherwise the flag would
-fall again one tick later. A void touch does not count, so the other robot can strike the
-flag.
+Claims that a referee struck out (rules 4.1): after a struck capture the robot counts as inside the
+corner without having taken it, until it leaves and comes back. A struck touch of a flag is void
+from that tick until the robot lets go of the pole; otherwise the flag would fall again one tick
+later. A void touch does not count, so the other robot can strike the flag.
 
-All events of one tick happen at the same time. They are listed in the order of the
-markers, which does not favour a seat.
+All events of one tick happen at the same time. They are listed in the order of the markers, which
+does not favour a seat.
 """
 
 from collections.abc import Iterator
@@ -45,7 +44,7 @@ NO_CORNER = -1
 
 
 class State(msgspec.Struct, frozen=True):
-    """A match of Flag-Strike."""
+    """The state of a match of Flag-Strike."""
 
     board: tuple[int, ...]
     """(24,) the state of each corner, then of each flag."""
@@ -187,7 +186,7 @@ class FlagStrike:
         return state.board
 
     def score(self, state: State) -> tuple[int, ...]:
-        """Return each seat's points: corners held and flags struck (5-2 rule 7)."""
+        """Return each seat's points: corners held and flags struck (workshop 5-2 rule 7)."""
         left = right = 0
         for owner, points in zip(state.board, self._points, strict=True):
             if owner == LEFT:
@@ -197,7 +196,7 @@ class FlagStrike:
         return left, right
 
     def over(self, state: State) -> Phrase | None:
-        """Return why the match is over: a robot holds all four corners (5-2 rule 4); else None."""
+        """Return why the match is over: a robot has all corners (workshop 5-2 rule 4); or None."""
         holder = self._holder(state)
         return None if holder is None else say("over.all-corners", seat=("left", "right")[holder])
 

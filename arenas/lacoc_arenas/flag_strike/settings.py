@@ -66,7 +66,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     @property
     def corners(self) -> tuple[tuple[float, float], ...]:
-        """Centres: bottom left, bottom right, top left, top right."""
+        """Centres of the corners: bottom left, bottom right, top left, top right."""
         x_m, y_m = (size / 2 - self.corner_inset_m for size in self.size_m)
         return ((-x_m, -y_m), (x_m, -y_m), (-x_m, y_m), (x_m, y_m))
 

@@ -16,7 +16,7 @@ from .rules import NO_CELL, SIDE, make
 _DEPTH, _BEAM = 7, 20
 """How many cells a plan looks ahead, and how many plans are kept at each step."""
 _PATIENCE_S = 25.0
-"""A disc gained this much later is worth 1 / e of a disc now: the plan may not hold."""
+"""A disc gained this much later is worth 1 / e of a disc now, because plans often fail."""
 _BLOCKED_M, _BLOCKED_S = 0.35, 12.0
 """A disc this near to the other robot is blocked, and going there costs this much more time."""
 _REPLAN_TICKS = 4 * BEATS_PER_S
@@ -69,7 +69,7 @@ class _Walker(ABC):
 
 
 class Nearest(_Walker):
-    """Goes to the nearest disc that flips; if none does, to an own disc next to one that can."""
+    """Goes to the nearest disc that flips; if none does, to an own disc beside one that can."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
         """Return the nearest useful cell."""

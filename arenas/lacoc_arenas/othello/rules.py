@@ -1,14 +1,14 @@
 """The rules of Robot-Othello (workshop 5-1, rules 5).
 
-Column 0 has the smallest x, row 0 the smallest y; a disc is named "c2r3" by column and
-row, and its index is 6 * row + column. A robot's *last cell* is the disc it entered
-most recently; walking off a disc does not change it.
+Column 0 has the smallest x, row 0 the smallest y; a disc is named "c2r3" by column and row, and its
+index is 6 * row + column. A robot's *last cell* is the disc it entered most recently; walking off a
+disc does not change it.
 
-Struck out claims (rules 4, take-back): the disc and its runs keep their colours. The
-disc still becomes the robot's last cell, because the robot has walked there.
+Claims that a referee struck out (rules 4.1): the disc and its runs keep their colours. The disc
+still becomes the robot's last cell, because the robot has walked there.
 
-All flips of one tick happen at the same time. Their events are listed in the order of
-the discs' indices, which does not favour a seat.
+All flips of one tick happen at the same time. Their events are listed in the order of the discs'
+indices, which does not favour a seat.
 """
 
 from collections.abc import Set as AbstractSet
@@ -33,7 +33,7 @@ from lacoc_shared.messages import MarkerInfo
 from lacoc_shared.words import Phrase, say
 
 SIDE = 6
-"""Cells along a row and along a column (5-1 rule 1)."""
+"""Cells along a row and along a column (workshop 5-1 rule 1)."""
 
 NO_CELL = -1
 
@@ -133,7 +133,7 @@ class Othello:
         )
 
     def flips(self, cells: tuple[int, ...], seat: int, origin: int, cell: int) -> tuple[int, ...]:
-        """Return the discs that flip when a robot enters one (5-1 rules 4 and 5).
+        """Return the discs that flip when a robot enters one (workshop 5-1 rules 4 and 5).
 
         Args:
             cells: the board before the flip.
@@ -228,7 +228,7 @@ class Othello:
         return state.cells
 
     def score(self, state: State) -> tuple[int, ...]:
-        """Return the number of discs of each colour (5-1 rule 6)."""
+        """Return the number of discs of each colour (workshop 5-1 rule 6)."""
         return state.cells.count(LEFT), state.cells.count(RIGHT)
 
     def over(self, state: State) -> Phrase | None:
@@ -239,7 +239,7 @@ class Othello:
         return None
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:
-        """Return the seat with more discs (5-1 rule 7)."""
+        """Return the seat with more discs (workshop 5-1 rule 7)."""
         return leader(scores)
 
     def set(self, state: State, marker: int, value: int) -> State:

@@ -1,4 +1,4 @@
-"""The rules of practice (rules 4): a robot walks; there is nothing to win."""
+"""The rules of practice (rules 7): a robot walks; there is nothing to win."""
 
 import math
 from collections.abc import Set as AbstractSet

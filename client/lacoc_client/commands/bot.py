@@ -24,7 +24,9 @@ from lacoc_shared.words import Phrase, render, say
 app = typer.Typer()
 
 _GONE_S = 120.0
-"""Longest silence that a bot waits for: after it a court does not come back by itself."""
+"""A bot ends when its court has been silent for this long [s]; such a court does not come back by
+itself.
+"""
 _NAME_MAX = 24
 
 

@@ -65,7 +65,7 @@ _TokenUnused = Annotated[
 
 
 _NOBODY = frozenset({"root", "admin", "administrator", "user", "nobody"})
-"""Accounts that are nobody's name, so the record does not get them."""
+"""Account names that name no person; the record gets "referee" in place of them."""
 
 
 def _default_name() -> str:
@@ -268,8 +268,8 @@ def _decide_when_legal(
     """Decide as soon as the court says that the decision is legal.
 
     The court's health is up to half a second old, so a decision may be refused although health
-    calls it legal. If the next health still does, the refusal is raised; otherwise this waits and
-    tries again.
+    calls it legal. If the next health message still calls it legal, the refusal is raised.
+    Otherwise this function waits and tries again.
     """
     deadline_s = time.monotonic() + wait_s
     seen: Health | None = None

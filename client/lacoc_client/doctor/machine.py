@@ -36,7 +36,7 @@ _LEAST_FREE_BYTES, _GOOD_FREE_BYTES = 100 * _MIB, 1024 * _MIB
 """A match needs 2 MiB packed, and 4 MiB while it is played."""
 _FSYNCS = 10
 _SLOW_FSYNC_S = 0.5
-"""Slower than this is noted: a record is synced once a second."""
+"""A sync that takes longer than this gives a note [s]; a record is synced once a second."""
 _SLOW_PERCENT, _TOO_SLOW_PERCENT = 1.0, 10.0
 _ASK_S = 1.0
 
@@ -169,7 +169,7 @@ def web_port(host: str, port: int, *, needed: bool) -> Finding:
 
 
 def _why_taken(host: str, port: int) -> str:
-    """Say why a program can't listen there; "" if it can."""
+    """Say why a program can't listen at an address; "" if it can."""
     try:
         family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         with socket.socket(family, kind) as probe:

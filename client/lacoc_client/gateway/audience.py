@@ -15,7 +15,7 @@ class Audience:
         return len(self._viewers)
 
     def add(self, viewer: Viewer) -> None:
-        """Send a page everything from now on."""
+        """Add a page, which gets everything from now on."""
         self._viewers[viewer] = None
 
     def remove(self, viewer: Viewer) -> None:

@@ -24,12 +24,12 @@ _LEADS_ON = (
 
 @contextmanager
 def unseen(address: str) -> Iterator[str]:
-    """Give an address that leads to another one without showing it; valid until the block ends.
+    """Give an address that leads to `address` without showing it; valid until the block ends.
 
-    If no file can be written, it is the other address itself.
+    If no file can be written, give `address` itself.
 
     Args:
-        address: the other address, with a key in its fragment.
+        address: an address with a key in its fragment.
     """
     with ExitStack() as stack:
         try:

@@ -15,8 +15,8 @@ from lacoc_shared.words import Phrase, say
 _THREADS = 16
 _FILES_S = 0.5
 _STRANGERS = 4
-"""Threads for unproven tokens: at a court with keys a wrong one takes 2 s. Decisions and fetches
-use other threads, so they never wait for it.
+"""Threads for unproven tokens: at a court with keys a wrong token takes 2 s. Decisions and fetches
+use other threads, so they never wait for these.
 """
 
 

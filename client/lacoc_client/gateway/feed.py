@@ -56,7 +56,7 @@ class CourtFeed:
         self._connected = False
         """Whether the court sends frames in this gateway's version; only then pages get them."""
         self._why: Phrase | None = None
-        """Why the court sends none."""
+        """Why the court sends no frames."""
         self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
         self._explained_s = 0.0
@@ -177,7 +177,7 @@ class CourtFeed:
 
         hear(self._keys.sheet, 1, self._hear_sheet)
         hear(self._keys.event, _EVENTS_DEPTH, self._take_event)
-        with contextlib.suppress(UserError, BadMessage):  # it comes later
+        with contextlib.suppress(UserError, BadMessage):  # they come later
             await self._fetch_sheet()
             self._take_log(await self._ask(self._keys.event))
         hear(self._keys.health, 1, self._take_health)
@@ -255,7 +255,7 @@ class CourtFeed:
             self._catch_up()
 
     def _look_at_version(self, before: int | None) -> None:
-        """Hide a court of another version until it has another sheet."""
+        """Stop showing a court of another version, until it sends another sheet."""
         if self._other_version not in (None, before):
             self._connected = False
             self.log(render(self._wrong_version or ""), "link", connected=False)
@@ -279,7 +279,7 @@ class CourtFeed:
         return say("gateway.other-version", court=self.court, version=version, gateway=PROTOCOL)
 
     def _catch_up(self) -> None:
-        """Fetch what is new, was sent while this was away, or was lost on a slow link."""
+        """Fetch what is new, was sent while the connection was down, or was lost on a slow link."""
         if self._restoring is None or self._restoring.done():
             self._restoring = asyncio.get_running_loop().create_task(self._restore())
 

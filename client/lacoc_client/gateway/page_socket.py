@@ -30,7 +30,7 @@ class PageSocket(WebSocketsSansIOProtocol):
     heard_s = 0.0
     """Time when the page last sent anything, on the loop's clock."""
     drained: Callable[[], None] | None = None
-    """Called when everything written has been sent, after a time in which some waited."""
+    """Called when all bytes that had to wait have been sent."""
 
     def connection_made(self, transport: BaseTransport) -> None:
         """Take over a connection; see `asyncio.Protocol`."""
@@ -68,7 +68,7 @@ class PageSocket(WebSocketsSansIOProtocol):
         return self.loop.time() - self.ping_sent_at < _UNANSWERED_S
 
     def write(self, framed: bytes) -> None:
-        """Send a finished frame, even if others still wait."""
+        """Send a finished frame, even if earlier frames still wait."""
         if self.close_sent or self.transport.is_closing():
             return
         if self.transport.get_write_buffer_size() > KEPT_BYTES:

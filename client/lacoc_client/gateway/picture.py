@@ -32,7 +32,7 @@ class CourtPicture:
 
     def __init__(self) -> None:
         self.view: CourtView[bytes] = CourtView(lambda _, data: wire.message(Kind.EVENT, data))
-        """What the court has sent, and what of it is missing here."""
+        """What the court has sent, and what part of it is missing here."""
         self.phase = 0
         """Phase in the newest frame."""
         self.frame: bytes | None = None

@@ -22,7 +22,7 @@ from lacoc_client.gateway.recordings import Recordings
 from lacoc_shared.words import say
 
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay")
-"""Paths that serve the same file, which looks at its own path."""
+"""Paths that all serve index.html; the page itself looks at its path."""
 
 _FOR_EVER = "public, max-age=31536000, immutable"  # names of assets contain their hash
 _MCAP = "application/octet-stream"

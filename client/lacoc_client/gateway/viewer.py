@@ -42,13 +42,13 @@ class Viewer:
         socket.drained = self._send_slot
 
     def rate(self, hz: float) -> None:
-        """Set the frames a second, within bounds."""
+        """Set the frame rate [Hz], within bounds."""
         # Comparisons with NaN are False, so it becomes the highest rate.
         self._interval_s = 1 / (MOST_HZ if not hz < MOST_HZ else max(LEAST_HZ, hz))
         self._next_s = 0.0
 
     def at_least(self, hz: float) -> None:
-        """Raise the frames a second to at least `hz`."""
+        """Raise the frame rate to at least `hz`."""
         self.rate(max(hz, 1 / self._interval_s))
 
     def offer(self, framed: bytes, now_s: float) -> None:

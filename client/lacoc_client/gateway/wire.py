@@ -97,7 +97,7 @@ class JoinAsk(_Ask, frozen=True, kw_only=True, tag="join"):
 
 
 class ReadyAsk(_Ask, frozen=True, kw_only=True, tag="ready"):
-    """Say ready, or take it back."""
+    """Tell the court that the team is ready, or no longer ready."""
 
     ready: bool = True
 

@@ -95,7 +95,7 @@ class Grid:
         return covered
 
     def marker(self, marker: MarkerInfo) -> _Image:
-        """Return what `circle` does for a marker; cached, because a marker does not move."""
+        """Return how much of each pixel a marker covers; cached, because a marker does not move."""
         place = (marker.x_m, marker.y_m, marker.radius_m)
         if place not in self._circles:
             self._circles[place] = self.circle(*place)

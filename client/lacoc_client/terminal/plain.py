@@ -81,7 +81,7 @@ def marker_states(frame: Frame, sheet: Sheet) -> dict[str, str]:
 def poses(frame: Frame, sheet: Sheet) -> dict[str, dict[str, float]]:
     """Return each robot's position in the world's frame [m] and the heading of its body's +y.
 
-    The heading counts counter-clockwise from the world's +x [deg].
+    The heading is measured counter-clockwise from the world's +x [deg].
     """
     if not frame.poses or frame.scene != sheet.scene:
         return {}

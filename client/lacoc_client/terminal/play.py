@@ -139,7 +139,7 @@ class TerminalPlay:
             self._say(say("terminal.arrows"))
 
     def _change_level(self) -> None:
-        """Change to the next open level; that alone sends nothing (rules 3)."""
+        """Change to the next open level; this sends no command."""
         levels = [Level(level) for level in self._view.sheet.levels]
         if levels == [self._level]:
             self._say(say("terminal.only-level", level=_LEVEL_NAMES[self._level]))

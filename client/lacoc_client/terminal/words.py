@@ -71,7 +71,7 @@ def teams(sheet: Sheet) -> list[str]:
 
 
 def standing_key(seat: SeatFrame, sheet: Sheet, index: int) -> str:
-    """What a robot does: "B key 2, posture 1/4"."""
+    """Return what a robot does, such as "B key 2, posture 1/4"."""
     counts = sheet.seats[index].postures
     several = seat.level == Level.LOCOMOTION and seat.key < len(counts) and counts[seat.key] > 1
     key = say(
@@ -106,7 +106,7 @@ def seat_state(seat: SeatFrame) -> str:
 
 
 def link(silent_s: float) -> str:
-    """Return a banner if no frame comes; "" while they do."""
+    """Return a banner if no frames come; "" while they come."""
     if silent_s < SILENT_AFTER_S:
         return ""
     return render(say("terminal.no-word", seconds=silent_s))

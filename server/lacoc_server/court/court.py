@@ -1,9 +1,9 @@
 """A court: the loop that gives a match its beats, and the only code that reads a clock.
 
-The loop runs on one thread. An outbox sends on a second, and an archive stores the records of
-finished matches on a third. Each beat takes what arrived, passes it to the match and records it,
-and only then answers and publishes: everything that anybody is told is on disk
-(docs/architecture.md). While the disk fails, the court waits and no beat passes.
+The loop, an outbox that sends, and an archive that stores the records of finished matches each have
+a thread. A beat takes what arrived, passes it to the match and records it, and only then answers
+and publishes: everything that anybody is told is on disk (docs/architecture.md). While the disk
+fails, the court waits and no beat passes.
 """
 
 import hashlib
@@ -53,7 +53,7 @@ class CourtSettings:
     speed: float = 1.0
     """Multiple of real time: at 1 a beat takes 20 ms. A demonstration may run faster."""
     health: HealthLimits = field(default_factory=HealthLimits)
-    """Limits beyond which a replay is advised."""
+    """Limits beyond which a match should be played again."""
 
 
 class _Made(NamedTuple):
@@ -96,7 +96,7 @@ class Court:
         self._frame = b""
         """The newest published frame, encoded."""
         self._trouble: Phrase | None = None
-        """What is wrong with the record's disk (`record.*`)."""
+        """The problem with the record's disk (`record.*`); None: there is none."""
         self._waits = 0
         """Beats skipped while the disk refused writes."""
         if left is None:

@@ -1,8 +1,8 @@
 """How well a match is held: measured on the wall clock and on the links, beside the match.
 
-Pure: times, counts and beats come in, the verdict comes out. The verdict is not part of the match,
-which is the same at any speed and with any loss; so the record has it as a message of its own. Only
-its advice enters the match, as an input (docs/architecture.md).
+Pure: times, counts and beats come in, the verdict comes out. The match is the same at any speed and
+with any loss of messages, so the verdict is not part of it. The record has the verdict as a message
+of its own. Only its advice enters the match, as an input (docs/architecture.md).
 """
 
 from collections import Counter
@@ -67,7 +67,7 @@ class MatchHealth:
 
     Args:
         match: the match.
-        limits: limits beyond which a replay is advised.
+        limits: limits beyond which the match should be played again.
         doors: counts of each seat's door before this match.
         speed: speed of the court; at 2 two beats pass in 20 ms.
         before: the verdict before the court was killed, if it was.

@@ -15,7 +15,7 @@ _WINDOW_BEATS = 250
 
 
 class Pace:
-    """Due times of beats.
+    """Computes when beats are due.
 
     Args:
         now_s: monotonic time.

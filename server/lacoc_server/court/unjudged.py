@@ -1,6 +1,6 @@
-"""Decisions of a court in a match without a referee (`start = "ready"`, rules 4).
+"""Decisions of a court in a match without a referee (`start = "ready"`, rules 7).
 
-Each is a decision like a referee's. It is in the record with the court's name, so a replay needs
+Each is a decision like a referee's. The record has it with the court's name, so a replay needs
 nothing but the record.
 """
 
@@ -39,7 +39,7 @@ def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
 
 
 def _put_back(match: Match) -> list[Input]:
-    """Restart the robots that stopped physics: without it physics would stop again."""
+    """Put back the robots that stopped physics; otherwise physics would stop again."""
     if match.fault is None:
         return []
     return [

@@ -1,4 +1,4 @@
-"""Weighing in at a court's door: files are read, and robots tried in physics, beside its loop."""
+"""Weighing in at a court's door: the loop reads the files, another thread tries the robots."""
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor

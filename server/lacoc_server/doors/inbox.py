@@ -40,7 +40,7 @@ from lacoc_shared.seat import RESTART_KEY, SILENT_AFTER_S
 from lacoc_shared.words import Phrase, say
 
 COMMANDS_PER_BEAT = 16
-"""Most commands of a seat that count in one beat; the newest do."""
+"""Most commands of a seat that are used in one beat; older ones are dropped."""
 LOOKED_AT_PER_BEAT = 64
 """Most messages for a seat that are checked in one beat, whoever sent them."""
 COMMANDS_HZ = 200.0
@@ -142,7 +142,7 @@ class Inbox:
             for index, name in enumerate(seats)
         ]
         self.links = Links(len(seats), most_delay_ms)
-        """Round trips and held commands; the network tells it of every beat."""
+        """Round trips of the seats' links, and commands that are held."""
         self._sessions = Sessions(random_bytes)
         self._now_s = 0.0
 

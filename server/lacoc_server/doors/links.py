@@ -19,7 +19,7 @@ from lacoc_shared.messages import Command
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S
 
 WINDOW_BEATS = 10 * BEATS_PER_S
-"""Round trips of this many last beats judge a link."""
+"""A link is judged by its round trips in this many newest beats."""
 MEASURE_BEATS = BEATS_PER_S // 2
 """Beats between two measurements of a link."""
 CHANGE_BEATS = 3 * BEATS_PER_S
@@ -46,7 +46,7 @@ class Trip(NamedTuple):
 class _Frame(NamedTuple):
     sent_s: float
     delay_s: float
-    """From the frame's sending until answers to it take effect; 0: at once."""
+    """Time from sending the frame to the effect of answers to it [s]; 0: no common delay."""
 
     @property
     def due_s(self) -> float:
@@ -69,7 +69,7 @@ class _Link:
     """Match and beat of the newest frame that a command named."""
     trip: Trip | None = None
     held: deque[_Held] = field(default_factory=deque)
-    """In the order in which they arrived, and take effect."""
+    """Held commands, in the order in which they arrived and take effect."""
     late: int = 0
 
 
@@ -128,7 +128,7 @@ class Links:
 
         Returns:
             Whether the command proves that its sender is there: it names a newer frame than before,
-            or the same one while that is recent. So an overheard command is soon worthless.
+            or the same frame while that frame is recent. So an overheard command is soon worthless.
         """
         link, seen = self._links[seat], (command.match, command.seen)
         if seen <= link.newest:
@@ -145,8 +145,8 @@ class Links:
         link, now_s = self._links[seat], self._begun_s[-1]
         frame = self._seen(command)
         upon = frame or (self._frames[-1] if self._frames else _Frame(now_s, 0.0))
-        # A sender that names an older frame than it had would be held for less. Its p95 limits
-        # that.
+        # A sender could name an older frame than it had, so that its keys are held for less time.
+        # Its p95 limits that.
         believed_s = TRUST_S + (link.trip.p95_s if link.trip else 0.0)
         if upon.sent_s < now_s - believed_s:
             upon = self._frame(now_s - believed_s)

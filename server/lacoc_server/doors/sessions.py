@@ -80,7 +80,7 @@ class Sessions:
         return next((number for number, held in self._held.items() if held.seat == seat), 0)
 
     def secret(self, seat: int, number: int) -> bytes | Why:
-        """Return the secret of a session that holds a seat, or why it does not hold it."""
+        """Return the secret of a session that holds a seat, or why the session does not hold it."""
         if number in self._held:
             held = self._held[number]
             return held.secret if held.seat == seat else Why.NOT_YOUR_SEAT

@@ -122,7 +122,7 @@ class Journal:
             self.writer.leave()
 
     def _new(self, frame: Frame) -> bool:
-        """Return whether a frame shows more than that time has passed since the one before it."""
+        """Return whether a frame differs from the one before it in more than the time."""
         content = (frame.phase, frame.seats, frame.markers, frame.poses, frame.clock_ticks)
         new, self._last = content != self._last, content
         return new

@@ -34,7 +34,7 @@ _SCENE_BOUND = 1e-9
 
 
 class RecordedPhysics:
-    """Recorded poses behind the protocol of physics; notes what the match asks for.
+    """Plays the part of physics with recorded poses, and notes what the match asks for.
 
     Args:
         world: the robots as this machine builds them; it is not stepped.
@@ -314,7 +314,7 @@ def fits_together(record: Record) -> Iterator[None]:
 
 
 def last_beat(record: Record) -> int:
-    """Return the number of the last beat that counts."""
+    """Return the number of the last beat that was answered."""
     sealed = not record.cut or any(beat == record.last_beat for beat, _ in record.frames[-1:])
     return record.last_beat if sealed else record.last_beat - 1
 

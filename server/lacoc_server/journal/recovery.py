@@ -42,12 +42,13 @@ class Unfinished:
     cut: str
     """Where its record ends, in words."""
     other_arithmetic: Phrase | None = None
-    """That and how this machine computes otherwise than the one that recorded it; None if it does
-    not."""
+    """How this machine computes differently from the machine that made the record; None: both
+    compute the same.
+    """
 
     @property
     def inputs(self) -> list[Input]:
-        """The court's first inputs: a match in play is halted, so that nobody finds it running."""
+        """The first inputs of the court: a match in play is halted until people are back."""
         if self.match.phase in IN_PLAY:
             why = say("reason.court-restarted")
             if self.other_arithmetic:

@@ -78,7 +78,7 @@ class Step:
     angles: tuple[Posture, ...] | None
     """Commanded angles of each seat [rad]; None: no tick passes."""
     fault: Fault | None
-    """The fault that stopped physics in this tick; None: none did."""
+    """The fault that stopped physics in this tick; None: there was none."""
     touched: tuple[tuple[int, ...], ...] | None
     """Markers that each seat's robot touches; None: the rules did not ask."""
     poses: bytes | None
@@ -89,7 +89,7 @@ class Step:
 
 @dataclass
 class Section:
-    """The beats after a snapshot, up to the next."""
+    """The beats after a snapshot, up to the next snapshot."""
 
     build: Build
     start: bytes | None
@@ -118,7 +118,7 @@ class Finding:
     first_beat: int
     last_beat: int
     bits: Difference | None = None
-    """Where bits first differ; None: none do."""
+    """Where bits first differ; None: nowhere."""
     beyond: Difference | None = None
     """Where the simulation is first too far from the record; None: nowhere."""
     distance: float = 0.0

@@ -1,4 +1,4 @@
-"""A contest's own certificates: its authority, and what that issues to courts (X.509, P-256)."""
+"""The certificates of a contest: its own authority issues those of its courts (X.509, P-256)."""
 
 import ipaddress
 from collections.abc import Iterable

@@ -1,6 +1,7 @@
-"""Contestants' requests to a match: join, ready, leave and keys; and their silence.
+"""Contestants' requests to a match (join, ready, leave, keys), and their silence.
 
-Each is legal in some phases (rules 3 and 4). A refused one changes nothing and says why.
+Each request is legal in some phases (rules 3 and 4). A refused request changes nothing, and the
+refusal says why.
 """
 
 from typing import Any
@@ -85,7 +86,7 @@ def leave(match: MatchState, seat: Seat) -> Done:
 
 
 def unattended(match: MatchState) -> Phrase | None:
-    """Say why a match without a referee is over before its game is; None: it goes on."""
+    """Say why a match without a referee ends before its game is over; None: it goes on."""
     if match.rules.start != "ready":
         return None
     if all(seat.left for seat in match.seats):

@@ -1,4 +1,4 @@
-"""What the rules saw and decided, so that one event can be taken back (rules 4).
+"""What the rules saw and decided, so that one event can be taken back (rules 4.1).
 
 Nothing is deleted. A match keeps every observation since its first event. To take an event back, it
 judges the game again from that tick, without the event's claim. Paths, clock and all other
@@ -61,7 +61,7 @@ class History:
         self.state: Any = game.start()
         """The game's state now."""
         self._steps: list[Step] = []
-        """Steps from the one before the first event that can be taken back."""
+        """All steps from the one before the first event that can be taken back."""
         self._step_of: dict[int, int] = {}
         self._judged: tuple[Any, Phrase | None] = (None, None)
         """The newest state after a tick, and why the game was over in that state."""

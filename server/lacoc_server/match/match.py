@@ -38,7 +38,7 @@ from lacoc_shared.words import Phrase, say
 PHYSICS_RUNS = frozenset({Phase.READY, Phase.PLAYING})
 
 MOST_STRAYS = 3
-"""A robot that leaves its start place this often before play does not stand: it is not ready."""
+"""A team is no longer ready when its robot has left its start place this often before play."""
 
 
 class Beat(msgspec.Struct, frozen=True):

@@ -72,4 +72,4 @@ class MakePhysics(Protocol):
     """Builds the physics of a match: once, when all seats are ready."""
 
     def __call__(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """Build the physics; without entries it is the empty field, for its scene."""
+        """Build the physics of the robots; without entries, that of the empty field."""

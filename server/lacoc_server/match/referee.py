@@ -2,7 +2,7 @@
 
 Workshop 5-1 rule 8 and 5-2 rule 9: "In the event of an unexpected event, the referee will consult
 and make a decision." Every decision is an event with referee, beat and reason; nothing is deleted
-(rules 4).
+(rules 4.1).
 """
 
 from collections.abc import Callable
@@ -45,7 +45,9 @@ class _Rule:
 
     phases: frozenset[Phase]
     act: Callable[[MatchState, Any], Phrase]
-    """Does it and returns the sentence for the log; raises `Illegal` before any change."""
+    """Carries the decision out and returns the sentence for the log; raises `Illegal` before any
+    change.
+    """
     then: Callable[[MatchState, Any], object] = lambda match, decision: None
     """Does what follows from the decision; its events come after the decision's own."""
     also: Callable[[MatchState], Phrase | None] = lambda match: None
@@ -242,7 +244,7 @@ def _next(match: MatchState, decision: d.Next) -> Phrase:
 
 
 def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> DecisionReply:
-    """Strike one event and judge the match again without it (rules 4, take-back)."""
+    """Strike one event and judge the match again without it (rules 4.1)."""
     if decision.event in match.adjustments:
         adjustments = {n: a for n, a in match.adjustments.items() if n != decision.event}
         scores = match.scores(adjustments=adjustments)
@@ -305,7 +307,7 @@ def _nobody(match: MatchState) -> Phrase | None:
 
 
 def _missing(match: MatchState) -> Phrase | None:
-    missing = match.missing()  # also changes earlier in this beat
+    missing = match.missing()  # includes changes from earlier in this beat
     return say("plain.sentences", sentences=missing) if missing else None
 
 

@@ -26,7 +26,7 @@ class Seat:
     join: JoinSeat | None = None
     entry: Entry | None = None
     coming: JoinSeat | None = None
-    """The join that arrived since the match began; it counts from the next match on."""
+    """The newest join since the match began; it is used from the next match on."""
     ready: bool = False
     silent: bool = False
     left: bool = False
@@ -74,13 +74,13 @@ class Seat:
             self.state = self.drive.stand(self.state)
 
     def restart(self) -> None:
-        """Go back to the start place in this beat, and stand at the same level (rules 4, [x])."""
+        """Go back to the start place in this beat, and stand at the same level (rules 3)."""
         self.restarting = True
         if self.drive and self.state:
             self.state = self.drive.begin(self.state.level)
 
     def why_not(self, key: KeySeat, ticks: int, levels: tuple[Level, ...]) -> No:
-        """Say why a command is refused while the match is played; `No.NONE` if it is not."""
+        """Return why a command is refused during play; `No.NONE`: it is accepted."""
         if ticks < self.frozen_until:
             return No.FROZEN
         if ticks < self.locked_until:

@@ -12,8 +12,8 @@ from lacoc_server.match.seat import Seat
 from lacoc_shared.record.schema import Touch
 
 MIN_START_DISTANCE_M = 0.35
-"""Least distance of a free start place from another robot's centre; the sum of both radii counts if
-it is larger.
+"""Least distance of a free start place from another robot's centre [m]; it is the sum of both radii
+if that is larger.
 """
 
 _BODY = struct.Struct("<7f")
@@ -96,7 +96,7 @@ class Staging:
         self.look()
 
     def _free_place(self, seat: Seat, others: Sequence[Seat]) -> Place:
-        """Find the first start place far enough from the others (rules 4), or the farthest."""
+        """Find the first start place far enough from the others (rules 3), or the farthest."""
 
         def room_m(place: Place) -> float:
             gaps_m = (

@@ -93,7 +93,8 @@ class MatchState:
         self.ended: Phrase | None = None
         """Why play ended; None: it has not."""
         self.advice: tuple[Phrase | str, ...] = ()
-        """Reasons why the court advises a replay."""
+        """Why the match should be played again, by the court's measurement; empty: it need not be.
+        """
         self.next_wanted = False
         self.fault: Fault | None = None
         """The fault that stopped physics in the newest tick; None: none did."""
@@ -244,7 +245,7 @@ class MatchState:
         self.enter(Phase.LOBBY)
 
     def begin_countdown(self) -> None:
-        """Start or resume: play begins after the countdown."""
+        """Begin the countdown, after which play starts or goes on."""
         self.countdown_beats = round(self.rules.countdown_s * BEATS_PER_S)
         self.enter(Phase.COUNTDOWN)
 

@@ -62,7 +62,7 @@ def here() -> Mapping[str, str]:
 
 
 def same(one: Mapping[str, str], other: Mapping[str, str]) -> bool:
-    """Return whether two fingerprints are of the same arithmetic; without hashes they are not."""
+    """Return whether two fingerprints have the same hashes; False if one has no hashes."""
     return all(name in one and one[name] == other.get(name) for name in BITS)
 
 

@@ -1,8 +1,8 @@
 """Which markers the robots touch: tested once a tick, without any force.
 
-MuJoCo's own distance of two geoms decides. It is asked only about pairs that may touch, which are
-found in a top view: there a probe is a circle, because it stands upright, and nothing is farther
-apart than in space. Probes far from a whole robot, or from a whole leg, are skipped at once.
+MuJoCo's own distance of two geoms decides. It is asked only about pairs that may touch. A top view
+finds these pairs: there an upright probe is a circle, and no distance is larger than in space.
+Probes far from a whole robot, or from a whole leg, are skipped at once.
 """
 
 import math

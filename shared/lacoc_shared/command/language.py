@@ -16,15 +16,14 @@ _JAPANESE = 0x11
 def of_process(environment: Mapping[str, str] | None = None) -> Language:
     """Find the language of a terminal.
 
-    The first of LACOC_LANGUAGE, LC_ALL, LC_MESSAGES and LANG that is set decides. If none
-    is set, the language of the Windows menus counts, or the locale of another system.
+    The first of LACOC_LANGUAGE, LC_ALL, LC_MESSAGES and LANG that is set decides. If none is set,
+    the language of the Windows menus decides, or the locale of another system.
 
     Args:
         environment: variables of the process; None reads them from the system.
 
     Returns:
-        The language; English if LACOC has no words in that language.
-        The language; English for one that LACOC does not speak.
+        The language; English if LACOC has no words in the language that was found.
     """
     variables = os.environ if environment is None else environment
     named = next((variables[name] for name in _VARIABLES if variables.get(name)), None)

@@ -21,7 +21,7 @@ from lacoc_shared.seat import BEATS_PER_S
 _WAITING_MOST = 10_000
 """Lines that may wait to be written; further lines are dropped, and their number is logged."""
 _END_S = 1.0
-"""At the end, time to write the lines that still wait."""
+"""When the process ends, the longest time to write the lines that still wait [s]."""
 _CLOCK = "%H:%M:%S"
 _DIM, _WARN, _PLAIN = "\x1b[2m", "\x1b[33m", "\x1b[0m"
 

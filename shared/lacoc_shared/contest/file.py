@@ -1,9 +1,9 @@
-"""The contest file: courts, addresses, tokens, limits (rules 1, "Where each number lives").
+"""The contest file: courts, addresses, tokens, and limits for robots.
 
-An organiser writes it once ('lacoc contest init'). A court is started from it, and a
-client that has it needs no address and no token. Every setting can also be given on the
-command line or in the environment, which take precedence: `options` reads both, and
-`entrances` looks up in this file what is still None.
+An organiser writes it once ('lacoc contest init'). A court is started from it, and a client that
+has it needs no address and no token. Every setting can also be given on the command line or in the
+environment, which take precedence: `options` reads both, and `entrances` looks up in this file what
+is still None.
 """
 
 import itertools
@@ -46,7 +46,7 @@ Token = Annotated[str, msgspec.Meta(min_length=12, max_length=64)]
 
 
 class Holder(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A place at a court, seat or referee; whoever knows its token holds it."""
+    """A place at a court: a seat, or the referee's desk. Whoever knows its token holds it."""
 
     token: Token
 
@@ -122,7 +122,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     robot: str = "hexapod"
     """Robot of a team that sends no robot file: an installed robot's name, or a file."""
     limits: dict[str, float] = {}
-    """Limits for robots that differ from the defaults of rules 1, by name."""
+    """Limits for robots, by name, where they differ from the defaults (rules 1)."""
     health: HealthLimits = HealthLimits()
     """Limits beyond which a match should be played again."""
     keys: KeyFolder | None = None

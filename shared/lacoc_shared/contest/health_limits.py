@@ -1,4 +1,4 @@
-"""Limits for how well a match must run; beyond one of them a replay is advised."""
+"""Limits for how well a match must run; a match beyond one of them should be played again."""
 
 from typing import Annotated
 
@@ -17,7 +17,7 @@ class HealthLimits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     slow_beats_percent: _Percent = 1.0
     """Largest share of slow beats in PLAYING."""
     worst_late_ms: _Amount = 200.0
-    """Largest delay at which a beat of PLAYING may begin; from 100 ms on the match runs late."""
+    """Largest delay with which a beat of PLAYING may begin; a delay above 100 ms is not made up."""
     silent_s: _Amount = 5.0
     """Longest time that a seat may be silent in PLAYING."""
     heard_percent: _Percent = 70.0

@@ -14,7 +14,7 @@ from lacoc_shared.words import Phrase, render, say
 MAX_BYTES = 1 << 20
 """Limit for files that an organiser writes; a contestant's file may have a lower one."""
 
-_DOTS = 100  # in a line; a key with more parts costs time and memory quadratically
+_DOTS = 100  # most dots in a line; time and memory for a key grow with the square of its parts
 _DEEPEST = 32
 _INTEGERS = range(-(2**63), 2**64)  # the integers that a message can carry
 _TOO_LONG = re.compile(r"[0-9][0-9_]{4000,}")

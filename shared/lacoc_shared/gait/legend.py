@@ -15,10 +15,10 @@ _LABELS = (_IDS_LABEL, "position")
 
 
 def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
-    """Split the rows of Loco-data into postures, legend, and the rows below it.
+    """Split the rows of Loco-data into postures, legend, and the rows below the legend.
 
-    The legend begins at the first row below the last key that can be a legend row. A row
-    after it is never a posture: it is a remark, or an empty row of a sheet.
+    The legend begins at the first row that can belong to one, below all rows with a key. No row
+    after that is a posture: it is a remark, or an empty row of a sheet.
     """
     keys = [index for index, row in enumerate(rows) if KEY.fullmatch(row.cells[0])]
     table_end = keys[-1] + 1 if keys else 0

@@ -1,9 +1,9 @@
-"""Motion of commanded angles from one posture to another (docs/rules.md 2)."""
+"""Motion of commanded angles from one posture to another (rules 3)."""
 
 from lacoc_shared.gait.tables import Posture
 
 _ROUNDING = 1 + 1e-9
-"""24 degrees at 2.4 degrees a tick are 10 ticks, though the binary sum may be off by a bit."""
+"""Tolerance for rounding: 24 degrees at 2.4 degrees a tick must take exactly 10 ticks."""
 
 
 def toward(angles: Posture, target: Posture, step_rad: float) -> Posture:

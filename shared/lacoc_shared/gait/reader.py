@@ -35,7 +35,9 @@ Range = float | Sequence[tuple[float, float]]
 for each joint id."""
 
 MAX_MISTAKES = 1000
-"""Reading stops here: a garbage file has thousands, and a court reads files within a beat."""
+"""Reading stops at this many mistakes: a garbage file has thousands, and a court reads files within
+a beat.
+"""
 
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
 

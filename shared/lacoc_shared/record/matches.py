@@ -35,11 +35,13 @@ class MatchName:
     def new(cls, folder: Path | None, court: str, number: int) -> "MatchName":
         """Name a match that is opened now.
 
+        If the folder has a match of this name already, the new match gets a later time. This
+        happens when a court is started twice within a second.
+
         Args:
-            folder: of the court's records. A court that starts twice within a second counts the
-                same match twice; the second gets the next second that is free there.
+            folder: folder of the court's records; None: the name need not be free.
             court: the court's name.
-            number: of the match at its court.
+            number: number of the match at its court.
         """
         opened = datetime.now(UTC)
         while True:

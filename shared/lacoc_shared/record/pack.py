@@ -28,9 +28,10 @@ _Message = tuple[str, int, bytes]
 def pack(segments: Sequence[Path], out: Path) -> None:
     """Make one file from the segments of a match, then remove them.
 
-    The file gets its name when it is complete and on the disk. If it exists already, packing
-    was interrupted after that, and only check and removal follow. The segments are removed only if
-    the file, read again, has every message in them. Meanwhile all segments are locked.
+    The file gets its name when it is complete and on the disk. If a file of this name exists
+    already, an earlier packing was interrupted, and only check and removal follow. The segments are
+    removed only if the file, read again, has every message in them. Meanwhile all segments are
+    locked.
 
     Args:
         segments: the segments in their order.

@@ -45,14 +45,15 @@ class Record:
     result: Result | None = None
     """The newest result; None if the match has not ended."""
     health: HealthVerdict | None = None
-    """The newest verdict; None: the match was not played in real time, or has none yet."""
+    """The newest verdict; None: there is none yet, or the match was not played in real time."""
     last_beat: int = -1
     """The last beat with any message; -1: none."""
     cut: str = ""
-    """How far the record could be read and why no further, in words; "" if it is whole."""
+    """How far the record could be read and why reading stopped, in words; "" if it is whole."""
 
     gap: bool = False
-    """Whether it was cut because the next segment does not continue where the last one ends."""
+    """Whether reading stopped because the next segment does not continue where the last one ends.
+    """
     lost: bool = False
     """Whether a part is lost: a segment is missing, or a file is damaged or incomplete. Nothing is
     lost if a killed court did not write the end."""

@@ -34,8 +34,9 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
     segment: int
     """Number of segments before this one; 0 for the first."""
     first_beat: int
-    """First beat of the segment. Anything that earlier segments hold from this beat on does not
-    count: no reply was sent yet (a court killed in the middle of a beat plays that beat again)."""
+    """First beat of the segment. Anything that earlier segments hold from this beat on is ignored,
+    because no reply was sent yet: a court killed in the middle of a beat plays that beat again.
+    """
     started: str
     """Wall time at which the segment began, ISO 8601, UTC."""
     versions: dict[str, str]
@@ -56,7 +57,7 @@ class Touch(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Result(msgspec.Struct, frozen=True, kw_only=True):
-    """The end of a match. Both the computed and the official result are kept (rules 4)."""
+    """The end of a match. It keeps both the computed and the official result (rules 4.1)."""
 
     match_id: str
     court: str

@@ -60,7 +60,9 @@ class Stop(NamedTuple):
     text: str
     """The fault, as the end of a sentence."""
     damaged: bool
-    """Whether the file is damaged or incomplete; False: never closed, as by a killed court."""
+    """Whether the file is damaged or incomplete; False: it was only not closed, as by a killed
+    court.
+    """
 
 
 class _Format(msgspec.Struct):
@@ -181,7 +183,7 @@ def _records(file: BytesIO, size: int) -> Iterator[McapRecord]:
 
 
 def _unpacked_bytes(chunk: Chunk) -> int:
-    """Return a chunk's unpacked size: the larger of those that its header and zstd's state."""
+    """Return a chunk's unpacked size: that of its header or of zstd, whichever is larger."""
     size = len(chunk.data)
     if chunk.compression == "zstd":
         size = max(chunk.uncompressed_size, zstandard.frame_content_size(chunk.data))

@@ -1,9 +1,9 @@
 """Write the record of a running match as a journal; a killed court loses nothing of it.
 
-The file is plain MCAP (https://mcap.dev/spec), unchunked and unbuffered: each message
-is one system call. `mcap.writer` puts a buffer before a raw file. A kill would lose that
-buffer, and it takes longer than the disk does. So this module packs the one MCAP record
-that is written 50 times a second, and takes only the others from `mcap.records`.
+The file is plain MCAP (https://mcap.dev/spec), unchunked and unbuffered: each message is one system
+call. `mcap.writer` would put a buffer before the file. A kill would lose that buffer, and filling
+it takes longer than writing to the file. So this module packs the one MCAP record that is written
+50 times a second, and takes only the others from `mcap.records`.
 """
 
 import os

@@ -1,8 +1,8 @@
-"""All sentences for people: a code with its values, and one table with both languages.
+"""All sentences for people. A sentence is a code with values; one table has the words.
 
-A program says a `Phrase` (`say`); a page or a terminal renders it (`render`). No program
-parses a sentence. The table is in `texts/*.toml`; docs/decisions/0016-words.md defines the
-template language. Pure: `use` sets the language of a process from outside.
+A program says a `Phrase` (`say`); a page or a terminal renders it (`render`). No program parses a
+sentence. The table, in English and Japanese, is in `texts/*.toml`; docs/decisions/0016-words.md
+defines the template language. `use` sets the language of a process.
 """
 
 from lacoc_shared.words.phrase import Phrase, Value, say

@@ -58,7 +58,7 @@ def render(phrase: Phrase | str, language: Language | None = None) -> str:
 
 
 def counted(name: str, language: Language | None = None) -> str:
-    """Name a counter (`count.*`): refusals at a court's doors and by the rules."""
+    """Return the words for a counter (`count.*`), such as a reason for refused commands."""
     return _plain(name, ("count.*",), language or _current, 0)
 
 

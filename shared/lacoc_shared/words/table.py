@@ -21,7 +21,7 @@ FILES = (
     "commands",
 )
 ON_PAGES = FILES[:-1]
-"""Pages leave out what only commands say in a terminal."""
+"""The files that pages need; the last one has only sentences that commands print in a terminal."""
 
 
 class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

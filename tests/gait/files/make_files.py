@@ -2,9 +2,10 @@
 
     /usr/bin/python3 tests/gait/files/make_files.py
 
-Needs Debian's libreoffice-calc and python3-uno. Each cell is typed as a person would type it; the
-legend's labels are in Japanese, so that the encodings of the text files differ. The files made
-stand beside this script and are committed; Calc adds the sheet's name to those of the text files.
+This needs Debian's libreoffice-calc and python3-uno. The script types each cell as a person would.
+The legend's labels are in Japanese, so that the encodings of the text files differ. The script
+writes the files beside itself, and they are committed. Calc adds the sheet's name to the names of
+the text files.
 """
 
 import subprocess
@@ -21,19 +22,20 @@ HERE = Path(__file__).resolve().parent
 SAMPLE = HERE.parents[2] / "robots/lacoc_robots/samples/hexapod/Loco-data.txt"
 JAPANESE = {"ID of Joint": "関節番号", "Position": "脚の位置", "Root": "付け根"}
 
-# Tab, double quotes, the character set's number, from row 1; then: cells as shown, and of the
-# second sheet. See "Filter Options for CSV" in LibreOffice's help.
+# The options: tab as separator, double quotes, the character set's number, start in row 1; then:
+# write cells as they are shown, and write the second sheet. See "Filter Options for CSV" in
+# LibreOffice's help.
 TEXT = "9,34,{charset},1,,0,false,true,false,false,false,2"
 CHARSETS = {"utf-8": 76, "utf-16": 65535, "shift-jis": 64}
 
 
 def properties(**values):
-    """Arguments as LibreOffice takes them."""
+    """Return named values in the form in which LibreOffice takes arguments."""
     return tuple(PropertyValue(Name=name, Value=value) for name, value in values.items())
 
 
 def connect(pipe, process):
-    """The desktop of the LibreOffice that was started, as soon as it listens."""
+    """Wait until the started LibreOffice listens; return its desktop."""
     context = uno.getComponentContext()
     resolver = context.ServiceManager.createInstance("com.sun.star.bridge.UnoUrlResolver")
     while process.poll() is None:
@@ -47,7 +49,7 @@ def connect(pipe, process):
 
 
 def enter_table(document):
-    """Type the table into the edited sheet, and formulas that mirror it into the other."""
+    """Type the table into one sheet, and formulas that mirror it into the other sheet."""
     sheets = document.Sheets
     sheets.getByIndex(0).Name = "EX (input)"
     sheets.insertNewByName("Loco-data", 1)
@@ -63,7 +65,7 @@ def enter_table(document):
 
 
 def main():
-    """Make the files."""
+    """Start LibreOffice Calc and let it save the files."""
     pipe = f"lacoc-{uuid.uuid4().hex}"
     with tempfile.TemporaryDirectory() as profile:
         process = subprocess.Popen(

@@ -57,7 +57,7 @@ class PosData:
 def _physics_ran(frame: Frame, last: Frame | None) -> bool:
     if frame.phase in _PHYSICS:
         return True
-    # The tick that ends a match is played too (rules 4: "tick 9000 is played and judged").
+    # Physics runs in the tick that ends a match too (rules 4: tick 9000 is the last one).
     return (
         frame.phase == Phase.FINISHED
         and last is not None
