@@ -2,7 +2,7 @@
 
 The TOML has `title`, a table [match] that every game shares, one [[seat]] for each
 seat, and a table [game] for this game alone. The contest file may override any
-entry (rules 1, "Where each number lives").
+entry (docs/write-an-arena.md).
 """
 
 import importlib
