@@ -1,4 +1,4 @@
-"""`make bench`: every figure of the issue in one run, as ratios (docs/architecture.md)."""
+"""`make bench`: what beats, matches, the gateway and the pages cost, as ratios of one run."""
 
 import argparse
 import json

@@ -1,7 +1,8 @@
 """An arena: a folder with its TOML, rules, field and bots, ready to be played.
 
-The TOML has `title`, a table [match] that every game shares, one [[seat]] for each seat, and a
-table [game] for this game alone. The contest file may override any entry.
+The TOML has `title`, a table [match] that every game shares, one [[seat]] for each
+seat, and a table [game] for this game alone. The contest file may override any
+entry (docs/write-an-arena.md).
 """
 
 import importlib

@@ -69,10 +69,13 @@ def big(page: Page) -> Locator:
     return page.locator(".big .act")
 
 
-def step(page: Page) -> None:
-    """Press the big button, once what it says has stood for a moment."""
+def step(page: Page, key: str = "") -> None:
+    """Press the big button, or its key, once what the button says has stood for a moment."""
     expect(page.locator(".big.fresh")).to_have_count(0)
-    big(page).click()
+    if key:
+        page.keyboard.press(key)
+    else:
+        big(page).click()
 
 
 def phase(page: Page, number: int) -> None:
@@ -171,7 +174,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     log_has(page, "Referee Kim: ready for Ants.")
     court.contestant("right", "Bees")
     phase(page, 2)
-    page.keyboard.press("Control+Enter")
+    step(page, "Control+Enter")
     log_has(page, "Referee Kim: play begins in 3 seconds.")
     phase(page, 4)
     # While it is played.
@@ -220,7 +223,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     group(page, "Draw").click()
     confirm(page, "rule")
     log_has(page, "Referee Kim: the match is declared a draw. Reason: rule")
-    page.keyboard.press("Control+Enter")
+    step(page, "Control+Enter")
     expect(page.get_by_role("dialog")).to_contain_text("15 : 18")
     phase(page, 6)
     confirm(page)
@@ -245,7 +248,7 @@ def test_declaring_a_winner_ends_a_halted_match(court: Venue, referee: Referee) 
     """Rules 4, `declare`: the referee's decision is shown beside the computed result."""
     page = at_the_desk(referee())
     to_playing(page, court)
-    page.keyboard.press("Control+Enter")
+    step(page, "Control+Enter")
     phase(page, 5)
     group(page, "Bees wins").click()
     confirm(page, "stuck", "Ants can't go on")
@@ -613,7 +616,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     assert (
         why(strike.locator(".act")) == f"{ONLY} halted or finished. Now the match is being played"
     )
-    page.keyboard.press("Control+Enter")
+    step(page, "Control+Enter")
     phase(page, 5)
     before = scores(page)
     expect(strike.locator(".act")).not_to_have_attribute("aria-disabled", "true")

@@ -1,4 +1,4 @@
-"""The contest file: courts, addresses, tokens, and limits for robots.
+"""The contest file: courts, addresses, tokens, limits (docs/operations.md).
 
 An organiser writes it once ('lacoc contest init'). A court is started from it, and a client that
 has it needs no address and no token. Every setting can also be given on the command line or in the

@@ -1,4 +1,4 @@
-"""Motion of commanded angles from one posture to another (rules 3)."""
+"""Motion of commanded angles from one posture to another (docs/rules.md 3)."""
 
 from lacoc_shared.gait.tables import Posture
 
