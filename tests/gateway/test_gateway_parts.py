@@ -131,7 +131,7 @@ def test_a_message_is_a_websocket_frame(size: int) -> None:
 
 
 class Wire:
-    """A page's socket that keeps what is written; `keeps_up` says whether the page is fast enough."""
+    """A page's socket that keeps all bytes written; `keeps_up` says whether the page keeps up."""
 
     def __init__(self) -> None:
         self.written: list[bytes] = []

@@ -401,7 +401,7 @@ def moved_m(before: Frame, after: Frame | None, seat: int) -> float:
 
 
 def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
-    """Space changes views, the page shows when it lacks the focus, and Tab can leave the picture."""
+    """Space changes views, a lost focus is shown, and Tab can leave the picture."""
     page = seated(venue, sit)
     page.sees(".badge", "View 1/3")
     for number, camera in ((2, "top"), (3, "chase"), (1, "arena")):
@@ -738,7 +738,7 @@ def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
 
 
 def test_no_message_stands_in_two_catalogues() -> None:
-    """No name of a message is used in two parts of the catalogue: the later one would win silently."""
+    """Each message name is in one part of the catalogue only: of two, the later one would win."""
     folder = Path(__file__).parents[2] / "client" / "web" / "src" / "i18n"
     names = [
         name
