@@ -1,4 +1,4 @@
-"""`python -m benchmarks.fairness`: do equal links make a slow link and a fast one equal?
+"""`python -m benchmarks.fairness`: do both keys take effect in the same beat?
 
 Two controllers at a real court press the same key in response to the same frame. One of them is
 behind a proxy that adds delay and jitter both ways. The benchmark reads in the record in how many

@@ -29,7 +29,7 @@ from lacoc_shared.seat import Phase
 
 RATE_HZ = 10_000
 SETTLE_BEATS = 25
-"""Beats after each change of rounds that are not measured."""
+"""The first beats of each round, which are not measured."""
 _ROUND_BEATS = 150
 _SLICE_S = 0.005
 _LOST_S = 5.0
@@ -100,7 +100,7 @@ class _Plan:
 
 
 class _Other:
-    """A process that holds a seat, on a core of its own."""
+    """A process that holds a seat and runs on a given core."""
 
     def __init__(self, role: str, core: int, *words: str) -> None:
         self._process = subprocess.Popen(
@@ -148,7 +148,7 @@ def _commands() -> Callable[[], str]:
 
 
 def flooder(words: list[str]) -> dict[str, Any]:
-    """Join a seat; on request send new sealed commands at the rate, and report their number."""
+    """Join a seat; on request send new sealed commands at `RATE_HZ`, and report their number."""
     session, controller = _controller(words)
     joined = controller._joined
     assert joined is not None

@@ -128,7 +128,7 @@ class _Copy:
         return struct.pack(f"<{len(numbers)}f", *numbers)
 
     def move(self, at: int) -> tuple[int, float]:
-        """Choose a random number of the poses, and the step (1 mm or 1 mrad) by which to move it."""
+        """Choose a random number of a frame's poses, and a step of 1 mm or 1 mrad to move it by."""
         count = len(self[at].poses) // 4
         if not count:
             raise Harmless
@@ -317,7 +317,7 @@ def _section(copy: _Copy) -> None:
 
 
 def _snapshot(copy: _Copy, seen: bool = False) -> None:
-    """Move a robot in a snapshot by 1 mm; if `seen`, also in all frames up to the next one."""
+    """Move a robot in a snapshot by 1 mm; if `seen`, also in the frames up to the next snapshot."""
     at = copy.chance.randrange(len(copy.record.snapshots))
     beat, saved = copy.record.snapshots[at]
     frame = decode(dict(copy.record.frames)[beat], Frame)
@@ -367,7 +367,7 @@ def _speed(copy: _Copy) -> None:
 
 
 def _chain(copy: _Copy) -> None:
-    """Change the state hash of the frame of a snapshot, or of the one before it."""
+    """Change the state hash of a snapshot's frame, or of the frame before it."""
     beat, _ = copy.chance.choice(copy.record.snapshots)
     frames = {b: i for i, (b, _) in enumerate(copy.record.frames)}
     at = frames[beat] - copy.chance.randrange(2)

@@ -78,7 +78,7 @@ WAYS = (
 
 
 def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
-    """Try everything in one configuration.
+    """Make all attacks in one configuration.
 
     Args:
         way: the configuration.
@@ -125,9 +125,7 @@ def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
     pressed = {(index, *key) for index, one in enumerate(honest) for key in one.pressed}
     decided = [one for one in inputs if isinstance(one, Decide)]
     accepted = {kind: len(commands & applied) for kind, commands in forged.items()}
-    accepted["a replayed command"] = len(keys) - len(
-        applied
-    )  # a replayed command would be recorded twice
+    accepted["a replayed command"] = len(keys) - len(applied)  # it would be recorded twice
     accepted["a decision by a contestant"] = answered
     return {
         "way": way.name,
@@ -152,7 +150,7 @@ def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
 
 
 class _Honest:
-    """An honest contestant, whose thread presses a key when the last is applied and 0.25 s old."""
+    """An honest contestant; a thread presses the next key after 0.25 s, once the last is applied."""
 
     def __init__(self, session: Session, access: Access) -> None:
         self.controller = Controller(session, "main", access.seat, access.token, access.seat)

@@ -42,7 +42,7 @@ from lacoc_shared.words import render
 
 P = Phase
 BACK_IN = {P.PLAYING: P.HALTED, P.COUNTDOWN: P.HALTED}
-"""The phase in which a court comes back from each of these; from others it comes back in the same."""
+"""The phase in which a killed court comes back, if it is not the phase of the kill."""
 PLAN = (P.LOBBY, P.READY, P.COUNTDOWN, P.PLAYING, P.HALTED, P.PLAYING, P.PLAYING, P.FINISHED)
 """The phases in which the court is killed during a match, in this order."""
 MOST_DELAY_S = 0.6
@@ -210,7 +210,7 @@ class _Trial:
         # The frames of the court that came back are those that arrive from now on.
         self._until(lambda: self._controllers[0].view.frame_s > begin_s)
         figures.ready_s.append(time.monotonic() - begin_s)
-        # The first beat may still have the phase of the kill: the halt is an input of the next beat.
+        # The first beat may still have the phase of the kill: the halt is an input of the next one.
         wanted = BACK_IN.get(Phase(before.phase), Phase(before.phase))
         after = self._settled(wanted)
         figures.kills += 1

@@ -107,7 +107,7 @@ def at_random(seed: int) -> Candidate:
 
 
 def changed(candidate: Candidate, seed: int) -> Candidate:
-    """Change a robot a little: one to three of its numbers, or some of its angles."""
+    """Change a robot a little: up to three of its numbers, and some of its angles."""
     dice = random.Random(seed)
     numbers = dict(candidate.numbers)
     for name in dice.sample(sorted(_BOUNDS), dice.randint(0, 3)):
@@ -169,7 +169,7 @@ def leap_m(entry: Entry) -> float:
 
 
 def search(robots: int, steps: int, jobs: int, seed: int = 0) -> Iterator[Found]:
-    """Judge robots at random, then improve those that went farthest.
+    """Judge random robots, then change those that moved farthest so that they move farther.
 
     Args:
         robots: number of random robots.
@@ -233,7 +233,7 @@ def _gone_m(found: Found) -> float:
 
 
 def _robot(candidate: Candidate) -> RobotSpec | None:
-    """Read a candidate's file, with its feet on the floor; None if it is not within the limits."""
+    """Return a candidate as a robot, `drop_m` above the floor; None if it breaks a limit."""
     try:
         robot = read_robot(_file(candidate, 0.5), "robot.toml", _ANY_HEIGHT)
         lowest_m = robot.bounds(robot.start_posture)[0].z + robot.size_m[2] / 2

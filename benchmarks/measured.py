@@ -55,7 +55,7 @@ class MeasuredCourt(Court):
         return self._journal.match.phase
 
     def told(self) -> dict[str, Any]:
-        """Return the times and the number of slow beats since the last call."""
+        """Return the times of the beats since the last call, and how many of them were slow."""
         told = {
             "wall_s": self.wall_s,
             "slow_beats": self._pace.slow_beats,

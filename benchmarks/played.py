@@ -28,7 +28,7 @@ _STRAY_RAD = 0.3
 
 
 def wrestler(sheet: Sheet, seat: int) -> Brain:
-    """Return a bot that walks into the other robot and keeps walking."""
+    """Return a brain that walks into the other robot and keeps walking."""
     eyes = Eyes(sheet)
 
     def brain(frame: Frame) -> Key | None:

@@ -1,4 +1,4 @@
-"""Tests what a record proves: honest matches under two arithmetics, forgeries, and the time.
+"""Tries the proof of records on honest matches and on forgeries, and times it.
 
 python -m benchmarks.proof honest --matches 40 --seconds 180
 python -m benchmarks.proof forged --forgeries 1000
@@ -75,7 +75,7 @@ class Prover:
 
 @dataclass(frozen=True)
 class Forged:
-    """Counts of forgeries by their result."""
+    """The results of verifying forgeries."""
 
     tried: int
     passed: list[str]

@@ -1,8 +1,8 @@
 """`python -m benchmarks.scrape`: does a scrape of its metrics disturb a court?
 
 A court in a process of its own plays practice with one controller. Quiet rounds take turns with
-rounds of ten scrapes a second, where Prometheus makes one in 15 s. The court's own histogram gives
-the time of a beat's work in each round.
+rounds of ten scrapes a second (Prometheus makes one in 15 s). The court's own histogram gives the
+time of a beat's work in each round.
 """
 
 import argparse

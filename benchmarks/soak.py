@@ -92,7 +92,7 @@ class Figures:
         return slope * (looks[-1].at_s - looks[0].at_s) / first
 
     def left_over(self, process: str) -> dict[str, int]:
-        """Return the threads, files, sockets and children that a process has gained since the warm-up."""
+        """Return how many threads, files and so on a process has gained since the warm-up."""
         warm = [look for look in self.looks[process] if look.at_s <= self.warm_s]
         last = self.looks[process][-1]
         before = {name: max(getattr(look, name) for look in warm) for name in Look._fields[2:]}

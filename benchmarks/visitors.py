@@ -23,7 +23,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 
 STAY_S = {b"come": 15.0, b"rush": 2.0}
-"""Mean length of a visit [s], which is random."""
+"""Mean length of a visit [s] after each word; the lengths are random."""
 _PAUSE_S = 0.5
 _LOOK_S = 0.05
 

@@ -14,7 +14,7 @@ os.environ["LACOC_LANGUAGE"] = "en"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option that `make test-all` gives in its second run."""
+    """Add the option --long, which `make test-all` gives in its second run."""
     parser.addoption(
         "--long",
         action="store_true",
@@ -30,7 +30,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Select the tests of this run; the long soak tests begin, so that no worker ends with them."""
+    """Select the tests of this run, and put the soak tests first, because they take longest."""
     wanted, others = [], []
     for item in items:
         long = item.get_closest_marker("long") is not None

@@ -81,7 +81,7 @@ def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
 
 
 def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
-    """Return doctor's findings on packages if `metadata` hides the installed ones."""
+    """Return doctor's findings on packages when `metadata` replaces that of the installed ones."""
     for name, text in metadata.items():
         (folder / f"{name}.dist-info").mkdir()
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
@@ -112,7 +112,7 @@ def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
 
 
 def test_packages_that_are_not_there(tmp_path: Path) -> None:
-    """A missing package is a problem, but only a note if only a court needs it."""
+    """An old Python or a missing package is a problem; a package that only a court needs, a note."""
     needs = 'Requires-Dist: no-such-thing>=2\nRequires-Dist: no-engine>=3; extra == "server"'
     metadata = f"Name: lacoc\nVersion: 9\nRequires-Python: >=3.99\n{needs}"
     found = packages_beside(tmp_path, {"lacoc-9": metadata})
@@ -130,7 +130,7 @@ def test_packages_that_are_not_there(tmp_path: Path) -> None:
 def test_ports_that_are_taken(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, taken: int
 ) -> None:
-    """A taken port is a problem if somebody asked for it, and a note if it is the default."""
+    """A taken port that the user named is a problem; a taken default port is only a note."""
     file = contest(tmp_path, taken)
     found = look(capsys, tmp_path, "--contest", file, "--web", f"127.0.0.1:{taken}")
     assert found[f"port {taken}"]["status"] == "problem"

@@ -45,7 +45,7 @@ def script_of(*lines: str) -> KeyScript:
 def test_a_script_presses_each_key_in_its_time(
     lines: list[str], expected: list[tuple[float, str]]
 ) -> None:
-    """A script presses at most one moving key a tick; each time counts from the key before it."""
+    """A script moves the robot by at most one key a tick; each time counts from the key before it."""
     assert list(played(script_of(*lines), 3.0)) == expected
 
 
@@ -60,7 +60,7 @@ def test_keys_that_move_the_robot_wait_for_play() -> None:
 
 
 def test_time_stands_still_while_the_match_is_halted() -> None:
-    """A halt delays the keys of a script, because its times are times of play."""
+    """The times of a script count only while the match is played, so a halt delays its keys."""
     script = script_of("2", "1.0 3")
 
     assert script.due(0.02, True) == ["2"]

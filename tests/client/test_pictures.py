@@ -189,7 +189,7 @@ def test_robots_are_arrows_with_their_letters() -> None:
 
 
 def test_flags_show_their_points_and_then_who_struck_them() -> None:
-    """A flag shows its points while it stands, and the letter of its robot after it fell."""
+    """A flag shows its points while it stands, and then the letter of the robot that struck it."""
     sheet = make_sheet("flag-strike")
     field = Field(0.0, 0.0, 1.0, 1.0)
     standing = "\n".join(draw(make_frame(sheet), sheet, field, 24))

@@ -1,4 +1,4 @@
-"""The files that a contestant brings (rules 2, workshop 4-1)."""
+"""Tests of the files that a contestant brings (rules 2, workshop 4-1)."""
 
 import os
 from pathlib import Path
@@ -86,7 +86,7 @@ def test_a_workbook_of_sequences_is_named(tmp_path: Path) -> None:
 
 
 def test_nothing_named_leaves_all_to_the_contest() -> None:
-    """A contestant who names neither robot nor gait sends no file, and plays the contest's."""
+    """If a contestant names neither robot nor gait, no file is sent, and the contest's are used."""
     assert gather(None, []) == SeatFiles()
 
 

@@ -1,4 +1,4 @@
-"""The bytes that a terminal sends become names of keys."""
+"""Tests of how bytes from a terminal become names of keys."""
 
 import pytest
 from hypothesis import given

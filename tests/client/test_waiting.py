@@ -40,7 +40,7 @@ def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
     ids=["a person", "the time is over", "for good"],
 )
 def test_it_does_not_wait_in_vain(wait_s: float | None, error: UserError) -> None:
-    """Without --wait, after its time, or with a wrong token, a service does not wait."""
+    """A service does not wait without --wait, after the time of --wait, or with a wrong token."""
     with pytest.raises(type(error), match=str(error)):
         Patience(wait_s).until(coming(error))
 

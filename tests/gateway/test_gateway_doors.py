@@ -65,7 +65,7 @@ def get(venue: Venue, path: str, **headers: str) -> tuple[int, http.client.HTTPM
     ],
 )
 def test_the_names_of_this_machine_are_known(open_venue: Venue, host: str) -> None:
-    """Requests may name an IP address, localhost, this machine's name or a name of --host."""
+    """A request's host may be an IP address, localhost, this machine's name or one of --host."""
     status, _, _ = get(open_venue, "/recordings", Host=host.format(port=open_venue.web_port))
     assert status == 200
 
@@ -128,7 +128,7 @@ def test_without_the_key_a_page_only_watches(
 
 @pytest.mark.parametrize(("do", "fields"), ACTS, ids=[do for do, _ in ACTS])
 def test_watch_comes_first(open_venue: Venue, do: str, fields: dict[str, Any]) -> None:
-    """A page that has not asked to watch a court yet can't act."""
+    """A page can't act before it has asked to watch a court."""
     with (
         PageClient(open_venue.url, watch=False) as page,
         refusal("gateway.which-court"),

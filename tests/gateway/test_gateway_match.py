@@ -87,7 +87,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     gone = referee.frame.beat
 
     def silences() -> list[Event]:
-        """Return this seat's silences since the last key; a busy machine may have caused others."""
+        """Return this seat's silences after its key; a busy machine may have caused earlier ones."""
         return [
             event
             for event in referee.events
@@ -120,7 +120,7 @@ def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
 
 
 def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
-    """A page that is reloaded within a second keeps its robot's key."""
+    """A robot walks on while its page is reloaded, if the page is back within a second."""
     venue.court()
     venue.web()
     page, _, referee = started(venue)
@@ -291,7 +291,7 @@ def test_a_gateway_ends_cleanly(venue: Venue) -> None:
 def test_a_page_gets_as_many_frames_as_it_asks_for(
     open_venue: Venue, hz: int, share: float
 ) -> None:
-    """A page gets the share of frames that it asks for, or fewer on a busy machine."""
+    """A page gets as many frames a second as it asks for, or fewer on a busy machine."""
     with PageClient(open_venue.url, hz=hz) as page:
         page.wait(lambda: len(page.frames) > 3)
         (_, first), count = page.frames[-1], len(page.frames)
@@ -301,7 +301,7 @@ def test_a_page_gets_as_many_frames_as_it_asks_for(
 
 
 def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
-    """A page that has long not read gets only a few old frames and then new ones."""
+    """A page that stops reading for eight seconds gets a few old frames and then new ones."""
     with PageClient(open_venue.url, hz=50) as quick, SleepyPage(open_venue.url) as sleepy:
         sleepy.watch(hz=50)
         quick.wait(lambda: quick.frame is not None)
@@ -317,7 +317,7 @@ def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
 
 
 def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
-    """A frame that can't be read disturbs no page; only the sheet says that a version differs."""
+    """An unreadable frame disturbs no page; only a sheet tells that the court's version differs."""
     with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
         venue.web()
         page = venue.page()

@@ -116,7 +116,7 @@ def test_a_refusal_says_what_a_page_can_do(error: UserError, told: set[str]) -> 
 
 @pytest.mark.parametrize("size", [0, 1, 124, 125, 126, 65_534, 65_535, 70_000])
 def test_a_message_is_a_websocket_frame(size: int) -> None:
-    """A message becomes a WebSocket frame with the right one of RFC 6455's three length fields."""
+    """A message becomes a WebSocket frame, whose length has one of RFC 6455's three forms."""
     framed = wire.message(wire.Kind.EVENT, bytes(size))
     assert framed[0] == 0x82
     length, head = framed[1], 2
@@ -232,7 +232,7 @@ def test_a_log_that_begins_again() -> None:
 
 
 def test_a_log_is_held_against_what_the_court_says() -> None:
-    """A log differs from the court's report if it lacks events, but not if it has later ones."""
+    """A log differs from the court's report if it has fewer or more events, later ones aside."""
     log: EventLog[str] = EventLog()
     assert not log.differs(1, 0, 0)
     assert log.differs(1, 500, 3)
@@ -328,7 +328,7 @@ def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
 
 
 def test_browsers_without_a_screen_are_not_opened(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without a screen no browser is opened, because one for terminals would take the terminal."""
+    """Without a screen no browser is opened: one for terminals would take over the terminal."""
     monkeypatch.setattr("sys.platform", "linux")
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
         monkeypatch.delenv(name, raising=False)

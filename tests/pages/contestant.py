@@ -35,7 +35,7 @@ class Contestant:
         self.page.set_default_timeout(TIMEOUT_MS)
 
     def open(self, path: str = "/play", key: str | None = None, query: str = "") -> None:
-        """Go to the page; a page that has the key may act."""
+        """Go to the page; `key` allows the page to act."""
         fragment = "" if key is None else f"#key={key}"
         self.page.goto(f"{self.url}{path}?q=low{query}{fragment}")
 
@@ -62,7 +62,7 @@ class Contestant:
         expect(self.find(".toast").filter(has_text=text).first).to_be_visible(timeout=TIMEOUT_MS)
 
     def stands(self, how: str) -> None:
-        """Wait until the page's claim is `how`: seated, outside, lost, left or watching."""
+        """Wait until the page is in the state `how`: seated, outside, lost, left or watching."""
         self.sees(f"main[data-standing={how}]")
 
     def phase(self, phase: Phase) -> None:
@@ -85,7 +85,7 @@ class Contestant:
         self.sees(f'.key[data-key="{digit}"][aria-pressed=true]')
 
     def until(self, condition: str) -> None:
-        """Wait until a JavaScript condition is true; pages may not poll it, so this method does."""
+        """Wait until a JavaScript condition is true; the pages' CSP forbids `wait_for_function`."""
         end_s = time.monotonic() + TIMEOUT_MS / 1000
         while not self.page.evaluate(condition):
             assert time.monotonic() < end_s, condition

@@ -100,7 +100,7 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
 
 
 def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """The content of a file decides where it belongs, not its name or encoding (rules 2)."""
+    """A file's content decides where it belongs, and its name and encoding do not (rules 2)."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     sample = sample_gait_files("hexapod")
@@ -148,7 +148,7 @@ def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
 
 
 def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """The page says that a dropped folder can't be read, and takes the files beside it."""
+    """The page says that a dropped folder can't be read, and takes the file dropped with it."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     folder = tmp_path / "gaits"
@@ -217,7 +217,7 @@ def test_tabs_of_one_browser_have_their_own_files(
 
 @pytest.mark.long
 def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
-    """A page forgets the seat that it kept if its address leads to another court now."""
+    """A page that finds another court at its address forgets the seat that it kept."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     wish = {"court": "side", "seat": "left", "token": "x", "name": "Ants"}
@@ -401,7 +401,7 @@ def moved_m(before: Frame, after: Frame | None, seat: int) -> float:
 
 
 def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
-    """Space changes views, a lost focus is shown, and Tab can leave the picture."""
+    """Space changes the view, a lost focus is shown, and keys work with a Japanese input method."""
     page = seated(venue, sit)
     page.sees(".badge", "View 1/3")
     for number, camera in ((2, "top"), (3, "chase"), (1, "arena")):
@@ -528,7 +528,7 @@ def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None
 
 @pytest.mark.long
 def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
-    """While its court sends nothing, the page does not look live."""
+    """While its court sends nothing, the page shows a banner and a bad link."""
     court = venue.court()
     venue.web()
     page = sit(venue.url)

@@ -135,7 +135,7 @@ def to_playing(page: Page, venue: Venue) -> None:
 
 @pytest.mark.long
 def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
-    """If a match was held badly, the page advises a replay and says why, in both languages."""
+    """If a match ran too slowly, the page advises a replay and says why, in both languages."""
     wanted = "[health]\nreal_time_factor = 2.0\n"  # no court can be so fast
     venue.contest.write_text(wanted + venue.contest.read_text())
     venue.court("--seconds", "2")
@@ -568,7 +568,7 @@ def test_a_reload_goes_on(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_a_court_that_was_killed(venue: Venue, referee: Referee, console: Any) -> None:
-    """While the court is lost the page is not live and offers no decision; then it goes on."""
+    """While the court is gone, the page is marked as not live and allows no decision."""
     console.expect("WebSocket")  # the gateway is killed too
     court, web = venue.court(), venue.web()
     page = at_the_desk(referee())

@@ -298,7 +298,7 @@ def test_the_servers_list_and_the_address(
 def test_a_recording_that_was_given_up_says_nothing_more(
     library: Venue, open_page: OpenPage
 ) -> None:
-    """If another recording is opened during loading, only its progress is shown."""
+    """While two recordings load, only the progress of the one opened last is shown."""
     page = open_page(viewport=LAPTOP)
     page.add_init_script(
         """const get = window.fetch;

@@ -119,7 +119,7 @@ def test_the_page_has_every_body_where_mujoco_has_it(
 
 
 def test_the_picture_shows_the_frame(stand: Stand, site: Path) -> None:
-    """A robot's body is drawn where its frame has it, and half-way between two frames."""
+    """A robot's body is drawn at its place in a frame, or half-way between its places in two."""
     frames = Recorded(site, "othello").frames
     one, other = frames[600], frames[601]
     stand.open("othello.bin", speed=0, beat=one.beat, q="low")
@@ -261,7 +261,7 @@ def test_the_whole_field_fits(
 
 
 def test_clicks_say_what_was_clicked(stand: Stand, site: Path) -> None:
-    """A click on a disc or a robot gives the disc or robot and the place of the click."""
+    """A click reports which disc or which robot was clicked."""
     recorded = Recorded(site, "othello")
     frame = recorded.frames[-1]
     stand.open("othello.bin", speed=0, beat=frame.beat, q="low", labels=0)
@@ -282,7 +282,7 @@ def test_clicks_say_what_was_clicked(stand: Stand, site: Path) -> None:
 
 
 def test_a_flag_can_be_clicked_at_its_pole(stand: Stand, site: Path) -> None:
-    """A click on the thin pole of a flag gives the flag."""
+    """A click on the thin pole of a flag reports the flag."""
     recorded = Recorded(site, "flag-strike")
     frame = recorded.frames[0]
     stand.open("flag-strike.bin", speed=0, beat=frame.beat, q="low", labels=0)
@@ -377,7 +377,7 @@ def test_two_views_side_by_side(stand: Stand) -> None:
 
 
 def test_cameras_glide(stand: Stand) -> None:
-    """When another camera is chosen, the eye moves away from its old place."""
+    """When another camera is chosen, the eye of the view moves to another place."""
     stand.open("othello.bin", speed=0, q="low", beat=500)
     for name in ("top", "chase", "arena"):
         before = np.array(stand.view("eye"))

@@ -143,7 +143,7 @@ test("a court that says neither yes nor when is asked eight times", () => {
     assert.deepEqual([claim.state, claim.effects], ["holding", ["rest"]]);
     claim = after(claim, rested);
   }
-  // A grant sets the number of tries back.
+  // A grant sets the number of tries back to zero.
   assert.equal(after(claim, open, granted, open, failed(no)).state, "holding");
   const refused = after(claim, open, failed(no));
   assert.deepEqual([refused.state, refused.refusal, refused.effects], ["none", no, ["drop"]]);
