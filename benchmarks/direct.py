@@ -2,8 +2,8 @@
 
     python -m benchmarks.direct ADDRESS COURT SPECTATORS
 
-Each has a session of its own and all subscriptions of a spectator. Each line on standard input
-ends a count and prints it as JSON, as `benchmarks.spectators` does.
+Each spectator has a session of its own with all the subscriptions of a spectator. Each line on
+standard input ends a count and prints it as JSON, as `benchmarks.spectators` does.
 """
 
 import argparse

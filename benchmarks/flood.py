@@ -75,7 +75,7 @@ def flood(rounds: int) -> dict[str, Any]:
 
 
 class _Plan:
-    """Quiet and flooded rounds in turns, counted by the court's own loop."""
+    """The plan of quiet and flooded rounds in turns; the court's own loop counts their beats."""
 
     def __init__(self, court: MeasuredCourt, flooder: "_Other", rounds: int) -> None:
         self._court, self._flooder = court, flooder

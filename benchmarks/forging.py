@@ -57,7 +57,7 @@ _PRESS_S = 0.25
 _SLICE_S = 0.02
 _WAIT_S = 60.0
 _HEARD = 40  # commands that are kept, those of about four seconds
-_DECIDERS = 4  # threads: the court answers four requests in a beat
+_DECIDERS = 4  # threads: a court refuses at most four requests in a beat
 
 
 class Way(NamedTuple):
@@ -150,7 +150,7 @@ def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
 
 
 class _Honest:
-    """An honest contestant; a thread presses the next key after 0.25 s, once the last is applied."""
+    """An honest contestant; a thread presses a key every 0.25 s, once the last is applied."""
 
     def __init__(self, session: Session, access: Access) -> None:
         self.controller = Controller(session, "main", access.seat, access.token, access.seat)

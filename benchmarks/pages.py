@@ -152,7 +152,7 @@ def _loading(browser: Browser) -> dict[str, int]:
         with served(folder) as address:
             page = browser.new_page(viewport=SIZE)
             page.on("response", note)
-            # A file without an ending has no type, so the test gives it one, as a gateway does.
+            # A file without an ending has no type, so this gives it one, as a gateway does.
             html = (folder / "index.html").read_text()
             page.route("**/play", lambda route: route.fulfill(body=html, content_type="text/html"))
             page.goto(f"{address}/play")

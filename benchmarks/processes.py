@@ -1,4 +1,4 @@
-"""Processes under measurement: each part runs separately, as at a venue."""
+"""Starts the processes to measure: each part of a contest runs in its own, as at a venue."""
 
 import json
 import os

@@ -50,7 +50,7 @@ _SILENT_S = 60.0
 
 
 class Look(NamedTuple):
-    """The resources of a process."""
+    """The resources of a process at one time."""
 
     at_s: float
     memory_bytes: int
@@ -142,7 +142,7 @@ def soak(
         gateway = stack.enter_context(started(LACOC, "web", "--json", *where))
         processes["gateway"] = gateway
         url = read_line(gateway)["url"]
-        for one in (opened.process, gateway):  # they log all visits and events
+        for one in (opened.process, gateway):  # these two print all visits and events
             hush(one)
         most = ("--most", str(visitors_most))
         visitors = {

@@ -68,7 +68,7 @@ def test_this_machine(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Non
     assert "eclipse-zenoh 1.10" in found["packages"]["found"]
     assert found["clock"]["found"].startswith("20 beats of 20 ms")
     assert "MiB free" in found["disk"]["found"]
-    assert [*tmp_path.iterdir()] == []  # what it wrote is gone, and no folder was made
+    assert [*tmp_path.iterdir()] == []  # doctor left no file and no folder
 
 
 def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -112,7 +112,7 @@ def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
 
 
 def test_packages_that_are_not_there(tmp_path: Path) -> None:
-    """An old Python or a missing package is a problem; a package that only a court needs, a note."""
+    """An old Python or a missing package is a problem; for a court's package it is only a note."""
     needs = 'Requires-Dist: no-such-thing>=2\nRequires-Dist: no-engine>=3; extra == "server"'
     metadata = f"Name: lacoc\nVersion: 9\nRequires-Python: >=3.99\n{needs}"
     found = packages_beside(tmp_path, {"lacoc-9": metadata})

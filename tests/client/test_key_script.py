@@ -45,7 +45,7 @@ def script_of(*lines: str) -> KeyScript:
 def test_a_script_presses_each_key_in_its_time(
     lines: list[str], expected: list[tuple[float, str]]
 ) -> None:
-    """A script moves the robot by at most one key a tick; each time counts from the key before it."""
+    """A script moves the robot by at most one key a tick; a time counts from the key before it."""
     assert list(played(script_of(*lines), 3.0)) == expected
 
 

@@ -39,7 +39,7 @@ def until(true: Callable[[], bool]) -> None:
 
 
 def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
-    """The metrics count beats, commands and refusals; the log has joins and refusals but no token."""
+    """Metrics count beats, commands and refusals; the log has joins and refusals but no token."""
     court = open_court("--metrics", "127.0.0.1:0")
     url, match_id = court.opened["metrics"], court.opened["match_id"]
     until(lambda: ("lacoc_match_info", "main", match_id) in scrape(url))

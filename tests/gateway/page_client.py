@@ -216,7 +216,7 @@ class SleepyPage:
             self._flush()  # answers pings
             for event in self._protocol.events_received():
                 data = bytes(getattr(event, "data", b""))
-                is_message = getattr(event, "opcode", None) is Opcode.BINARY  # and no ping
+                is_message = getattr(event, "opcode", None) is Opcode.BINARY  # not a ping
                 if is_message and data[:1] == bytes((Kind.FRAME,)):
                     beats.append(decode(data[1:], Frame).beat)
         return beats

@@ -87,7 +87,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     gone = referee.frame.beat
 
     def silences() -> list[Event]:
-        """Return this seat's silences after its key; a busy machine may have caused earlier ones."""
+        """Return this seat's silences after its key; a busy machine may cause earlier ones."""
         return [
             event
             for event in referee.events

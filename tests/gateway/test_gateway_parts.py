@@ -131,7 +131,7 @@ def test_a_message_is_a_websocket_frame(size: int) -> None:
 
 
 class Wire:
-    """A page's socket that keeps all bytes written; `keeps_up` says whether the page keeps up."""
+    """A page's socket that keeps what is written; `keeps_up`: whether the page reads fast enough."""
 
     def __init__(self) -> None:
         self.written: list[bytes] = []
@@ -178,7 +178,7 @@ def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
 
 
 def test_a_page_hears_nothing_of_the_seat_it_had_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the thread of a page's former seat still says does not reach the page."""
+    """A page gets no more messages from the thread of its former seat."""
     tells: list[Any] = []
 
     class Thread:

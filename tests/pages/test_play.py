@@ -208,7 +208,7 @@ def test_tabs_of_one_browser_have_their_own_files(
     left.page.click("text=Change files")
     left.sees("dialog .files li:nth-child(2)", "left.txt")
 
-    left.page = left.page.context.new_page()  # the next team's
+    left.page = left.page.context.new_page()  # a new tab, for the next team
     console.watch(left.page)
     left.open(key=venue.key)
     left.sees(".entrance .seat")
@@ -343,7 +343,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.key_stands(3)
     seq = other.own().applied_seq, other.frame.seats[0].applied_seq  # type: ignore[union-attr]
     page.page.keyboard.down("2")
-    page.page.keyboard.down("2")  # as a key that is held repeats
+    page.page.keyboard.down("2")  # the repeat of a held key
     page.page.keyboard.up("2")
     page.key_stands(2)
     assert other.frame is not None

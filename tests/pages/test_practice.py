@@ -104,7 +104,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     assert name == "Pos-data.txt"
     rows = [line.split("\t") for line in text.splitlines()[1:]]
     assert max(float(row[2]) for row in rows) > 0.04
-    yaws_deg = [float(row[6]) for row in rows]  # docs/rules.md 2: the page and the file agree
+    yaws_deg = [float(row[6]) for row in rows]  # rules 2: page and file use one zero
     assert min(abs((yaw_deg - heading_deg + 180) % 360 - 180) for yaw_deg in yaws_deg[-100:]) < 1
     times_s = [float(row[0]) for row in rows]
     assert times_s[0] == 0

@@ -303,7 +303,7 @@ def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: i
                 name = show.find(f".score-bug [data-seat='{seat}'] .name").bounding_box()
                 assert name is not None
                 assert name["width"] > 60
-            page.keyboard.press("e")  # with and without the panel
+            page.keyboard.press("e")  # the second round is without the panel
         page.close()
 
 

@@ -167,7 +167,7 @@ test("new files are sent at once, and any refusal of them is shown", () => {
       ["none", refusal, ["drop"]],
     );
   }
-  // The tab keeps the seat while the court thinks.
+  // The tab keeps its wish for the seat until the court answers.
   assert.equal(keptWish(after(seated, change)), wish);
   // While a join waits for its answer, no second one is sent.
   assert.deepEqual(after(seated, open, change).effects, []);
