@@ -131,7 +131,7 @@ def test_a_message_is_a_websocket_frame(size: int) -> None:
 
 
 class Wire:
-    """A page's socket that keeps what is written; `keeps_up`: whether the page reads fast enough."""
+    """A page's socket that keeps what is written; `keeps_up` is False if the page is too slow."""
 
     def __init__(self) -> None:
         self.written: list[bytes] = []

@@ -85,7 +85,7 @@ class Contestant:
         self.sees(f'.key[data-key="{digit}"][aria-pressed=true]')
 
     def until(self, condition: str) -> None:
-        """Wait until a JavaScript condition is true; the pages' CSP forbids `wait_for_function`."""
+        """Wait until JavaScript is true; the pages' content policy forbids `wait_for_function`."""
         end_s = time.monotonic() + TIMEOUT_MS / 1000
         while not self.page.evaluate(condition):
             assert time.monotonic() < end_s, condition

@@ -38,7 +38,7 @@ class Show:
         return self.page.evaluate(f"window.__lacoc?.views?.[{index}]?.{what}")
 
     def until(self, condition: Callable[[], Any], otherwise: str) -> None:
-        """Wait until a condition is true; the pages' CSP forbids `wait_for_function`."""
+        """Wait until a condition is true; the pages' content policy forbids `wait_for_function`."""
         end_s = time.monotonic() + WAIT_MS / 1000
         while not condition():
             assert time.monotonic() < end_s, otherwise
