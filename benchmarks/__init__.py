@@ -1,1 +1,1 @@
-"""Benchmarks: the cost of the software as ratios against a bare baseline in the same run."""
+"""Benchmarks: what the software costs, mostly as ratios to a bare baseline in the same run."""

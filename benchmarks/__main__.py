@@ -64,7 +64,7 @@ def main() -> None:
         f"{figures['over_echo_ms']:.1f} ms over",
         "a wait of 0-20 ms for the beat is in it",
     )
-    if sys.platform == "linux":  # it reads what the kernel counts
+    if sys.platform == "linux":  # these read counters of the Linux kernel
         figures = found["gateway"] = gateway(rounds=max(1, options.rounds // 4))
         for row in gateway_rows(figures):
             table.add_row(*row)

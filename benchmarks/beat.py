@@ -1,4 +1,4 @@
-"""The court's whole beat, and a whole headless match, against bare `mj_step`."""
+"""Times the court's whole beat, and a whole headless match, against bare `mj_step`."""
 
 import statistics
 import tempfile
@@ -26,7 +26,8 @@ def beat(arena: str, rounds: int) -> dict[str, Any]:
     A beat is drive, physics, rules, frame, encoding and record, as the court does it.
 
     Returns:
-        Median microseconds of each, and the median of the rounds' ratios.
+        The median times of a beat and of its bare physics [us], and the median of the rounds'
+        ratios.
     """
     ours, bare_us, ratios = [], [], []
     with tempfile.TemporaryDirectory() as folder:
@@ -60,8 +61,8 @@ def whole_match(arena: str, rounds: int) -> dict[str, Any]:
     """Time a headless match with its record against bare physics of its path.
 
     Returns:
-        Median seconds of each, the speed as a part of the bare one's, times real time, and the
-        bytes of the finished record.
+        The median times of the match and of bare physics [s]; their ratio, bare to match; how
+        many times faster than real time the match was; and the size of its record [bytes].
     """
     match_s, bare_s, shares, sizes = [], [], [], []
     loaded = arenas.load(arena)
@@ -87,7 +88,7 @@ def whole_match(arena: str, rounds: int) -> dict[str, Any]:
 
 
 def _bare_path_s(record: Record) -> float:
-    """How long bare physics takes for the path of a record."""
+    """Return how long bare physics takes for the path of a record [s]."""
     match = Match(record.header.setup, World)
     controls: list[npt.NDArray[np.float64]] = []
     bare: BarePath | None = None

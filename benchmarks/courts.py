@@ -1,8 +1,8 @@
 """`python -m benchmarks.courts`: many courts on one machine, and how many beats are late.
 
-Each court is `lacoc serve` in PLAYING, with both seats held and keys pressed by one process
-for all. The same time a bare sleeper, which wakes 50 times a second and does nothing, shows how
-late this machine is by itself. A slow beat starts more than 20 ms late; a court counts its own.
+Each court is `lacoc serve` in PLAYING. One process holds the seats of all courts and presses keys.
+At the same time a bare sleeper, which wakes 50 times a second and does nothing else, shows how late
+this machine is by itself. A slow beat starts more than 20 ms late; each court counts its own.
 """
 
 import argparse
@@ -24,16 +24,16 @@ _SETTLE_S = 5.0
 
 
 def courts(number: int, seconds: float, arena: str) -> dict[str, Any]:
-    """Measure.
+    """Measure how many beats of many courts are slow.
 
     Args:
-        number: of courts.
-        seconds: how long.
-        arena: the game they play.
+        number: number of courts.
+        seconds: length of the measurement.
+        arena: the game that all courts play.
 
     Returns:
-        Beats and slow beats of the courts and of the sleeper, and processor time as a part of
-        all cores.
+        Beats and slow beats of the courts and of the sleeper, and the courts' processor time for a
+        beat and as a share of all cores.
     """
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))

@@ -1,9 +1,9 @@
-"""Hundreds of direct spectators in one process, as cheap as can be; a few count what comes.
+"""Runs hundreds of direct spectators in one process at little cost; ten count their frames.
 
     python -m benchmarks.direct ADDRESS COURT SPECTATORS
 
-Each has a session of its own and all subscriptions of a spectator. Each line on standard input
-ends a count and prints it as JSON, as `benchmarks.spectators` does.
+Each spectator has a session of its own with all the subscriptions of a spectator. Each line on
+standard input ends a count and prints it as JSON, as `benchmarks.spectators` does.
 """
 
 import argparse
@@ -33,7 +33,7 @@ def main() -> None:
         kept = []
         for number in range(options.spectators):
             session = stack.enter_context(open_client([options.address], _OPEN_S))
-            # A ring is filled without Python: so many callbacks would take a core.
+            # A ring is filled without Python; callbacks for all spectators would take a whole core.
             if number < PROBES:
                 probes.append(session.mailbox(keys.frame, _PROBE_DEPTH))
             else:
@@ -50,7 +50,7 @@ def main() -> None:
 
 
 def _emptied(probe: Mailbox) -> tuple[int, int]:
-    """Frames and bytes that have come."""
+    """Empty a mailbox; return its number of frames and of bytes."""
     frames = size = 0
     while (mail := probe.take()) is not None:
         frames, size = frames + 1, size + len(mail.payload)

@@ -1,8 +1,8 @@
-"""`python -m benchmarks.fairness`: two press the same key upon the same frame, one from far away.
+"""`python -m benchmarks.fairness`: do both keys take effect in the same beat?
 
-A real court, a process; both controllers over Zenoh, the slow one through a proxy that delays
-and jitters both ways. Counted, from the record: in how many pairs both keys took effect in the
-same beat, and whether each that was late says so.
+Two controllers at a real court press the same key in response to the same frame. One of them is
+behind a proxy that adds delay and jitter both ways. The benchmark reads in the record in how many
+pairs both keys took effect in the same beat, and whether each late key is recorded as late.
 """
 
 import argparse
@@ -22,9 +22,9 @@ from mirrored_pair import SEATS, Played, play
 class _Case(NamedTuple):
     input_delay: str
     delay_s: float
-    """One way."""
+    """Delay of the slow link in each direction."""
     jitter_s: float
-    """One way."""
+    """Jitter of the slow link in each direction."""
     most_ms: int = 400
 
     @property
@@ -42,7 +42,7 @@ CASES = (
 
 
 def main() -> None:
-    """Play and print."""
+    """Play all cases and print a table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.fairness", description=__doc__)
     parser.add_argument("--seconds", type=float, default=90.0, help="of play, each case")
     options = parser.parse_args()

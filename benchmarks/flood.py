@@ -1,8 +1,8 @@
 """`python -m benchmarks.flood`: a seat sends 10,000 commands a second; what does a beat cost?
 
-A real court on one core; on the other, in processes of their own, a controller that floods its
-seat with commands that are all sealed and new, and one that plays on. Quiet and flooded rounds
-take turns; a beat's CPU time is that of the court's own thread.
+A real court runs on the first core. On the last core run two more processes: a controller that
+floods its seat with commands, each sealed and new, and a controller that plays as usual. Quiet and
+flooded rounds take turns. The CPU time of a beat is that of the court's own thread.
 """
 
 import argparse
@@ -29,18 +29,18 @@ from lacoc_shared.seat import Phase
 
 RATE_HZ = 10_000
 SETTLE_BEATS = 25
-"""Left out after each change."""
+"""The first beats of each round, which are not measured."""
 _ROUND_BEATS = 150
 _SLICE_S = 0.005
 _LOST_S = 5.0
 
 
 def flood(rounds: int) -> dict[str, Any]:
-    """Measure.
+    """Measure quiet and flooded rounds in turns.
 
     Returns:
-        Microseconds of CPU a beat, quiet and flooded; the ratios; what the flooder sent; and what
-        became of the other seat's commands.
+        The CPU time of a beat [us], quiet and flooded; their ratios; how many commands the flooder
+        sent; and what became of the other seat's commands.
     """
     cores = sorted(os.sched_getaffinity(0))
     with ExitStack() as stack:
@@ -75,7 +75,7 @@ def flood(rounds: int) -> dict[str, Any]:
 
 
 class _Plan:
-    """Quiet and flooded rounds in turns, counted by the court's own loop."""
+    """The plan of quiet and flooded rounds in turns; the court's own loop counts their beats."""
 
     def __init__(self, court: MeasuredCourt, flooder: "_Other", rounds: int) -> None:
         self._court, self._flooder = court, flooder
@@ -85,7 +85,7 @@ class _Plan:
         """Mean CPU time of a beat, for each round."""
 
     def ended(self) -> bool:
-        """To be asked before every beat."""
+        """Return whether all rounds are over; called before every beat."""
         beats_s = self._court.cpu_s
         if self._begin is None:
             if self._court.phase is Phase.PLAYING:
@@ -100,7 +100,7 @@ class _Plan:
 
 
 class _Other:
-    """A process that holds a seat, on a core of its own."""
+    """A process that holds a seat and runs on a given core."""
 
     def __init__(self, role: str, core: int, *words: str) -> None:
         self._process = subprocess.Popen(
@@ -117,7 +117,7 @@ class _Other:
         self._process.stdin.flush()
 
     def stop(self) -> dict[str, Any]:
-        """End it; what it has counted."""
+        """End the process, and return what it has counted."""
         if not self._process.stdin or self._process.stdin.closed:
             return self._said
         told, _ = self._process.communicate("stop\n", timeout=20)
@@ -135,7 +135,7 @@ def _controller(words: list[str]) -> tuple[Any, Controller]:
 
 
 def _commands() -> Callable[[], str]:
-    """Returns the newest word from the standard input, without waiting."""
+    """Return a function that gives the newest word of standard input without waiting."""
     os.set_blocking(sys.stdin.fileno(), False)
     words: list[str] = ["quiet"]
 
@@ -148,7 +148,7 @@ def _commands() -> Callable[[], str]:
 
 
 def flooder(words: list[str]) -> dict[str, Any]:
-    """Join a seat; on request send new sealed commands at the rate, and report their number."""
+    """Join a seat; on request send new sealed commands at `RATE_HZ`, and report their number."""
     session, controller = _controller(words)
     joined = controller._joined
     assert joined is not None

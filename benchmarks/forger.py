@@ -1,4 +1,4 @@
-"""Changes one thing that means something in a record, as a forger would."""
+"""Forges a record: changes one thing in it that has a meaning."""
 
 import hashlib
 import random
@@ -24,7 +24,7 @@ from lacoc_shared.seat import Phase
 
 _MM = 1e-3
 _STATE_START = 8 + 8
-"""In a snapshot, after the digest and the time, stand the positions."""
+"""Where the positions begin in a snapshot [bytes]: after the digest and the time."""
 
 
 class Harmless(Exception):
@@ -36,8 +36,8 @@ class Forger:
     """Forges copies of one record.
 
     Args:
-        honest: the record.
-        other: of another match with the same robots; sections are taken from it.
+        honest: the record to forge.
+        other: a record of another match with the same robots; sections are taken from it.
     """
 
     honest: Record
@@ -47,7 +47,8 @@ class Forger:
         """Make a forged copy.
 
         Returns:
-            What was done, and the copy. It may also lie about the arithmetic that made it.
+            The name of the forgery, and the copy. Some copies also lie about the arithmetic that
+            made the record.
         """
         while True:
             name = chance.choice(sorted(_FORGERIES))
@@ -85,7 +86,7 @@ class _Copy:
     chance: random.Random
 
     def frame(self, *phases: Phase) -> int:
-        """Draw the place of a frame in the list, of some phases."""
+        """Choose a random frame of these phases; return its index."""
         wanted = phases or (Phase.READY, Phase.PLAYING)
         places = [at for at in range(len(self.record.frames)) if self[at].phase in wanted]
         if not places:
@@ -101,11 +102,11 @@ class _Copy:
         self.record.frames[at] = beat, encode(structs.replace(self[at], **changes))
 
     def after(self, at: int) -> int:
-        """Draw the place of a frame behind one, at most 5 s later."""
+        """Choose a random end, at most 5 s later, for a range of frames that begins at `at`."""
         return min(len(self.record.frames), at + self.chance.randint(2, 250))
 
     def input(self, *kinds: type) -> tuple[int, int]:
-        """Draw an input: its beat, and its place there."""
+        """Choose a random input; return its beat, and its index in that beat."""
         places = [
             (beat, at)
             for beat, items in self.record.inputs.items()
@@ -117,17 +118,17 @@ class _Copy:
         return self.chance.choice(places)
 
     def event(self) -> int:
-        """Draw the place of an event."""
+        """Choose a random event; return its index."""
         return self.chance.randrange(len(self.record.events))
 
     def moved(self, poses: bytes, by: tuple[int, float]) -> bytes:
-        """Move one of a frame's numbers."""
+        """Return poses in which one number is moved."""
         numbers = list(struct.unpack(f"<{len(poses) // 4}f", poses))
         numbers[by[0]] += by[1]
         return struct.pack(f"<{len(numbers)}f", *numbers)
 
     def move(self, at: int) -> tuple[int, float]:
-        """Draw a number of a robot's pose and 1 mm or 1 mrad to move it by."""
+        """Choose a random number of a frame's poses, and a step of 1 mm or 1 mrad to move it by."""
         count = len(self[at].poses) // 4
         if not count:
             raise Harmless
@@ -316,13 +317,13 @@ def _section(copy: _Copy) -> None:
 
 
 def _snapshot(copy: _Copy, seen: bool = False) -> None:
-    """Move a robot in a snapshot by 1 mm; if `seen`, also in all frames up to the next one."""
+    """Move a robot in a snapshot by 1 mm; if `seen`, also in the frames up to the next snapshot."""
     at = copy.chance.randrange(len(copy.record.snapshots))
     beat, saved = copy.record.snapshots[at]
     frame = decode(dict(copy.record.frames)[beat], Frame)
     numbers = struct.unpack(f"<{len(frame.poses) // 4}f", frame.poses)
     state = list(struct.unpack(f"<{len(saved) // 8 - 1}d", saved[8:]))
-    # The poses are the state's positions, in an order of their own.
+    # The poses are the state's positions in another order.
     number = copy.chance.choice((0, 1))
     place = next(i for i, value in enumerate(state) if _float32(value) == numbers[number])
     state[place] += _MM
@@ -366,7 +367,7 @@ def _speed(copy: _Copy) -> None:
 
 
 def _chain(copy: _Copy) -> None:
-    """Change the state hash of the frame of a snapshot, or of the one before it."""
+    """Change the state hash of a snapshot's frame, or of the frame before it."""
     beat, _ = copy.chance.choice(copy.record.snapshots)
     frames = {b: i for i, (b, _) in enumerate(copy.record.frames)}
     at = frames[beat] - copy.chance.randrange(2)
@@ -416,7 +417,7 @@ def _clock(copy: _Copy) -> None:
 
 
 def _setup(copy: _Copy) -> None:
-    """Change what the match is made from."""
+    """Change a setting that the match was made from."""
     header: Header = copy.record.header
     settings = deepcopy(header.setup.settings)
     settings["match"]["duration_s"] += 1

@@ -1,11 +1,13 @@
 """`python -m benchmarks.forging`: hostile clients against a real court; how much is accepted?
 
-In each of three configurations an honest contestant plays in each seat while others send, through
-real Zenoh sessions, the other seat's commands, decisions without being the referee, commands as a
-spectator, commands that were heard before, and altered ones; at the end everybody publishes frames,
-events, a sheet and health. Accepted is what the court's record has and no honest contestant or
-referee sent, a decision that was answered, and what another spectator received. The same code with
-the right credentials is the control: all of it must be accepted.
+In each of three configurations an honest contestant plays in each seat. Meanwhile hostile clients
+use real Zenoh sessions. They send commands for the other seat, commands as a spectator, commands
+that were heard before, altered commands, and decisions without being the referee. At the end they
+publish frames, events, a sheet and health as if they were the court.
+
+An attempt is accepted if it is in the court's record, if the court answered the decision, or if
+another spectator received the message. As a control, the same code sends commands and decisions
+with the right credentials: all of these must be accepted.
 """
 
 import argparse
@@ -50,22 +52,22 @@ KEYS = Keys("main")
 SEATS = ("left", "right")
 REFEREE = "benchmark"
 CONTROLS = 50
-"""How often the right credentials are tried with the code of the attacks."""
+"""How often the code of the attacks is tried with the right credentials."""
 _PRESS_S = 0.25
 _SLICE_S = 0.02
 _WAIT_S = 60.0
-_HEARD = 40  # commands, of about four seconds
-_DECIDERS = 4  # so many requests are answered in a beat
+_HEARD = 40  # commands that are kept, those of about four seconds
+_DECIDERS = 4  # threads: a court refuses at most four requests in a beat
 
 
 class Way(NamedTuple):
-    """A configuration."""
+    """A configuration of the court."""
 
     name: str
     without: str
     """What is switched off in the court's process: "", "rules" or "seals"."""
     a_slice: int
-    """Commands on a seat in 20 ms: where they reach its inbox, few enough that it looks at all."""
+    """Forged commands for a seat in 20 ms: few enough that the court looks at all it receives."""
 
 
 WAYS = (
@@ -76,16 +78,16 @@ WAYS = (
 
 
 def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
-    """Try everything in one configuration.
+    """Make all attacks in one configuration.
 
     Args:
         way: the configuration.
-        attempts: of each kind.
-        folder: an empty one.
+        attempts: number of attempts of each kind.
+        folder: an empty folder.
 
     Returns:
-        Accepted attempts by kind, what the court counted, and how the honest and the controls
-        fared.
+        The accepted attempts by kind, what the court refused, and how many honest keys and controls
+        were accepted.
     """
     people = _contest(folder, keys=way.without != "rules")
     with ExitStack() as stack:
@@ -123,7 +125,7 @@ def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
     pressed = {(index, *key) for index, one in enumerate(honest) for key in one.pressed}
     decided = [one for one in inputs if isinstance(one, Decide)]
     accepted = {kind: len(commands & applied) for kind, commands in forged.items()}
-    accepted["a replayed command"] = len(keys) - len(applied)  # it would be there twice
+    accepted["a replayed command"] = len(keys) - len(applied)  # it would be recorded twice
     accepted["a decision by a contestant"] = answered
     return {
         "way": way.name,
@@ -148,7 +150,7 @@ def forging(way: Way, attempts: int, folder: Path) -> dict[str, Any]:
 
 
 class _Honest:
-    """A contestant on a thread of their own: a key stands 0.25 s, and until it is applied."""
+    """An honest contestant; a thread presses a key every 0.25 s, once the last is applied."""
 
     def __init__(self, session: Session, access: Access) -> None:
         self.controller = Controller(session, "main", access.seat, access.token, access.seat)
@@ -158,9 +160,9 @@ class _Honest:
         assert joined is not None
         self.session, self.secret = joined.session, joined.secret
         self.pressed: list[tuple[int, int]] = []
-        """Sequence number and key."""
+        """Sequence number and key of each press."""
         self.sent: deque[bytes] = deque(maxlen=_HEARD)
-        """What somebody who listens on the line could have heard."""
+        """The newest commands, which an attacker who listens on the line could have heard."""
         self._door, self.controller._commands = self.controller._commands, self  # type: ignore[assignment]
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._play)
@@ -174,7 +176,7 @@ class _Honest:
         self._thread.start()
 
     def stop(self) -> None:
-        """Let the last key come through, and end."""
+        """Wait until the last key is applied, and end the thread."""
         self._stopping.set()
         if self._thread.is_alive():
             self._thread.join()
@@ -188,7 +190,7 @@ class _Honest:
             while (waited_s := time.monotonic() - pressed_s) < _PRESS_S or not self._done():
                 controller.wait_frame(0.02)
                 if waited_s > _WAIT_S:
-                    return  # it is lost, and will be missed in the record
+                    return  # the key is lost, and will be missing in the record
 
     def _done(self) -> bool:
         frame = self.controller.view.frame
@@ -198,7 +200,7 @@ class _Honest:
 
 
 Forged = dict[str, set[tuple[int, int, int]]]
-"""By kind of attack: seat, sequence number and key of commands that nobody may see applied."""
+"""By kind of attack: seat, sequence number and key of commands that must not be applied."""
 
 
 def _attack(
@@ -208,7 +210,7 @@ def _attack(
     honest: list[_Honest],
     people: dict[str, Access],
 ) -> tuple[int, Forged]:
-    """Send everything; returns how many decisions were answered, and the forged commands."""
+    """Make all attacks; return the number of answered decisions, and the forged commands."""
     answered: list[int] = []
     tokens = [people[seat].token for seat in SEATS]
     deciders = [
@@ -235,7 +237,7 @@ def _send_commands(
 ) -> Forged:
     chance = random.Random(2)
     kinds: dict[str, tuple[Callable[[int, int], bytes], str | None]] = {
-        # Their own seal, with their own session and with that of the seat, which health shows.
+        # Sealed with the attacker's own secret, for either seat's session, which health shows.
         "another seat's command": (
             lambda seat, seq: forge(
                 KEYS.command(SEATS[seat]),
@@ -270,7 +272,7 @@ def _send_commands(
                 seat = (sent + number) % 2
                 payload = make(seat, 10**6 + len(kinds) * sent + number)
                 command = decode(payload, Command)
-                if kind != "a replayed command":  # those are the honest ones' own numbers
+                if kind != "a replayed command":  # these have the honest contestant's numbers
                     forged[kind].add((seat, command.seq, command.key))
                 doors[who or SEATS[1 - seat], SEATS[seat]].put(payload)
             sent += 1
@@ -279,20 +281,20 @@ def _send_commands(
 
 
 def forge(key_expression: str, session: int, seq: int, secret: bytes) -> bytes:
-    """A command, sealed with a secret."""
+    """Return a command that is sealed with a secret."""
     numbers = (session, seq, 1, seq % 4, 0, 0)
     return encode(Command(*numbers, command_mac(secret, key_expression, *numbers)))
 
 
 def _alter(heard: bytes, seq: int, chance: random.Random) -> bytes:
-    """A command that was heard, with another number and key, or with another seal as well."""
+    """Return a command that was heard, with another number and key, and perhaps another seal."""
     command = decode(heard, Command)
     mac = command.mac if chance.random() < 0.5 else chance.randbytes(MAC_BYTES)
     return encode(msgspec.structs.replace(command, seq=seq, key=chance.randrange(10), mac=mac))
 
 
 def _decide(session: Session, token: str) -> int:
-    """Ask for a decision; 1 if it was made."""
+    """Ask for a decision; return 1 if it was made, else 0."""
     request = DecisionRequest(token=token, by=REFEREE, reason="x", decision=Adjust("left", 1))
     try:
         session.ask(KEYS.decision("adjust"), encode(request), timeout_s=_WAIT_S)
@@ -302,7 +304,7 @@ def _decide(session: Session, token: str) -> int:
 
 
 def _publish(attempts: int, sessions: dict[str, Session], spectator: Session) -> int:
-    """Publish as the court; returns how much of it another spectator received."""
+    """Publish as if from the court; return how many messages another spectator received."""
     expressions = (KEYS.frame, KEYS.event, KEYS.sheet, KEYS.health)
     boxes = [spectator.mailbox(key, 100_000) for key in expressions]
     doors = [sessions[who].publisher(key) for who in sessions for key in expressions]
@@ -312,7 +314,7 @@ def _publish(attempts: int, sessions: dict[str, Session], spectator: Session) ->
         if number % 50 == 0:
             time.sleep(0.01)
     for session in (*sessions.values(), spectator):
-        session.ask(KEYS.scene)  # comes back when all before it was dealt with
+        session.ask(KEYS.scene)  # answered after all earlier messages
     time.sleep(0.2)
     return sum(mail.payload == b"forged" for box in boxes for mail in _mails(box.take))
 
@@ -324,7 +326,7 @@ def _mails(take: Callable[[], Any]) -> Iterator[Any]:
 def _controls(
     sessions: dict[str, Session], honest: list[_Honest], people: dict[str, Access]
 ) -> set[tuple[int, int, int]]:
-    """Send the same commands and decisions with the right credentials; returns the commands."""
+    """Send commands and decisions with the right credentials; return the commands."""
     door = sessions["left"].publisher(KEYS.command("left"))
     first = honest[0].pressed[-1][0] + 1
     for seq in range(first, first + CONTROLS):
@@ -376,7 +378,7 @@ def _until(condition: Callable[[], object]) -> None:
 
 
 def _court(folder: Path, without: str) -> None:
-    """Be the court, with something switched off."""
+    """Run the court in this process, with some of its protection switched off."""
     if without == "rules":
         network_config.access_control = lambda _: {"enabled": False}
     if without == "seals":
@@ -386,7 +388,7 @@ def _court(folder: Path, without: str) -> None:
 
 
 def main() -> None:
-    """Try and print; or be the court."""
+    """Attack and print the result, or run the court."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.forging", description=__doc__)
     parser.add_argument("--attempts", type=int, default=10_000, help="of each kind")
     parser.add_argument("--serve", type=Path, help=argparse.SUPPRESS)

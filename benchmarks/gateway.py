@@ -1,9 +1,9 @@
-"""A gateway with hundreds of spectators: what it costs, what they get, what the court notices.
+"""Measures a gateway with hundreds of spectators: its cost, their frames, the court's beats.
 
     python -m benchmarks.gateway [--pages 300] [--seconds 10] [--rounds 3]
 
-Processes: a court with two hexapods that stand in READY, the gateway, all spectators in one
-more. The processor time of each is the kernel's own count (Linux only).
+A court with two hexapods that stand in READY, the gateway, and all spectators together run in three
+processes. The kernel counts the processor time of each (Linux only).
 """
 
 import argparse
@@ -33,7 +33,8 @@ def gateway(
     """Measure in turns without and with the pages.
 
     Returns:
-        Shares of one core in per cent, microseconds of processor a beat, frames a second.
+        Processor time of the gateway [% of a core] and of a beat of the court [us], without and
+        with the pages; and the pages' frames a second.
     """
     alone_us, watched_us, gateway_cpu, idle_cpu = [], [], [], []
     slowest_hz, median_hz, frame_bytes = [], [], []
@@ -81,7 +82,7 @@ def gateway(
 
 
 def rows(figures: dict[str, Any]) -> Iterator[tuple[str, ...]]:
-    """Rows for the table of `make bench`."""
+    """Yield the rows for the table of `make bench`."""
     crowd = f"{figures['pages']} spectators at {figures['hz']:.0f} Hz"
     yield (
         f"gateway's processor time, {crowd}",
@@ -108,7 +109,7 @@ def rows(figures: dict[str, Any]) -> Iterator[tuple[str, ...]]:
 
 @contextmanager
 def _standing(court: Opened) -> Iterator[Session]:
-    """A session with the court, with a robot in each seat; both stand."""
+    """Put a robot into each seat; give the session with the court when both stand."""
     with open_client([court.address]) as session:
         for seat, token in court.tokens.items():
             controller = Controller(session, court.name, seat, token, seat)
@@ -122,7 +123,7 @@ def _standing(court: Opened) -> Iterator[Session]:
 def _cost(
     court: subprocess.Popen[str], web: subprocess.Popen[str], view: Spectator, seconds: float
 ) -> tuple[float, float]:
-    """Microseconds of processor for a beat of the court, and per cent of a core of the gateway."""
+    """Return the processor time of the court for a beat [us] and of the gateway [% of a core]."""
     beat, court_s, web_s, at_s = _beat(view), used_s(court), used_s(web), time.monotonic()
     time.sleep(seconds)
     beats, passed_s = _beat(view) - beat, time.monotonic() - at_s

@@ -1,10 +1,11 @@
-"""`python -m benchmarks.kills`: kill a court at random moments of all phases; it must go on.
+"""`python -m benchmarks.kills`: kill a court at random moments of a match; it must go on.
 
-Each match of a real court with two controllers and a referee is killed (SIGKILL) once in every
-phase or oftener, at a random moment, and started again on the same records. Counted: in which
-phase it came back, the time until its first frame, frames seen whose state hash the record does
-not have, commands that had been shown as applied and answered decisions that were lost, and
-whether the whole record verifies.
+A real court plays matches with two controllers and a referee. In each match the court is killed
+(SIGKILL) at a random moment of each phase in `PLAN`, and each time started again on the same
+records. The benchmark counts in which phase the court comes back, and measures the time until its
+first frame. It also counts frames whose state hash differs from the record's, commands that were
+lost after a frame had shown them as applied, decisions that were lost after their answer, and
+records that don't verify.
 """
 
 import argparse
@@ -41,9 +42,9 @@ from lacoc_shared.words import render
 
 P = Phase
 BACK_IN = {P.PLAYING: P.HALTED, P.COUNTDOWN: P.HALTED}
-"""Where a phase comes back; the others as they were."""
+"""The phase in which a killed court comes back, if it is not the phase of the kill."""
 PLAN = (P.LOBBY, P.READY, P.COUNTDOWN, P.PLAYING, P.HALTED, P.PLAYING, P.PLAYING, P.FINISHED)
-"""In which phases a match is killed, one after another."""
+"""The phases in which the court is killed during a match, in this order."""
 MOST_DELAY_S = 0.6
 WAIT_S = 30.0
 
@@ -67,7 +68,7 @@ class Figures:
 
 
 def main() -> None:
-    """Kill and count."""
+    """Kill courts, and print the counts."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.kills", description=__doc__)
     parser.add_argument("--kills", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
@@ -95,7 +96,7 @@ def _spread(times_s: list[float]) -> str:
 
 
 class _Trial:
-    """One match, killed as planned."""
+    """One match, whose court is killed as planned."""
 
     def __init__(self, folder: Path, chance: random.Random, figures: Figures) -> None:
         self._folder = folder / "recordings"
@@ -137,7 +138,7 @@ class _Trial:
         self._process.terminate()
         self._process.communicate(timeout=WAIT_S)
 
-    # Living with the court
+    # Playing at the court
 
     @property
     def _frame(self) -> Frame:
@@ -169,7 +170,7 @@ class _Trial:
         self._answered.append(self._referee.decide(decision, "a trial", "trial"))
 
     def _reach(self, phase: Phase) -> None:
-        """Bring the match into a phase, from any that comes before it."""
+        """Bring the match from an earlier phase, or from a halt, into this phase."""
         self._until(lambda: bool(self._seen))
         while (now := Phase(self._frame.phase)) is not phase:
             if now is P.LOBBY and phase > P.LOBBY:
@@ -209,7 +210,7 @@ class _Trial:
         # The frames of the court that came back are those that arrive from now on.
         self._until(lambda: self._controllers[0].view.frame_s > begin_s)
         figures.ready_s.append(time.monotonic() - begin_s)
-        # The first beat may still be that of the kill: the halt is an input of the next.
+        # The first beat may still have the phase of the kill: the halt is an input of the next one.
         wanted = BACK_IN.get(Phase(before.phase), Phase(before.phase))
         after = self._settled(wanted)
         figures.kills += 1
@@ -228,7 +229,7 @@ class _Trial:
         return self._frame
 
     def _is_held(self, controller: Controller) -> bool:
-        """Whether the seat was given back to its controller by the court that came back."""
+        """Return whether the court that came back gave the seat back to its controller."""
         health = controller.view.health
         return (
             controller.hold.value == "held"
@@ -237,7 +238,7 @@ class _Trial:
         )
 
     def _check_record(self) -> None:
-        """Everything that was seen and answered stands in the record, and it verifies."""
+        """Compare all that was seen and answered with the record, and verify the record."""
         figures = self._figures
         end_s = time.monotonic() + WAIT_S
         while not (packed := [p for p in self._folder.glob("*.mcap") if ".live" not in p.name]):

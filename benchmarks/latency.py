@@ -1,4 +1,4 @@
-"""Key to the frame that shows it, over Zenoh on loopback, against a bare Zenoh echo."""
+"""Measures the time from a key to the frame that shows it, against a bare Zenoh echo."""
 
 import random
 import statistics
@@ -15,16 +15,16 @@ from lacoc_shared.seat import BEAT_S, Phase
 
 
 def latency(rounds: int) -> dict[str, Any]:
-    """Press keys in a court of its own process and wait for the frame that shows each.
+    """Press keys at a court in a process of its own, and wait for the frame that shows each.
 
-    Court and echo take turns. A key waits for the next beat, 10 ms on average: `over_echo_ms`
-    less that is what the court itself takes.
+    Court and echo take turns. A key waits for the next beat, 10 ms on average. The rest of
+    `over_echo_ms` is the time that the court itself takes.
 
     Returns:
-        Milliseconds.
+        Times of keys and echoes [ms].
     """
     keys_ms, echoes_ms = [], []
-    chance = random.Random(1)  # presses must not fall in step with the beats
+    chance = random.Random(1)  # presses must not keep in step with the beats
     with (
         tempfile.TemporaryDirectory() as folder,
         court("practice", Path(folder)) as opened,

@@ -1,10 +1,11 @@
-"""Look for robots that are let in and then leave their start place while they stand.
+"""Looks for robots that pass the weigh-in and then leave their start place while they stand.
 
     python -m benchmarks.leaps
 
-First robots at random, anywhere within the contest's limits; then those that went farthest, changed
-step by step, and kept when they go farther. Each is weighed in as at a court's door. One that is
-let in stands on both start places of a match, longer than it was tried.
+The search first makes random robots within the contest's limits. Then it changes those that moved
+farthest, step by step, and keeps each change that makes a robot move farther. Every robot is
+weighed in as by a court. A robot that passes stands on both start places of a match, for longer
+than in its trial.
 """
 
 import argparse
@@ -34,7 +35,7 @@ from lacoc_shared.seat import BEATS_PER_S
 
 STAND_TICKS = 4 * BEATS_PER_S
 LINES = 20
-"""As many robots are improved."""
+"""The number of robots that the search changes step by step."""
 
 _BOUNDS: dict[str, tuple[float, float]] = {
     "width_m": (0.04, 0.2),
@@ -59,33 +60,33 @@ _BOUNDS: dict[str, tuple[float, float]] = {
 }
 _ANY_HEIGHT = Limits(drop_m=1.0)
 _MOSTLY = {"ang_min_deg_s": 240.0, "torque_n_m": 2.0, "kv": 0.0, "damping": 0.0, "armature": 0.002}
-"""Leaps are likelier there: half of all robots have these numbers."""
+"""Each of these numbers, which make leaps likelier, is given to half of all random robots."""
 
 
 class Candidate(NamedTuple):
-    """A robot that is not read yet."""
+    """The numbers of a robot, before its file is made and read."""
 
     legs: int
     numbers: dict[str, float]
     start_deg: tuple[float, ...]
     stand_deg: tuple[float, ...]
-    """First posture of key 0."""
+    """First posture of key 0, in which the robot stands."""
 
 
 class Found(NamedTuple):
-    """The result for a candidate."""
+    """What was found out about a candidate."""
 
     candidate: Candidate
     is_robot: bool
-    """Its file is right."""
+    """Whether its robot file has no mistakes."""
     tried_m: float
-    """How far it went in its trial; 0.0 if its file is wrong."""
+    """How far it moved in its trial; 0.0 if its file has mistakes."""
     leap_m: float | None
-    """How far it went in a match; None: it was not let in."""
+    """How far it moved in a match; None if it did not pass the weigh-in."""
 
 
 def at_random(seed: int) -> Candidate:
-    """Make up a robot."""
+    """Make a random robot."""
     dice = random.Random(seed)
     legs = dice.choice((4, 6, 8))
     numbers = {}
@@ -106,7 +107,7 @@ def at_random(seed: int) -> Candidate:
 
 
 def changed(candidate: Candidate, seed: int) -> Candidate:
-    """Change a robot a little: one to three of its numbers, or some of its angles."""
+    """Change a robot a little: up to three of its numbers, and some of its angles."""
     dice = random.Random(seed)
     numbers = dict(candidate.numbers)
     for name in dice.sample(sorted(_BOUNDS), dice.randint(0, 3)):
@@ -127,7 +128,7 @@ def changed(candidate: Candidate, seed: int) -> Candidate:
 
 
 def judge(candidate: Candidate) -> Found:
-    """Weigh a robot in, and let it stand in a match if it is let in."""
+    """Weigh a robot in, and if it passes, let it stand in a match."""
     robot = _robot(candidate)
     if robot is None:
         return Found(candidate, False, 0.0, None)
@@ -140,7 +141,7 @@ def judge(candidate: Candidate) -> Found:
 
 
 def leap_m(entry: Entry) -> float:
-    """Let a robot stand on both start places of Flag-Strike, and say how far it goes."""
+    """Let a robot stand on both start places of Flag-Strike; return how far it moves [m]."""
     arena = arenas.load("flag-strike")
     world = World(arena, (entry, entry))
     robot = entry.robot
@@ -168,13 +169,13 @@ def leap_m(entry: Entry) -> float:
 
 
 def search(robots: int, steps: int, jobs: int, seed: int = 0) -> Iterator[Found]:
-    """Judge robots at random, then improve those that went farthest.
+    """Judge random robots, then change those that moved farthest so that they move farther.
 
     Args:
-        robots: that many at random.
-        steps: that many changes in all.
-        jobs: processes.
-        seed: of the first robot.
+        robots: number of random robots.
+        steps: number of changes in all.
+        jobs: number of processes.
+        seed: seed of the first random robot.
     """
     with ProcessPoolExecutor(jobs, get_context("forkserver")) as pool:
         found: list[Found] = []
@@ -196,7 +197,7 @@ def search(robots: int, steps: int, jobs: int, seed: int = 0) -> Iterator[Found]
 
 
 def main() -> None:
-    """Search and report; exits with 1 if a robot leapt."""
+    """Search and print the result; exit with 1 if a robot leapt."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.leaps", description=__doc__)
     parser.add_argument("--robots", type=int, default=2000, help="robots at random")
     parser.add_argument("--steps", type=int, default=2000, help="changes of the best")
@@ -232,7 +233,7 @@ def _gone_m(found: Found) -> float:
 
 
 def _robot(candidate: Candidate) -> RobotSpec | None:
-    """Read a candidate's file, with its feet on the floor; None if it is not within the limits."""
+    """Return a candidate as a robot, `drop_m` above the floor; None if it breaks a limit."""
     try:
         robot = read_robot(_file(candidate, 0.5), "robot.toml", _ANY_HEIGHT)
         lowest_m = robot.bounds(robot.start_posture)[0].z + robot.size_m[2] / 2
@@ -278,7 +279,7 @@ def _file(candidate: Candidate, height_m: float) -> str:
 
 
 def _posture(dice: random.Random, legs: int, wide_deg: float) -> Posture:
-    """Angles of all legs, each leg's own or the same for all."""
+    """Draw random angles of all joints, the same for all legs or different ones."""
     if dice.random() < 0.5:
         three = [dice.uniform(-wide_deg, wide_deg) for _ in range(3)]
         return tuple(three[joint // legs] for joint in range(3 * legs))

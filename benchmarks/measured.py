@@ -1,9 +1,9 @@
-"""A court that looks at its own clock, for `benchmarks.flood` and `benchmarks.watched`.
+"""A court that times its own beats, for `benchmarks.flood` and `benchmarks.watched`.
 
     python -m benchmarks.measured
 
-opens one, says in a line of JSON where, and answers each line on standard input with the beats
-since the last one.
+opens such a court and prints its address as a line of JSON. It answers each line "count" on
+standard input with the times of the beats since the last one, and ends at a line "stop".
 """
 
 import json
@@ -35,12 +35,12 @@ NAME = "measured"
 
 
 class MeasuredCourt(Court):
-    """Keeps how long each beat took."""
+    """A court that keeps how long each beat took."""
 
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self.cpu_s: list[float] = []
-        """Of the court's own thread."""
+        """CPU time of the court's own thread in each beat."""
         self.wall_s: list[float] = []
 
     def _beat(self, now_s: float) -> None:
@@ -55,7 +55,7 @@ class MeasuredCourt(Court):
         return self._journal.match.phase
 
     def told(self) -> dict[str, Any]:
-        """Return the beats since the last call."""
+        """Return the times of the beats since the last call, and how many of them were slow."""
         told = {
             "wall_s": self.wall_s,
             "slow_beats": self._pace.slow_beats,
@@ -78,7 +78,7 @@ class Measured:
 
 @contextmanager
 def measured_court() -> Iterator[Measured]:
-    """A court of Robot-Othello that plays for an hour, with its record; the caller runs it."""
+    """Open a court of Robot-Othello, whose matches last an hour; the caller runs the court."""
     loaded = arenas.load("othello", {"match": {"duration_s": 3600.0, "countdown_s": 0.02}})
     tokens, referee = {seat.id: new_token() for seat in loaded.seats}, new_token()
     keys = Keys(NAME)
@@ -96,7 +96,7 @@ def measured_court() -> Iterator[Measured]:
 
 
 def main() -> None:
-    """Run a court until the input ends."""
+    """Run a court until a line "stop" on standard input."""
     with measured_court() as opened:
         where = {"name": NAME, "address": opened.address}
         print(json.dumps(where | {"tokens": opened.tokens, "referee": opened.referee}), flush=True)

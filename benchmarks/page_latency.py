@@ -1,4 +1,4 @@
-"""A key pressed in a real page, until the frame that shows it is there; against a bare echo.
+"""Measures the time from a key in a real page to the frame that shows it, against a bare echo.
 
 `python -m benchmarks.page_latency`; needs what tests of the pages need (tests/pages/chromium.py).
 """
@@ -27,7 +27,7 @@ sys.path.append(str(Path(__file__).parents[1] / "tests" / "pages"))
 from chromium import FLAGS, find_chromium
 
 FRAME_BYTES = 200
-"""About a frame of practice: what the echo sends."""
+"""Length of the echo's messages, about that of a frame of practice."""
 _ECHO = """
 async ([url, count, bytes]) => {
   const socket = new WebSocket(url);
@@ -48,14 +48,14 @@ async ([url, count, bytes]) => {
 
 
 def page_latency(keys: int = 100) -> dict[str, float]:
-    """Measure, in turns.
+    """Measure keys and echoes in turns.
 
     Args:
-        keys: how many are pressed, and how many echoes are asked for.
+        keys: number of keys that are pressed, and of echoes that are asked for.
 
     Returns:
-        Milliseconds: `key_p50_ms`, `key_p95_ms`, `echo_p50_ms`, `over_echo_ms`, and the aim for
-        that, a tick and 10 ms.
+        `key_p50_ms`, `key_p95_ms`, `echo_p50_ms`, `over_echo_ms`, and `aim_ms`, the aim for
+        `over_echo_ms`: a tick and 10 ms.
     """
     turns = 5
     key_ms: list[float] = []
@@ -86,7 +86,7 @@ def page_latency(keys: int = 100) -> dict[str, float]:
 
 
 def rows(figures: dict[str, Any]) -> list[tuple[str, str, str, str, str]]:
-    """Rows for the table of `make bench`."""
+    """Return the rows for the table of `make bench`."""
     return [
         (
             "key in the page to the frame that shows it",
@@ -99,36 +99,36 @@ def rows(figures: dict[str, Any]) -> list[tuple[str, str, str, str, str]]:
 
 
 def _walking(browser: Browser, url: str) -> Page:
-    """The page of practice, when its keys work."""
+    """Open the page of practice; return it when its keys work."""
     page = browser.new_page(viewport={"width": 800, "height": 450})
     page.goto(url.replace("/practice", "/practice?q=low"))
     page.wait_for_selector('.phase[data-phase="4"]', timeout=60_000)
     page.locator("canvas").first.click()
-    _press(page, 5)  # whatever is slow the first time
+    _press(page, 5)  # because the first keys are slow
     return page
 
 
 def _press(page: Page, count: int) -> list[float]:
-    """Press keys; returns the page's own measure of each."""
+    """Press keys; return the time of each as the page measures it [ms]."""
     times_ms: list[float] = []
     for number in range(count):
         shown = page.locator("[data-trip]")
         before = shown.get_attribute("data-trip")
         page.keyboard.press("1234"[number % 4])
-        with contextlib.suppress(TimeoutError):  # two can take the same time to a tenth
+        with contextlib.suppress(TimeoutError):  # two keys can take the same time, rounded
             page.wait_for_function(
                 "(before) => document.querySelector('[data-trip]').dataset.trip !== before",
                 arg=before,
                 timeout=1000,
             )
         times_ms.append(float(shown.get_attribute("data-trip") or "nan"))
-        page.wait_for_timeout(random.uniform(20, 60))  # not in step with the beat
+        page.wait_for_timeout(random.uniform(20, 60))  # so as not to keep in step with the beat
     return times_ms
 
 
 @contextlib.contextmanager
 def _practice() -> Iterator[str]:
-    """`lacoc practice`; gives the address of its page."""
+    """Run `lacoc practice`; give the address of its page."""
     with (
         tempfile.TemporaryDirectory() as folder,
         subprocess.Popen(

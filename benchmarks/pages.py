@@ -1,4 +1,4 @@
-"""Pictures a second of the pages' scene drawn in software, and what a player loads.
+"""Measures how fast the pages' scene is drawn in software, and how many bytes a player loads.
 
 `python -m benchmarks.pages`; needs what the tests of the pages need (tests/pages/chromium.py).
 `python -m benchmarks.pages CHECKOUT` compares the drawing with that of another checkout, in turns.
@@ -27,17 +27,17 @@ from stand import Stand, served
 SIZE = {"width": 800, "height": 450}
 MEASURE_S = 8.0
 _STEADY = 200
-"""Pictures before anything is measured: compiling, and the first look at everything."""
+"""Pictures before the measurement, because compiling makes the first ones slow."""
 
 
 def pages() -> dict[str, Any]:
-    """Measure.
+    """Measure the drawing of both arenas, and what /play loads.
 
     Returns:
-        For each arena `fps`, `p95_ms`, `pixel_ratio` (low quality draws fewer pixels where it is
-        slow) and `cpu_ms` (of all processes of the browser, a picture) at 800 x 450;
-        `js_gzip_bytes` and `css_gzip_bytes` that /play loads; `cores` and `load`, the machine's
-        load average when it began.
+        For each arena, drawn at 800 x 450: `fps`, `p95_ms`, `pixel_ratio` (low quality draws fewer
+        pixels on a slow machine) and `cpu_ms` (processor time of the whole browser for a picture).
+        For /play: `js_gzip_bytes` and `css_gzip_bytes`. For the machine: `cores`, and `load`, its
+        load average at the beginning.
     """
     found: dict[str, Any] = {"cores": os.cpu_count(), "load": round(os.getloadavg()[0], 2)}
     with (
@@ -61,12 +61,13 @@ def compare(other: Path, rounds: int = 5) -> dict[str, Any]:
     """Measure the drawing of this checkout and of another one in turns.
 
     Args:
-        other: root of the other checkout; both draw the same matches.
-        rounds: how often each is measured.
+        other: root of the other checkout; both checkouts draw the same matches.
+        rounds: how often each checkout is measured.
 
     Returns:
-        For each arena and checkout the medians of what `pages` measures; `ratio`, this checkout
-        to the other, of `fps` and of `cpu_ms`; `load`, the machine's when it ended.
+        For each arena: the medians for this and the other checkout, and in `ratio` the values of
+        `fps` and `cpu_ms` of this checkout divided by those of the other. For the machine: `cores`,
+        and `load`, its load average at the end.
     """
     found: dict[str, Any] = {}
     with (
@@ -103,7 +104,7 @@ def compare(other: Path, rounds: int = 5) -> dict[str, Any]:
 
 
 def rows(figures: dict[str, Any]) -> list[tuple[str, str, str, str, str]]:
-    """Rows for the table of `make bench`."""
+    """Return the rows for the table of `make bench`."""
     drawn = [
         (
             f"pictures at q=low, 800 x 450, software GL, {arena}",
@@ -136,7 +137,7 @@ def _drawing(browser: Browser, address: str, arena: str) -> dict[str, float]:
 
 
 def _loading(browser: Browser) -> dict[str, int]:
-    """Return the files that /play loads before it can draw, compressed as a web server would."""
+    """Return the gzipped sizes of the scripts and styles that /play loads before it can draw."""
     loaded: dict[str, bytes] = {}
 
     def note(response: Response) -> None:
@@ -151,7 +152,7 @@ def _loading(browser: Browser) -> dict[str, int]:
         with served(folder) as address:
             page = browser.new_page(viewport=SIZE)
             page.on("response", note)
-            # A file without an ending has no type: say what it is, as a gateway does.
+            # A file without an ending has no type, so this gives it one, as a gateway does.
             html = (folder / "index.html").read_text()
             page.route("**/play", lambda route: route.fulfill(body=html, content_type="text/html"))
             page.goto(f"{address}/play")
@@ -171,7 +172,7 @@ def _loading(browser: Browser) -> dict[str, int]:
 
 
 def _cpu_s() -> float:
-    """Processor time of this program's children and theirs: of the browser."""
+    """Return the processor time of all processes below this one, which are the browser's [s]."""
     return sum(_children_s(os.getpid()))
 
 

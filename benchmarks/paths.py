@@ -1,4 +1,4 @@
-"""Matches to measure, and the same paths by bare physics."""
+"""Matches to measure, and bare MuJoCo physics that takes the same paths."""
 
 import time
 from collections.abc import Sequence
@@ -20,14 +20,14 @@ from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import Phase
 
 KEYS = (2, 2, 1, 2, 3, 2)
-"""What both robots do, a new key every `KEY_TICKS`: they walk, turn, and meet."""
+"""The keys of both robots, a new one every `KEY_TICKS`: the robots walk, turn and meet."""
 KEY_TICKS = 97
 
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 
 
 def setup_of(arena: str, match_id: str = "benchmark") -> Setup:
-    """The setup of a match in an arena."""
+    """Return the setup of a match in an arena."""
     settings = arenas.load(arena).settings
     return Setup(
         match_id=match_id, court="benchmark", match=1, arena=arena, settings=settings, limits={}
@@ -35,7 +35,7 @@ def setup_of(arena: str, match_id: str = "benchmark") -> Setup:
 
 
 def started(arena: str, folder: Path | None, match_id: str = "benchmark") -> Journal:
-    """A match of two sample hexapods that has just begun to be played."""
+    """Start a match of two sample hexapods; return its journal when play begins."""
     match = Match(setup_of(arena, match_id), World)
     journal = Journal(match, folder)
     files = (SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
@@ -49,7 +49,7 @@ def started(arena: str, folder: Path | None, match_id: str = "benchmark") -> Jou
 
 
 def keys_at(tick: int) -> list[Input]:
-    """The keys of both seats in a tick."""
+    """Return the keys that both seats press in a tick."""
     if tick % KEY_TICKS:
         return []
     number = tick // KEY_TICKS
@@ -57,7 +57,7 @@ def keys_at(tick: int) -> list[Input]:
 
 
 class BarePath:
-    """The same model, state and controls as a match, stepped by nothing but MuJoCo."""
+    """A copy of a match's world that only MuJoCo steps, with the controls of the match."""
 
     def __init__(self, world: World) -> None:
         self._model = world.model
@@ -67,7 +67,7 @@ class BarePath:
         mujoco.mj_setState(world.model, self._data, state, _STATE)
 
     def run(self, controls: Sequence[npt.NDArray[np.float64]]) -> float:
-        """Step a tick for each control; returns the time it took [s]."""
+        """Step one tick for each control; return the time that this took [s]."""
         model, data = self._model, self._data
         begin = time.perf_counter()
         for control in controls:
@@ -76,7 +76,7 @@ class BarePath:
         return time.perf_counter() - begin
 
     def is_where(self, world: World) -> bool:
-        """Whether it came to exactly the same state as the match's world."""
+        """Return whether the state is exactly that of the match's world."""
         return bool(
             np.array_equal(self._data.qpos, world.data.qpos)
             and np.array_equal(self._data.qvel, world.data.qvel)

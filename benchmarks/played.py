@@ -18,7 +18,7 @@ from lacoc_shared.record.schema import Setup
 OTHER_ARITHMETIC = {
     "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-FMA_Usable,-FMA4_Usable,-AVX2_Usable"
 }
-"""In the environment of a process: glibc takes its functions for older processors."""
+"""Environment variables that make glibc use its functions for older processors."""
 
 ARENAS = ("othello", "flag-strike")
 _WRESTLER = "wrestler"
@@ -28,7 +28,7 @@ _STRAY_RAD = 0.3
 
 
 def wrestler(sheet: Sheet, seat: int) -> Brain:
-    """Return a bot that walks into the other robot and keeps walking."""
+    """Return a brain that walks into the other robot and keeps walking."""
     eyes = Eyes(sheet)
 
     def brain(frame: Frame) -> Key | None:
@@ -50,12 +50,12 @@ def play(folder: Path, number: int, seconds: float) -> Path:
 
     Args:
         folder: where the record goes.
-        number: which match, from 0; the same number is the same match.
+        number: number of the match, from 0; the same number gives the same match.
         seconds: how long it lasts.
     """
     name = ARENAS[number % len(ARENAS)]
     arena = arenas.load(name, {"match": {"duration_s": seconds, "countdown_s": 0.1}})
-    # Every third match wrestles, whatever its number says otherwise.
+    # In every third match two wrestlers play; the other matches take the pairs in turn.
     pair = _PAIRS[0 if number % 3 == 0 else number % len(_PAIRS)]
     players = [
         player(
@@ -85,7 +85,7 @@ def play(folder: Path, number: int, seconds: float) -> Path:
 
 
 def elsewhere(module: str, words: Iterable[str]) -> str:
-    """Run a module under the other arithmetic; returns what it prints."""
+    """Run a module under the other arithmetic, and return what it prints."""
     done = subprocess.run(
         [sys.executable, "-m", module, *words],
         env={**os.environ, **OTHER_ARITHMETIC},

@@ -1,7 +1,8 @@
-"""One process that holds both seats of many courts, at the least cost of our controller.
+"""Holds both seats of many courts in one process, to take little processor time.
 
-The first line on standard input names the courts. All are joined and started; then each line
-is answered with the health of each court and the keys that were pressed and applied there.
+The first line on standard input names the courts. The process joins all of them and starts their
+matches. It answers each further line with the health of every court, and with the number of keys
+that were pressed and applied there.
 """
 
 import json
@@ -19,13 +20,13 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase
 
 KEYS_HZ = 2.0
-"""A new key for each seat; the last one is repeated by the controller meanwhile."""
+"""New keys a second for each seat; between them the controller repeats the last one."""
 _POLL_S = 0.1
 _WAIT_S = 60.0
 
 
 class _Player:
-    """One court with both its seats."""
+    """The player of both seats of one court."""
 
     def __init__(self, court: dict[str, Any], stack: ExitStack) -> None:
         self._name, self._referee = court["name"], court["referee"]
@@ -42,13 +43,13 @@ class _Player:
         self.pressed = 0
 
     def begin(self) -> None:
-        """Start the match when both are ready."""
+        """Start the match when both seats are ready."""
         self._wait(Phase.READY)
         referee = RefereeClient(self._sessions[0], self._name, self._referee)
         referee.decide(Start(), "a benchmark", "benchmark")
 
     def poll(self, chance: random.Random) -> None:
-        """Keep the seats, and press a key now and then."""
+        """Keep both seats, and press a key now and then."""
         for controller in self._controllers:
             controller.poll(time.monotonic())
             frame = controller.view.frame
@@ -57,7 +58,7 @@ class _Player:
                 self.pressed += 1
 
     def told(self) -> dict[str, Any]:
-        """Return the newest health message of the court."""
+        """Return figures of the court's newest health and frame, and the number of pressed keys."""
         view = self._controllers[0].view
         assert view.health is not None
         assert view.frame is not None

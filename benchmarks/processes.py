@@ -1,4 +1,4 @@
-"""Processes under measurement: each part runs separately, as at a venue."""
+"""Starts the processes to measure: each part of a contest runs in its own, as at a venue."""
 
 import json
 import os
@@ -22,9 +22,9 @@ def started(module: str, *words: str, quiet: bool = False) -> Iterator[subproces
     """Start a process; ask it to end when it is no longer needed.
 
     Args:
-        module: runs as `python -m`.
+        module: the module that `python -m` runs.
         words: its arguments.
-        quiet: throw away what it complains of.
+        quiet: whether to throw away its error output.
     """
     process = subprocess.Popen(
         [sys.executable, "-m", module, *words],
@@ -42,7 +42,7 @@ def started(module: str, *words: str, quiet: bool = False) -> Iterator[subproces
 
 
 def read_line(process: subprocess.Popen[str]) -> Any:
-    """The next line of JSON that a process says.
+    """Return the next line of JSON that a process prints.
 
     Raises:
         RuntimeError: if it has ended.
@@ -55,7 +55,7 @@ def read_line(process: subprocess.Popen[str]) -> Any:
 
 
 def hush(process: subprocess.Popen[str]) -> None:
-    """Throw away whatever else a process says: nobody at a venue leaves a pipe full."""
+    """Throw away all further output of a process: a full pipe would stop the process."""
     assert process.stdout is not None
     said = process.stdout
 
@@ -88,7 +88,7 @@ class Opened:
 
 @contextmanager
 def court(arena: str, folder: Path, *words: str) -> Iterator[Opened]:
-    """`lacoc serve` on a free port.
+    """Open a court with `lacoc serve` on a free port.
 
     Args:
         arena: the game.
@@ -109,6 +109,6 @@ def court(arena: str, folder: Path, *words: str) -> Iterator[Opened]:
 
 
 def used_s(process: subprocess.Popen[str]) -> float:
-    """Processor time of all threads of a process [s], as the kernel counts it (Linux only)."""
+    """Return the processor time of all threads of a process, as the kernel counts it [s]."""
     fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

@@ -1,4 +1,4 @@
-"""What a record proves: honest matches under two arithmetics, forgeries, and the time it takes.
+"""Tries the proof of records on honest matches and on forgeries, and times it.
 
 python -m benchmarks.proof honest --matches 40 --seconds 180
 python -m benchmarks.proof forged --forgeries 1000
@@ -38,21 +38,21 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.words import render
 
 _WHAT = ("honest", "forged", "time", "fingerprint", "verdicts", "forge")
-"""The last three are run under the other arithmetic."""
+"""What one run does; a run under the other arithmetic does one of the last three."""
 _CORES = 2
 _FORGED_S = 12.0
-"""Length of the matches that are forged: three sections."""
+"""Length of the matches that are forged [s]: three sections."""
 
 
 class Prover:
-    """Verifies many copies of a record; a section that it has simulated before is not again."""
+    """Verifies many copies of a record, and simulates sections that are equal only once."""
 
     def __init__(self) -> None:
         self._worlds = Worlds()
         self._findings: dict[bytes, Finding] = {}
 
     def verdict(self, record: Record) -> Verdict | str:
-        """Verify a record; returns the verdict, or why it can't be verified."""
+        """Verify a record; return the verdict, or why the record can't be verified."""
         try:
             judge = Judge(record, None, dict(record.snapshots))
             findings = [self._simulate(section) for section in judge.sections()]
@@ -62,7 +62,7 @@ class Prover:
         return conclude(record.headers, judge.beats, judge.frames, judged, findings, other)
 
     def _simulate(self, section: Any) -> Finding:
-        # The number of a build counts within its own record.
+        # The number of a build means something only within its own record.
         build, section.build = section.build, None
         content = pickle.dumps((build.setup, build.entries, section))
         section.build = build
@@ -75,21 +75,21 @@ class Prover:
 
 @dataclass(frozen=True)
 class Forged:
-    """Counts of forgeries by their result."""
+    """The results of verifying forgeries."""
 
     tried: int
     passed: list[str]
-    """What was forged in those that no verdict found."""
+    """The names of the forgeries that verified as if they were honest."""
     kinds: dict[str, int]
 
 
 def forge(paths: Sequence[Path], count: int, seed: int) -> Forged:
-    """Forge records, and verify what comes out.
+    """Forge copies of records, and verify each copy.
 
     Args:
-        paths: of honest records, by twos: the second of two gives sections for the first.
-        count: how many forgeries.
-        seed: which ones.
+        paths: honest records in pairs; the second of a pair gives sections for the first.
+        count: number of forgeries.
+        seed: seed of the random choice of forgeries.
     """
     chance = random.Random(seed)
     records = [Record.read(path) for path in paths]
@@ -140,7 +140,7 @@ def main() -> None:
 
 
 def _honest(matches: int, seconds: float) -> bool:
-    """Play matches and verify each under both arithmetics."""
+    """Verify matches under both arithmetics; return whether every verdict is right."""
     with (
         tempfile.TemporaryDirectory() as name,
         ProcessPoolExecutor(_CORES, get_context("spawn")) as pool,
@@ -179,9 +179,9 @@ def _verdict(path: Path) -> dict[str, Any]:
 
 
 def _forged(count: int, seed: int) -> bool:
-    """Forge records and verify them under both arithmetics."""
+    """Verify forgeries under both arithmetics; return whether each was found."""
     with tempfile.TemporaryDirectory() as name:
-        # Two matches each with the same robots, so that sections can be swapped.
+        # Two pairs of matches; a pair has the same robots, so that sections can be swapped.
         paths = [play(Path(name), number, _FORGED_S) for number in (0, 30, 1, 31)]
         words = ["forge", *map(str, paths), "--forgeries", str(count), "--seed", str(seed)]
         with ProcessPoolExecutor(1, get_context("spawn")) as pool:
@@ -196,7 +196,7 @@ def _forged(count: int, seed: int) -> bool:
 
 
 def _time(seconds: float, rounds: int) -> None:
-    """Verify a match section by section, and simulate it again whole on one core, in turns."""
+    """Time in turns how long it takes to verify a match, and to simulate it whole on one core."""
     with tempfile.TemporaryDirectory() as name:
         record = Record.read(play(Path(name), 0, seconds))
     whole_s, sections_s = [], []

@@ -1,12 +1,12 @@
 """`python -m benchmarks.random_kills`: kill any process at any moment; all must go on.
 
-A court, a gateway, two bots and a referee, each a process of its own over plain TCP, as a
-contest runs them. Every second or so one of them is killed (SIGKILL) and started again at once.
-Counted: kills, and processes that ended by themselves, with what they said last (a crash writes
-the stack of every thread). At the end every record must verify.
+A court, a gateway, two bots and a referee run as processes of their own, connected by plain TCP.
+About once a second one of them is killed (SIGKILL) and started again at once. The benchmark counts
+the kills, and prints the last output of each process that ended by itself (a crash writes the
+stack of every thread). At the end every record must verify.
 
-With `--cores FOLDER` a crash leaves its memory there, for gdb (Linux, where the system's pattern
-is a plain file name).
+With `--cores FOLDER` a process that crashes leaves a core dump in the folder, for gdb (on Linux, if
+the system's pattern for core dumps is a plain file name).
 """
 
 import argparse
@@ -36,11 +36,11 @@ _WAIT = ("--wait", "600")
 _BETWEEN_S = (0.2, 2.0)
 _END_S = 60.0
 _SAID_BYTES = 20_000
-"""Of what a process said before it ended."""
+"""How much of the output of a process is kept after it ended by itself."""
 _GOES_ON: dict[str, Decision] = {
     name: DECISIONS[name]() for name in ("official", "next", "start", "resume")
 }
-"""What the referee decides, as soon as it is legal."""
+"""The decisions that the referee makes as soon as they are legal."""
 
 
 def main() -> None:
@@ -67,13 +67,13 @@ def run(
 
     Args:
         folder: an empty folder.
-        seconds: how long.
-        chance: who is killed, and when.
-        cores: where a crash leaves its memory; None: nowhere.
+        seconds: length of the run.
+        chance: chooses which process is killed, and when.
+        cores: folder for core dumps; None: no core dumps.
 
     Returns:
-        Kills by process, what each that ended by itself said, records that are the same and those
-        that are not.
+        The kills of each process; the last output of each process that ended by itself; the number
+        of records that verify; and what is wrong with the others.
     """
     contest = folder / "contest.toml"
     contest.write_text(_contest(), encoding="utf-8")
@@ -111,7 +111,7 @@ def run(
 
 
 class _Service:
-    """A process that is started again."""
+    """A process that is started again after each end."""
 
     def __init__(
         self, name: str, folder: Path, cores: Path | None, *words: str, module: str = LACOC
@@ -148,7 +148,7 @@ class _Service:
             raise
 
     def ended(self) -> str | None:
-        """Return what a process said that ended by itself; None while it runs."""
+        """Return the last output of the process if it has ended by itself; None while it runs."""
         if (code := self._process.poll()) is None:
             return None
         said = self._log.read_bytes()[-_SAID_BYTES:].decode(errors="replace")
@@ -162,7 +162,7 @@ def _allow_cores() -> None:
 
 
 def _referee(contest: Path) -> None:
-    """Decide what lets the matches go on, until the process is killed."""
+    """Be the referee: make the decisions that let matches go on, until this process is killed."""
     name, court = load(contest).court()
     while True:
         try:
@@ -177,14 +177,14 @@ def _referee(contest: Path) -> None:
                             view.health = None
                             hand.decide(decision, "a trial", "trial")
         except (NoCourt, NotNow):
-            continue  # it is being started again
-        except UserError as error:  # it was legal half a second ago
+            continue  # the court is being started again
+        except UserError as error:  # the decision was legal half a second ago
             print(error, flush=True)
             time.sleep(0.1)
 
 
 def _verify(folder: Path) -> tuple[int, list[str]]:
-    """Verify each match; one that was not packed yet by its segments."""
+    """Verify each match, from its packed record or, if there is none yet, from its segments."""
     segments = {
         name[0]: path for path in folder.glob("*.live.mcap") if (name := segment_name(path))
     }

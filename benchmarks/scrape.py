@@ -1,8 +1,8 @@
 """`python -m benchmarks.scrape`: does a scrape of its metrics disturb a court?
 
-A court in a process of its own plays practice with one controller. Quiet rounds and rounds with
-ten scrapes a second (Prometheus makes one in 15 s) take turns; the court's own histogram tells
-what a beat's work took in each.
+A court in a process of its own plays practice with one controller. Quiet rounds take turns with
+rounds of ten scrapes a second (Prometheus makes one in 15 s). The court's own histogram gives the
+time of a beat's work in each round.
 """
 
 import argparse
@@ -34,10 +34,11 @@ class _Seen(NamedTuple):
 
 
 def scrape(rounds: int) -> dict[str, Any]:
-    """Measure quiet and scraped rounds by turns.
+    """Measure quiet and scraped rounds in turns.
 
     Returns:
-        A beat's work [ms] in both, the ratios, slow beats of both, and what a scrape takes [ms].
+        The time of a beat's work [ms] and the slow beats, for quiet and for scraped rounds; the
+        ratios; and the time that a scrape takes [ms].
     """
     quiet: list[_Seen] = []
     scraped: list[_Seen] = []
@@ -107,7 +108,7 @@ def _seen(url: str) -> _Seen:
 
 
 def main() -> None:
-    """Print the figures."""
+    """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.scrape", description=__doc__)
     parser.add_argument("--rounds", type=int, default=7, help="of each kind")
     found = scrape(parser.parse_args().rounds)

@@ -1,12 +1,12 @@
-"""`make soak`: matches end to start for an hour; nothing may grow or be left over.
+"""`make soak`: one match after another for an hour; no process may grow or keep what it opened.
 
-A real court, two bots, a gateway, spectators and pages that come and go, each kind a process of
-its own; this process referees. Between two matches, when all visitors have gone, each process
-is looked at: its memory, and its threads, files, sockets and children. Every record is
-simulated again (Linux only).
+A real court, two bots, a gateway, and visitors (spectators and pages that come and go) run in
+processes of their own. This process is the referee. Between two matches, when all visitors have
+gone, it looks at each process: its memory, threads, files, sockets and children. Every record is
+verified (Linux only).
 
-While it warms up visitors rush: a process may hold what a crowd once needed, and not grow with
-each visit from then on.
+At first, while the processes warm up, many visitors come for short visits. A process may keep the
+memory that this crowd needed, but must not grow with later visits.
 """
 
 import argparse
@@ -37,25 +37,25 @@ from lacoc_shared.seat import Phase
 
 MOST_GROWTH = 0.02
 WARM_SHARE = 1 / 6
-"""Ten minutes of an hour: until then a process may grow."""
+"""The share of the run in which a process may grow: ten minutes of an hour."""
 VISITORS = "visitors"
-"""Begins the names of their processes."""
+"""The names of the visitors' processes begin with this word."""
 _SETTLED_S = 1.0
-"""Between the goodbye of the last visitor and the look."""
+"""Time from the goodbye of the last visitor to the look at the processes."""
 _LEFT_S = 30.0
-"""Threads and sockets of those who have gone end within this."""
+"""Time within which the threads and sockets of gone visitors end."""
 _PACKED_S = 60.0
 _TRIES = 5
 _SILENT_S = 60.0
 
 
 class Look(NamedTuple):
-    """The resources of a process."""
+    """The resources of a process at one time."""
 
     at_s: float
     memory_bytes: int
-    """What it wrote into, of no file: what a leak grows. Pages of libraries come and go with who
-    else has them."""
+    """Memory that the process has written and that belongs to no file: a leak makes it grow. Memory
+    of libraries is left out, because it depends on which other processes use them."""
     threads: int
     files: int
     sockets: int
@@ -73,15 +73,16 @@ class Figures:
     unanswered: int
     """Visits and decisions that got no answer in time: the machine was too busy."""
     same: int
-    """Records that verify."""
+    """Number of records that verify."""
     looks: dict[str, list[Look]]
-    """Of each process, between matches."""
+    """The looks at each process between matches."""
     warm_s: float
 
     def growth(self, process: str) -> float:
-        """Growth of a process's memory after it is warm, as a part of what it was then.
+        """Return how much a process's memory grew after the warm-up, as a share of its memory then.
 
-        The median of the slopes between all pairs of looks, so that no single one counts much.
+        The growth follows from the median of the slopes between all pairs of looks, so that a
+        single look has little effect.
         """
         looks = [look for look in self.looks[process] if look.at_s >= self.warm_s]
         slope = statistics.median(
@@ -91,7 +92,7 @@ class Figures:
         return slope * (looks[-1].at_s - looks[0].at_s) / first
 
     def left_over(self, process: str) -> dict[str, int]:
-        """Return the resources that a process has gained since it was warm."""
+        """Return how many threads, files and so on a process has gained since the warm-up."""
         warm = [look for look in self.looks[process] if look.at_s <= self.warm_s]
         last = self.looks[process][-1]
         before = {name: max(getattr(look, name) for look in warm) for name in Look._fields[2:]}
@@ -100,10 +101,10 @@ class Figures:
 
     @property
     def held(self) -> bool:
-        """Return whether nothing grew, was left over, or differs.
+        """Return whether all records verify, and no process grew or kept what it opened.
 
-        Of the visitors' processes only what is left over counts: each stands for thousands of
-        programs that would have ended.
+        The visitors' processes may grow: each makes thousands of visits, which would otherwise be
+        programs that end.
         """
         return self.same == self.matches and all(
             not self.left_over(process)
@@ -122,11 +123,11 @@ def soak(
     """Play until the time is over.
 
     Args:
-        minutes: how long.
+        minutes: length of the run.
         match_s: length of a match.
         speed: 2 plays twice as fast as real time.
-        warm_minutes: from when on nothing may grow; None: a sixth of the time.
-        visitors_most: how many of each kind are there at once.
+        warm_minutes: time after which nothing may grow; None: a sixth of the run.
+        visitors_most: how many visitors of each kind may be there at once.
     """
     warm_s = 60 * (minutes * WARM_SHARE if warm_minutes is None else warm_minutes)
     with ExitStack() as stack:
@@ -141,7 +142,7 @@ def soak(
         gateway = stack.enter_context(started(LACOC, "web", "--json", *where))
         processes["gateway"] = gateway
         url = read_line(gateway)["url"]
-        for one in (opened.process, gateway):  # they log all visits and events
+        for one in (opened.process, gateway):  # these two print all visits and events
             hush(one)
         most = ("--most", str(visitors_most))
         visitors = {
@@ -218,10 +219,10 @@ class _Run:
         raise TimeoutError(f"The court says nothing; {phase.name} was waited for.")
 
     def _decide(self, decision: Decision, phase: Phase) -> None:
-        """Decide what ends a phase.
+        """Make the decision that ends a phase.
 
-        A machine that is too busy to answer or to show it in time is asked again; it refuses what
-        it has done after all.
+        On a busy machine the court may not answer, or not show the new phase in time. Then it is
+        asked again, and refuses the decision if it has already made it.
         """
         refused: UserError | None = None
         for _ in range(_TRIES):
@@ -236,7 +237,7 @@ class _Run:
         raise TimeoutError(f"{phase.name} does not end.") from refused
 
     def _ended(self, phase: Phase) -> bool:
-        """Whether a phase ends within a second."""
+        """Return whether a phase ends within a second."""
         end_s = time.monotonic() + _SETTLED_S
         while time.monotonic() < end_s:
             frame = self._view.wait_frame(_SETTLED_S)
@@ -245,12 +246,12 @@ class _Run:
         return False
 
     def _match_id(self) -> str:
-        """Names the record that is being written."""
+        """Return the id of the match that is being recorded."""
         *_, newest = sorted(self._folder.glob("*.live.mcap"))
         return newest.name.partition(".")[0]
 
     def _verify(self, match_id: str) -> None:
-        """Simulate a match again, while the next one is waited for."""
+        """Verify a match's record, and count and delete it, before the next match begins."""
         path, end_s = packed_path(self._folder, match_id), time.monotonic() + _PACKED_S
         while not path.exists() and time.monotonic() < end_s:
             time.sleep(0.1)
@@ -264,7 +265,7 @@ class _Run:
             self._looks[name].append(_look(process, at_s))
 
     def _let_go(self) -> None:
-        """Wait until the threads and sockets of visitors who have left have ended."""
+        """Wait long enough for the threads and sockets of gone visitors to end."""
         end_s = time.monotonic() + _LEFT_S
         while time.monotonic() < end_s:
             self._view.poll()

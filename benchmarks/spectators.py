@@ -1,4 +1,4 @@
-"""Hundreds of spectators' pages in one process, as cheap as can be; counts what comes.
+"""Runs hundreds of spectators' pages in one process at little cost, and counts their frames.
 
 Each line on standard input ends a count and prints it as JSON: seconds, frames and bytes of each.
 """
@@ -39,7 +39,7 @@ class Page(asyncio.Protocol):
         )
 
     def data_received(self, data: bytes) -> None:
-        """Count frames; the rest is thrown away."""
+        """Count frames, answer pings, and ignore other messages."""
         self._data += data
         if not self._open:
             head, end, rest = self._data.partition(b"\r\n\r\n")

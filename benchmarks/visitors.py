@@ -1,11 +1,11 @@
-"""Spectators that come and go, for `benchmarks.soak`.
+"""Runs spectators that come and go, for `benchmarks.soak`.
 
     python -m benchmarks.visitors (direct ADDRESS | pages URL) --most N
 
-Direct ones are the project's own spectators, each with a session of its own; pages are
-WebSockets through a gateway. Each stays for a random while. A line "go" on standard input
-sends all away, "come" lets them come again and "rush" lets many come for a short look; each is
-answered when it is so.
+Direct spectators have a session of their own with the court; pages are WebSockets through a
+gateway. Each visit has a random length. A line "go" on standard input sends all visitors away,
+"come" lets them come again, and "rush" lets them come for short visits. Each line is answered with
+the counts so far; the answer to "go" comes when all have gone.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 
 STAY_S = {b"come": 15.0, b"rush": 2.0}
-"""On average; some leave at once."""
+"""Mean length of a visit [s] after each word; the lengths are random."""
 _PAUSE_S = 0.5
 _LOOK_S = 0.05
 
@@ -31,7 +31,7 @@ Visit = Callable[[str, "_Door"], Coroutine[Any, Any, int]]
 
 
 class _Door:
-    """Says when to go, and counts."""
+    """Tells visitors when they may come and must go, and counts visits."""
 
     def __init__(self, chance: random.Random) -> None:
         self.chance = chance
@@ -41,7 +41,7 @@ class _Door:
         self.unanswered = 0
 
     async def stay(self) -> None:
-        """As long as this visitor wants, or until all are sent away."""
+        """Wait for as long as this visitor stays, or until all are sent away."""
         loop = asyncio.get_running_loop()
         end_s = loop.time() + self.chance.expovariate(1 / self.stay_s)
         while self.open.is_set() and loop.time() < end_s:
@@ -62,7 +62,7 @@ class _Door:
 
 
 async def _direct(address: str, door: _Door) -> int:
-    """A session with the court; the frames that its visitor looked at."""
+    """Visit a court with a session; return the number of frames that the visitor saw."""
     frames = 0
     with await asyncio.to_thread(open_client, [address], 20.0) as session:
         view = await asyncio.to_thread(Spectator, session, "main")
@@ -76,7 +76,7 @@ async def _direct(address: str, door: _Door) -> int:
 
 
 async def _page(url: str, door: _Door) -> int:
-    """A page; half of them end without a goodbye."""
+    """Visit as a page, which half of the time ends without a goodbye; return its frames."""
     parts = urlsplit(url)
     loop = asyncio.get_running_loop()
     transport, page = await loop.create_connection(

@@ -1,9 +1,9 @@
 """`python -m benchmarks.watched`: does a crowd make a court's beats longer?
 
-A real court with two controllers in PLAYING; 300 pages through a gateway, 100 direct
-spectators, or as many as one likes. Rounds without and with the crowd take turns; a beat's time is
-the whole of it, on the wall clock. The crowd is a process of its own on the last core, where
-it is as little in the way of the court as one machine allows (Linux only).
+A real court plays a match with two controllers. The crowd is any number of pages through a gateway
+and of direct spectators, for instance `--pages 300` or `--direct 100`. Rounds without and with the
+crowd take turns. The time of a beat is its whole work on the wall clock. The crowd runs in its own
+processes on the last core, where it disturbs the court least (Linux only).
 """
 
 import argparse
@@ -22,7 +22,7 @@ from lacoc_shared.seat import BEATS_PER_S
 
 AIM = 1.2
 HUNDREDS = 300
-"""Of more sessions than this it is only asked that no beat is missed."""
+"""With more direct spectators than this, the ratio has no aim: only no beat may be missed."""
 _SETTLE_S = 2.0
 
 
@@ -30,14 +30,14 @@ def watched(direct: int, pages: int, seconds: float, rounds: int) -> dict[str, A
     """Measure in turns without and with the crowd.
 
     Args:
-        direct: spectators with a session with the court each.
-        pages: spectators through a gateway.
-        seconds: of a round.
-        rounds: of each kind.
+        direct: number of spectators with a session of their own with the court.
+        pages: number of spectators through a gateway.
+        seconds: length of a round.
+        rounds: number of rounds of each kind.
 
     Returns:
-        The 99th percentile of the beat's time in each round, the ratios, beats that were slow or
-        missed, and what the slowest spectator got.
+        The times of beats without and with the crowd (medians of the rounds' percentiles), their
+        ratios, the numbers of slow and missed beats, and the frame rate of the slowest spectator.
     """
     alone, with_crowd = [], []
     slowest_hz: list[float] = []
@@ -91,7 +91,7 @@ def _round(court: subprocess.Popen[str], seconds: float) -> dict[str, float]:
     due = (told["at_s"] - begin_s) * BEATS_PER_S
     return {
         "beats": len(wall_ms),
-        # Those that it did not catch up with; one may be due just now.
+        # Beats that the court did not catch up with; one beat may be due just now.
         "missed": max(0, int(due) - len(wall_ms) - 1),
         "slow": told["slow_beats"],
         "p50_ms": statistics.median(wall_ms),
@@ -114,7 +114,7 @@ def _pages(url: str, number: int) -> Iterator[list[subprocess.Popen[str]]]:
 
 @contextmanager
 def _on_last_core(module: str, *words: str, wanted: int) -> Iterator[list[subprocess.Popen[str]]]:
-    """The process of a crowd, once all are there; none if nobody is wanted."""
+    """Start a crowd and give its process once all are connected; give none if none is wanted."""
     if not wanted:
         yield []
         return

@@ -1,20 +1,20 @@
-"""What holds for all tests: which ones run, and how many examples a property meets."""
+"""Settings of all tests: which tests run, and how many examples check each property."""
 
 import os
 
 import pytest
 from hypothesis import settings
 
-# How long an example takes says more about the machine than about the code.
+# No deadline: the time of an example says more about the machine than about the code.
 settings.register_profile("quick", deadline=None, max_examples=40)
 settings.register_profile("thorough", deadline=None, max_examples=400)
 
-# Also a developer whose machine speaks Japanese runs the commands of these tests in English.
+# The commands of these tests print English, also on a machine whose language is Japanese.
 os.environ["LACOC_LANGUAGE"] = "en"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option that `make test-all` gives in its second run."""
+    """Add the option --long, which `make test-all` gives in its second run."""
     parser.addoption(
         "--long",
         action="store_true",
@@ -24,13 +24,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Choose how many examples a property meets."""
+    """Set the number of examples for each property: 40, or 400 with --long."""
     settings.load_profile("thorough" if config.getoption("long") else "quick")
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Choose the tests of this run; the longest begin, so that no worker ends up alone with one."""
+    """Select the tests of this run, and put the soak tests first, because they take longest."""
     wanted, others = [], []
     for item in items:
         long = item.get_closest_marker("long") is not None

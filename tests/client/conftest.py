@@ -1,4 +1,4 @@
-"""Courts for the tests of commands; makes `court_process` importable."""
+"""Gives courts to the tests of commands, and makes `court_process` importable."""
 
 import sys
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ from court_process import CourtProcess, OpenCourt
 
 @pytest.fixture
 def open_court(tmp_path: Path) -> Iterator[OpenCourt]:
-    """Opens courts: `open_court("--arena", "othello", "--seconds", "6")`."""
+    """Give a function that opens a court: `open_court("--arena", "othello", "--seconds", "6")`."""
     with ExitStack() as stack:
 
         def opened(*words: str) -> CourtProcess:

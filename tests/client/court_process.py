@@ -1,4 +1,4 @@
-"""A court as a process of its own, and the commands that go to it."""
+"""Runs a court in a process of its own, and commands that connect to this court."""
 
 import json
 import os
@@ -11,13 +11,13 @@ from lacoc_process import Lacoc
 
 
 def environment(**changes: str) -> dict[str, str]:
-    """This process's environment without what would tell a command where to go."""
+    """Return the environment without LACOC_ variables, which could lead commands elsewhere."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith("LACOC_")}
     return kept | changes
 
 
 class CourtProcess:
-    """`lacoc serve` on a free port."""
+    """A court that `lacoc serve` runs on a free port."""
 
     def __init__(self, folder: Path, *words: str) -> None:
         self.folder = folder
@@ -38,13 +38,13 @@ class CourtProcess:
         self._commands: list[Lacoc] = []
 
     def where(self, seat: str = "") -> list[str]:
-        """Options that lead to the court, and to one of its seats."""
+        """Return the options that connect a command to the court, and to a seat if one is named."""
         if not seat:
             return ["--connect", self.address]
         return ["--connect", self.address, "--seat", seat, "--token", self.tokens[seat]]
 
     def start(self, *words: str, **options: Any) -> Lacoc:
-        """Start a command; it ends with the court."""
+        """Start a command, which `close` ends with the court."""
         settings: dict[str, Any] = {
             "stdin": subprocess.DEVNULL,
             "stdout": subprocess.PIPE,
@@ -70,4 +70,4 @@ class CourtProcess:
 
 
 OpenCourt = Callable[..., CourtProcess]
-"""Opens a court with these words for `lacoc serve`."""
+"""A function that opens a court; its arguments are words for `lacoc serve`."""

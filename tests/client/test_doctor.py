@@ -1,4 +1,4 @@
-"""`lacoc doctor`: a real machine, real ports, a real court; and each with something wrong."""
+"""Tests of `lacoc doctor` on a real machine with real ports and courts, right and wrong ones."""
 
 import json
 import os
@@ -24,7 +24,7 @@ from lacoc_shared.words import render, say
 
 @pytest.fixture
 def taken() -> Iterator[int]:
-    """Yield a port with a listener that is neither a court nor a gateway."""
+    """Give a port at which something listens that is neither a court nor a gateway."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         listener.listen()
@@ -41,7 +41,7 @@ def free() -> int:
 def look(
     capsys: pytest.CaptureFixture[str], folder: Path, *words: str
 ) -> dict[str, dict[str, Any]]:
-    """Return the findings by subject; the exit code says whether there is a problem."""
+    """Run `lacoc doctor`, check its exit code, and return its findings by subject."""
     always = ("--json", "--seconds", "0.4", "--recordings", str(folder))
     with pytest.raises(SystemExit) as ended:
         cli.main(["doctor", *always, *words])
@@ -61,18 +61,18 @@ def contest(folder: Path, port: int) -> str:
 
 
 def test_this_machine(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """All that it looks at, without any court."""
+    """Doctor checks this machine without a court, and leaves no file behind."""
     found = look(capsys, tmp_path / "records", "--web", f"127.0.0.1:{free()}")
     assert {"python", "lacoc", "packages", "graphics", "clock", "disk"} <= found.keys()
     assert found["python"]["status"] == found["packages"]["status"] == "ok"
     assert "eclipse-zenoh 1.10" in found["packages"]["found"]
     assert found["clock"]["found"].startswith("20 beats of 20 ms")
     assert "MiB free" in found["disk"]["found"]
-    assert [*tmp_path.iterdir()] == []  # what it wrote is gone, and no folder was made
+    assert [*tmp_path.iterdir()] == []  # doctor left no file and no folder
 
 
 def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """A table with what to do."""
+    """For a person, doctor prints a table that says what to do."""
     with pytest.raises(SystemExit):
         cli.main(["doctor", "--seconds", "0.2", "--recordings", str(tmp_path)])
     out = capsys.readouterr().out
@@ -81,7 +81,7 @@ def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
 
 
 def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
-    """Return the findings of a Python that has other packages before this one's."""
+    """Return doctor's findings on packages when `metadata` replaces that of the installed ones."""
     for name, text in metadata.items():
         (folder / f"{name}.dist-info").mkdir()
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
@@ -103,7 +103,7 @@ def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
 
 
 def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
-    """Named with what is wanted and the command that mends it."""
+    """A package of a wrong version is a problem, with the version to install and the command."""
     found = packages_beside(tmp_path, {"mcap-0.1": "Name: mcap\nVersion: 0.1"})
     wrong = [finding for finding in found if finding[1] == Status.PROBLEM]
     assert [finding[0] for finding in wrong] == ["mcap"]
@@ -112,7 +112,7 @@ def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
 
 
 def test_packages_that_are_not_there(tmp_path: Path) -> None:
-    """Without the server's the machine can play; without others it can't; Python is looked at."""
+    """An old Python or a missing package is a problem; for a court's package it is only a note."""
     needs = 'Requires-Dist: no-such-thing>=2\nRequires-Dist: no-engine>=3; extra == "server"'
     metadata = f"Name: lacoc\nVersion: 9\nRequires-Python: >=3.99\n{needs}"
     found = packages_beside(tmp_path, {"lacoc-9": metadata})
@@ -130,7 +130,7 @@ def test_packages_that_are_not_there(tmp_path: Path) -> None:
 def test_ports_that_are_taken(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, taken: int
 ) -> None:
-    """A problem where they were asked for, a note where they are only the usual ones."""
+    """A taken port that the user named is a problem; a taken default port is only a note."""
     file = contest(tmp_path, taken)
     found = look(capsys, tmp_path, "--contest", file, "--web", f"127.0.0.1:{taken}")
     assert found[f"port {taken}"]["status"] == "problem"
@@ -143,7 +143,7 @@ def test_ports_that_are_taken(
 
 @pytest.mark.skipif(sys.platform != "linux", reason="a folder in which nobody can write")
 def test_a_disk_that_takes_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    """A match would have no record: a problem, with the way out."""
+    """A folder in which no record can be written is a problem, and the advice is --recordings."""
     found = look(capsys, Path("/proc/records"))["disk"]
     assert found["status"] == "problem"
     assert "--recordings" in found["todo"]
@@ -152,7 +152,7 @@ def test_a_disk_that_takes_nothing(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_file_where_the_records_should_go(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    """A court could not open its record there, however much room is in the folder above."""
+    """A file or a broken link in the place of the records' folder is a problem."""
     for name in ("file", "link"):
         folder = tmp_path / name
         folder.write_text("") if name == "file" else folder.symlink_to(tmp_path / "nowhere")
@@ -163,7 +163,7 @@ def test_a_file_where_the_records_should_go(
 
 
 def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Another court than the contest file's has the port, so the contest's court can't start."""
+    """If a court of another name has the port of the contest's court, doctor reports a problem."""
     with CourtStub() as court:
         port = int(court.address.rpartition(":")[2])
         text = Path(contest(tmp_path, port)).read_text().replace("court.main", "court.hall")
@@ -177,7 +177,7 @@ def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path:
 
 
 def test_a_court_that_stands_still() -> None:
-    """A court with a full disk repeats its last frame; doctor sees that it stands still."""
+    """Doctor sees that a court with a full disk only repeats its last frame."""
     with CourtStub() as court:
         court.trouble = say("plain.text", text="The record m-1 can't be written.")
         access = Access(court="main", connect=court.address)
@@ -207,7 +207,7 @@ def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: 
 
 
 def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """One sentence with the address, no traceback."""
+    """A court that does not run is reported as a problem in one sentence."""
     found = look(capsys, tmp_path, "--connect", f"tcp/127.0.0.1:{free()}")
     assert found["court main"]["status"] == "problem"
     assert "Nobody listens at" in found["court main"]["found"]
@@ -217,7 +217,7 @@ def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
 def test_the_link_to_a_court(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, open_court: OpenCourt
 ) -> None:
-    """A real court: version, round trip, frames; and its port is known as a court's."""
+    """Doctor checks the version, round trip and frames of a real court, and knows its port."""
     court = open_court()
     found = look(capsys, tmp_path, "--connect", court.address, "--seconds", "1")
     assert found["court main"]["status"] == "ok"
@@ -232,7 +232,7 @@ def test_the_link_to_a_court(
 
 
 def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> None:
-    """An organiser with the keys sees no problem when a court with keys has the port."""
+    """With an invitation, doctor recognises a court with keys at its port and checks its link."""
     with KeyedCourt(keyed_file(tmp_path)) as court:
         port = int(court.address.rpartition(":")[2])
         credentials = court.people["spectators"].credentials

@@ -1,4 +1,4 @@
-"""The little language of keys that come through a pipe."""
+"""Tests of key scripts: the small language of keys and times that comes through a pipe."""
 
 import os
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ BEAT_S = 0.02
 
 
 def played(script: KeyScript, seconds: float) -> Iterator[tuple[float, str]]:
-    """When each key comes while a match is played from its start."""
+    """Yield the time [s] and the name of each key that a script presses from the start of play."""
     for tick in range(1, round(seconds / BEAT_S) + 1):
         for key in script.due(tick * BEAT_S, True):
             yield round(tick * BEAT_S, 2), key
@@ -45,12 +45,12 @@ def script_of(*lines: str) -> KeyScript:
 def test_a_script_presses_each_key_in_its_time(
     lines: list[str], expected: list[tuple[float, str]]
 ) -> None:
-    """Keys one a tick, times counted from the keys before."""
+    """A script moves the robot by at most one key a tick; a time counts from the key before it."""
     assert list(played(script_of(*lines), 3.0)) == expected
 
 
 def test_keys_that_move_the_robot_wait_for_play() -> None:
-    """Rules 4: keys before PLAYING are refused, so a script does not send them."""
+    """A script holds back the keys that move the robot until play begins (rules 4)."""
     script = script_of("r", "2", "q")
 
     assert script.due(0.0, False) == ["r"]
@@ -60,7 +60,7 @@ def test_keys_that_move_the_robot_wait_for_play() -> None:
 
 
 def test_time_stands_still_while_the_match_is_halted() -> None:
-    """A time is one of play, so a halt shifts what comes after it."""
+    """The times of a script count only while the match is played, so a halt delays its keys."""
     script = script_of("2", "1.0 3")
 
     assert script.due(0.02, True) == ["2"]
@@ -70,7 +70,7 @@ def test_time_stands_still_while_the_match_is_halted() -> None:
 
 @pytest.mark.parametrize("line", ["hello", "-1.5 2", "nan 2", "1e999.0 3", "2 up down jump", "²"])
 def test_a_wrong_line_is_left_out_and_named(line: str) -> None:
-    """The message names the number of the wrong line; the rest is played."""
+    """A wrong line is left out and named by its number; the other lines are played."""
     script = script_of("1")
 
     assert script.add(line).startswith("Line 2 is left out: ")
@@ -80,7 +80,7 @@ def test_a_wrong_line_is_left_out_and_named(line: str) -> None:
 
 @given(st.lists(st.text()))
 def test_no_line_breaks_a_script(lines: list[str]) -> None:
-    """Bad input is answered, never an exception, and no key comes that there is not."""
+    """Any text gives only known keys, and never an exception."""
     script = KeyScript()
     for line in lines:
         script.add(line)
@@ -90,7 +90,7 @@ def test_no_line_breaks_a_script(lines: list[str]) -> None:
 
 
 def test_a_pipe_is_read_to_its_end() -> None:
-    """The last line needs no line end; a wrong one is said once."""
+    """The last line of a pipe needs no line end, and a wrong line is reported once."""
     read, write = os.pipe()
     keys = PipeKeys(read)
     os.write(write, b"r\nwhat\n2")

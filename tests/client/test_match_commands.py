@@ -1,4 +1,4 @@
-"""Whole matches by commands: bots, the referee, spectators, each a process as in a contest."""
+"""Whole matches by commands: court, bots and spectators are processes, as in a contest."""
 
 import json
 import os
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow
 
 
 class Referee:
-    """`lacoc referee` at a court, in this process: an interpreter less to start."""
+    """`lacoc referee` at a court; it runs in this process, which saves starting another one."""
 
     def __init__(self, court: CourtProcess, capsys: pytest.CaptureFixture[str]) -> None:
         self._where = court.where()
@@ -29,7 +29,7 @@ class Referee:
         self.decided: set[str] = set()
 
     def run(self, *words: str) -> tuple[int, str, str]:
-        """Exit code, standard output, standard error."""
+        """Run a command; return its exit code, standard output and standard error."""
         self._capsys.readouterr()
         try:
             code = cli.main(["referee", *words, *self._where])
@@ -39,7 +39,7 @@ class Referee:
         return code, shown.out, shown.err
 
     def decide(self, *words: str) -> dict[str, Any]:
-        """Decide as soon as it is legal; the reply."""
+        """Make a decision as soon as it is legal, and return the court's reply."""
         self.decided.add(words[0])
         common = ("--reason", "a test", "--by", "kim", "--wait", "20", "--json")
         code, out, err = self.run(*words, *common, "--token", self._token)
@@ -48,7 +48,7 @@ class Referee:
         return reply
 
     def refused(self, *words: str) -> str:
-        """Decide something that the court refuses; its reason."""
+        """Ask for a decision that the court refuses, and return the court's reason."""
         code, out, err = self.run(*words, "--token", self._token)
         assert (code, out) == (2, "")
         assert err.count("Error: ") == 1
@@ -58,7 +58,7 @@ class Referee:
 def test_the_referee_has_every_decision(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Rules 4: each decision once, with its arguments, from the lobby to the next match."""
+    """The referee makes every decision except `ready`, from lobby to next match (rules 4.1)."""
     court = open_court("--arena", "othello", "--seconds", "30", "--speed", "4")
     referee = Referee(court, capsys)
     assert "Now the match is in the lobby; nobody has joined the left seat" in referee.refused(
@@ -88,13 +88,13 @@ def test_the_referee_has_every_decision(
     referee.decide("next")
     referee.decide("abort")
     referee.decide("next")
-    assert referee.decided == set(DECISIONS) - {"ready"}  # the bots have said it: see below
+    assert referee.decided == set(DECISIONS) - {"ready"}  # see the next test
 
 
 def test_ready_for_a_contestant_who_cannot(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Rules 4: `ready` works for a seat; status shows links and legal decisions, log the events."""
+    """The referee says ready for a contestant; `status` shows what is legal, `log` the events."""
     court = open_court("--arena", "othello")
     referee = Referee(court, capsys)
     person = court.start(
@@ -125,7 +125,7 @@ def test_ready_for_a_contestant_who_cannot(
 def test_a_waiting_referee_does_nothing_twice(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A decision whose answer is missing may have been done: it is not asked again."""
+    """A decision whose answer was lost is not asked again, because the court may have made it."""
     court = open_court("--arena", "othello")
     decide, asked = RefereeClient.decide, []
 
@@ -142,7 +142,7 @@ def test_a_waiting_referee_does_nothing_twice(
 def test_a_waiting_referee_gives_up_in_time(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With --wait the reason is that of the last moment."""
+    """After the time of --wait the command gives up and prints the court's last reason."""
     court = open_court("--arena", "othello")
     reason = Referee(court, capsys).refused("official", "--wait", "0.7")
 
@@ -156,7 +156,7 @@ def test_a_waiting_referee_gives_up_in_time(
 def test_bots_play_match_after_match(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    """`lacoc bot` says ready, plays, and is there in the next match; `watch --json` sees it all."""
+    """Bots play a match, which `watch` shows, and say ready for the next match by themselves."""
     court = open_court("--arena", "othello", "--seconds", "6", "--speed", "4")
     court.bots("planner", "nearest")
     watch = court.start("watch", "--json", "--hz", "5", *court.where())
@@ -184,14 +184,14 @@ def test_bots_play_match_after_match(
     assert "OFFICIAL" in shown.splitlines()[-1]
 
     referee.decide("next")
-    referee.decide("start")  # they have said ready again
+    referee.decide("start")  # the bots have said ready again
     referee.decide("abort")
     referee.decide("next")
     _a_ghost_plays_the_record_again(court, referee, tmp_path)
 
 
 def _a_ghost_plays_the_record_again(court: CourtProcess, referee: Referee, folder: Path) -> None:
-    """A ghost takes the seat from the bot, with the files and the keys of the first match."""
+    """Let a ghost take the left seat and play the first match's record again."""
     record = _packed(folder / "recordings", "*-001.mcap")
     court.start("bot", f"ghost:{record}:left", *court.where("left"), stdout=subprocess.DEVNULL)
     deadline_s = time.monotonic() + 60
@@ -204,7 +204,7 @@ def _a_ghost_plays_the_record_again(court: CourtProcess, referee: Referee, folde
 
 
 def _packed(folder: Path, name: str) -> Path:
-    """The record of a match, which a process of its own packs when the match is over."""
+    """Wait until another process has packed a match's record, and return the record's path."""
     deadline_s = time.monotonic() + 60
     while not (found := [*folder.glob(name)]):
         assert time.monotonic() < deadline_s, [*folder.iterdir()]
@@ -213,7 +213,7 @@ def _packed(folder: Path, name: str) -> Path:
 
 
 def test_a_bot_ends_when_its_seat_is_taken(open_court: OpenCourt) -> None:
-    """The newest joins wins (docs/reliability.md); the older one says so and ends."""
+    """A bot says that a newer join has taken its seat, and exits with 2."""
     court = open_court("--arena", "othello")
     first = court.start("bot", "straight", *court.where("left"))
     assert first.stdout is not None
@@ -226,7 +226,7 @@ def test_a_bot_ends_when_its_seat_is_taken(open_court: OpenCourt) -> None:
 
 
 def test_a_bot_says_that_its_court_is_silent(open_court: OpenCourt) -> None:
-    """Once when it falls silent, and once when it is back."""
+    """A bot prints one line when its court falls silent, and one when the court is back."""
     court = open_court("--arena", "othello")
     bot = court.start("bot", "straight", *court.where("left"))
     assert bot.stdout is not None
@@ -244,7 +244,7 @@ def test_a_bot_says_that_its_court_is_silent(open_court: OpenCourt) -> None:
 def test_a_bot_leaves_when_it_is_asked_to_end(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A kind kill: the seat is free again in the lobby."""
+    """A bot that is asked to end in the lobby leaves its seat and exits with 0."""
     court = open_court("--arena", "othello")
     bot = court.start("bot", "straight", *court.where("left"))
     assert bot.stdout is not None
@@ -258,7 +258,7 @@ def test_a_bot_leaves_when_it_is_asked_to_end(
 
 
 def test_a_student_s_bot_is_a_file(open_court: OpenCourt, tmp_path: Path) -> None:
-    """`lacoc bot my_bot.py`: a function bot(sheet, seat), seen to be called with both."""
+    """`lacoc bot my_bot.py` calls the file's function `bot` with sheet and seat."""
     (tmp_path / "my_bot.py").write_text(
         "def bot(sheet, seat):\n"
         "    print('made for', sheet.seats[seat].id, flush=True)\n"

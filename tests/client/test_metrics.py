@@ -1,4 +1,4 @@
-"""`lacoc serve --metrics` and its log: a real court, a real scrape."""
+"""Tests of the metrics and the log of a real court (`lacoc serve --metrics`)."""
 
 import json
 import socket
@@ -22,7 +22,7 @@ WAIT_S = 30.0
 
 
 def scrape(url: str) -> dict[tuple[str, ...], float]:
-    """Every sample by its name and the values of its labels, by their names."""
+    """Read the metrics; return each sample by its name and the values of its labels."""
     with urllib.request.urlopen(url, timeout=60) as reply:
         text = reply.read().decode()
     return {
@@ -39,7 +39,7 @@ def until(true: Callable[[], bool]) -> None:
 
 
 def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
-    """Beats, commands and refusals are counted as they come; the log tells the same."""
+    """Metrics count beats, commands and refusals; the log has joins and refusals but no token."""
     court = open_court("--metrics", "127.0.0.1:0")
     url, match_id = court.opened["metrics"], court.opened["match_id"]
     until(lambda: ("lacoc_match_info", "main", match_id) in scrape(url))
@@ -78,12 +78,12 @@ def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
 
 
 def test_nothing_listens_unasked(open_court: OpenCourt) -> None:
-    """Off by default."""
+    """A court without --metrics serves no metrics."""
     assert open_court().opened["metrics"] is None
 
 
 def test_a_port_that_is_taken(capsys: pytest.CaptureFixture[str]) -> None:
-    """The command prints one sentence and exits with 2; it opens no court."""
+    """If metrics can't be served, `lacoc serve` prints one sentence and exits with 2."""
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()

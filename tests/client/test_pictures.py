@@ -1,4 +1,4 @@
-"""Frames put into words and pictures for the terminal."""
+"""Tests of frames that are put into words and pictures for the terminal."""
 
 import io
 import math
@@ -60,7 +60,7 @@ def seat_frame(**changes: int) -> SeatFrame:
 
 
 def pose(x_m: float, y_m: float, heading_deg: float) -> bytes:
-    """A standing robot whose body's +y points to the heading."""
+    """Return the pose of a standing robot whose body's +y axis points to the heading."""
     half = math.radians(heading_deg - 90) / 2
     numbers = (x_m, y_m, 0.07, math.cos(half), 0.0, 0.0, math.sin(half), *([0.0] * 18))
     return struct.pack("<25f", *numbers)
@@ -84,7 +84,7 @@ def make_frame(sheet: Sheet, states: tuple[int, ...] = (), **changes: Any) -> Fr
 
 @pytest.mark.parametrize("heading_deg", [0.0, 90.0, 179.0, -45.0])
 def test_a_frame_in_words(heading_deg: float) -> None:
-    """Names instead of numbers of seats, markers, phases; metres, seconds, degrees."""
+    """A frame in words has names of seats, markers and phases, and metres, seconds and degrees."""
     sheet = make_sheet("othello")
     seats = (seat_frame(score=19, flags=BOTH | SeatFlag.FROZEN, locked_ticks=25), seat_frame())
     poses = pose(0.5, -0.25, heading_deg) + pose(0.0, 0.0, 180.0)
@@ -108,7 +108,7 @@ def test_a_frame_in_words(heading_deg: float) -> None:
 
 @pytest.mark.parametrize("changes", [{"poses": b""}, {"scene": bytes(8)}, {"markers": b""}])
 def test_a_frame_of_another_scene_is_put_into_words_too(changes: dict[str, bytes]) -> None:
-    """The text works without robots before READY, and while sheet and frame do not match."""
+    """A frame that lacks poses or markers, or has another scene, is put into words without them."""
     sheet = make_sheet("othello")
     poses = pose(0.0, 0.0, 0.0) * 2
     plain = frame_dict(make_frame(sheet, **({"poses": poses} | changes)), sheet)
@@ -117,7 +117,7 @@ def test_a_frame_of_another_scene_is_put_into_words_too(changes: dict[str, bytes
 
 
 def test_an_event_in_words() -> None:
-    """Its seat by name, its clock in seconds."""
+    """An event in words has the name of its seat, and its clock in seconds."""
     event = Event(
         number=3,
         match=1,
@@ -136,13 +136,13 @@ def test_an_event_in_words() -> None:
     ("ticks", "expected"), [(0, "3:00"), (1, "3:00"), (50, "2:59"), (9000, "0:00"), (9001, "0:00")]
 )
 def test_the_clock_counts_down(ticks: int, expected: str) -> None:
-    """The second that has begun counts, so 0:00 is the end."""
+    """The clock shows the second that has begun, so 0:00 is shown only at the end."""
     sheet = make_sheet("othello")
     assert words.match_clock(make_frame(sheet, clock_ticks=ticks), sheet) == expected
 
 
 def test_the_lobby_says_who_is_missing() -> None:
-    """The state in words, with the reason."""
+    """In the lobby the hint names the empty seats and the teams that are not ready."""
     sheet = make_sheet("othello")
     seats = (seat_frame(flags=0), seat_frame(flags=int(SeatFlag.JOINED)))
     frame = make_frame(sheet, phase=int(Phase.LOBBY), seats=seats)
@@ -163,7 +163,7 @@ OTHELLO = Field(0.0, 0.0, 1.02, 1.02)
 
 
 def test_a_board_needs_no_colours() -> None:
-    """Letters and shades tell whose a disc is; the top row is north."""
+    """Without colours, letters and shades show whose each disc is; the top row is north."""
     sheet = make_sheet("othello")
     states = (1,) * 6 + (0,) * 24 + (2,) * 6  # the southern row is left's, the northern right's
     lines = draw(make_frame(sheet, states), sheet, OTHELLO, 20)
@@ -179,7 +179,7 @@ def test_a_board_needs_no_colours() -> None:
 
 
 def test_robots_are_arrows_with_their_letters() -> None:
-    """Where they are, and where they look."""
+    """An arrow with the robot's letter shows where the robot is and which way it faces."""
     sheet = make_sheet("othello")
     poses = pose(0.75, 0.75, 45.0) + pose(-0.75, -0.75, 180.0)
     lines = draw(make_frame(sheet, poses=poses), sheet, OTHELLO, 20)
@@ -189,7 +189,7 @@ def test_robots_are_arrows_with_their_letters() -> None:
 
 
 def test_flags_show_their_points_and_then_who_struck_them() -> None:
-    """A marker too small for a shape is shown by a character."""
+    """A flag shows its points while it stands, and then the letter of the robot that struck it."""
     sheet = make_sheet("flag-strike")
     field = Field(0.0, 0.0, 1.0, 1.0)
     standing = "\n".join(draw(make_frame(sheet), sheet, field, 24))
@@ -201,7 +201,7 @@ def test_flags_show_their_points_and_then_who_struck_them() -> None:
 
 
 def test_colours_are_the_teams() -> None:
-    """In colour every character has two pixels."""
+    """On a colour terminal, each character of the board shows two pixels."""
     sheet = make_sheet("othello")
     options = {"force_terminal": True, "color_system": "truecolor", "legacy_windows": False}
     text = "\n".join(draw(make_frame(sheet, (1,) * 36), sheet, OTHELLO, 20, **options))
@@ -213,7 +213,7 @@ def test_colours_are_the_teams() -> None:
 @pytest.mark.parametrize("rows", [3, 10, 34])
 @pytest.mark.parametrize("arena", ["othello", "flag-strike", "practice"])
 def test_every_size_can_be_drawn(arena: str, rows: int) -> None:
-    """Small terminals show little, but never an error; robots may be off the field."""
+    """The board can be drawn in any number of rows, also with robots off the field."""
     sheet = make_sheet(arena)
     poses = b"".join(pose(9.0, -9.0, 10.0) for _ in sheet.seats)
     lines = draw(make_frame(sheet, poses=poses), sheet, Field(0.0, 0.0, 1.5, 1.0), rows)
@@ -222,7 +222,7 @@ def test_every_size_can_be_drawn(arena: str, rows: int) -> None:
 
 
 def test_a_field_is_the_scene_s_floor() -> None:
-    """Or what is around the markers."""
+    """The drawn field is the scene's floor, or the area around the markers if there is no floor."""
     floor = SceneGeom(
         body=0,
         type="plane",
@@ -243,5 +243,5 @@ def test_a_field_is_the_scene_s_floor() -> None:
     [(["left", "right"], ["L", "R"]), (["solo"], ["S"]), (["a1", "a2"], ["1", "2"])],
 )
 def test_every_seat_has_its_letter(ids: list[str], letters: list[str]) -> None:
-    """Numbers where the first letters are the same."""
+    """A seat is shown by its first letter, or by its number if the first letters are the same."""
     assert seat_letters(ids) == letters

@@ -1,4 +1,4 @@
-"""`lacoc play` and `lacoc practice` at a real terminal, and from a pipe."""
+"""Tests of `lacoc play` and `lacoc practice` at a real terminal and with keys from a pipe."""
 
 import os
 import signal
@@ -23,7 +23,7 @@ SHOW_CURSOR = "\x1b[?25h"
 
 
 class Terminal:
-    """A command at a terminal of its own."""
+    """A command that runs at a terminal of its own."""
 
     def __init__(self, folder: Path, *words: str) -> None:
         self.child = pexpect.spawn(
@@ -37,7 +37,7 @@ class Terminal:
         self.usual = self.modes()
 
     def modes(self) -> list[Any]:
-        """How the terminal treats keys: echo, lines and so on."""
+        """Return the settings of the terminal, such as whether it echoes keys."""
         return termios.tcgetattr(self.child.child_fd)[:4]
 
     def sees(self, *texts: str) -> None:
@@ -50,7 +50,7 @@ class Terminal:
             self.child.send(key)
 
     def ended(self) -> int:
-        """The exit code; the terminal is as it was before."""
+        """Wait until the command has ended, and return its exit code."""
         self.child.expect(pexpect.EOF)
         self.child.close()
         code = self.child.exitstatus
@@ -59,7 +59,7 @@ class Terminal:
 
 @pytest.fixture
 def started(open_court: OpenCourt, tmp_path: Path) -> Iterator[tuple[CourtProcess, Terminal]]:
-    """A player at a terminal in a short match against a bot, and the match is on."""
+    """Give a court whose match is being played, and the terminal of its left player."""
     court = open_court("--arena", "othello", "--seconds", "60", "--speed", "2")
     terminal = Terminal(tmp_path, "play", "--terminal", "--name", "Ants", *court.where("left"))
     terminal.sees("Ants", " holds seat left of court main: Robot-Othello.")
@@ -77,7 +77,7 @@ def started(open_court: OpenCourt, tmp_path: Path) -> Iterator[tuple[CourtProces
 
 
 def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Path) -> None:
-    """Rules 3, workshop 4-4: every key; an older Pos-data.txt is kept."""
+    """Every key works at a terminal (rules 3, workshop 4-4), and an older Pos-data.txt is kept."""
     _, terminal = started
     (tmp_path / "Pos-data.txt").write_text("older")
     terminal.press("1")
@@ -113,7 +113,7 @@ def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Pa
 def test_the_terminal_is_as_before_however_one_leaves(
     open_court: OpenCourt, tmp_path: Path, way: str | signal.Signals
 ) -> None:
-    """The keys echo again and the cursor is there: after q, Ctrl-C, a kill, a closed window."""
+    """After q, Ctrl-C, a kill or a closed window the terminal echoes keys and shows its cursor."""
     court = open_court("--arena", "othello")
     terminal = Terminal(tmp_path, "play", "--terminal", *court.where("left"))
     terminal.sees("press r when you are ready")
@@ -133,7 +133,7 @@ def test_the_terminal_is_as_before_however_one_leaves(
 def test_a_court_that_is_gone_is_said_and_comes_back(
     started: tuple[CourtProcess, Terminal],
 ) -> None:
-    """A red banner shows while no frame comes; then the match goes on."""
+    """The player sees a banner while the court sends nothing; then the match goes on."""
     court, terminal = started
     watch = court.start("watch", "--json", "--hz", "0", *court.where())
     assert watch.stdout is not None
@@ -150,13 +150,13 @@ def test_a_court_that_is_gone_is_said_and_comes_back(
 
 
 def piped(folder: Path, script: str, *words: str, **options: Any) -> tuple[int, str]:
-    """Run a command with keys from a pipe: exit code, and all that it said."""
+    """Run a command with keys from a pipe; return its exit code and all that it printed."""
     done = run_lacoc(*words, input=script, cwd=folder, **{"env": environment()} | options)
     return done.returncode, done.stdout + done.stderr
 
 
 def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) -> None:
-    """`printf '2' | lacoc play`: the key stands until the match is over."""
+    """After the last key of its pipe, `lacoc play` stays in the match until the match is over."""
     court = open_court("--arena", "othello", "--seconds", "6", "--speed", "4")
     court.start("bot", "straight", *court.where("right"), stdout=subprocess.DEVNULL)
     words = ("start", "--token", court.referee, "--wait", "30", *court.where())
@@ -172,7 +172,7 @@ def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) ->
 
 
 def test_practice_walks_with_the_sample_keys(tmp_path: Path) -> None:
-    """Workshop 4-4: 1, 2, 3, 4 again and again walks forward (level A), 2 alone at level B; z."""
+    """The sample robot walks by keys 1 to 4 at level A and by key 2 at level B (workshop 4-4)."""
     steps = "".join(f"0.5 {key}\n" for key in "12341234")
     script = f"0.2 0\n{steps}tab\n0.5 2\n2.0 z\n"
     code, said = piped(tmp_path, script, "practice", "--terminal", "--name", "Me")
@@ -186,11 +186,11 @@ def test_practice_walks_with_the_sample_keys(tmp_path: Path) -> None:
     assert float(rows[-1][2]) > middle_m + 0.06
     times_s = [float(row[0]) for row in rows]
     assert times_s[-1] > 6
-    assert [*tmp_path.iterdir()] == [tmp_path / "Pos-data.txt"]  # the record was not asked for
+    assert [*tmp_path.iterdir()] == [tmp_path / "Pos-data.txt"]  # nobody asked for a record
 
 
 def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
-    """Rules 2, workshop 4-1: without a file named, those of the current folder, and says so."""
+    """If no file is named, practice takes those of its folder and says so (workshop 4-1)."""
     sample = sample_gait_files("hexapod")
     assert sample.postures is not None
     (tmp_path / "Loco-data.txt").write_bytes(sample.postures.data)
@@ -204,7 +204,7 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
 
 
 def test_practice_begins_anew(tmp_path: Path) -> None:
-    """Workshop 4-4: a match that a killed court left in the folder is not gone on with."""
+    """Practice begins a new match even if a killed court left an unfinished one in the folder."""
     kept = ("--recordings", str(tmp_path / "kept"))
     left = CourtProcess(tmp_path, "--arena", "othello", *kept)
     left.process.kill()
@@ -216,7 +216,7 @@ def test_practice_begins_anew(tmp_path: Path) -> None:
 
 
 def test_practice_without_mujoco_says_what_to_install(tmp_path: Path) -> None:
-    """A contestant's machine has no MuJoCo: one line, exit code 2."""
+    """Without MuJoCo, practice prints one line that says what to install, and exits with 2."""
     (tmp_path / "mujoco.py").write_text("raise ModuleNotFoundError('no mujoco', name='mujoco')")
     words = ("practice", "--terminal")
     code, said = piped(tmp_path, "", *words, env=environment(PYTHONPATH=str(tmp_path)))
@@ -228,7 +228,7 @@ def test_practice_without_mujoco_says_what_to_install(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def quiet_court(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CourtProcess]:
-    """A court in the lobby that nobody joins."""
+    """Give a court in the lobby that nobody joins."""
     court = CourtProcess(tmp_path_factory.mktemp("court"), "--arena", "othello")
     yield court
     court.close()
@@ -260,7 +260,7 @@ def test_a_wrong_start_is_one_clear_message(
     changes: dict[str, str],
     expected: str,
 ) -> None:
-    """The command prints only what is wrong, and exits with 2."""
+    """A command with a wrong option prints one error message and exits with 2."""
     code, said = piped(tmp_path, "", *command, *_where(quiet_court, changes))
 
     assert code == 2, said
@@ -270,7 +270,7 @@ def test_a_wrong_start_is_one_clear_message(
 
 
 def test_wrong_files_are_a_table(quiet_court: CourtProcess, tmp_path: Path) -> None:
-    """Rules 2: a file that only the court can judge, because it is another robot's gait."""
+    """The court refuses the gait of another robot, and a table shows the mistake (rules 2)."""
     sample = sample_gait_files("quadruped")
     assert sample.postures is not None
     (tmp_path / "four.txt").write_bytes(sample.postures.data)
@@ -284,7 +284,7 @@ def test_wrong_files_are_a_table(quiet_court: CourtProcess, tmp_path: Path) -> N
 
 
 def test_the_board_at_a_terminal(quiet_court: CourtProcess, tmp_path: Path) -> None:
-    """`watch --board` draws, and leaves the terminal in order when it is killed."""
+    """`watch --board` draws the board, and leaves the terminal in order when it is killed."""
     terminal = Terminal(tmp_path, "watch", "--terminal", "--board", *quiet_court.where())
     terminal.sees("Robot-Othello, match 1", "LOBBY", "waiting for left to join", "L", "R", "R")
     terminal.child.kill(signal.SIGTERM)

@@ -1,4 +1,4 @@
-"""The files that a contestant brings (rules 2, workshop 4-1)."""
+"""Tests of the files that a contestant brings (rules 2, workshop 4-1)."""
 
 import os
 from pathlib import Path
@@ -51,7 +51,7 @@ def workbook() -> bytes:
 def test_a_folder_s_gaits_are_the_ones_saved_last(
     tmp_path: Path, there: list[str], expected: list[str]
 ) -> None:
-    """Rules 2, workshop 4-1 and 4-3: without a file named, those of the current folder."""
+    """If no file is named, the folder's newest file of each level is taken (workshop 4-1, 4-3)."""
     for age, name in enumerate(there):
         write(tmp_path / name, b"", 1000 + age)
 
@@ -59,7 +59,7 @@ def test_a_folder_s_gaits_are_the_ones_saved_last(
 
 
 def test_files_saved_in_one_moment_go_by_their_names(tmp_path: Path) -> None:
-    """Loco-data.txt and LocoTra-data.txt, the names of the workshop, come first."""
+    """Among files of the same age the workshop's names, Loco-data.txt and LocoTra-data.txt, win."""
     for name in ("Loco-data-6legs.txt", "Loco-data.txt", "LocoTra-data.txt", "LocoTra-data1.txt"):
         write(tmp_path / name, b"")
 
@@ -67,7 +67,7 @@ def test_files_saved_in_one_moment_go_by_their_names(tmp_path: Path) -> None:
 
 
 def test_sequences_that_are_older_than_their_postures_are_told(tmp_path: Path) -> None:
-    """Workshop 4-1: a player who edits Loco-data.xlsx is told that level B has not changed."""
+    """A player who edits Loco-data.xlsx is told that level B has not changed (workshop 4-1)."""
     table = write(tmp_path / "Loco-data.xlsx", b"", 1000)
     sequences = write(tmp_path / "LocoTra-data.txt", b"", 1000)
     assert remarks(tmp_path, [table, sequences]) == []
@@ -79,19 +79,19 @@ def test_sequences_that_are_older_than_their_postures_are_told(tmp_path: Path) -
 
 
 def test_a_workbook_of_sequences_is_named(tmp_path: Path) -> None:
-    """Rules 2: a workbook is Loco-data; another one is left out, and that is said."""
+    """A workbook LocoTra-data.xlsx is left out, and a remark says so (rules 2)."""
     write(tmp_path / "LocoTra-data.xlsx", workbook())
     (remark,) = map(render, remarks(tmp_path, gaits_in(tmp_path)))
     assert "LocoTra-data.xlsx is not taken" in remark
 
 
 def test_nothing_named_leaves_all_to_the_contest() -> None:
-    """The contest's robot walks with its own sample gait."""
+    """If a contestant names neither robot nor gait, no file is sent, and the contest's are used."""
     assert gather(None, []) == SeatFiles()
 
 
 def test_a_robot_brings_the_gait_beside_it() -> None:
-    """An installed robot comes with its own sample gait."""
+    """An installed robot brings its own sample gait."""
     files = gather("quadruped", [])
 
     assert files.robot is not None
@@ -109,7 +109,7 @@ def test_each_file_goes_to_its_level(tmp_path: Path) -> None:
 
 
 def test_a_workbook_goes_as_the_text_it_stands_for(tmp_path: Path) -> None:
-    """Rules 2: no "Save as" step, a court reads text only; mistakes name the workbook."""
+    """A workbook is sent as text, but under the workbook's name (rules 2)."""
     files = gather(None, [write(tmp_path / "Loco-data.xlsx", workbook())])
 
     assert files.postures is not None
@@ -118,7 +118,7 @@ def test_a_workbook_goes_as_the_text_it_stands_for(tmp_path: Path) -> None:
 
 
 def test_two_files_for_one_level_are_refused(tmp_path: Path) -> None:
-    """Which one is meant is the contestant's to say."""
+    """Two files for one level are refused, because only the contestant knows which one is meant."""
     paths = [write(tmp_path / name, POSTURES) for name in ("a.txt", "b.txt")]
 
     with pytest.raises(UserError, match=r"a\.txt and b\.txt are for the same keys"):
@@ -126,7 +126,7 @@ def test_two_files_for_one_level_are_refused(tmp_path: Path) -> None:
 
 
 def test_the_mistakes_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
-    """Rules 2: every mistake, of every file."""
+    """All mistakes of all files are listed at once (rules 2)."""
     paths = [
         write(tmp_path / "a.txt", POSTURES.replace(b"45", b"451")),
         write(tmp_path / "b.txt", b"1\n1\n5\n"),
@@ -138,13 +138,13 @@ def test_the_mistakes_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
-    """A wrong path is said."""
+    """The error names a file that does not exist."""
     with pytest.raises(UserError, match=r"missing\.txt"):
         gather(None, [tmp_path / "missing.txt"])
 
 
 def test_a_workbook_travels_as_text() -> None:
-    """A page sends what it was given; a court reads text. Its mistakes name their cells."""
+    """A workbook from a page is changed to text for the court; a broken one is a mistake."""
     book = SentFile("Loco-data.xlsx", workbook())
     files = as_text(SeatFiles(postures=book, locomotion=SAMPLE.locomotion))
     assert files.postures is not None
@@ -158,7 +158,7 @@ def test_a_workbook_travels_as_text() -> None:
 
 
 def test_level_b_is_made_of_postures_that_come_alone() -> None:
-    """Workshop 4-2, Fig. 4-2: a page needs no terminal to make sequences of a workbook."""
+    """Level B is made from the postures if there is no locomotion file (workshop 4-2, Fig. 4-2)."""
     book = as_text(SeatFiles(postures=SentFile("Loco-data.xlsx", workbook())))
     made = with_level_b(book).locomotion
     assert made is not None
@@ -170,7 +170,7 @@ def test_level_b_is_made_of_postures_that_come_alone() -> None:
 
 
 def test_level_b_is_never_made_against_what_there_is() -> None:
-    """A locomotion file, too few postures for the sample's keys, and mistakes stay as they are."""
+    """Level B is not made beside a locomotion file, or from missing, too few or wrong postures."""
     both = SeatFiles(postures=SAMPLE.postures, locomotion=SAMPLE.locomotion)
     few = PostureTable({0: (0.0,) * 18, 1: (0.1,) * 18})
     short = SeatFiles(postures=SentFile("few.txt", write_gait(few, leg_labels(6))))
@@ -187,14 +187,14 @@ def test_level_b_is_never_made_against_what_there_is() -> None:
 
 
 def test_files_that_are_saved_again_are_read_again(tmp_path: Path) -> None:
-    """A gait edited during practice shows up there; a wrong one changes nothing."""
+    """A gait file that is saved again is read again; a wrong file changes nothing."""
     write(tmp_path / "LocoTra-data.txt", LOCOMOTION)
     own = OwnFiles(folder=tmp_path)
     assert not own.look()
     assert own.files.postures is None
 
     write(tmp_path / "Loco-data.txt", POSTURES, 2000)
-    assert not own.look()  # it may still be being written
+    assert not own.look()  # the file may still be incomplete
     assert own.look()
     assert own.changed == ("Loco-data.txt",)
     assert own.version == 2

@@ -1,4 +1,4 @@
-"""The bytes that a terminal sends become names of keys."""
+"""Tests of how bytes from a terminal become names of keys."""
 
 import pytest
 from hypothesis import given
@@ -22,13 +22,13 @@ from lacoc_client.terminal.keys import KeyDecoder
     ],
 )
 def test_bytes_become_keys(data: bytes, expected: list[str]) -> None:
-    """Rules 3: digits, arrows, Tab, space, x and z, whatever the input method."""
+    """Digits, arrows, Tab, space, x and z are read, also with a Japanese input method (rules 3)."""
     assert KeyDecoder().feed(data) == expected
 
 
 @given(st.lists(st.sampled_from([b"2", b"\x1b[A", b"\x1bOD", "２".encode(), b"\t"])), st.data())
 def test_a_sequence_may_come_in_pieces(keys: list[bytes], data: st.DataObject) -> None:
-    """However the bytes are cut, the keys are the same."""
+    """The bytes of keys give the same keys in whatever pieces they arrive."""
     whole = b"".join(keys)
     cuts = sorted(data.draw(st.lists(st.integers(0, len(whole)))))
     pieces = [whole[a:b] for a, b in zip([0, *cuts], [*cuts, len(whole)], strict=True)]
@@ -39,6 +39,6 @@ def test_a_sequence_may_come_in_pieces(keys: list[bytes], data: st.DataObject) -
 
 @given(st.lists(st.binary()))
 def test_no_bytes_break_it(pieces: list[bytes]) -> None:
-    """A terminal may send anything."""
+    """Any bytes from a terminal give names of keys, never an exception."""
     decoder = KeyDecoder()
     assert all(key for piece in pieces for key in decoder.feed(piece))

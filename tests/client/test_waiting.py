@@ -1,4 +1,4 @@
-"""Services that start before their court, or while a killed one is started again."""
+"""Tests of services that start before their court, or while a killed court is started again."""
 
 import threading
 import time
@@ -14,7 +14,7 @@ from lacoc_shared.network.session import NotConnected, Session, open_client, ope
 
 
 def coming(*errors: UserError) -> Callable[[], str]:
-    """Something that fails with these errors, and then is there."""
+    """Return a function that raises these errors one after another, and then succeeds."""
     left = list(errors)
 
     def do() -> str:
@@ -26,7 +26,7 @@ def coming(*errors: UserError) -> Callable[[], str]:
 
 
 def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
-    """Each new reason is printed once."""
+    """A waiting service prints why it waits, each reason once."""
     errors = (NotConnected("No link."), NotConnected("No link."), NoCourt("None."), NotNow("Soon."))
     assert Patience(60.0).until(coming(*errors)) == "there"
     assert capsys.readouterr().err.splitlines() == [
@@ -40,19 +40,19 @@ def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
     ids=["a person", "the time is over", "for good"],
 )
 def test_it_does_not_wait_in_vain(wait_s: float | None, error: UserError) -> None:
-    """A person hears at once that nobody is there; a wrong token opens nothing later either."""
+    """A service does not wait without --wait, after the time of --wait, or with a wrong token."""
     with pytest.raises(type(error), match=str(error)):
         Patience(wait_s).until(coming(error))
 
 
 def test_who_asks_it_to_end_is_heard() -> None:
-    """Ctrl-C, or a service that is stopped."""
+    """A service that is asked to end stops waiting."""
     with pytest.raises(KeyboardInterrupt):
         Patience(60.0, stopping=lambda: True).until(coming(NotConnected("No link.")))
 
 
 def test_a_court_that_is_opened_later_is_found() -> None:
-    """The real network: nobody listens, then a court does."""
+    """A client that waits connects over the real network as soon as a court is opened."""
     port = free_port()
     refused = threading.Event()
     courts: list[Session] = []
@@ -84,7 +84,7 @@ def test_a_court_that_is_opened_later_is_found() -> None:
 def test_services_take_the_option(
     words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """They try for the time that was given, and end as without it."""
+    """`bot` and `referee` try for the time of --wait, and then fail as they do without it."""
     begin_s = time.monotonic()
     where = ("--connect", f"tcp/127.0.0.1:{free_port()}", "--wait", "2.5")
     assert cli.main([*words, *where]) == 2

@@ -1,8 +1,9 @@
-"""Forks `lacoc` processes for tests: Python and all libraries are loaded once, not by each.
+"""Forks `lacoc` processes for tests, so that Python and its libraries are loaded only once.
 
-Started by `lacoc_process`, with the number of a Unix socket. A request comes with the file
-descriptors of the new process; the answer is its process id. When the process ends, its wait
-status goes through the last of the descriptors. The server ends when the socket is closed.
+`lacoc_process` starts this server with the number of a Unix socket. A request carries the file
+descriptors of the new process, and the server answers with its process id. When the process ends,
+the server writes its wait status to the last of these descriptors. The server ends when the socket
+is closed.
 """
 
 import contextlib
@@ -23,17 +24,19 @@ MOST_BYTES = 1 << 20
 
 
 def preload() -> None:
-    """Import what commands import, and the games and robots."""
+    """Import the modules of all commands, games and robots."""
     for group in ("lacoc.commands", "lacoc.commands.replay", "lacoc.arenas", "lacoc.robots"):
         for entry in importlib.metadata.entry_points(group=group):
             entry.load()
     import uvicorn.protocols.http.h11_impl  # noqa: F401
 
-    gc.freeze()  # a collection in a child then copies none of these pages
+    gc.freeze()  # garbage collection in a child then copies no shared memory
 
 
 def serve(door: socket.socket) -> int:
-    """Fork processes until the socket is closed; returns in each of them too.
+    """Fork processes until the socket is closed.
+
+    In each forked process this function runs the command and returns, too.
 
     Returns:
         The exit code.
@@ -73,24 +76,24 @@ def serve(door: socket.socket) -> int:
 
 
 def reap(waiting: dict[int, int]) -> None:
-    """Pass on how processes ended."""
+    """Send the wait status of each process that has ended."""
     for pid in list(waiting):
         ended, status = os.waitpid(pid, os.WNOHANG)
         if ended:
             number = waiting.pop(pid)
-            with contextlib.suppress(BrokenPipeError):  # nobody wants to know
+            with contextlib.suppress(BrokenPipeError):  # the reader has gone
                 os.write(number, STATUS.pack(status))
             os.close(number)
 
 
 def become(request: dict[str, object], streams: list[int]) -> None:
-    """Take on the streams, folder, environment and arguments of the new process."""
+    """Give this process the streams, folder, environment and arguments of the request."""
     signal.set_wakeup_fd(-1)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     for number, stream in enumerate(streams):
         os.dup2(stream, number)
         os.close(stream)
-    # Python's own streams remember whether the server's could seek, and must not be asked again.
+    # Python's stream objects remember whether the server's streams could seek: make new ones.
     sys.stdin = os.fdopen(0, encoding="utf-8", closefd=False)
     sys.stdout = os.fdopen(1, "w", encoding="utf-8", closefd=False)
     sys.stderr = os.fdopen(

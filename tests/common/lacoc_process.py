@@ -1,4 +1,4 @@
-"""`lacoc` as a process of its own, without the second that Python needs to load libraries."""
+"""Starts `lacoc` in a process of its own, without the second that loading libraries takes."""
 
 import atexit
 import functools
@@ -17,14 +17,14 @@ from pathlib import Path
 from typing import Any
 
 COMMAND = (sys.executable, "-m", "lacoc_shared")
-"""Starts `lacoc` from nothing, as people do."""
+"""The command line that starts `lacoc` in a new interpreter, as users do."""
 
 _SERVER = Path(__file__).with_name("fork_server.py")
 _STATUS = struct.Struct("i")
 
 
 class Lacoc(subprocess.Popen[Any]):
-    """A `lacoc` process: all that `Popen` has, but forked from a server that has loaded it.
+    """A `lacoc` process: a `Popen` that is forked from a server which has already loaded `lacoc`.
 
     Only the start differs: the process has its own memory, streams, signals and exit code.
     """
@@ -34,7 +34,7 @@ class Lacoc(subprocess.Popen[Any]):
     def __init__(self, *words: str, **options: Any) -> None:
         super().__init__([*COMMAND, *words], **options)
 
-    if hasattr(socket, "send_fds"):  # Windows has it not; there the process starts from nothing
+    if hasattr(socket, "send_fds"):  # Windows lacks it and starts a new interpreter
 
         def _execute_child(self, args: list[str], *options: Any) -> None:
             folder, environment = options[4:6]
@@ -56,12 +56,12 @@ class Lacoc(subprocess.Popen[Any]):
             self._close_pipe_fds(*pipes)
 
         def _try_wait(self, wait_flags: int) -> tuple[int, int]:
-            """Do what `os.waitpid` does for a child of this process."""
+            """Return what `os.waitpid` would return if the process were a child of this one."""
             if wait_flags & os.WNOHANG and not select.select([self._status], [], [], 0)[0]:
                 return 0, 0
             data = os.read(self._status, _STATUS.size)
             os.close(self._status)
-            return self.pid, _STATUS.unpack(data)[0] if data else signal.SIGKILL  # no server
+            return self.pid, _STATUS.unpack(data)[0] if data else signal.SIGKILL  # server ended
 
         def _internal_poll(self, _deadstate: int | None = None) -> int | None:
             if self.returncode is None and self._waitpid_lock.acquire(False):
@@ -76,7 +76,7 @@ class Lacoc(subprocess.Popen[Any]):
 
 
 def started(*words: str, before: Sequence[str] = (), **options: Any) -> subprocess.Popen[Any]:
-    """Start a `lacoc` command, if need be by another command that runs it."""
+    """Start a `lacoc` command; `before` holds the words of another command that runs it."""
     if before:
         return subprocess.Popen([*before, *COMMAND, *words], **options)
     return Lacoc(*words, **options)
@@ -99,14 +99,14 @@ def run_lacoc(*words: str, input: str = "", timeout_s: float = 60.0, **options: 
 
 
 class _ForkServer:
-    """The process that `lacoc` processes are forked from; it ends with this one."""
+    """The server that forks `lacoc` processes; it ends with the process of the tests."""
 
     def __init__(self) -> None:
         self._socket, its = socket.socketpair()
-        self._trouble = tempfile.TemporaryFile()  # noqa: SIM115 - as long as the server
+        self._trouble = tempfile.TemporaryFile()  # noqa: SIM115 - open while the server runs
         self._lock = threading.Lock()
         with its:
-            # Its children are to take no stream of it for a terminal.
+            # No stream of the server may look like a terminal to its children.
             self._process = subprocess.Popen(
                 [sys.executable, str(_SERVER), str(its.fileno())],
                 pass_fds=[its.fileno()],
@@ -116,7 +116,7 @@ class _ForkServer:
             )
 
     def fork(self, request: bytes, descriptors: list[int]) -> int:
-        """Fork a process; returns its id."""
+        """Fork a process and return its id."""
         with self._lock:
             socket.send_fds(self._socket, [request], descriptors)
             answer = self._socket.recv(_STATUS.size)

@@ -1,10 +1,10 @@
-"""Ports for servers that must come back at the same place."""
+"""Ports for servers that are started again at the same address."""
 
 import random
 import socket
 
-# Below those that systems give to connections (49152 and up, on Linux 32768 and up): a test's
-# port is free from when it is asked for until its server listens.
+# Systems take ports of outgoing connections from above this range (on Linux from 32768, elsewhere
+# from 49152). So a chosen port stays free until the test's server listens there.
 _CHOICE = range(20_000, 32_000)
 
 

@@ -1,4 +1,4 @@
-"""Venues for the tests of the gateway; makes `venue` and `page_client` importable."""
+"""Gives venues to the tests of the gateway, and makes `venue` and `page_client` importable."""
 
 import sys
 from collections.abc import Iterator
@@ -15,14 +15,14 @@ from venue import Venue
 
 @pytest.fixture
 def venue(tmp_path: Path) -> Iterator[Venue]:
-    """Make a contest whose courts do not run yet."""
+    """Give a contest whose court and gateway do not run yet."""
     with ExitStack() as stack:
         yield Venue(tmp_path, stack)
 
 
 @pytest.fixture(scope="module")
 def open_venue(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Venue]:
-    """A court in the lobby with its gateway, for tests that change nothing."""
+    """Give a court in the lobby and its gateway, shared by tests that change nothing."""
     with ExitStack() as stack:
         venue = Venue(tmp_path_factory.mktemp("venue"), stack)
         venue.court()

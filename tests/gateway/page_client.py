@@ -1,4 +1,4 @@
-"""A page without a browser: what it was sent, and asking."""
+"""A page without a browser: it keeps what the gateway sends, and sends requests."""
 
 import itertools
 import socket
@@ -29,7 +29,7 @@ TIMEOUT_S = 45.0
 
 
 class Refused(Exception):
-    """The gateway, or the court behind it, said no."""
+    """A request was refused by the gateway or by the court behind it."""
 
     def __init__(self, reply: dict[str, Any]) -> None:
         self.why = msgspec.convert(reply["error"], Phrase)
@@ -41,12 +41,12 @@ class Refused(Exception):
 
 
 def refusal(code: str) -> pytest.RaisesExc[Refused]:
-    """Expect that something is refused with this code."""
+    """Expect a refusal with this code."""
     return pytest.raises(Refused, check=lambda error: error.why.code == code)
 
 
 class PageClient:
-    """A page's connection; a thread takes in what comes."""
+    """A page's connection to the gateway; a thread of its own receives the messages."""
 
     def __init__(
         self, url: str, key: str | None = None, *, watch: bool = True, **options: Any
@@ -68,7 +68,7 @@ class PageClient:
         self.scene: tuple[bytes, Scene] | None = None
         self.frame: Frame | None = None
         self.frames: list[tuple[float, int]] = []
-        """When each came, and its beat."""
+        """The arrival time [s] and the beat of each frame."""
         self.health: Health | None = None
         self.events: list[Event] = []
         self.closed = threading.Event()
@@ -81,21 +81,21 @@ class PageClient:
 
     @property
     def waits_why(self) -> str:
-        """The code by which the gateway says why there is no court; "" while there is."""
+        """Return the code of the reason why there is no court; "" while there is one."""
         return (self.link.get("why") or {"code": ""})["code"]
 
     def ask(self, do: str, **fields: Any) -> Any:
-        """Ask and wait for the value of the reply."""
+        """Send a request and return the value of its reply."""
         return self.reply(self.send(do, **fields))
 
     def send(self, do: str, **fields: Any) -> int:
-        """Ask without waiting; the id."""
+        """Send a request without waiting for its reply; return its id."""
         number = next(self._ids)
         self.socket.send(msgpack.packb({"id": number, "do": do, **fields}))
         return number
 
     def reply(self, number: int) -> Any:
-        """The value of a reply."""
+        """Wait for the reply to a request and return its value."""
         self.wait(lambda: number in self._replies)
         reply = self._replies.pop(number)
         if not reply["ok"]:
@@ -103,28 +103,28 @@ class PageClient:
         return reply["value"]
 
     def waits_for(self, number: int) -> bool:
-        """Whether a reply, which nobody has taken yet, has still to come."""
+        """Return whether a reply, which `reply` has not taken yet, is still missing."""
         return number not in self._replies
 
     def wait(self, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:
-        """Wait until something is true."""
+        """Wait until a condition is true."""
         with self._changed:
             assert self._changed.wait_for(condition, timeout_s), "it did not become true"
 
     def phase(self, phase: Phase) -> None:
-        """Wait for a phase."""
+        """Wait until the match is in this phase."""
         self.wait(lambda: self.frame is not None and self.frame.phase == phase)
 
     def wait_own(self, condition: Callable[[SeatFrame], Any]) -> None:
-        """Wait until something is true of the seat that this page holds."""
+        """Wait until a condition is true of the seat that this page holds."""
         self.wait(lambda: self.frame is not None and condition(self.own()))
 
     def code(self) -> int | None:
-        """With which code the gateway closed the connection; None if it did not."""
+        """Return the gateway's close code; None while the connection is open."""
         return self.socket.protocol.close_code
 
     def own(self) -> SeatFrame:
-        """The seat that this page holds."""
+        """Return the newest frame's data of the seat that this page holds."""
         assert self.frame is not None
         return self.frame.seats[self.seat["index"]]
 
@@ -189,7 +189,7 @@ class PageClient:
 
 
 class SleepyPage:
-    """A page that reads only on request, with a small buffer."""
+    """A page that reads only on request and has a small receive buffer."""
 
     def __init__(self, url: str) -> None:
         parts = urlsplit(url)
@@ -207,7 +207,7 @@ class SleepyPage:
         self._flush()
 
     def read_until(self, beat: int) -> list[int]:
-        """The beats of all frames up to one, in their order."""
+        """Read frames up to a beat, and return the beats of all of them in order of arrival."""
         beats: list[int] = []
         deadline_s = time.monotonic() + TIMEOUT_S
         while not beats or beats[-1] < beat:
@@ -216,7 +216,7 @@ class SleepyPage:
             self._flush()  # answers pings
             for event in self._protocol.events_received():
                 data = bytes(getattr(event, "data", b""))
-                is_message = getattr(event, "opcode", None) is Opcode.BINARY  # and no ping
+                is_message = getattr(event, "opcode", None) is Opcode.BINARY  # not a ping
                 if is_message and data[:1] == bytes((Kind.FRAME,)):
                     beats.append(decode(data[1:], Frame).beat)
         return beats
@@ -233,6 +233,6 @@ class SleepyPage:
 
 
 def x_of(frame: Frame, robot: int, bytes_a_robot: int) -> float:
-    """Where a robot is along x [m]."""
+    """Return a robot's x coordinate [m]."""
     (x_m,) = struct.unpack_from("<f", frame.poses, robot * bytes_a_robot)
     return float(x_m)

@@ -1,4 +1,4 @@
-"""Commands that open a page: what they print, what they fill in, how they end."""
+"""Tests of commands that open a page: what they print and fill in, and how they end."""
 
 import contextlib
 import re
@@ -25,7 +25,7 @@ pytestmark = [
 
 
 class Command:
-    """A command that says where its page is."""
+    """A command that opens a page and prints its address."""
 
     def __init__(self, folder: Path, *words: str) -> None:
         self.process = Lacoc(
@@ -61,7 +61,7 @@ def stack() -> Iterator[ExitStack]:
 
 
 def test_play_fills_its_page_in(tmp_path: Path, stack: ExitStack) -> None:
-    """Seat, token, name and files of the command line; a join that names none takes them."""
+    """The page gets seat, name and files of the command line, and joins with its token."""
     court = CourtProcess(tmp_path, "--arena", "othello")
     stack.callback(court.close)
     gait = sample_gait_files("hexapod").locomotion
@@ -98,7 +98,7 @@ exit 0
 
 
 def browse(folder: Path, home: Path) -> tuple[Lacoc, str, str]:
-    """Start `lacoc play` with a browser that does nothing: it, its page's key, what was opened."""
+    """Start `lacoc play` with a fake browser; return process, page key and the opened address."""
     browser = folder / "browser"
     browser.write_text(BROWSER)
     browser.chmod(0o755)
@@ -118,7 +118,7 @@ def browse(folder: Path, home: Path) -> tuple[Lacoc, str, str]:
 
 @pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="reads /proc")
 def test_the_key_stands_in_no_command_line(tmp_path: Path) -> None:
-    """Other users see only a file they can't read on the browser's command line."""
+    """The browser's command line names a file that other users can't read, and not the key."""
     play, key, opened = browse(tmp_path, tmp_path)
     try:
         titles = b""
@@ -142,7 +142,7 @@ def test_the_key_stands_in_no_command_line(tmp_path: Path) -> None:
 
 
 def test_without_a_home_the_page_opens_all_the_same(tmp_path: Path) -> None:
-    """Where the file can't be written the browser gets the address itself."""
+    """If the file with the key can't be written, the browser gets the address with the key."""
     play, key, opened = browse(tmp_path, tmp_path / "nowhere")
     play.send_signal(signal.SIGINT)
     play.communicate(timeout=30)
@@ -151,7 +151,7 @@ def test_without_a_home_the_page_opens_all_the_same(tmp_path: Path) -> None:
 
 
 def test_play_needs_no_seat_to_open(tmp_path: Path, stack: ExitStack) -> None:
-    """The page asks for missing values, even before a court runs."""
+    """`lacoc play` opens its page without seat, name or token, even before a court runs."""
     play = Command(tmp_path, "play", "--connect", "tcp/127.0.0.1:1")
     with PageClient(play.url, play.key) as page:
         expected = {"seat": "", "name": "", "has_token": False}
@@ -161,7 +161,7 @@ def test_play_needs_no_seat_to_open(tmp_path: Path, stack: ExitStack) -> None:
 
 
 def test_practice_has_a_court_of_its_own(tmp_path: Path) -> None:
-    """Workshop 4-4: join, ready, press; the court ends with the page's gateway."""
+    """`lacoc practice` runs a court of its own, in which a page joins and plays (workshop 4-4)."""
     practice = Command(tmp_path, "practice", "--recordings", "kept")
     assert practice.path == "/practice"
     with PageClient(practice.url, practice.key, hz=50) as page:
@@ -177,7 +177,7 @@ def test_practice_has_a_court_of_its_own(tmp_path: Path) -> None:
 
 
 def test_watch_shows_a_court(tmp_path: Path, stack: ExitStack) -> None:
-    """Read-only: its address carries no key."""
+    """The address that `lacoc watch` opens has no key, so its page can only watch."""
     court = CourtProcess(tmp_path, "--arena", "othello")
     stack.callback(court.close)
     watch = Command(tmp_path, "watch", *court.where())
@@ -188,7 +188,7 @@ def test_watch_shows_a_court(tmp_path: Path, stack: ExitStack) -> None:
 
 
 def test_demo_says_where_its_page_is_early(tmp_path: Path) -> None:
-    """The page comes before the match; everything ends with it."""
+    """`lacoc demo` prints its page's address before the match, and ends after the result."""
     words = ("demo", "--seconds", "2", "--speed", "4")
     no_screen = {**environment(), "DISPLAY": "", "WAYLAND_DISPLAY": "", "BROWSER": ""}
     done = run_lacoc(*words, cwd=tmp_path, env=no_screen, timeout_s=90)
@@ -198,7 +198,7 @@ def test_demo_says_where_its_page_is_early(tmp_path: Path) -> None:
 
 
 def test_demo_without_a_head_opens_nothing(tmp_path: Path) -> None:
-    """For servers and continuous integration."""
+    """`lacoc demo --headless` opens no page."""
     words = ("demo", "--headless", "--seconds", "2", "--speed", "4")
     done = run_lacoc(*words, cwd=tmp_path, env=environment(), timeout_s=90)
     assert done.returncode == 0, done.stderr

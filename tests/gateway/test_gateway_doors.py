@@ -1,4 +1,4 @@
-"""Who is let in, and that nothing that comes in disturbs anybody else."""
+"""Tests of who is let in by a gateway, and that bad input disturbs nobody else."""
 
 import http.client
 import json
@@ -38,7 +38,7 @@ ACTS: list[tuple[str, dict[str, Any]]] = [
 
 
 def get(venue: Venue, path: str, **headers: str) -> tuple[int, http.client.HTTPMessage, bytes]:
-    """Fetch a path as it is, dots and all."""
+    """Fetch a path exactly as it is written, also with dots."""
     connection = http.client.HTTPConnection("127.0.0.1", venue.web_port, timeout=60)
     try:
         connection.putrequest("GET", path, skip_host="Host" in headers)
@@ -65,7 +65,7 @@ def get(venue: Venue, path: str, **headers: str) -> tuple[int, http.client.HTTPM
     ],
 )
 def test_the_names_of_this_machine_are_known(open_venue: Venue, host: str) -> None:
-    """Numbers, localhost, the machine's name, and what --host says."""
+    """A request's host may be an IP address, localhost, this machine's name or one of --host."""
     status, _, _ = get(open_venue, "/recordings", Host=host.format(port=open_venue.web_port))
     assert status == 200
 
@@ -74,7 +74,7 @@ def test_the_names_of_this_machine_are_known(open_venue: Venue, host: str) -> No
     "host", ["evil.example", "127.0.0.1.evil.example", "", "evil.example:80@127.0.0.1"]
 )
 def test_a_foreign_name_is_refused(open_venue: Venue, host: str) -> None:
-    """A site whose name was made to point to this machine (DNS rebinding)."""
+    """A foreign host name that points to this machine (DNS rebinding) is refused."""
     status, _, body = get(open_venue, "/recordings", Host=host)
     assert status in (400, 403)
     if status == 403:
@@ -94,7 +94,7 @@ def test_a_foreign_name_is_refused(open_venue: Venue, host: str) -> None:
     ["http://evil.example", "null", "http://127.0.0.1", "http://127.0.0.1:1", "file://", "x"],
 )
 def test_a_page_of_another_site_gets_no_socket(open_venue: Venue, origin: str) -> None:
-    """Any web site can open ws://127.0.0.1: its origin gives it away."""
+    """A page of another site, known by its origin, can't open a WebSocket."""
     with (
         pytest.raises(InvalidStatus) as caught,
         connect(
@@ -107,7 +107,7 @@ def test_a_page_of_another_site_gets_no_socket(open_venue: Venue, origin: str) -
 
 
 def test_the_own_page_gets_a_socket(open_venue: Venue) -> None:
-    """A page of the same origin connects, and so does a program without an origin."""
+    """A page of the gateway's own origin can open a WebSocket."""
     origin = f"http://127.0.0.1:{open_venue.web_port}"
     with PageClient(open_venue.url, origin=origin) as page:
         assert page.welcome["court"] == "main"
@@ -118,7 +118,7 @@ def test_the_own_page_gets_a_socket(open_venue: Venue) -> None:
 def test_without_the_key_a_page_only_watches(
     open_venue: Venue, key: str | None, do: str, fields: dict[str, Any]
 ) -> None:
-    """Seat and referee tokens are of no use without the key of the run."""
+    """Without the key a page only watches, even with the right token of a seat or referee."""
     with PageClient(open_venue.url, key) as page:
         assert page.welcome["can_act"] is False
         with refusal("gateway.only-watch"):
@@ -128,7 +128,7 @@ def test_without_the_key_a_page_only_watches(
 
 @pytest.mark.parametrize(("do", "fields"), ACTS, ids=[do for do, _ in ACTS])
 def test_watch_comes_first(open_venue: Venue, do: str, fields: dict[str, Any]) -> None:
-    """Nothing can be done at no court."""
+    """A page can't act before it has asked to watch a court."""
     with (
         PageClient(open_venue.url, watch=False) as page,
         refusal("gateway.which-court"),
@@ -137,7 +137,7 @@ def test_watch_comes_first(open_venue: Venue, do: str, fields: dict[str, Any]) -
 
 
 def test_wrong_tokens_are_refused_and_can_not_be_guessed(open_venue: Venue) -> None:
-    """Each with the court's own sentence; not more than a few tries."""
+    """Each wrong token, seat or name has its own refusal, and only a few tries are allowed."""
     with PageClient(open_venue.url, open_venue.key) as page:
         with refusal("refused.wrong-token"):
             page.ask("join", seat="left", token=TOKENS["right"], name="Ants")
@@ -159,7 +159,7 @@ def test_wrong_tokens_are_refused_and_can_not_be_guessed(open_venue: Venue) -> N
 
 
 def test_wrong_files_come_back_as_mistakes(open_venue: Venue) -> None:
-    """Rules 2: every mistake with its place."""
+    """A join with wrong files is refused with a list of the mistakes (rules 2)."""
     wrong = {"name": "mine.txt", "data": b"Num of Posture\t1\n0 Key\t1\t2\tthree\n"}
     with PageClient(open_venue.url, open_venue.key) as page:
         with refusal("refused.mistakes") as caught:
@@ -169,7 +169,7 @@ def test_wrong_files_come_back_as_mistakes(open_venue: Venue) -> None:
 
 
 def test_an_unknown_court_is_said(open_venue: Venue) -> None:
-    """The page hears which there are."""
+    """A page that asks for an unknown court is refused, and learns the names of all courts."""
     with PageClient(open_venue.url, watch=False) as page:
         with refusal("gateway.no-court"):
             page.ask("watch", court="centre")
@@ -197,7 +197,7 @@ def test_an_unknown_court_is_said(open_venue: Venue) -> None:
 def test_what_is_not_understood_is_refused(
     open_venue: Venue, do: str, fields: dict[str, Any], is_too_long: bool
 ) -> None:
-    """One sentence, and the connection lives."""
+    """A request that makes no sense is refused, and the connection stays open."""
     with PageClient(open_venue.url, open_venue.key) as page:
         with refusal("gateway.bad-message") as caught:
             page.ask(do, **fields)
@@ -213,7 +213,7 @@ def test_what_is_not_understood_is_refused(
 def test_garbage_ends_a_connection_and_nothing_else(
     open_venue: Venue, garbage: bytes | str
 ) -> None:
-    """A page does not send such things."""
+    """Bytes that no page sends end their own connection and no other."""
     with PageClient(open_venue.url) as page, PageClient(open_venue.url) as other:
         page.socket.send(garbage)
         page.wait(page.closed.is_set)
@@ -221,7 +221,7 @@ def test_garbage_ends_a_connection_and_nothing_else(
 
 
 def test_a_message_without_end_is_cut_off(open_venue: Venue) -> None:
-    """Nobody needs more than a join with its files."""
+    """A message longer than any join ends its connection; a join with too large a file does not."""
     with PageClient(open_venue.url, open_venue.key) as page:
         page.socket.send(bytes(wire.JOIN_BYTES + 1))
         page.wait(page.closed.is_set)
@@ -232,7 +232,7 @@ def test_a_message_without_end_is_cut_off(open_venue: Venue) -> None:
 
 @pytest.mark.parametrize("path", ["/", "/play", "/practice", "/referee", "/watch", "/replay"])
 def test_pages_are_safe_from_other_sites(open_venue: Venue, path: str) -> None:
-    """Headers of every answer; a page that can act shows in no frame of another site."""
+    """Headers keep other sites from embedding a page, and browsers from storing it."""
     status, headers, _ = get(open_venue, path)
     assert status in (200, 503)  # 503: not built
     policy = headers["Content-Security-Policy"]
@@ -244,14 +244,14 @@ def test_pages_are_safe_from_other_sites(open_venue: Venue, path: str) -> None:
 
 
 def test_the_overlay_may_be_embedded(open_venue: Venue) -> None:
-    """It takes no input, and broadcasters put it into their own pages."""
+    """Other sites may embed the overlay, because it takes no input."""
     _, headers, _ = get(open_venue, "/overlay")
     assert "frame-ancestors *" in headers["Content-Security-Policy"]
 
 
 @pytest.fixture(scope="module")
 def records(open_venue: Venue) -> Iterator[Path]:
-    """Make recordings in the venue's folder, and a secret file outside it."""
+    """Give the folder of the venue's recordings; a secret file lies outside it."""
     folder = open_venue.folder / "recordings"
     (folder / "first match.mcap").write_bytes(b"first")
     os.utime(folder / "first match.mcap", (1_700_000_000, 1_700_000_000))
@@ -264,7 +264,7 @@ def records(open_venue: Venue) -> Iterator[Path]:
 
 
 def test_recordings_are_listed_and_fetched(open_venue: Venue, records: Path) -> None:
-    """Finished ones, the newest first; a part of one is enough for a player that seeks."""
+    """Recordings are listed with the newest first, and can be fetched whole or in part."""
     _, headers, body = get(open_venue, "/recordings")
     listed = json.loads(body)
     assert headers["Cache-Control"] == "no-store"
@@ -296,14 +296,14 @@ def test_recordings_are_listed_and_fetched(open_venue: Venue, records: Path) -> 
     ],
 )
 def test_no_path_leads_out(open_venue: Venue, records: Path, path: str) -> None:
-    """Only the recordings of the folder, only the files of the pages."""
+    """No path leads to a file that is neither a recording nor part of the pages."""
     status, _, body = get(open_venue, path)
     assert status == 404
     assert b"secret" not in body
 
 
 def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
-    """They are told why; other pages are not disturbed, and a free place is given away."""
+    """A page beyond the limit is sent away with the reason, until another page leaves."""
     venue.court()
     venue.web("--viewers", "2")
     first, second = venue.page(), venue.page()
@@ -325,7 +325,7 @@ def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
 
 
 def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
-    """Pages with the key can always connect; a page without the key counts as a viewer."""
+    """When all viewers' places are taken, pages with the key still get in."""
     venue.court()
     venue.web("--viewers", "1")
     venue.page()
@@ -335,11 +335,11 @@ def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
     referee = venue.referee()
     with refusal("gateway.full"):
         referee.ask("watch")
-    contestant.ask("watch", key=venue.key)  # again: the place it has
+    contestant.ask("watch", key=venue.key)  # the page keeps its own place
 
 
 def test_pages_with_the_key_have_a_bound_too(venue: Venue) -> None:
-    """A key that got about can't fill the gateway either; and takes no spectator's place."""
+    """Pages with the key have their own limit, and take no spectator's place."""
     venue.web()
     for _ in range(ACTING_MOST):
         venue.page(venue.key, hz=1)
@@ -352,7 +352,7 @@ def test_pages_with_the_key_have_a_bound_too(venue: Venue) -> None:
 
 
 def why_not(page: PageClient, number: int) -> str:
-    """Why something was refused; "" if it was not."""
+    """Return why a request was refused; "" if it was not refused."""
     try:
         page.reply(number)
     except Refused as refused:
@@ -361,9 +361,9 @@ def why_not(page: PageClient, number: int) -> str:
 
 
 def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
-    """A page may change its court, but 20 bytes don't draw the whole match as often as one likes.
+    """A page that asks a hundred times to watch is sent the whole match only a few times.
 
-    It goes on as it was, and may ask again a second later.
+    The page then goes on watching, and may ask again a second later.
     """
     with PageClient(open_venue.url, watch=False) as page:
         begin_s = time.monotonic()
@@ -373,13 +373,13 @@ def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
         assert 5 <= said.count("") <= 6 + took_s
         assert page.order.count(Kind.SCENE) <= said.count("")
         page.wait(lambda: page.frame)
-        time.sleep(1.1)  # the promise is one of time
+        time.sleep(1.1)  # the limit is one of time
         page.ask("watch")
 
 
 @pytest.mark.long
 def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
-    """Keys of a contestant take effect in time, in beats, while others send all they can."""
+    """A contestant's keys take effect within a few beats while other pages send all they can."""
     venue.court()
     venue.web()
     left, right = venue.contestant("left"), venue.contestant("right")

@@ -1,4 +1,4 @@
-"""Referees' tokens at a court with keys: a wrong one takes two seconds there to be refused."""
+"""Tests of referees' tokens at a court with keys, which takes two seconds to refuse a wrong one."""
 
 import pytest
 from page_client import PageClient, Refused
@@ -14,7 +14,7 @@ START = {"decision": {"type": "start"}, "reason": ""}
 
 @pytest.fixture
 def keyed(venue: Venue) -> Venue:
-    """A contest with keys, its court in the lobby, and its gateway, which has found it."""
+    """Give a contest with keys, its court in the lobby, and a gateway that has found the court."""
     venue.contest.write_text(venue.contest.read_text().replace("tcp/", ""))
     make_keys(venue.contest, (), renew=False)
     venue.court()
@@ -31,7 +31,7 @@ def refused(page: PageClient, number: int) -> Refused:
 
 
 def test_a_wrong_token_is_said_in_a_field(keyed: Venue) -> None:
-    """A page knows that asking again is of no use, whatever the words; only then."""
+    """A refusal has a field that is true only for a wrong token, so the page does not ask again."""
     page = keyed.page(keyed.key)
     wrong = refused(page, page.send("enter", token=WRONG, by="Kim"))
     assert wrong.is_the_token
@@ -41,7 +41,7 @@ def test_a_wrong_token_is_said_in_a_field(keyed: Venue) -> None:
 
 
 def test_wrong_tokens_delay_no_decision(keyed: Venue) -> None:
-    """Pages that try tokens wait for each other; a referee who is in, or returns, does not wait."""
+    """Pages with wrong tokens wait for each other, and the referee does not wait for them."""
     referee = keyed.referee()
     wrong = [keyed.page(keyed.key) for _ in range(12)]
     tried = {page: [page.send("enter", token=WRONG, by="x") for _ in range(8)] for page in wrong}
@@ -51,7 +51,7 @@ def test_wrong_tokens_delay_no_decision(keyed: Venue) -> None:
     referee.close()
     back = keyed.page(keyed.key)
     back.ask("enter", token=REFEREE, by="Kim")
-    # One after the other, two seconds each.
+    # The court refuses the wrong tokens one after another, and needs two seconds for each.
     waiting = sum(page.waits_for(number) for page, numbers in tried.items() for number in numbers)
     assert waiting >= len(wrong) - 2
     said = [refused(page, number).why.code for page, numbers in tried.items() for number in numbers]

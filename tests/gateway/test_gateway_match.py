@@ -20,7 +20,7 @@ FORWARD = {"level": 1, "key": 2}
 
 
 def started(venue: Venue) -> tuple[PageClient, PageClient, PageClient]:
-    """Two contestants and a referee, and the match is on."""
+    """Bring a match into play; return the pages of both contestants and the referee."""
     left, right = venue.contestant("left", "Ants"), venue.contestant("right", "Bees")
     referee = venue.referee()
     referee.phase(Phase.READY)
@@ -31,7 +31,7 @@ def started(venue: Venue) -> tuple[PageClient, PageClient, PageClient]:
 
 
 def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
-    """Two seats and a referee by one gateway; a late comer has everything at once."""
+    """A match is played through one gateway to its official end; a late page gets all of it."""
     venue.court("--seconds", "4")
     venue.web()
     left, right, referee = started(venue)
@@ -74,7 +74,7 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
 
 
 def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
-    """Rules 3: a lost contestant stands; a page that comes back joins again and goes on."""
+    """A robot whose page has gone stands (rules 3); a page that comes back joins and goes on."""
     venue.court()
     venue.web()
     left, _, referee = started(venue)
@@ -87,7 +87,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     gone = referee.frame.beat
 
     def silences() -> list[Event]:
-        """Events of this seat; on a busy machine a seat may have been silent before."""
+        """Return this seat's silences after its key; a busy machine may cause earlier ones."""
         return [
             event
             for event in referee.events
@@ -108,7 +108,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
 
 
 def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
-    """A pulled cable closes no connection; the gateway still stops repeating the command."""
+    """If a page hangs without closing its connection, its seat still falls silent."""
     venue.court()
     venue.web()
     left, _, referee = started(venue)
@@ -120,7 +120,7 @@ def test_a_page_that_hangs_is_noticed(venue: Venue) -> None:
 
 
 def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
-    """A page that is back at once never lets the robot stand."""
+    """A robot walks on while its page is reloaded, if the page is back within a second."""
     venue.court()
     venue.web()
     page, _, referee = started(venue)
@@ -132,7 +132,7 @@ def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
         page.close()
         page = venue.page(venue.key)
         page.ask("join", seat="left", token=TOKENS["left"], name="Ants")
-        if time.monotonic() - gone_s < 0.5:  # a busy machine needs more, now and then
+        if time.monotonic() - gone_s < 0.5:  # a busy machine sometimes needs longer
             break
     page.wait(lambda: page.frame is not None and page.frame.beat > gone + 125)
     assert page.own().key == 2
@@ -140,7 +140,7 @@ def test_a_reload_within_a_second_is_not_noticed(venue: Venue) -> None:
 
 
 def test_a_newer_page_takes_the_seat(venue: Venue) -> None:
-    """The newest join wins; the older page gets a message and can't steer."""
+    """The newest join takes the seat; the older page is told so and can't steer any more."""
     venue.court()
     venue.web()
     first = venue.contestant("left")
@@ -154,7 +154,7 @@ def test_a_newer_page_takes_the_seat(venue: Venue) -> None:
 
 
 def test_one_referee_acts_until_another_takes_over(venue: Venue) -> None:
-    """One page acts and the others watch; the record has the referee's name."""
+    """Only one referee's page acts until another takes over; events name the acting referee."""
     venue.court()
     venue.web()
     venue.contestant("left")
@@ -179,7 +179,7 @@ def test_one_referee_acts_until_another_takes_over(venue: Venue) -> None:
 
 
 def test_a_killed_court_comes_back(venue: Venue) -> None:
-    """Every page says what it waits for and goes on by itself; seats are taken back."""
+    """Pages say that their court is gone; when it comes back, they go on and keep their seats."""
     court = venue.court()
     venue.web()
     left, _, referee = started(venue)
@@ -209,7 +209,7 @@ def test_a_killed_court_comes_back(venue: Venue) -> None:
 
 
 def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
-    """Another match with the same number: no event of the old one is kept."""
+    """When a court starts afresh, no event of the old match with the same number is kept."""
     court = venue.court()
     venue.web()
     watcher = venue.page()
@@ -229,7 +229,7 @@ def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
 
 
 def test_a_stopped_court_is_not_shown_as_live(venue: Venue) -> None:
-    """A late comer gets no old frame as a new one."""
+    """A page that connects while its court stands still gets no old frame."""
     court = venue.court()
     venue.web()
     watcher = venue.page()
@@ -245,7 +245,7 @@ def test_a_stopped_court_is_not_shown_as_live(venue: Venue) -> None:
 
 
 def test_a_gateway_may_come_before_its_court(venue: Venue) -> None:
-    """It waits, says so, and shows the match as soon as there is one."""
+    """A gateway that starts before its court waits for it, says so, and then shows the match."""
     venue.web()
     early = venue.page(venue.key)
     early.wait(lambda: early.waits_why == "connect.nobody")
@@ -260,7 +260,7 @@ def test_a_gateway_may_come_before_its_court(venue: Venue) -> None:
 
 
 def test_a_restarted_gateway_knows_its_pages_again(venue: Venue) -> None:
-    """The key of a contest's gateway lasts, so pages that are open go on."""
+    """A restarted gateway of a contest has the same key, so pages that were open can act again."""
     venue.court()
     web = venue.web()
     left = started(venue)[0]
@@ -277,7 +277,7 @@ def test_a_restarted_gateway_knows_its_pages_again(venue: Venue) -> None:
 
 
 def test_a_gateway_ends_cleanly(venue: Venue) -> None:
-    """On Ctrl-C pages are asked to connect again later, and the exit code is 0."""
+    """On Ctrl-C a gateway closes the connections of its pages and exits with 0."""
     venue.court()
     web = venue.web()
     page = venue.contestant("left")
@@ -291,7 +291,7 @@ def test_a_gateway_ends_cleanly(venue: Venue) -> None:
 def test_a_page_gets_as_many_frames_as_it_asks_for(
     open_venue: Venue, hz: int, share: float
 ) -> None:
-    """25 Hz by default, less when asked: a share of the beats; less where the machine is busy."""
+    """A page gets as many frames a second as it asks for, or fewer on a busy machine."""
     with PageClient(open_venue.url, hz=hz) as page:
         page.wait(lambda: len(page.frames) > 3)
         (_, first), count = page.frames[-1], len(page.frames)
@@ -301,7 +301,7 @@ def test_a_page_gets_as_many_frames_as_it_asks_for(
 
 
 def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
-    """One slot: after a long time without reading there come a few old frames, then new ones."""
+    """A page that stops reading for eight seconds gets a few old frames and then new ones."""
     with PageClient(open_venue.url, hz=50) as quick, SleepyPage(open_venue.url) as sleepy:
         sleepy.watch(hz=50)
         quick.wait(lambda: quick.frame is not None)
@@ -312,11 +312,12 @@ def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
     old = [one for one in beats if one < beat - 25]
     assert len(old) < 4 * 50
     assert len([one for one in beats if one >= beat]) >= 2
-    assert len(quick.frames) > 0.3 * (quick.frames[-1][1] - quick.frames[0][1])  # nobody waits
+    # The quick page did not wait for the slow one.
+    assert len(quick.frames) > 0.3 * (quick.frames[-1][1] - quick.frames[0][1])
 
 
 def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
-    """The sheet says whether the court has another version, not one message that makes no sense."""
+    """An unreadable frame disturbs no page; only a sheet tells that the court's version differs."""
     with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
         venue.web()
         page = venue.page()
@@ -336,7 +337,7 @@ def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
 
 
 def test_a_seat_that_can_not_be_had_now_may_be_asked_for_again(venue: Venue) -> None:
-    """The page keeps its wish: nothing is wrong with it. A wrong token is another matter."""
+    """A join that is refused for now may be asked again; one with a wrong token may not."""
     venue.court()
     venue.web()
     pages = [venue.page(venue.key) for _ in range(12)]

@@ -1,4 +1,4 @@
-"""The parts of a gateway that need no court."""
+"""Tests of the parts of a gateway that need no court."""
 
 import asyncio
 import contextlib
@@ -38,13 +38,13 @@ PAGE = (Path(__file__).parents[2] / "docs" / "gateway.md").read_text(encoding="u
 
 
 def asyncio_run(do: Callable[[], Coroutine[Any, Any, T]]) -> T:
-    """Run on a thread: tests of pages may have left a loop in this one."""
+    """Run a coroutine on a new thread, because tests of pages may have left a loop in this one."""
     with ThreadPoolExecutor(1) as aside:
         return aside.submit(lambda: asyncio.run(do())).result()
 
 
 def rows(title: str) -> list[list[str]]:
-    """The cells of a section's table, without its head."""
+    """Return the cells of the table in a section of docs/gateway.md, without the table's head."""
     match = re.search(rf"^## {title}\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL)
     assert match
     lines = [line for line in match[1].splitlines() if line.startswith("|")]
@@ -52,13 +52,13 @@ def rows(title: str) -> list[list[str]]:
 
 
 def test_the_document_has_every_kind() -> None:
-    """docs/gateway.md: numbers and names of what a page gets."""
+    """docs/gateway.md has the number and name of each kind of message to a page."""
     found = [(int(number), name.upper()) for number, name, _ in rows("Gateway to page")]
     assert found == [(kind.value, kind.name) for kind in wire.Kind]
 
 
 def test_the_document_has_every_request_with_its_fields() -> None:
-    """docs/gateway.md: what a page may ask."""
+    """docs/gateway.md has each request of a page with all its fields."""
     found = {do.strip("`"): set(re.findall(r"`(\w+)`", f)) for do, f, _ in rows("Page to gateway")}
     expected = {
         str(kind.__struct_config__.tag): {field.name for field in msgspec.structs.fields(kind)}
@@ -69,7 +69,7 @@ def test_the_document_has_every_request_with_its_fields() -> None:
 
 
 def test_the_document_has_every_path_and_hold() -> None:
-    """docs/gateway.md: paths, and how a seat is."""
+    """docs/gateway.md has each path of a page, and each state in which a page holds a seat."""
     assert re.findall(r"`([^`]+)`", rows("Paths")[0][0]) == list(PATHS)
     for hold in set(Hold) - {Hold.NOT_JOINED}:
         assert f"`{hold.value}`" in PAGE
@@ -77,7 +77,7 @@ def test_the_document_has_every_path_and_hold() -> None:
 
 @given(st.binary(max_size=300))
 def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
-    """Bad input never raises anything but the documented error."""
+    """Any bytes from a page are read, or refused with the documented error."""
     with contextlib.suppress(wire.Unreadable):
         wire.read(data)
     wire.read_id(data)
@@ -90,7 +90,7 @@ def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
     )
 )
 def test_no_map_of_a_page_breaks_the_reader(fields: dict[str, Any]) -> None:
-    """The same, closer to what is expected."""
+    """Any map with the fields of a request is read, or refused with the documented error."""
     data = msgpack.packb(fields, unicode_errors="surrogatepass")
     with contextlib.suppress(wire.Unreadable):
         wire.read(data)
@@ -108,7 +108,7 @@ def test_no_map_of_a_page_breaks_the_reader(fields: dict[str, Any]) -> None:
     ],
 )
 def test_a_refusal_says_what_a_page_can_do(error: UserError, told: set[str]) -> None:
-    """Ask again, ask never again, or look whether it was done."""
+    """A refusal tells the page whether to ask again, and whether its request may have been done."""
     body = msgpack.unpackb(wire.refusal(7, error)[3:])
     assert {name for name, value in body.items() if value is True} == told
     assert (body["id"], body["error"]) == (7, msgspec.to_builtins(error.phrase))
@@ -116,7 +116,7 @@ def test_a_refusal_says_what_a_page_can_do(error: UserError, told: set[str]) -> 
 
 @pytest.mark.parametrize("size", [0, 1, 124, 125, 126, 65_534, 65_535, 70_000])
 def test_a_message_is_a_websocket_frame(size: int) -> None:
-    """RFC 6455: each of the three lengths."""
+    """A message becomes a WebSocket frame, whose length has one of RFC 6455's three forms."""
     framed = wire.message(wire.Kind.EVENT, bytes(size))
     assert framed[0] == 0x82
     length, head = framed[1], 2
@@ -131,7 +131,7 @@ def test_a_message_is_a_websocket_frame(size: int) -> None:
 
 
 class Wire:
-    """A socket that accepts a given number of messages."""
+    """A page's socket that keeps what is written; `keeps_up` is False if the page is too slow."""
 
     def __init__(self) -> None:
         self.written: list[bytes] = []
@@ -146,7 +146,7 @@ class Wire:
 
 
 def test_a_viewer_has_one_slot() -> None:
-    """While a page is too slow, a newer frame replaces the one before."""
+    """While a page is too slow, each new frame replaces the frame that waits."""
     socket = Wire()
     viewer = Viewer(socket)  # type: ignore[arg-type]
     viewer.rate(50)
@@ -168,7 +168,7 @@ def test_a_viewer_has_one_slot() -> None:
     [(50, 500), (25, 250), (10, 100), (1, 10), (0, 10), (-3, 10), (1e9, 500), (float("nan"), 500)],
 )
 def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
-    """Frames are spaced evenly, also with jitter; an invalid rate becomes the nearest valid one."""
+    """Frames are spaced evenly in spite of jitter; an invalid rate is replaced by a valid one."""
     socket = Wire()
     viewer = Viewer(socket)  # type: ignore[arg-type]
     viewer.rate(hz)
@@ -178,7 +178,7 @@ def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
 
 
 def test_a_page_hears_nothing_of_the_seat_it_had_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A thread that ends may still have something to tell: "replaced" was said of the new seat."""
+    """A page gets no more messages from the thread of its former seat."""
     tells: list[Any] = []
 
     class Thread:
@@ -218,7 +218,7 @@ def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:
 
 
 def test_a_log_that_begins_again() -> None:
-    """Repeated events are not new; if one differs, the events before it stay valid."""
+    """A repeated event is not new; an event that differs replaces those from its number on."""
     log: EventLog[str] = EventLog()
     assert [log.add(event(n, "old"), f"old {n}") for n in (1, 2, 3)] == [True] * 3
     assert [log.add(event(n, "old"), "again") for n in (1, 2, 3)] == [False] * 3
@@ -232,7 +232,7 @@ def test_a_log_that_begins_again() -> None:
 
 
 def test_a_log_is_held_against_what_the_court_says() -> None:
-    """Numbers begin at 1 without a gap; events after the court's report are no difference."""
+    """A log differs from the court's report if it has fewer or more events, later ones aside."""
     log: EventLog[str] = EventLog()
     assert not log.differs(1, 0, 0)
     assert log.differs(1, 500, 3)
@@ -245,7 +245,7 @@ def test_a_log_is_held_against_what_the_court_says() -> None:
 
 
 def test_the_courts_list_stands_for_the_log() -> None:
-    """Known events of the list are not new; events not in the list belong to another match."""
+    """The court's list replaces the log, and gives only the events that are new in it."""
     log: EventLog[str] = EventLog()
     for number in (4, 5):
         log.add(event(number, "a"), f"live {number}")
@@ -259,7 +259,7 @@ def test_the_courts_list_stands_for_the_log() -> None:
 
 
 def test_the_newest_of_a_very_long_log_are_kept() -> None:
-    """Whoever comes late gets no more than the court would list, and nothing is missed by that."""
+    """A log keeps as many of the newest events as a court lists, and is still complete."""
     log: EventLog[int] = EventLog()
     for number in range(1, 3 * EVENTS_LISTED):
         log.add(event(number, "a"), number)
@@ -270,7 +270,7 @@ def test_the_newest_of_a_very_long_log_are_kept() -> None:
 
 
 def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
-    """A practice of days: the list has its newest events only."""
+    """Events that a court no longer lists, as in a practice of days, do not count as missing."""
     log: EventLog[str] = EventLog()
     log.add(event(90, "a"), "live 90")
     assert log.restore([(event(n, "a"), f"listed {n}") for n in range(50, 91)])
@@ -285,13 +285,13 @@ def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
     "where", ["", "here", "127.0.0.1", ":80", "127.0.0.1:99999", "no.such.name.example:0", "[::1"]
 )
 def test_a_wrong_place_to_listen_is_said(where: str) -> None:
-    """One sentence with the way to mend it."""
+    """A wrong address to listen at is refused with one sentence."""
     with pytest.raises(UserError, match=r"not a place to listen|not possible to listen"):
         server.listen(where)
 
 
 def test_a_port_that_is_in_use_is_said() -> None:
-    """The second gateway says what to do."""
+    """A gateway whose port is in use says that one should choose another port."""
     with server.listen("127.0.0.1:0") as opened:
         address = server.url(opened)
         with pytest.raises(UserError, match="Choose another port"):
@@ -299,7 +299,7 @@ def test_a_port_that_is_in_use_is_said() -> None:
 
 
 def test_small_messages_do_not_wait_for_the_one_before() -> None:
-    """Nagle's algorithm is off: a key's frame came 40 ms late with it."""
+    """Small messages are sent at once: Nagle's algorithm made a key's frame 40 ms late."""
 
     async def asked() -> bool:
         found: asyncio.Future[int] = asyncio.get_running_loop().create_future()
@@ -319,7 +319,7 @@ def test_small_messages_do_not_wait_for_the_one_before() -> None:
 
 
 def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
-    """Made from the contest's tokens; else random."""
+    """The key of a contest always follows from its tokens; any other key is random."""
     contest, other = throwaway("othello"), throwaway("othello")
     assert home.lasting_key(contest) == home.lasting_key(contest)
     assert home.lasting_key(contest) != home.lasting_key(other)
@@ -328,7 +328,7 @@ def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
 
 
 def test_browsers_without_a_screen_are_not_opened(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On a server a browser for terminals would take the terminal away."""
+    """Without a screen no browser is opened: one for terminals would take over the terminal."""
     monkeypatch.setattr("sys.platform", "linux")
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
         monkeypatch.delenv(name, raising=False)
@@ -337,7 +337,7 @@ def test_browsers_without_a_screen_are_not_opened(monkeypatch: pytest.MonkeyPatc
 
 @given(st.text(), st.text())
 def test_no_header_breaks_the_guard(host: str, origin: str) -> None:
-    """Only names of this machine get in, whatever is in the headers."""
+    """Random host and origin headers are refused without an exception."""
     guard = Guard(None, ["pages.example"])  # type: ignore[arg-type]
     headers = [
         (b"host", host.encode("latin-1", "replace")),

@@ -1,4 +1,4 @@
-"""Secrets stay where they belong: a match with known ones is searched for them."""
+"""Secrets stay in their files: all that a match sends, prints and records is searched for them."""
 
 import subprocess
 from collections.abc import Iterator
@@ -27,7 +27,7 @@ SETTINGS = "settings.match.countdown_s = 0.1\n"
 
 
 class HearingPage(PageClient):
-    """A page that keeps every byte it was sent."""
+    """A page that keeps every byte that it receives."""
 
     heard: bytes = b""
 
@@ -60,7 +60,7 @@ class KeyedVenue(Venue):
         )
 
     def start(self, *words: str) -> Lacoc:
-        """A command that ends with the test."""
+        """Start a command that is killed at the end of the test."""
         process = Lacoc(
             *words,
             stdin=subprocess.DEVNULL,
@@ -76,7 +76,7 @@ class KeyedVenue(Venue):
         return f"--invitation=keys/invitations/main.{who}.toml"
 
     def secrets(self) -> dict[str, bytes]:
-        """Everything that nobody may see, by what it is; the spectators' password is public."""
+        """Return every secret by its name; the spectators' password is public and left out."""
         found: dict[str, bytes] = {}
         for who, access in self.people.items():
             if access.token and access.credentials is not None:
@@ -96,7 +96,7 @@ def keyed(tmp_path: Path) -> Iterator[KeyedVenue]:
 
 
 def titles(where: Path) -> bytes:
-    """Return the process titles in a folder, which everybody on this machine can read."""
+    """Return the command lines of the processes that run in a folder; every user can read them."""
     found = b""
     for process in Path("/proc").glob("[0-9]*"):
         try:
@@ -108,7 +108,7 @@ def titles(where: Path) -> bytes:
 
 
 def in_record(path: Path) -> bytes:
-    """Everything that stands in a record, unpacked."""
+    """Return all messages of a record, unpacked."""
     with path.open("rb") as file:
         return b"".join(message.data for _, _, message in make_reader(file).iter_messages())
 
@@ -116,10 +116,10 @@ def in_record(path: Path) -> bytes:
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="reads /proc")
 def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
-    """A short match by bot, page and referee, with a wrong token tried at each door.
+    """No secret shows in a short match of a bot, a page and a referee, with wrong tokens tried.
 
-    Searched are all that the court publishes, all that pages get, what every process says, logs and
-    titles, and the record.
+    The test searches all that the court publishes, all that pages receive, the output, logs and
+    command lines of all processes, and the record.
     """
     court, web = keyed.court(), keyed.web()
     watching = keyed.session("spectators")
@@ -144,7 +144,7 @@ def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
     contestant.wait_own(lambda own: own.applied_seq)
 
     own = Controller(keyed.session("right"), "main", "right", TOKENS["right"], "Right")
-    own.join()  # takes the seat from the page: so a session's secret is known here
+    own.join()  # takes the seat from the page, so that this test knows a session's secret
     assert own._joined is not None
     secrets = keyed.secrets() | {"a session's secret": own._joined.secret}
     watch = keyed.start("watch", "--json", "--hz=5", keyed.invitation("spectators"))
@@ -175,4 +175,4 @@ def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
     leaks = [(w, s) for w, what in seen.items() for s, word in secrets.items() if word in what]
     assert leaks == []
     control = keyed.contest.read_bytes() + (keyed.folder / "keys/ca.key").read_bytes()
-    assert sum(word in control for word in secrets.values()) == 4  # the search does find them
+    assert sum(word in control for word in secrets.values()) == 4  # the search finds secrets

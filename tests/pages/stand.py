@@ -1,4 +1,4 @@
-"""The scene's stand, built and served, with matches to show."""
+"""Serves and reads the stand, a test page with nothing but the scene of a match."""
 
 import base64
 import functools
@@ -33,7 +33,7 @@ class _Quiet(SimpleHTTPRequestHandler):
 
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
-    """Serve a folder on a free port of loopback; gives the address."""
+    """Serve a folder on a free port of this machine, and give its address."""
     server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
@@ -46,7 +46,7 @@ def served(folder: Path) -> Iterator[str]:
 
 
 class Stand:
-    """A page with nothing but the scene.
+    """The stand, open in a page of the browser.
 
     Args:
         page: an open page.
@@ -58,7 +58,7 @@ class Stand:
         self._address = address
 
     def open(self, match: str, frames: int = 3, **options: object) -> None:
-        """Show a match; wait until a number of pictures were drawn."""
+        """Show a match, and wait until a number of pictures have been drawn."""
         words = "&".join(f"{name}={value}" for name, value in options.items())
         self.page.goto(f"{self._address}/index.html?match={match}&{words}")
         self.page.wait_for_selector("body[data-ready]")
@@ -66,32 +66,32 @@ class Stand:
             self.page.wait_for_function(f"window.__lacoc?.view?.drawnFrames > {frames}")
 
     def view(self, what: str) -> Any:
-        """A value of the view's hook: `view("marker(3)")`."""
+        """Return a value of the scene's test hook, such as `view("marker(3)")`."""
         return self.page.evaluate(f"window.__lacoc.view.{what}")
 
     def seek(self, beat: float) -> None:
-        """Stand still at a beat."""
+        """Show one beat and stop there; wait until it is drawn."""
         self.page.evaluate("(beat) => stand.seek(beat)", beat)
         self.page.wait_for_function("(beat) => __lacoc.view.drawnBeat === beat", arg=beat)
 
     def next_frames(self, count: int = 2) -> None:
-        """Wait until a number of further pictures were drawn."""
+        """Wait until more than `count` further pictures have been drawn."""
         now = self.view("drawnFrames")
         self.page.wait_for_function(f"__lacoc.view.drawnFrames > {now + count}")
 
     def pixels(self) -> npt.NDArray[np.uint8]:
-        """The page as it looks: (height, width, 3)."""
+        """Return the page's picture: red, green and blue of each pixel, (height, width, 3)."""
         return pixels_of(self.page, self.page)
 
     def pixel(self, x_m: float, y_m: float, z_m: float = 0.003) -> npt.NDArray[np.uint8]:
-        """The colour at a point of the world."""
+        """Return the colour of the picture at a point of the world."""
         left, top = self.view(f"screen({x_m}, {y_m}, {z_m})")
         picture = self.pixels()[round(top) - 1 : round(top) + 2, round(left) - 1 : round(left) + 2]
         return np.median(picture.reshape(-1, 3), axis=0).astype(np.uint8)
 
 
 def pixels_of(page: Page, reader: Page) -> npt.NDArray[np.uint8]:
-    """A page as it looks: (height, width, 3); `reader` is a page that may fetch data."""
+    """Return a page's picture (height, width, 3); `reader` is a page that may fetch data."""
     png = base64.b64encode(page.screenshot()).decode()
     width, height, text = reader.evaluate(_PIXELS, png)
     flat = np.frombuffer(base64.b64decode(text), np.uint8)
@@ -99,7 +99,7 @@ def pixels_of(page: Page, reader: Page) -> npt.NDArray[np.uint8]:
 
 
 def share_of(picture: npt.NDArray[np.uint8], colour: str, near: int = 60) -> float:
-    """How much of a picture has a colour "#rrggbb", about."""
+    """Return the share of a picture's pixels that are near a colour "#rrggbb"."""
     wanted = np.array([int(colour[at : at + 2], 16) for at in (1, 3, 5)])
     far = np.abs(picture.astype(int) - wanted).max(axis=-1)
     return float((far < near).mean())

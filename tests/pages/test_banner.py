@@ -1,4 +1,4 @@
-"""While a page waits, its banner shows the gateway's reason."""
+"""Tests of the banner that shows why a page waits."""
 
 import re
 import time
@@ -39,7 +39,7 @@ def opened(open_page: OpenPage, venue: Venue, path: str, **options: Any) -> Show
     ],
 )
 def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: str) -> None:
-    """No such court, and a court that is not there: the gateway's sentence, in both languages."""
+    """Every page shows the gateway's reason for an unknown court and for one that does not run."""
     venue.web()
     show = opened(open_page, venue, f"{path}?court=centre")
     show.sees(WAITS[path], 'There is no court "centre" here. There is main.')
@@ -62,7 +62,7 @@ def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: s
 def test_a_full_hall_is_said_and_not_stormed(
     venue: Venue, open_page: OpenPage, console: Any, locale: str, full: str
 ) -> None:
-    """A page that is sent away says so, comes back after 10 to 20 s, and gets in by itself."""
+    """A page that a full gateway sends away says so, and tries again by itself after 10 to 20 s."""
     console.expect("WebSocket")
     venue.web("--viewers", "1")
     first = venue.page()
@@ -81,7 +81,7 @@ def test_a_full_hall_is_said_and_not_stormed(
 
 
 def test_a_court_of_another_version_is_said(venue: Venue, open_page: OpenPage) -> None:
-    """Data of another version is not shown; it is logged once, and the page recovers."""
+    """Frames of a court of another version are not sent on; the banner and the log say why."""
     with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
         web = venue.web()
         page = venue.page()

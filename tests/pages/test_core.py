@@ -1,4 +1,4 @@
-"""The pages' source without a browser: its pure parts in Node, and its layers."""
+"""Tests of the pages' source without a browser: its pure parts in Node, and its layers."""
 
 import re
 import shutil
@@ -12,12 +12,12 @@ from chromium import WEB, npm
 pytestmark = pytest.mark.slow
 
 NODE = Path(sys.executable).with_name("node")
-"""The one of the environment: an older one on the path does not read TypeScript."""
+"""Node of this Python environment: an older Node on the path does not read TypeScript."""
 CASES = sorted(Path(__file__).with_name("core").glob("*.test.mjs"))
 
 
 def test_the_pure_parts_of_the_pages() -> None:
-    """Each case is in tests/pages/core; the output names those that fail."""
+    """All cases in tests/pages/core pass in Node; the output names those that fail."""
     assert CASES
     done = subprocess.run(
         [NODE, "--test", *CASES], capture_output=True, text=True, encoding="utf-8", check=False
@@ -26,7 +26,7 @@ def test_the_pure_parts_of_the_pages() -> None:
 
 
 def test_a_broken_layer_and_a_circle_are_found(tmp_path: Path) -> None:
-    """The linter refuses imports from a higher layer, and circles, of types too."""
+    """The linter refuses imports from a higher layer and circles of imports, also of types."""
     shutil.copytree(WEB / "src", tmp_path / "src")
     shutil.copy(WEB / "biome.json", tmp_path)
     wrong = {

@@ -19,7 +19,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.long]
 
 @pytest.fixture
 def demo(tmp_path: Path, built_pages: Path) -> Iterator[str]:
-    """Where its pages are; Ctrl-C ends it."""
+    """Give the address of the pages of a `lacoc demo`, which Ctrl-C ends after the test."""
     browser = tmp_path / "browser"
     browser.write_text("#!/bin/sh\n")
     browser.chmod(0o755)
@@ -41,7 +41,7 @@ def demo(tmp_path: Path, built_pages: Path) -> Iterator[str]:
 
 
 def test_it_ends_on_the_result_with_the_replay(demo: str, open_page: OpenPage) -> None:
-    """After the court has ended the page shows no alarm, and the replay is one click away."""
+    """After the demo the page shows the result without an alarm, and a link to the replay."""
     show = Show(open_page(), demo, "/watch?q=low")
     show.sees(".result h1")
     show.sees(".banner.calm", "The match is over, and its court has closed.")

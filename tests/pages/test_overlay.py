@@ -1,4 +1,4 @@
-"""/overlay: the browser source of a broadcast, at a real court through the real gateway."""
+"""Tests of /overlay, the page for broadcasts, at a real court through a real gateway."""
 
 import base64
 import re
@@ -35,14 +35,14 @@ PIXELS = """async (png) => {
 
 
 def alphas(page: Page, blank: Page) -> dict[str, float]:
-    """Return how opaque the page is: at its edge, in its middle, and over its area."""
+    """Return the page's alpha at its edge and in its middle (0 to 255), and its opaque share."""
     png = base64.b64encode(page.screenshot(omit_background=True)).decode()
     found: dict[str, float] = blank.evaluate(PIXELS, png)
     return found
 
 
 def test_flags_of_the_address(venue: Venue, open_page: OpenPage) -> None:
-    """`cam`, `hud`, `q`, `transparent`, `lang`, `colours`; no scroll bars, no pointer."""
+    """The overlay follows the flags of its address, and shows no scroll bars and no pointer."""
     venue.court()
     venue.web()
     playing(venue)
@@ -77,7 +77,7 @@ def test_flags_of_the_address(venue: Venue, open_page: OpenPage) -> None:
 
 
 def test_the_workshops_two_windows(venue: Venue, open_page: OpenPage) -> None:
-    """Workshop 5-4, Fig. 5-11: each contestant's window, one score bug for both."""
+    """With split=1 each robot has a window, and both share one score (workshop 5-4, Fig. 5-11)."""
     venue.court()
     venue.web()
     playing(venue)
@@ -99,7 +99,7 @@ def test_the_workshops_two_windows(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
-    """Score, events and picture come `delay` seconds later, and together."""
+    """With `delay`, score, events and picture come that many seconds later, and together."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -122,8 +122,8 @@ def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
         return bool(now["score"] == "23" and now["third"] == "+5")
 
     late.until(came, "the score never came")
-    # Nothing told of it while the picture was before it.
-    # The picture itself may lag by a slow machine's frame: one second is room for that.
+    # Score and event did not show the decision while the picture was still before its beat.
+    # On a slow machine the picture may be late itself: 50 beats (one second) are allowed for that.
     before = [now for now in seen if now["beat"] < beat - 50]
     assert all((now["score"], now["third"]) == ("18", "") for now in before)
     assert any(now["beat"] < beat - 100 for now in before)
@@ -134,7 +134,7 @@ def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_it_heals_for_ever(venue: Venue, open_page: OpenPage, console: Any) -> None:
-    """No court, no gateway: it says so in a corner, never an error page, and comes back."""
+    """Without court or gateway the overlay says so at its lower edge, and recovers by itself."""
     console.expect("WebSocket|ERR_CONNECTION")
     web = venue.web()
     show = Show(open_page(viewport=SOURCE), venue.url, LOW, drawn=False)
@@ -162,7 +162,7 @@ def test_it_heals_for_ever(venue: Venue, open_page: OpenPage, console: Any) -> N
 
 
 def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
-    """Opening, countdown, result, official: all by itself, in the size of the source."""
+    """The overlay shows a whole match by itself, from the opening to the next match's opening."""
     venue.court("--seconds", "1")
     venue.web()
     show = Show(open_page(viewport=SOURCE), venue.url, LOW)
@@ -184,7 +184,7 @@ def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:
-    """Axe-core finds no serious violation, with one picture and with two."""
+    """Axe-core finds no serious mistake in accessibility, with one picture and with two."""
     pytest.importorskip("axe_core_python")
     venue.court()
     venue.web()
@@ -200,7 +200,7 @@ def test_accessible(venue: Venue, open_page: OpenPage) -> None:
 
 
 def test_a_part_that_cannot_be_loaded(venue: Venue, open_page: OpenPage, console: Any) -> None:
-    """As after an update of the server: the page takes the new one when there is one."""
+    """A page whose script can't be loaded once, as after an update of the server, recovers."""
     console.expect("ERR_FAILED|Failed to fetch dynamically imported module|Unable to preload")
     venue.court()
     venue.web()
@@ -213,7 +213,7 @@ def test_a_part_that_cannot_be_loaded(venue: Venue, open_page: OpenPage, console
 
 
 def test_the_document_has_every_flag() -> None:
-    """docs/overlay.md and the page name the same flags."""
+    """docs/overlay.md names exactly the flags that the page reads."""
     web = Path(__file__).parents[2] / "client" / "web" / "src"
     sources = "".join(
         (web / name).read_text("utf-8")

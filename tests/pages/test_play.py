@@ -1,4 +1,4 @@
-"""/play: a contestant's page at a real court, through the real gateway (workshop 5-4)."""
+"""Tests of /play, a contestant's page, at a real court through a real gateway (workshop 5-4)."""
 
 import base64
 import json
@@ -29,7 +29,7 @@ pytestmark = pytest.mark.slow
 
 
 def opened(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
-    """A court, its gateway, and a page with the key."""
+    """Start a court and its gateway, and open a contestant's page with the key."""
     venue.court(*words)
     venue.web()
     page = sit(venue.url, **options)
@@ -38,7 +38,7 @@ def opened(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
 
 
 def seated(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
-    """The same, and the page holds the left seat."""
+    """Start a court and its gateway, and open a page that takes the left seat."""
     page = opened(venue, sit, *words, **options)
     page.join(TOKENS["left"])
     page.stands("seated")
@@ -46,7 +46,7 @@ def seated(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
 
 
 def playing(venue: Venue, page: Contestant) -> PageClient:
-    """Bring a match on against a page without a browser."""
+    """Bring a match into play; return the opponent, a page without a browser."""
     page.page.click("button.ready")
     other = venue.contestant("right", "Bees")
     referee = venue.referee()
@@ -58,7 +58,7 @@ def playing(venue: Venue, page: Contestant) -> PageClient:
 
 
 def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """The card shows every mistake of a file, the token only for this tab."""
+    """The card shows every mistake; the browser keeps the team's name but not the token."""
     page = opened(venue, sit)
     page.sees(".safety", "'lacoc play' on your own computer is safer")
     page.page.click("button[type=submit]")
@@ -100,7 +100,7 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
 
 
 def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """Rules 2: whatever the files are called, in whatever text they were saved."""
+    """A file's content decides where it belongs, and its name and encoding do not (rules 2)."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     sample = sample_gait_files("hexapod")
@@ -123,7 +123,7 @@ def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: P
 
 
 def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
-    """A file dropped beside the file area does not make the browser leave the page."""
+    """Files may be dropped anywhere on the page, and the browser does not leave the page."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     sample = sample_gait_files("hexapod")
@@ -148,7 +148,7 @@ def test_files_are_dropped_anywhere(venue: Venue, sit: Sit) -> None:
 
 
 def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """The page says that a folder can't be read, and takes the files dropped with it."""
+    """The page says that a dropped folder can't be read, and takes the file dropped with it."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     folder = tmp_path / "gaits"
@@ -162,7 +162,7 @@ def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path
 
 @pytest.mark.long
 def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """It never makes the browser leave the match; before one it is offered, in one it is not."""
+    """A file dropped on the page can be used before a match, but not during the match."""
     page = seated(venue, sit, "--seconds", "120")
     mine = tmp_path / "mine.toml"
     mine.write_text("name = 'My robot'")
@@ -186,7 +186,7 @@ def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path)
 def test_tabs_of_one_browser_have_their_own_files(
     venue: Venue, sit: Sit, tmp_path: Path, console: Any
 ) -> None:
-    """Both teams may sit at one computer: a reload must not bring the other's gait."""
+    """Two tabs of one browser have their own files, also after a reload."""
     sample = sample_gait_files("hexapod").locomotion
     assert sample is not None
     left = opened(venue, sit)
@@ -208,7 +208,7 @@ def test_tabs_of_one_browser_have_their_own_files(
     left.page.click("text=Change files")
     left.sees("dialog .files li:nth-child(2)", "left.txt")
 
-    left.page = left.page.context.new_page()  # the next team's
+    left.page = left.page.context.new_page()  # a new tab, for the next team
     console.watch(left.page)
     left.open(key=venue.key)
     left.sees(".entrance .seat")
@@ -217,7 +217,7 @@ def test_tabs_of_one_browser_have_their_own_files(
 
 @pytest.mark.long
 def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
-    """If the tab's address later leads to another court, the page joins there again."""
+    """A page that finds another court at its address forgets the seat that it kept."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     wish = {"court": "side", "seat": "left", "token": "x", "name": "Ants"}
@@ -230,7 +230,7 @@ def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
 
 @pytest.mark.long
 def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """A court is chosen by the address, and from a list where there are several."""
+    """If there are several courts, the address or a list on the page chooses one."""
     port = free_port()
     contest = venue.contest.read_text()
     side = contest.replace("court.main", "court.side").replace(str(venue.court_port), str(port))
@@ -250,7 +250,7 @@ def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
     other = sit(venue.url)
     other.open(key=venue.key)
-    other.sees(".seats legend", "Robot-Othello")  # the first one
+    other.sees(".seats legend", "Robot-Othello")  # the contest's first court
     other.sees(".seats [data-seat='0']", "free")
     other.page.get_by_label("Court").select_option("side")
     other.sees(".seats [data-seat='0']", "Ants sits here")
@@ -264,7 +264,7 @@ def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
 @pytest.fixture
 def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
-    """Return the address of a `lacoc play` that got all options."""
+    """Give the address and key of a `lacoc play` that got seat, name, token and gait."""
     court = venue.court()
     sample = sample_gait_files("hexapod").locomotion
     assert sample is not None
@@ -276,7 +276,7 @@ def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
 
 @pytest.mark.long
 def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
-    """The own link as the court measures it, and the delay that both have."""
+    """With equal links the page shows its own round trip and the delay of both seats."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     page = seated(venue, sit)
@@ -285,7 +285,7 @@ def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
 
 
 def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: Sit) -> None:
-    """`lacoc play` fills the card in, and the page never learns the token."""
+    """`lacoc play` fills in the card of its page, so that one click joins the match."""
     url, key = own
     page = sit(url)
     page.open(key=key)
@@ -301,7 +301,7 @@ def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: S
 
 
 def test_a_link_without_the_key_only_watches(venue: Venue, sit: Sit) -> None:
-    """It says where a link comes from that may act."""
+    """Without the key the page only watches, and says how to get a link with the key."""
     venue.court()
     venue.web()
     page = sit(venue.url)
@@ -312,7 +312,7 @@ def test_a_link_without_the_key_only_watches(venue: Venue, sit: Sit) -> None:
 
 
 def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """Workshop 5-4: from the lobby to Pos-data.txt, with every key."""
+    """A contestant uses every key of the page, from the lobby to Pos-data.txt (workshop 5-4)."""
     page = seated(venue, sit, "--seconds", "120")
     page.press("2")
     page.is_toasted("[2] Keys work only while the match is being played")
@@ -331,7 +331,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     before = other.frame
     assert before is not None
     other.wait(lambda: other.frame and other.frame.beat > before.beat + 100)
-    assert moved_m(before, other.frame, seat=0) > 0.05  # 90 mm/s, once it has begun
+    assert moved_m(before, other.frame, seat=0) > 0.05  # it walks 90 mm/s after a slow start
 
     page.press("7")
     page.is_toasted("[7] Your gait file has no such key")
@@ -343,7 +343,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.key_stands(3)
     seq = other.own().applied_seq, other.frame.seats[0].applied_seq  # type: ignore[union-attr]
     page.page.keyboard.down("2")
-    page.page.keyboard.down("2")  # as a key that is held repeats
+    page.page.keyboard.down("2")  # the repeat of a held key
     page.page.keyboard.up("2")
     page.key_stands(2)
     assert other.frame is not None
@@ -360,7 +360,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page.press("2")
     page.is_toasted("[2] Your robot was restarted a moment ago")
 
-    page.press("z")  # it lies beside x: the match goes on, with all keys
+    page.press("z")  # pressed by mistake for [x]: the page does not leave, and keys work
     page.sees(".leaving", "Hold z to leave the match")
     page.misses("dialog")
     page.until("!document.querySelector('.restart').textContent.includes('in ')")
@@ -369,9 +369,9 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     badge = page.find(".badge").inner_text()
     page.press("Space")
     page.until(f"document.querySelector('.badge').innerText !== {json.dumps(badge)}")
-    page.misses(".leaving")  # it goes by itself
+    page.misses(".leaving")  # the hint disappears by itself
     page.find("button.leave").click()
-    page.press("2")  # nor does a pointer take them
+    page.press("2")  # after the click keys still work
     page.key_stands(2)
     page.sees(".leaving")
     name, text = page.download(lambda: page.page.keyboard.down("z"), tmp_path)
@@ -393,7 +393,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
 
 def moved_m(before: Frame, after: Frame | None, seat: int) -> float:
-    """How far a robot's body went between two frames."""
+    """Return the distance between a robot's places in two frames [m]."""
     assert after is not None
     size = 4 * (7 + 18)
     places = [np.frombuffer(f.poses[seat * size :][:8], "<f4") for f in (before, after)]
@@ -401,7 +401,7 @@ def moved_m(before: Frame, after: Frame | None, seat: int) -> float:
 
 
 def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
-    """Three views, "click here to steer", keys by their place, a way out for Tab."""
+    """Space changes the view, a lost focus is shown, and keys work with a Japanese input method."""
     page = seated(venue, sit)
     page.sees(".badge", "View 1/3")
     for number, camera in ((2, "top"), (3, "chase"), (1, "arena")):
@@ -431,7 +431,7 @@ def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
     page.until("document.activeElement.closest('.rail, .foot') !== null")
     page.press("Tab")
     page.until("document.activeElement.closest('.rail, .foot') !== null")
-    assert page.find(".toast").count() == 0  # it went on, and changed no level
+    assert page.find(".toast").count() == 0  # Tab moved the focus and did not change the level
     page.press("2")
     page.key_stands(2)
     page.page.focus(".key[data-key='3']")
@@ -441,7 +441,7 @@ def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
 
 
 def test_the_key_test_and_the_language(venue: Venue, sit: Sit) -> None:
-    """Settings: the language changes at once, and nothing stays in the other one."""
+    """The settings show what each key does, and change the language at once."""
     page = seated(venue, sit)
     page.page.click("text=Settings")
     page.page.click(".keytest")
@@ -458,7 +458,7 @@ def test_the_key_test_and_the_language(venue: Venue, sit: Sit) -> None:
 
 @pytest.mark.long
 def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None:
-    """The page follows the browser; what the court says is translated, too."""
+    """In a Japanese browser the page and the court's messages are in Japanese."""
     page = opened(venue, sit, locale="ja-JP")
     page.sees(".entrance h1", "試合に参加")
     page.join("not-the-token")
@@ -474,7 +474,7 @@ def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None
 
 
 def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> None:
-    """The loss is a clear card, and nothing fights for the seat by itself."""
+    """A page that lost its seat says so, and takes the seat back only after a click."""
     page = seated(venue, sit)
     elsewhere = venue.contestant("left", "Ants")
     page.stands("lost")
@@ -487,7 +487,7 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
 
 @pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None:
-    """While the link is lost, a banner shows and keys are grey; then the page goes on."""
+    """While court or gateway is lost, a banner shows and keys are grey; then the page goes on."""
     court = venue.court("--seconds", "120")
     web = venue.web()
     page = sit(venue.url)
@@ -501,7 +501,7 @@ def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None
     court.kill()
     page.sees(".banner", "Waiting for court main")
     page.sees(".pad.off")
-    page.press("3")  # goes nowhere, and does no harm
+    page.press("3")  # has no effect
     venue.court("--seconds", "120")
     page.misses(".banner")
     page.misses(".pad.off")
@@ -528,7 +528,7 @@ def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None
 
 @pytest.mark.long
 def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
-    """Never a stale picture as live."""
+    """While its court sends nothing, the page shows a banner and a bad link."""
     court = venue.court()
     venue.web()
     page = sit(venue.url)
@@ -543,7 +543,7 @@ def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
 
 
 def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: Sit) -> None:
-    """The page shows who won and what comes next; the seat stays."""
+    """The page shows who won and why, and keeps its seat for the next match."""
     page = seated(venue, sit, "--seconds", "1")
     other = playing(venue, page)
     page.sees(".result h1", "A draw")
@@ -566,7 +566,7 @@ def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: S
     page.sees(".result", "time is up · 0:01 played")
     referee.ask("decide", decision={"type": "official"}, reason="")
     page.sees(".result", "Wait here: you play in the next match too")
-    # It is there before the referee opens the next match, with who played and how it ended.
+    # The replay is listed before the next match opens, with the teams and the result.
     page.sees(".result a", "Watch the replay")
     replay = sit(venue.url)
     replay.open("/replay")
@@ -584,7 +584,7 @@ def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: S
 
 @pytest.mark.long
 def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
-    """Touch steers, and all that is needed fits a phone."""
+    """On a phone touch steers the robot, and all keys fit on the screen."""
     phone = {"width": 390, "height": 844}
     page = seated(venue, sit, viewport=phone, has_touch=True, is_mobile=True)
     page.find("button.ready").tap()
@@ -608,7 +608,7 @@ def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
 
 
 def test_accessible(venue: Venue, sit: Sit) -> None:
-    """Axe-core finds no serious violation in the card, the cockpit, the dialogs."""
+    """Axe-core finds no serious mistake in the card, in the match and in the dialogs."""
     pytest.importorskip("axe_core_python")
     page = opened(venue, sit)
     page.sees(".entrance .seat")
@@ -634,7 +634,7 @@ def test_accessible(venue: Venue, sit: Sit) -> None:
 
 @pytest.mark.long
 def test_pos_data_is_of_the_seat_that_is_held(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """Who changes seats before a match does not take the other robot's way along."""
+    """After a change of seats, Pos-data.txt has only the path of the new seat's robot."""
     page = seated(venue, sit)
     for seat, other in (("left", "right"), ("right", "left")):
         if seat == "right":
@@ -658,7 +658,7 @@ def test_pos_data_is_of_the_seat_that_is_held(venue: Venue, sit: Sit, tmp_path: 
 
 
 def stood_on(page: PageClient, beats: int) -> None:
-    """Wait until the court has gone on for a time."""
+    """Wait until the court has played this many further beats."""
     page.wait(lambda: page.frame)
     assert page.frame is not None
     until = page.frame.beat + beats
@@ -666,7 +666,7 @@ def stood_on(page: PageClient, beats: int) -> None:
 
 
 def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
-    """Rules 2: byte for byte the file that `lacoc replay export` makes of the same frames."""
+    """The page writes Pos-data.txt byte for byte as Python does from the same frames (rules 2)."""
     page = opened(venue, sit)
     page.until("Boolean(window.__lacoc?.posData)")
     joints = (12, 18)
@@ -682,7 +682,7 @@ def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
 
 @pytest.mark.long
 def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
-    """In a long practice the page keeps a limited number of rows, and says where they begin."""
+    """Of a long practice the page keeps only the newest rows, and says when they begin."""
     frames = list(walk(random.Random(0), (12, 18)))
     whole = PosData(1, (12, 18))
     for frame in frames:
@@ -700,7 +700,7 @@ def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
 
 
 def pos_data(page: Contestant, *args: Any) -> dict[str, str]:
-    """Pos-data.txt as the page writes it, and what it says of it."""
+    """Return Pos-data.txt as the page writes it, and the page's note about the file."""
     seat, joints, frames, *most = args
     sent = [base64.b64encode(encode(frame)).decode() for frame in frames]
     shown: dict[str, str] = page.page.evaluate(
@@ -712,10 +712,10 @@ def pos_data(page: Contestant, *args: Any) -> dict[str, str]:
 
 
 def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
-    """Frames with gaps, phases, late ones, and numbers that are hard to round."""
+    """Make frames with gaps, several phases, a late frame, and numbers that are hard to round."""
     phases = [Phase.LOBBY, Phase.READY, Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED]
     beats = sorted(chance.sample(range(4000), 600))
-    beats[10:12] = beats[11:9:-1]  # one comes late
+    beats[10:12] = beats[11:9:-1]  # one frame comes late
     frames = []
     for index, beat in enumerate(beats):
         phase = phases[min(index // 100, 4)] if index < 560 else Phase.PLAYING
@@ -730,7 +730,7 @@ def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
             numbers += [*place, *(part / length for part in quat), *angles]
         poses = b"" if phase == Phase.LOBBY else np.array(numbers, "<f4").tobytes()
         seat = SeatFrame(3, 0, 0, 0, 0, 0, 0, 0, 0, 0)
-        clock = min(index, len(beats) - 2)  # the last one is a decision: nothing moved
+        clock = min(index, len(beats) - 2)  # nothing moves in the last frame, a decision's
         frames.append(
             Frame(1, beat, int(phase), 0, clock, (seat, seat), b"", poses, bytes(8), bytes(8))
         )
@@ -738,7 +738,7 @@ def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
 
 
 def test_no_message_stands_in_two_catalogues() -> None:
-    """Pages share one catalogue: a name that two parts use would silently be the later one's."""
+    """Each message name is in one part of the catalogue only: of two, the later one would win."""
     folder = Path(__file__).parents[2] / "client" / "web" / "src" / "i18n"
     names = [
         name

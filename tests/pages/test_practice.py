@@ -1,4 +1,4 @@
-"""/practice: what `lacoc practice` opens (workshop 4-4, Fig. 4-3)."""
+"""Tests of /practice, the page that `lacoc practice` opens (workshop 4-4, Fig. 4-3)."""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -22,14 +22,14 @@ Practise = Callable[..., Contestant]
 
 @pytest.fixture
 def address(tmp_path: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
-    """Where the page of a `lacoc practice` is; it ends after the browser's page."""
+    """Give the address and key of a `lacoc practice`, which ends after the browser's page."""
     with own_page(tmp_path, "practice") as address:
         yield address
 
 
 @pytest.fixture
 def practise(address: tuple[str, str], sit: Sit) -> Practise:
-    """Opens the page in a browser of the tests."""
+    """Give a function that opens the page of practice in the tests' browser."""
 
     def begin(**options: object) -> Contestant:
         url, key = address
@@ -42,7 +42,7 @@ def practise(address: tuple[str, str], sit: Sit) -> Practise:
 
 @pytest.fixture
 def practise_in(tmp_path: Path, built_pages: Path, sit: Sit) -> Iterator[Practise]:
-    """The same, with the files that the test put into the folder before."""
+    """Give a function that starts practice in a folder of the test's files and opens its page."""
     with ExitStack() as stack:
 
         def begin(**options: object) -> Contestant:
@@ -65,7 +65,7 @@ def lessons(page: Contestant, *keys: int) -> None:
 
 
 def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> None:
-    """Open, press 1-2-3-4, see it walk; both levels, x, z and Pos-data.txt."""
+    """A student walks by keys 1 to 4, uses level B, [x] and [z], and gets Pos-data.txt."""
     page = practise()
     page.stands("seated")
     page.phase(Phase.PLAYING)  # nobody had to say ready
@@ -89,10 +89,10 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     page.press("x")
     page.key_stands(0)
     page.until("Number(document.querySelectorAll('.figures dd')[1].firstChild.data) < 0.04")
-    page.press("2")  # at once: practice has no pause
+    page.press("2")  # at once: in practice [x] does not block the keys
     page.key_stands(2)
     page.until("Number(document.querySelectorAll('.figures dd')[1].firstChild.data) > 0.01")
-    page.press("x")  # also a step from the start it is a new walk
+    page.press("x")  # [x] begins a new walk, also near the start
     page.until("Number(document.querySelectorAll('.figures dd')[1].firstChild.data) === 0")
     page.press("3")
     page.key_stands(3)
@@ -104,7 +104,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     assert name == "Pos-data.txt"
     rows = [line.split("\t") for line in text.splitlines()[1:]]
     assert max(float(row[2]) for row in rows) > 0.04
-    yaws_deg = [float(row[6]) for row in rows]  # docs/rules.md 2: the page and the file agree
+    yaws_deg = [float(row[6]) for row in rows]  # rules 2: page and file use one zero
     assert min(abs((yaw_deg - heading_deg + 180) % 360 - 180) for yaw_deg in yaws_deg[-100:]) < 1
     times_s = [float(row[0]) for row in rows]
     assert times_s[0] == 0
@@ -117,7 +117,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
 
 @pytest.mark.long
 def test_a_reload_goes_on(practise: Practise) -> None:
-    """The tab keeps its seat and its level; the robot stands until the next key."""
+    """After a reload the tab has the same seat and level, and its keys work."""
     page = practise()
     page.phase(Phase.PLAYING)
     page.press("Tab", "1")
@@ -131,7 +131,7 @@ def test_a_reload_goes_on(practise: Practise) -> None:
 
 
 def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> None:
-    """Rules 2: a workbook as it is; its keys are the pad's, and nothing else does anything."""
+    """A workbook can be loaded during practice, and the pad then shows its keys (rules 2)."""
     sample = sample_gait_files("hexapod")
     assert sample.postures is not None
     table = read_gait(sample.postures.data, "Loco-data.txt")
@@ -153,7 +153,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
     page.press("4")
     page.key_stands(4)
 
-    # Two postures are too few for the sample's keys: one's own are typed on the page.
+    # Two postures are too few for the sample's sequences, so the test types its own on the page.
     page.page.click("text=Change files")
     page.sees("dialog .files li:has-text('Level B')", "made from Loco-data.xlsx")
     for key, postures in enumerate(("4", "4 5", "", "")):
@@ -162,7 +162,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
     page.page.click("text=Use these files")
     page.press("Tab")
     page.sees(".key[data-key='1'] small", "2 postures")
-    page.sees(".stands", "No key yet")  # of the match that begins now
+    page.sees(".stands", "No key yet")  # in the match that begins now
     page.phase(Phase.PLAYING)
     page.press("1")
     page.key_stands(1)
@@ -170,7 +170,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
 
 
 def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_path: Path) -> None:
-    """Workshop 4-1, 4-2: the form shows what is loaded, and what is saved again is offered."""
+    """The form shows the folder's files and offers those that are saved again (workshop 4-1)."""
     book = tmp_path / "Loco-data.xlsx"
     sample = sample_gait_files("hexapod")
     assert sample.postures is not None
@@ -193,7 +193,7 @@ def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_pat
         write_gait(to_locomotion(table, ((0,), (1, 2), (3, 4), (5,), (6, 7))), leg_labels(6))
     )
     page.sees(".changed", "LocoTra-data.txt has changed.")
-    page.press("Tab", "3")  # nothing is taken away from who is walking
+    page.press("Tab", "3")  # the robot still walks with the old gait
     page.key_stands(3)
     page.page.click("text=Use it now")
     page.misses(".changed")
@@ -209,7 +209,7 @@ def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_pat
 
 @pytest.mark.long
 def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
-    """The pad is there without scrolling, in the browser's language."""
+    """On a phone the whole pad is visible without scrolling, in the browser's language."""
     phone = {"width": 390, "height": 844}
     page = practise(viewport=phone, has_touch=True, is_mobile=True, locale="ja-JP")
     page.phase(Phase.PLAYING)
@@ -225,7 +225,7 @@ def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
 
 @pytest.mark.long
 def test_accessible(practise: Practise) -> None:
-    """Axe-core finds no serious violation."""
+    """Axe-core finds no serious mistake in accessibility."""
     pytest.importorskip("axe_core_python")
     page = practise()
     page.phase(Phase.PLAYING)

@@ -1,4 +1,4 @@
-"""The referee's page against a real court and gateway: actions and messages."""
+"""Tests of the referee's page at a real court and gateway."""
 
 import re
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from lacoc_server.keys.make import make_keys
 pytestmark = pytest.mark.slow
 
 WAIT_MS = 45_000
-"""A machine with two busy cores needs long, and no test waits where it need not."""
+"""The longest wait, for a machine with two busy cores; a test goes on as soon as it can."""
 JAPANESE_NAMES = re.compile(
     r"Kim|Ants|Bees|Left|Right|Hexapod|LACOC|Robot-Othello|Ctrl|Enter|main|MuJoCo|lacoc web"
 )
@@ -31,7 +31,7 @@ IN_LOBBY = "Now the match is in the lobby"
 
 @pytest.fixture
 def court(venue: Venue) -> Venue:
-    """A contest with its court in the lobby, and its gateway."""
+    """Give a contest with its court in the lobby, and its gateway."""
     venue.court()
     venue.web()
     return venue
@@ -39,7 +39,7 @@ def court(venue: Venue) -> Venue:
 
 @pytest.fixture
 def referee(venue: Venue, open_page: OpenPage) -> Referee:
-    """Opens the referee's page, each time as another person."""
+    """Give a function that opens the referee's page, each time as another person."""
 
     def opened(key: bool = True, size: tuple[int, int] = (1366, 768), query: str = "") -> Page:
         page = open_page(viewport={"width": size[0], "height": size[1]})
@@ -79,17 +79,17 @@ def step(page: Page, key: str = "") -> None:
 
 
 def phase(page: Page, number: int) -> None:
-    """Wait for a phase."""
+    """Wait until the page shows this phase."""
     expect(page.locator("main.referee")).to_have_attribute("data-phase", str(number))
 
 
 def group(page: Page, name: str) -> Locator:
-    """A button of the match card."""
+    """Find a button of the match card."""
     return page.locator(".groups").get_by_role("button", name=name, exact=True)
 
 
 def seat(page: Page, index: int, name: str) -> Locator:
-    """A button of a seat's card."""
+    """Find a button of a seat's card."""
     return page.locator(f".seat[data-seat='{index}']").get_by_role("button", name=name, exact=True)
 
 
@@ -98,7 +98,7 @@ def log_has(page: Page, text: str) -> None:
 
 
 def confirm(page: Page, chip: str | None = None, words: str = "") -> None:
-    """Give the reason in the open dialog, and confirm; it closes when the court has done it."""
+    """Give the reason in the open dialog and confirm; wait until the dialog closes."""
     dialog = page.get_by_role("dialog")
     if chip:
         expect(dialog.locator("[type=submit]")).to_be_disabled()
@@ -110,7 +110,7 @@ def confirm(page: Page, chip: str | None = None, words: str = "") -> None:
 
 
 def why(button: Locator) -> str:
-    """Why a button can't be pressed, as a screen reader has it."""
+    """Return the text that tells a screen reader why a button can't be pressed."""
     expect(button).to_have_attribute("aria-disabled", "true")
     described = button.get_attribute("aria-describedby")
     return button.page.locator(f"[id='{described}']").inner_text()
@@ -138,8 +138,8 @@ def to_playing(page: Page, venue: Venue) -> None:
 
 @pytest.mark.long
 def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
-    """Beyond a limit, the reasons are beside the result and in the log, in both languages."""
-    wanted = "[health]\nreal_time_factor = 2.0\n"  # no court can
+    """If a match ran too slowly, the page advises a replay and says why, in both languages."""
+    wanted = "[health]\nreal_time_factor = 2.0\n"  # no court can be so fast
     venue.contest.write_text(wanted + venue.contest.read_text())
     venue.court("--seconds", "2")
     venue.web()
@@ -158,9 +158,9 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
 
 
 def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> None:
-    """A whole match and each decision through the page, each in the log."""
+    """The referee makes each kind of decision on the page, and the log shows each."""
     page = at_the_desk(referee())
-    # The lobby: all that is missing, and ready in the place of a contestant.
+    # In the lobby: the page lists what is missing, and the referee says ready for a contestant.
     expect(page.locator(".missing li")).to_have_text(
         ["left: nobody has joined", "right: nobody has joined"]
     )
@@ -177,7 +177,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     step(page, "Control+Enter")
     log_has(page, "Referee Kim: play begins in 3 seconds.")
     phase(page, 4)
-    # While it is played.
+    # While the match is played.
     seat(page, 0, "Restart").click()
     confirm(page, "fell over")
     log_has(page, "Referee Kim: Ants goes back to the start. Reason: fell over")
@@ -193,7 +193,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     confirm(page, "other", "a warning")
     log_has(page, "Referee Kim: -3 points for Ants. Reason: a warning")
     has_scores(page, 15, 18)
-    # Halted: the board, the clock, what was wrong is taken back.
+    # While the match is halted: set a disc, take that back, change the clock.
     group(page, "Halt").click()
     phase(page, 5)
     disc(page, "c0r0").click()
@@ -219,7 +219,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     step(page)
     log_has(page, "Referee Kim: play goes on in 3 seconds.")
     phase(page, 6)
-    # After the end.
+    # After the end of play.
     group(page, "Draw").click()
     confirm(page, "rule")
     log_has(page, "Referee Kim: the match is declared a draw. Reason: rule")
@@ -233,7 +233,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     confirm(page)
     expect(page.locator(".top h1")).to_contain_text("Match 2")
     phase(page, 1)
-    # A match that comes to nothing.
+    # A match that is declared void.
     group(page, "Declare void").click()
     confirm(page, "network")
     phase(page, 8)
@@ -245,7 +245,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
 
 @pytest.mark.long
 def test_declaring_a_winner_ends_a_halted_match(court: Venue, referee: Referee) -> None:
-    """Rules 4, `declare`: the referee's decision is shown beside the computed result."""
+    """Declaring a winner ends a halted match; the log also has the computed result (rules 4.1)."""
     page = at_the_desk(referee())
     to_playing(page, court)
     step(page, "Control+Enter")
@@ -258,7 +258,7 @@ def test_declaring_a_winner_ends_a_halted_match(court: Venue, referee: Referee) 
 
 
 def test_a_wrong_token_is_said_beside_the_field(court: Venue, referee: Referee) -> None:
-    """The court says no; the name stays, and the right token goes in."""
+    """A wrong token is refused beside its field; the name stays, and the right token works."""
     page = referee()
     enter(page, token="x" * 26)
     expect(page.locator("#token-refused")).to_have_text(
@@ -275,7 +275,7 @@ def test_a_wrong_token_is_said_beside_the_field(court: Venue, referee: Referee) 
 def test_a_token_that_was_replaced_is_not_shown_for_ever(
     venue: Venue, referee: Referee, keys: bool
 ) -> None:
-    """The tab's token is forgotten after one refusal, with the words of either kind of court."""
+    """After one refusal a tab forgets its old token, at a court with keys and at one without."""
     if keys:
         venue.contest.write_text(venue.contest.read_text().replace("tcp/", ""))
         make_keys(venue.contest, (), renew=False)
@@ -300,7 +300,7 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
 
 @pytest.mark.long
 def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
-    """A link without its key shows everything and says how to get one that may act."""
+    """Without the key the page shows everything, and says how to get a link with the key."""
     page = referee(key=False)
     expect(page.locator(".enter")).to_contain_text("#key=")
     expect(page.locator("input[name=token]")).to_have_count(0)
@@ -313,7 +313,7 @@ def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
 def test_the_file_that_a_browser_is_given_leads_to_the_page(
     court: Venue, open_page: OpenPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The key comes with it, and stands in the address no longer."""
+    """The file that a browser opens leads to the page, which takes the key out of its address."""
     monkeypatch.setenv("HOME", str(tmp_path))
     page = open_page()
     with unseen(f"{court.url}/referee#key={court.key}") as address:
@@ -325,7 +325,7 @@ def test_the_file_that_a_browser_is_given_leads_to_the_page(
 
 
 def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
-    """Only legal decisions enabled, each other one says why not, to every sense."""
+    """A decision that is not legal now can't be pressed, and its button says why."""
     page = at_the_desk(referee())
     expect(big(page)).to_have_attribute("aria-disabled", "true")
     assert why(big(page)) == (
@@ -345,7 +345,7 @@ def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
     expect(bubble).to_have_text(f"{ONLY} finished. {IN_LOBBY}")
     page.keyboard.press("Control+Enter")  # not legal: nothing happens
     expect(page.locator(".log li")).to_have_count(1)
-    # Set from the board: the popover opens, its choices say why not.
+    # A click on the board opens a popover, whose choices also say why not.
     disc(page, "c3r3").focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
@@ -374,7 +374,7 @@ def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> None:
-    """A number can be typed key by key, even if the text so far is no number or ends with 0."""
+    """A number can be typed key by key, even while the text is no number yet, such as "-"."""
     page = at_the_desk(referee())
     to_playing(page, court)
     group(page, "Halt").click()
@@ -403,7 +403,7 @@ def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> Non
 
 @pytest.mark.long
 def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> None:
-    """A missing answer is not shown as "no", and the dialog does not offer the decision again."""
+    """A lost answer is not shown as a refusal, and the page does not offer the decision again."""
     page = at_the_desk(referee())
     to_playing(page, court)
     group(page, "Halt").click()
@@ -412,7 +412,7 @@ def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> Non
     page.locator("input[name=amount]").fill("3")
     dialog = page.get_by_role("dialog")
     dialog.locator("label.chip", has_text="rule").click()
-    reply = 9  # its kind, the first byte
+    reply = 9  # the first byte of a reply, its kind
     dialog.locator("[type=submit]").evaluate(
         "(button, reply) => { const { send } = WebSocket.prototype;"
         " WebSocket.prototype.send = function (data) {"
@@ -434,7 +434,7 @@ def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> Non
 
 
 def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
-    """Its second click was not meant for what the button says by then, nor for the same again."""
+    """The second click of a double click neither repeats the decision nor makes the next one."""
     page = at_the_desk(referee())
     court.contestant("left", "Ants")
     court.contestant("right", "Bees")
@@ -443,7 +443,7 @@ def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
     big(page).evaluate("(button) => { button.click(); button.click(); }")
     expect(good).to_contain_text("Play begins")
     phase(page, 4)
-    page.evaluate(  # on a busy machine two of the driver's presses are a second apart
+    page.evaluate(  # not by the driver, whose presses may be a second apart on a busy machine
         "() => { for (const _ of [1, 2]) dispatchEvent(new KeyboardEvent("
         "'keydown', { key: 'Enter', code: 'Enter', ctrlKey: true, cancelable: true })); }"
     )
@@ -457,7 +457,7 @@ def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
     expect(good).to_contain_text("Play goes on")
     phase(page, 4)
     expect(page.locator(".toast.no")).to_have_count(0)
-    group(page, "Halt").click()  # its meaning does not change: it is open at once
+    group(page, "Halt").click()  # this button never changes its meaning: no pause
     phase(page, 5)
     group(page, "Resume").click()
     phase(page, 4)
@@ -466,7 +466,7 @@ def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
 
 
 def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
-    """The popover is closed while the pointer rests on one of its closed choices."""
+    """When a popover closes, the reason shown for a choice in it disappears, too."""
     page = at_the_desk(referee())
     disc(page, "c2r2").click()
     page.locator(".pick .states .act").first.hover()
@@ -478,7 +478,7 @@ def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
 
 
 def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
-    """After a dialog closes, the keyboard focus is where it was."""
+    """After a dialog closes, the button that opened it has the keyboard focus again."""
     page = at_the_desk(referee())
     void = group(page, "Declare void")
     dialog = page.get_by_role("dialog")
@@ -500,7 +500,7 @@ def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) -> None:
-    """Score and winner, also where they change while the dialog is open."""
+    """The dialog shows the score and winner to be made official, also if they change meanwhile."""
     venue.court("--seconds", "1")
     venue.web()
     page = at_the_desk(referee())
@@ -519,7 +519,7 @@ def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) 
 
 @pytest.mark.long
 def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
-    """The name that the record has for it stands for itself in no language."""
+    """A marker is shown in the page's language, and not by its name in the record."""
     text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")
     venue.contest.write_text(text, "utf-8")
     venue.court()
@@ -539,7 +539,7 @@ def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
 
 
 def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
-    """One acts, the other watches until they take over."""
+    """One referee acts, and another one watches until taking over."""
     first, second = at_the_desk(referee(), "Kim"), referee()
     enter(second, "Sato")
     expect(second.locator(".acting.other")).to_contain_text("Kim is the referee")
@@ -552,7 +552,7 @@ def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
     confirm(second, "network")
     log_has(first, "Referee Sato: the match is void. Reason: network")
     assert why(group(first, "Next match")) == "Sato is the referee now: take over first"
-    second.close()  # nobody acts: no question is asked
+    second.close()  # nobody acts now, so taking over asks no question
     expect(first.locator(".acting.other")).to_contain_text("There is no referee now")
     first.locator(".acting").get_by_role("button", name="Take over").click()
     expect(first.locator(".acting.mine")).to_be_visible()
@@ -560,7 +560,7 @@ def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_a_reload_goes_on(court: Venue, referee: Referee) -> None:
-    """The tab remembers the token, this browser the name; leaving forgets the token."""
+    """After a reload the referee still acts; after leaving, the page has the name but no token."""
     page = at_the_desk(referee())
     page.reload()
     expect(page.locator(".acting.mine")).to_contain_text("Kim")
@@ -571,7 +571,7 @@ def test_a_reload_goes_on(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_a_court_that_was_killed(venue: Venue, referee: Referee, console: Any) -> None:
-    """A lost court is not shown as live and takes no decision; later the desk goes on."""
+    """While the court is gone, the page is marked as not live and allows no decision."""
     console.expect("WebSocket")  # the gateway is killed too
     court, web = venue.court(), venue.web()
     page = at_the_desk(referee())
@@ -598,7 +598,7 @@ def test_a_court_that_was_killed(venue: Venue, referee: Referee, console: Any) -
 
 
 def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
-    """The dry run shows the score and what vanishes; only then it is done."""
+    """Before an event is taken back, the page shows the new score and the events that vanish."""
     text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")
     venue.contest.write_text(text, "utf-8")
     venue.court()
@@ -628,7 +628,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     confirm(page, "rule")
     has_scores(page, *map(int, then))
     expect(strike.locator(".fate")).to_have_text("taken back")
-    # A robot is acted on from the field as well.
+    # The referee can also click a robot on the field.
     page.locator(".board g[aria-label='Ants (left)']").click()
     page.locator(".pick").get_by_role("button", name="Restart").click()
     confirm(page, "stuck")
@@ -637,7 +637,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: Referee) -> None:
-    """Each seat's round trip as the court measures it, and the common delay."""
+    """With equal links the page shows each seat's round trip and the common delay."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     venue.court()
@@ -652,7 +652,7 @@ def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: R
 
 @pytest.mark.long
 def test_the_log_is_filtered(court: Venue, referee: Referee) -> None:
-    """Decisions, the game, and links: each by itself."""
+    """The log can be filtered, here for links and for decisions."""
     page = at_the_desk(referee())
     court.contestant("left", "Ants")
     log_has(page, "Ants is ready.")
@@ -666,7 +666,7 @@ def test_the_log_is_filtered(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_all_of_it_in_japanese(court: Venue, referee: Referee) -> None:
-    """No English is left in the page, its reasons, its log and its dialogs."""
+    """In Japanese no English is left in the page, its reasons, its log and its dialogs."""
     page = at_the_desk(referee(query="?lang=ja"))
     court.contestant("left", "Ants")
     log_has(page, "Ants の準備が完了しました。")
@@ -693,7 +693,7 @@ def test_all_of_it_in_japanese(court: Venue, referee: Referee) -> None:
     ids=str,
 )
 def test_nothing_runs_off_the_screen(court: Venue, referee: Referee, size: tuple[int, int]) -> None:
-    """The next step is in sight at each size, and nothing is wider than the screen."""
+    """On a screen of each size the big button is in sight, and nothing runs off to the right."""
     page = at_the_desk(referee(size=size))
     expect(big(page)).to_be_in_viewport(ratio=1)
     wide = page.evaluate(
@@ -706,7 +706,7 @@ def test_nothing_runs_off_the_screen(court: Venue, referee: Referee, size: tuple
 
 @pytest.mark.long
 def test_no_serious_barriers(court: Venue, referee: Referee) -> None:
-    """axe-core: names, roles and contrast, in the lobby, in a dialog and in a popover."""
+    """Axe-core finds no serious mistake in the lobby, in a dialog and in a popover."""
     pytest.importorskip("axe_core_python")
     page = at_the_desk(referee())
     assert violations(page) == []

@@ -1,4 +1,4 @@
-"""/replay: recordings in the browser, compared with what Python reads."""
+"""Tests of /replay: recordings in the browser, compared with what Python reads."""
 
 from bisect import bisect_right
 from collections.abc import Iterator
@@ -33,11 +33,11 @@ LAPTOP = {"width": 1366, "height": 768}
 PHONE = {"width": 390, "height": 844}
 SECONDS = 40
 RUN_UP = 50
-"""Beats before an event at which one comes in."""
+"""A jump to an event leads to this many beats before the event."""
 
 
 def played(folder: Path, match_id: str, arena: str, seconds: float) -> Path:
-    """The record of a match between two bots."""
+    """Play a match of two bots, and return its record's path."""
     settings = arenas.load(arena, {"match": {"duration_s": seconds}})
     setup = Setup(
         match_id=match_id, court="hall", match=3, arena=arena, settings=settings.settings, limits={}
@@ -49,7 +49,7 @@ def played(folder: Path, match_id: str, arena: str, seconds: float) -> Path:
 
 @pytest.fixture(scope="module")
 def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Venue]:
-    """A gateway with two recordings, and no court anywhere."""
+    """Give a gateway with two recordings and without a court."""
     with ExitStack() as stack:
         venue = Venue(tmp_path_factory.mktemp("library"), stack)
         folder = venue.folder / "recordings"
@@ -61,13 +61,13 @@ def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 @pytest.fixture(scope="module")
 def flags(library: Venue) -> Path:
-    """The recording of a flag-strike match."""
+    """Give the path of the recording of a Flag-Strike match."""
     return library.folder / "recordings" / "b-flags.mcap"
 
 
 @pytest.fixture(scope="module")
 def record(flags: Path) -> Record:
-    """The same, read by Python."""
+    """Give the Flag-Strike recording as Python reads it."""
     return Record.read(flags)
 
 
@@ -77,12 +77,12 @@ def frame_at(record: Record, beat: int) -> Frame:
 
 
 class Player(Show):
-    """The page with a recording open.
+    """The replay page, for a recording or for the list of recordings.
 
     Args:
         page: a new page.
         venue: the gateway.
-        query: such as "?file=b-flags.mcap&t=0"; with a time it stands still.
+        query: such as "?file=b-flags.mcap&t=0"; with a time `t` it does not play.
     """
 
     def __init__(self, page: Page, venue: Venue, query: str = "", **options: Any) -> None:
@@ -106,12 +106,12 @@ class Player(Show):
         return bool(self.page.evaluate("window.__replay.playing.value"))
 
     def opened(self, match_id: str = "b-flags") -> None:
-        """Wait until a recording is open; then let it stand still."""
+        """Wait until a recording is open, and pause it."""
         name = "window.__replay?.recording.record.header.match_id"
         self.until(lambda: self.page.evaluate(name) == match_id, "it was not opened")
         self.page.evaluate("window.__replay.pause()")
         self.sees(".transport")
-        # Keys are listened to once it has been painted.
+        # The page listens to keys once it has been painted.
         painted = "new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))"
         self.page.evaluate(painted)
 
@@ -132,7 +132,7 @@ class Player(Show):
 def test_what_is_shown_is_what_was_played(
     library: Venue, record: Record, open_page: OpenPage
 ) -> None:
-    """Score, clock, board and poses at any beat equal those that Python reads there."""
+    """Score, clock, board and poses at a beat equal those that Python reads at that beat."""
     page = open_page()
     sockets: list[str] = []
     page.on("websocket", lambda socket: sockets.append(socket.url))
@@ -165,9 +165,9 @@ def test_what_is_shown_is_what_was_played(
     assert sockets == []
 
 
-@pytest.mark.parametrize("slow_screen", [False])  # it asks what was drawn
+@pytest.mark.parametrize("slow_screen", [False])  # the test depends on drawing
 def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: OpenPage) -> None:
-    """By keys and by buttons; it plays to the end and begins again."""
+    """Keys and buttons play, pause, seek, step and change the speed of a recording."""
     show = Player(open_page(viewport=LAPTOP), library, "?file=b-flags.mcap")
     show.until(lambda: show.playing, "it does not play by itself")
     first, last = show.ends
@@ -180,7 +180,7 @@ def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: Ope
     assert show.beat == first + 651
     show.press("ArrowLeft")
     assert show.beat == first + 401
-    for key in (".", "ArrowRight"):  # held: it goes on
+    for key in (".", "ArrowRight"):  # a held key repeats
         show.page.keyboard.down(key)
         show.page.keyboard.down(key)
         show.page.keyboard.up(key)
@@ -208,7 +208,7 @@ def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: Ope
     show.press(*["+"] * 5)
     show.until(lambda: show.page.evaluate("window.__replay.speed.value") == 8, "the keys do not")
     fast = beats_a_second()
-    # No step is longer than 0.25 s: a machine that draws more slowly shows less.
+    # Between two pictures at most 0.25 s count, so a slow machine plays more slowly.
     assert 0.5 < slow < 14
     assert 5 * slow < fast < 460
     if show.beat < last - 300:
@@ -233,7 +233,7 @@ def record_length(first: int, last: int) -> str:
 
 @pytest.mark.long
 def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> None:
-    """Each event of the game has a mark in its seat's colour, labelled; the log leads to it."""
+    """Each game event has a labelled mark of its seat; marks, keys and the log lead to it."""
     show = Player(open_page(viewport=LAPTOP), library, "?file=b-flags.mcap&t=0")
     game = [event for event in record.events if "marker" in event.data]
     for seat in (0, 1):
@@ -249,7 +249,7 @@ def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> N
     show.find(f".mark[data-beat='{game[1].beat}']").click()
     assert show.beat == game[1].beat - RUN_UP
 
-    show.press("Home", "n", "n")  # the first is the beginning of play
+    show.press("Home", "n", "n")  # the first mark is the beginning of play
     assert show.beat == game[0].beat - RUN_UP
     show.press("n")
     assert show.beat == game[1].beat - RUN_UP
@@ -274,7 +274,7 @@ def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> N
 def test_the_servers_list_and_the_address(
     library: Venue, open_page: OpenPage, console: Any
 ) -> None:
-    """A recording has a link, and so has a moment of it; Back returns to the list."""
+    """A recording has an address, and so has a moment of it; Back returns to the list."""
     console.expect("404")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     expect(show.find(".recordings b")).to_have_count(2, timeout=WAIT_MS)
@@ -298,7 +298,7 @@ def test_the_servers_list_and_the_address(
 def test_a_recording_that_was_given_up_says_nothing_more(
     library: Venue, open_page: OpenPage
 ) -> None:
-    """Another one was opened meanwhile: the line is that one's."""
+    """While two recordings load, only the progress of the one opened last is shown."""
     page = open_page(viewport=LAPTOP)
     page.add_init_script(
         """const get = window.fetch;
@@ -330,7 +330,7 @@ def test_a_recording_that_was_given_up_says_nothing_more(
 def test_files_of_this_machine(
     library: Venue, flags: Path, record: Record, open_page: OpenPage
 ) -> None:
-    """By dropping them or choosing them; the server need not have them."""
+    """Files of this machine can be dropped on the page or chosen, without the server."""
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     show.sees(".drop-here")
     show.drop(flags)
@@ -349,7 +349,7 @@ def test_files_of_this_machine(
 
 
 def write_segments(record: Record, folder: Path) -> list[Path]:
-    """The match as a court that was killed in it would have recorded it, in two parts."""
+    """Write the match in two parts, as a court that was killed and started again records it."""
     killed, again = 700, 650
     sheet, scene = record.sheet_at(again), record.scene_at(again)
     assert sheet is not None
@@ -369,7 +369,7 @@ def write_segments(record: Record, folder: Path) -> list[Path]:
             (first if beat < again else second).event(event)
         if beat >= again:
             second.frame(beat, data)
-        if again <= beat < killed:  # never answered: it must not be seen
+        if again <= beat < killed:  # the second part replaces this frame
             frame = decode(data, Frame)
             seats = tuple(msgspec.structs.replace(seat, score=99) for seat in frame.seats)
             data = encode(msgspec.structs.replace(frame, seats=seats))
@@ -388,7 +388,7 @@ def write_segments(record: Record, folder: Path) -> list[Path]:
 def test_the_parts_of_a_crashed_match_are_joined(
     library: Venue, record: Record, open_page: OpenPage, tmp_path: Path
 ) -> None:
-    """In any order, and as Python joins them."""
+    """Two parts of a match, dropped in any order, are joined as Python joins them."""
     first, second = write_segments(record, tmp_path)
     joined = Record.read([first, second])
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
@@ -416,7 +416,7 @@ def test_the_parts_of_a_crashed_match_are_joined(
 def test_damage(
     library: Venue, record: Record, flags: Path, open_page: OpenPage, tmp_path: Path
 ) -> None:
-    """The readable part is played, and the page says what is wrong."""
+    """The page plays the readable part of a damaged file, and says what is wrong."""
     whole = write_segments(record, tmp_path / "parts")[1]
     data = bytearray(whole.read_bytes())
     half = len(data) // 2
@@ -476,7 +476,7 @@ def test_damage(
 def test_a_damaged_packed_file_says_so(
     library: Venue, flags: Path, open_page: OpenPage, tmp_path: Path
 ) -> None:
-    """A chunk whose sum is wrong is not believed."""
+    """The page reports a packed file with a changed byte."""
     data = bytearray(flags.read_bytes())
     data[len(data) // 2] ^= 4
     path = tmp_path / "packed.mcap"
@@ -490,7 +490,7 @@ def test_a_damaged_packed_file_says_so(
 def test_without_the_servers_list(
     library: Venue, flags: Path, open_page: OpenPage, console: Any
 ) -> None:
-    """A page that was loaded plays files of this machine, whatever became of its server."""
+    """If the server's list can't be loaded, the page still plays files of this machine."""
     console.expect("ERR_FAILED")
     page = open_page()
     page.route("**/recordings", lambda route: route.abort())
@@ -502,7 +502,7 @@ def test_without_the_servers_list(
 
 @pytest.mark.long
 def test_a_phone(library: Venue, open_page: OpenPage) -> None:
-    """Upright: nothing to the side, large enough to touch."""
+    """On an upright phone nothing lies outside the width, and buttons are large enough to touch."""
     page = open_page(viewport=PHONE, has_touch=True, is_mobile=True)
     show = Player(page, library, "?file=b-flags.mcap&t=20")
     show.sees(".board")
@@ -521,7 +521,7 @@ def test_a_phone(library: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_accessible(library: Venue, open_page: OpenPage) -> None:
-    """Axe-core finds no serious violation."""
+    """Axe-core finds no serious mistake in accessibility."""
     pytest.importorskip("axe_core_python")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     show.sees(".recordings li")
@@ -535,6 +535,7 @@ def test_accessible(library: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_japanese(library: Venue, open_page: OpenPage) -> None:
+    """In a Japanese browser the list, the log and the result are in Japanese."""
     show = Player(open_page(viewport=LAPTOP, locale="ja-JP"), library, drawn=False)
     show.sees("h1", "リプレイ")
     show.sees(".drop-here", "記録ファイルを開く")

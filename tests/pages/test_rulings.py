@@ -1,4 +1,4 @@
-"""core/rulings.ts: what pages say of the referee's corrections, on events of real matches."""
+"""Tests of core/rulings.ts, which finds the referee's rulings in the events of a match."""
 
 import json
 import shutil
@@ -29,7 +29,7 @@ console.log(JSON.stringify({
 
 
 def shown(stage: Stage) -> dict[str, Any]:
-    """The page shows the referee's rulings from a match's events."""
+    """Return the rulings that core/rulings.ts finds in a match's events."""
     node = shutil.which("node", path=str(Path(sys.executable).parent)) or shutil.which("node")
     if node is None:
         pytest.skip("no Node: pip install --group web")
@@ -48,7 +48,7 @@ def shown(stage: Stage) -> dict[str, Any]:
 
 
 def test_corrections_that_stand_and_how_long_was_played() -> None:
-    """Rules 4: a correction that was taken back is none, and moving the clock plays nothing."""
+    """A correction that was taken back is not listed; moving the clock adds no time of play."""
     stage = Stage().to(P.PLAYING)
     stage.run(100)
     stage.decide(d.Clock(90.0), "a pause")

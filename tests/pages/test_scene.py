@@ -1,4 +1,4 @@
-"""The drawing core of the pages (client/web/src/core, scene), in a real browser."""
+"""Tests of the drawing core of the pages (client/web/src/core, scene) in a real browser."""
 
 import math
 from collections.abc import Iterator
@@ -44,7 +44,7 @@ def address(site: Path) -> Iterator[str]:
 
 @pytest.fixture
 def slow_screen() -> bool:
-    """Draw as often as the browser can."""
+    """Let pages draw as often as the browser can."""
     return False
 
 
@@ -54,7 +54,7 @@ def stand(page: Page, address: str) -> Stand:
 
 
 class Recorded:
-    """The stand's picture and state, read in Python."""
+    """The sheet and frames of a match file of the stand, read by Python."""
 
     def __init__(self, site: Path, arena: str) -> None:
         data = msgspec.msgpack.decode((site / f"{arena}.bin").read_bytes())
@@ -65,7 +65,7 @@ class Recorded:
         return unpack_states(frame.markers, len(self.sheet.markers))
 
     def change(self) -> tuple[Frame, Frame, int]:
-        """The first change of a marker to a team's: the frames around it, and the marker."""
+        """Return the frames before and after a marker first becomes a team's, and its index."""
         for before, after in zip(self.frames, self.frames[1:], strict=False):
             was, now = self.states(before), self.states(after)
             for marker, (one, other) in enumerate(zip(was, now, strict=True)):
@@ -114,12 +114,12 @@ def test_the_page_has_every_body_where_mujoco_has_it(
         found = stand.page.evaluate("(numbers) => stand.bodies(numbers)", numbers)
         pos, quat = np.reshape(found["pos"], (-1, 3)), np.reshape(found["quat"], (-1, 4))
         assert np.abs(pos - world.data.xpos).max() < 1e-6
-        # q and -q are one turn.
+        # q and -q are the same rotation.
         assert np.abs(np.abs((quat * world.data.xquat).sum(axis=1)) - 1).max() < 1e-6
 
 
 def test_the_picture_shows_the_frame(stand: Stand, site: Path) -> None:
-    """Each robot's body is drawn where the frame has it, and between frames in between."""
+    """A robot's body is drawn at its place in a frame, or half-way between its places in two."""
     frames = Recorded(site, "othello").frames
     one, other = frames[600], frames[601]
     stand.open("othello.bin", speed=0, beat=one.beat, q="low")
@@ -132,7 +132,7 @@ def test_the_picture_shows_the_frame(stand: Stand, site: Path) -> None:
 
 
 def test_a_robot_that_was_put_elsewhere_does_not_fly_there(stand: Stand) -> None:
-    """A restart moves a robot in one beat: it is not drawn in between; the other robot is."""
+    """A robot that jumps within one beat is not drawn in between, but the other robot is."""
     stand.open("", frames=0)
     mixed = stand.page.evaluate(
         """() => {
@@ -149,7 +149,7 @@ def test_a_robot_that_was_put_elsewhere_does_not_fly_there(stand: Stand) -> None
 
 
 def test_quaternions_go_the_short_way(stand: Stand) -> None:
-    """A quaternion and its negative are one turn: a robot does not spin because a sign changed."""
+    """A robot does not spin when its quaternion changes sign, because q and -q are one rotation."""
     stand.open("", frames=0)
     mixed = stand.page.evaluate(
         """() => {
@@ -168,7 +168,7 @@ def test_quaternions_go_the_short_way(stand: Stand) -> None:
 def test_a_marker_that_changes_moves_and_ends_in_its_new_state(
     stand: Stand, site: Path, arena: str
 ) -> None:
-    """Discs turn over and flags fall; then the new state is what is seen."""
+    """A disc turns over and a flag falls in motion, and then the new state is drawn."""
     recorded = Recorded(site, arena)
     before, after, index = recorded.change()
     stand.open(f"{arena}.bin", speed=0, beat=before.beat, q="low", camera="top", labels=0)
@@ -182,7 +182,7 @@ def test_a_marker_that_changes_moves_and_ends_in_its_new_state(
     if arena == "othello":
         marker = recorded.sheet.markers[index]
         seat = recorded.states(after)[index] - 1
-        # Beside the middle, where the robot may stand that turned it over.
+        # Beside the middle, because the robot that turned the disc over may stand on the middle.
         found = [
             stand.pixel(marker.x_m + 0.09 * math.cos(turn), marker.y_m + 0.09 * math.sin(turn))
             for turn in np.arange(0, 6.2, 0.7)
@@ -195,7 +195,7 @@ def test_a_marker_that_changes_moves_and_ends_in_its_new_state(
 
 @pytest.mark.long
 def test_after_a_leap_in_time_nothing_moves(stand: Stand, site: Path) -> None:
-    """Seeking in a replay shows the board as it was then, at once."""
+    """After a seek the board is drawn at once as it was at that beat, without motion."""
     recorded = Recorded(site, "othello")
     first, last = recorded.frames[0], recorded.frames[-1]
     assert recorded.states(first) != recorded.states(last)
@@ -206,7 +206,7 @@ def test_after_a_leap_in_time_nothing_moves(stand: Stand, site: Path) -> None:
 
 
 def test_without_webgl_the_field_is_drawn_from_above(stand: Stand, site: Path) -> None:
-    """Without WebGL a page shows a 2D top view from the same frames."""
+    """Without WebGL a page draws the same frames as a flat map."""
     stand.page.add_init_script(
         """const get = HTMLCanvasElement.prototype.getContext;
         HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
@@ -223,7 +223,7 @@ def test_without_webgl_the_field_is_drawn_from_above(stand: Stand, site: Path) -
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 def test_the_picture_is_there(stand: Stand, site: Path, arena: str) -> None:
-    """The picture is not black, and both team colours are in it, at 800 x 450, low quality."""
+    """At 800 x 450 and low quality the picture is not black and has the colours of both teams."""
     last = Recorded(site, arena).frames[-1]
     stand.open(f"{arena}.bin", speed=0, beat=last.beat, q="low", labels=0)
     picture = stand.pixels()
@@ -248,7 +248,7 @@ def test_the_picture_is_there(stand: Stand, site: Path, arena: str) -> None:
 def test_the_whole_field_fits(
     open_page: OpenPage, address: str, size: tuple[int, int], camera: str
 ) -> None:
-    """Tank Royale #133: the arena scales to the window, whatever its shape; a bar stays free."""
+    """The whole field fits a window of any shape, below a bar of 40 pixels, and nearly fills it."""
     width, height = size
     stand = Stand(open_page(viewport={"width": width, "height": height}), address)
     stand.open("flag-strike.bin", speed=0, q="low", camera=camera, top=40)
@@ -262,7 +262,7 @@ def test_the_whole_field_fits(
 
 
 def test_clicks_say_what_was_clicked(stand: Stand, site: Path) -> None:
-    """The referee clicks a disc, a flag or a robot to act on it."""
+    """A click reports which disc or which robot was clicked."""
     recorded = Recorded(site, "othello")
     frame = recorded.frames[-1]
     stand.open("othello.bin", speed=0, beat=frame.beat, q="low", labels=0)
@@ -283,7 +283,7 @@ def test_clicks_say_what_was_clicked(stand: Stand, site: Path) -> None:
 
 
 def test_a_flag_can_be_clicked_at_its_pole(stand: Stand, site: Path) -> None:
-    """A pole is 2 cm thick: near it is near enough."""
+    """A click on the thin pole of a flag reports the flag."""
     recorded = Recorded(site, "flag-strike")
     frame = recorded.frames[0]
     stand.open("flag-strike.bin", speed=0, beat=frame.beat, q="low", labels=0)
@@ -294,7 +294,7 @@ def test_a_flag_can_be_clicked_at_its_pole(stand: Stand, site: Path) -> None:
 
 
 def test_dragging_turns_the_camera_and_is_no_click(stand: Stand) -> None:
-    """A drag orbits, the wheel zooms; a double click takes both back."""
+    """A drag turns the camera and picks nothing, the wheel zooms, a double click undoes both."""
     stand.open("othello.bin", speed=0, q="low")
     eye = np.array(stand.view("eye"))
     stand.page.mouse.move(400, 225)
@@ -312,7 +312,7 @@ def test_dragging_turns_the_camera_and_is_no_click(stand: Stand) -> None:
 
 @pytest.mark.long
 def test_only_the_left_button_turns_the_camera(stand: Stand) -> None:
-    """The right one opens the browser's menu, which keeps its release to itself."""
+    """The right button, and a left button whose release was lost, do not turn the camera."""
     stand.open("othello.bin", speed=0, q="low")
     eye = stand.view("eye")
     stand.page.mouse.move(400, 225)
@@ -324,14 +324,14 @@ def test_only_the_left_button_turns_the_camera(stand: Stand) -> None:
 
     held = {"pointerId": 1, "button": 0, "buttons": 1, "clientX": 500, "clientY": 235}
     mouse = {"pointerType": "mouse", "bubbles": True}
-    stand.page.dispatch_event(".view", "pointerdown", held | mouse)  # and its release is lost
+    stand.page.dispatch_event(".view", "pointerdown", held | mouse)  # its release is lost
     stand.page.mouse.move(400, 225, steps=4)
     stand.next_frames()
     assert stand.view("eye") == eye
 
 
 def test_a_lost_context_comes_back(stand: Stand) -> None:
-    """A graphics driver that restarts takes the picture with it, for a moment."""
+    """The picture comes back after the graphics driver has restarted."""
     stand.open("othello.bin", speed=0, q="low")
     stand.page.evaluate(
         """() => {
@@ -348,7 +348,7 @@ def test_a_lost_context_comes_back(stand: Stand) -> None:
 
 @pytest.mark.long
 def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
-    """A lost controller's robot is grey on every screen."""
+    """The robot of a silent seat is drawn grey."""
     frame = Recorded(site, "flag-strike").frames[0]
     stand.open("flag-strike.bin", speed=0, beat=frame.beat, q="low", labels=0, camera="top")
     before = share_of(stand.pixels(), BLUE)
@@ -362,7 +362,7 @@ def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
 
 @pytest.mark.long
 def test_in_software_it_begins_coarse(stand: Stand) -> None:
-    """Without a graphics card low quality is chosen by itself."""
+    """Without a graphics card low quality is chosen automatically, and a person can change it."""
     stand.open("othello.bin", speed=0, q="auto")
     assert stand.view("quality") == "low"
     stand.page.evaluate("stand.quality.value = 'high'")
@@ -370,7 +370,7 @@ def test_in_software_it_begins_coarse(stand: Stand) -> None:
 
 
 def test_two_views_side_by_side(stand: Stand) -> None:
-    """Workshop Fig. 5-11: both robots' windows at once."""
+    """Two views are drawn side by side, with different cameras (workshop Fig. 5-11)."""
     stand.open("othello.bin", speed=0, q="low", views=2, beat=500)
     stand.page.wait_for_function("__lacoc.views.length === 2 && __lacoc.views[1].drawnFrames > 2")
     eyes = stand.page.evaluate("__lacoc.views.map((view) => view.eye)")
@@ -378,7 +378,7 @@ def test_two_views_side_by_side(stand: Stand) -> None:
 
 
 def test_cameras_glide(stand: Stand) -> None:
-    """Space cycles three views: the camera goes from one to the next, and gets there."""
+    """When another camera is chosen, the eye of the view moves to another place."""
     stand.open("othello.bin", speed=0, q="low", beat=500)
     for name in ("top", "chase", "arena"):
         before = np.array(stand.view("eye"))

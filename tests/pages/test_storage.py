@@ -1,4 +1,4 @@
-"""A browser that keeps nothing: all pages work in it, until they are closed."""
+"""All pages work in a browser that stores nothing, until they are closed."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ DENIED = """for (const name of ["sessionStorage", "localStorage"])
 
 @pytest.mark.long
 def test_who_shows_needs_no_storage(venue: Venue, open_page: OpenPage) -> None:
-    """As where cookies are blocked: reading the storage itself fails."""
+    """Pages that show a match work where reading the storage fails, as with blocked cookies."""
     venue.court()
     venue.web()
     for path in ("/watch", "/overlay"):
@@ -36,7 +36,7 @@ def test_who_shows_needs_no_storage(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_who_acts_needs_no_storage(venue: Venue, sit: Sit, console: Any) -> None:
-    """Key and seat live as long as the page: also through a break of its connection."""
+    """Without storage an open page keeps its key and seat, also when its connection breaks."""
     venue.court()
     web = venue.web()
     page = sit(venue.url)

@@ -1,4 +1,4 @@
-"""/watch: what a spectator sees of a match at a real court, through the real gateway."""
+"""Tests of /watch, the spectators' page, at a real court through a real gateway."""
 
 import re
 from typing import Any
@@ -23,13 +23,13 @@ LOW = "/watch?q=low&cam=arena"
 
 
 def on_clock(text: str) -> int:
-    """Seconds of "2:59"."""
+    """Return the seconds on a clock such as "2:59"."""
     minutes, seconds = text.split(":")
     return 60 * int(minutes) + int(seconds)
 
 
 def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPage) -> None:
-    """Score, clock, board and the whole log are the court's; what follows is shown in a third."""
+    """A late spectator sees the court's score, clock, board and log, and captions of new events."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -61,7 +61,7 @@ def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPa
 
 
 def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -> None:
-    """In each phase the page says how it stands and what comes next."""
+    """In each phase the page shows the state of the match and what comes next."""
     venue.court("--seconds", "2")
     venue.web()
     show = Show(open_page(viewport=LAPTOP), venue.url, LOW)
@@ -103,7 +103,7 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
 
 
 def test_a_team_is_shown_in_its_own_look(venue: Venue, open_page: OpenPage) -> None:
-    """Rules 4: colours and patterns belong to the teams; score, board and field have them."""
+    """A team's own colour and pattern show beside its score and on the board (rules 4)."""
     own = '[court.main.seat.right]\ncolour = "#cc3366"\npattern = "dots"\n'
     text = venue.contest.read_text()
     venue.contest.write_text(text.replace("[court.main.seat.right]\n", own))
@@ -120,7 +120,7 @@ def test_a_team_is_shown_in_its_own_look(venue: Venue, open_page: OpenPage) -> N
 
 @pytest.mark.long
 def test_the_winner_is_whom_the_referee_says(venue: Venue, open_page: OpenPage) -> None:
-    """Rules 4: a winner declared in a halt has won, before and after the result is official."""
+    """A winner whom the referee declares in a halt is shown as the winner (rules 4.1)."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -138,7 +138,7 @@ def test_the_winner_is_whom_the_referee_says(venue: Venue, open_page: OpenPage) 
 
 @pytest.mark.long
 def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) -> None:
-    """Rules 4, adjust and take-back after the end: the card follows."""
+    """The result follows when the referee changes the score or takes that back (rules 4.1)."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -157,6 +157,7 @@ def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) ->
 
 
 def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
+    """A match that the referee declares void is shown without a winner."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -171,7 +172,7 @@ def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: Any) -> None:
-    """A picture that stands still is not shown as live; the page says what it waits for."""
+    """While court or gateway is lost, the picture is marked as old and a banner says why."""
     console.expect("WebSocket|ERR_CONNECTION")
     court, web = venue.court(), venue.web()
     decide(playing(venue), "two", type="adjust", seat="left", points=2)
@@ -202,7 +203,7 @@ def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: A
 
 
 def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
-    """Everything can be reached by keyboard, and nothing that is typed elsewhere acts."""
+    """Keys choose the camera, panel and settings; keys typed in a dialog do nothing else."""
     venue.court()
     venue.web()
     playing(venue)
@@ -224,7 +225,7 @@ def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
     panel.click()
     show.sees(".panel .board")
     for _ in range(2):
-        show.page.keyboard.down("e")  # the second is the keyboard's own, of a key that is held
+        show.page.keyboard.down("e")  # the second press is the repeat of a held key
     show.misses(".panel")
     show.page.keyboard.up("e")
     show.page.keyboard.press("e")
@@ -251,7 +252,7 @@ def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
-    """The page shows the refusal, and keeps showing it while it asks again."""
+    """At an unknown court the page keeps showing the refusal while it asks again."""
     venue.court()
     venue.web()
     page = open_page()
@@ -276,7 +277,7 @@ def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
     [1000, *(pytest.param(width, marks=pytest.mark.long) for width in (1280, 1366, 1440, 1920))],
 )
 def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: int) -> None:
-    """Brand, choice of court, score bug and buttons stand beside one another at any width."""
+    """At any width, brand, choice of court, score and buttons do not overlap."""
     text = venue.contest.read_text()
     side = text.replace("court.main", "court.second-court")
     venue.contest.write_text(text + side.replace(str(venue.court_port), str(free_port())))
@@ -302,17 +303,17 @@ def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: i
                 name = show.find(f".score-bug [data-seat='{seat}'] .name").bounding_box()
                 assert name is not None
                 assert name["width"] > 60
-            page.keyboard.press("e")  # with and without the panel
+            page.keyboard.press("e")  # the second round is without the panel
         page.close()
 
 
 def apart(left: Any, right: Any) -> bool:
-    """Whether one box ends before the other begins."""
+    """Return whether the left box ends before the right one begins."""
     return bool(left["x"] + left["width"] <= right["x"])
 
 
 def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
-    """A team's name and a referee's reason are as long as somebody types them."""
+    """A long team name and a long reason of the referee stay inside their boxes."""
     venue.court()
     venue.web()
     venue.contestant("left", LONG)
@@ -342,13 +343,13 @@ def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
     assert tag is not None
     assert mark["width"] == pytest.approx(20, abs=0.5)
     assert tag["width"] <= 220
-    assert name.evaluate("(at) => at.scrollWidth > at.clientWidth")  # so it ends with dots
+    assert name.evaluate("(at) => at.scrollWidth > at.clientWidth")  # so an ellipsis is shown
     expect(name).to_have_css("text-overflow", "ellipsis")
 
 
 @pytest.mark.long
 def test_news_are_read_aloud_once(venue: Venue, open_page: OpenPage) -> None:
-    """An event is also in the log, but a screen reader announces it only once."""
+    """A screen reader announces a new event only once, although the log shows the event too."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -362,7 +363,7 @@ def test_news_are_read_aloud_once(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
-    """Upright: the picture, the cameras and the board below one another, nothing to the side."""
+    """On an upright phone the page's parts stand below one another and fit the width."""
     venue.court()
     venue.web()
     playing(venue)
@@ -384,7 +385,7 @@ def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
 
 
 def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
-    """The drawing from above stands in for the picture."""
+    """Without WebGL the page draws the match as a flat map."""
     venue.court()
     venue.web()
     playing(venue)
@@ -402,7 +403,7 @@ def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> None:
-    """Colours change at once in picture, score bug, board and card, and after a reload."""
+    """The colours that a viewer chooses show at once, and everywhere after a reload."""
     venue.court("--seconds", "1")
     venue.web()
     referee = playing(venue)
@@ -415,7 +416,7 @@ def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> No
     arena, contrast = referee.sheet.seats[1].colour, "#ffe600"
 
     def drawn() -> float:
-        """Green for red in the picture of a disc: 0.69 is orange, 0.90 is yellow."""
+        """Return the green of a disc divided by its red: 0.69 is orange, 0.90 is yellow."""
         left, top = map(round, show.view(f"screen({corner.x_m}, {corner.y_m}, 0.01)"))
         disc = pixels_of(show.page, blank)[top - 9 : top + 10, left - 9 : left + 10]
         red, green, blue = np.median(disc.reshape(-1, 3), axis=0)
@@ -450,7 +451,7 @@ def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> No
 
 @pytest.mark.long
 def test_who_wants_less_motion_gets_it(venue: Venue, open_page: OpenPage) -> None:
-    """The automatic camera stands still, and another one is there at once."""
+    """For a viewer who wants less motion the automatic camera does not move."""
     venue.court()
     venue.web()
     playing(venue)
@@ -470,7 +471,7 @@ def test_who_wants_less_motion_gets_it(venue: Venue, open_page: OpenPage) -> Non
 
 @pytest.mark.long
 def test_who_wants_less_motion_sees_nothing_turn(venue: Venue, open_page: OpenPage) -> None:
-    """Also what would turn for ever comes to rest."""
+    """For a viewer who wants less motion a spinner turns only once."""
     venue.web()
     page = open_page(reduced_motion="reduce")
     page.goto(f"{venue.url}/play")
@@ -482,7 +483,7 @@ def test_who_wants_less_motion_sees_nothing_turn(venue: Venue, open_page: OpenPa
 
 @pytest.mark.long
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:
-    """Axe-core finds no serious violation."""
+    """Axe-core finds no serious mistake in accessibility."""
     pytest.importorskip("axe_core_python")
     venue.court("--seconds", "1")
     venue.web()
@@ -506,7 +507,7 @@ def test_accessible(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_japanese_throughout(venue: Venue, open_page: OpenPage) -> None:
-    """A Japanese browser finds no English, but for names."""
+    """In a Japanese browser the page has no English words except names."""
     venue.court("--seconds", "1")
     venue.web()
     show = Show(open_page(viewport=LAPTOP, locale="ja-JP"), venue.url, LOW)

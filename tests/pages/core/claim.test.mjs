@@ -1,4 +1,4 @@
-// A page's claim to a seat (client/web/src/core/claim.ts), event by event.
+// Tests of a page's claim to a seat (client/web/src/core/claim.ts), event by event.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -36,7 +36,7 @@ const EVENTS = [join, change, renew, leave, forget, open, granted, broke, rested
   .concat([kept, ...[busy, no, wrongToken, badFile].map(failed)])
   .concat({ is: "join", wish: other });
 
-/** The claim after events, and the effects of the last one. */
+/** Returns the claim after some events, with the effects of the last event. */
 function after(claim, ...events) {
   let effects = [];
   for (const event of events) [claim, effects] = step(claim, event);
@@ -47,7 +47,7 @@ const fresh = claimOf(null);
 const reloaded = claimOf(wish);
 const seated = after(fresh, join, open, granted);
 
-/** All claims that events can lead to, each with the event and the effects that led to it. */
+/** Returns every step that events can lead to: claim, event, next claim and effects. */
 function reachable() {
   const found = new Map();
   const steps = [];
@@ -55,7 +55,7 @@ function reachable() {
   while (waiting.length) {
     const claim = waiting.pop();
     const key = JSON.stringify(claim);
-    // Tries grow for ever: beyond the bound nothing is new.
+    // The number of tries has no end; beyond this bound no new state comes.
     if (found.has(key) || claim.tries > 9) continue;
     found.set(key, claim);
     for (const event of EVENTS) {
@@ -93,7 +93,7 @@ function checkStep({ claim, event, next, effects }) {
   }
   if (event.is === "failed" || event.is === "granted") assert.notEqual(next.request, "sent");
   if (event.is === "rested") assert.equal(next.request, "none");
-  // A person who asks is heard in every state.
+  // A join that a person asks for is begun in every state.
   if (event.is === "join") assert.deepEqual([next.state, next.wish], ["joining", event.wish]);
 }
 
@@ -143,7 +143,7 @@ test("a court that says neither yes nor when is asked eight times", () => {
     assert.deepEqual([claim.state, claim.effects], ["holding", ["rest"]]);
     claim = after(claim, rested);
   }
-  // A grant in between begins the count anew.
+  // A grant sets the number of tries back to zero.
   assert.equal(after(claim, open, granted, open, failed(no)).state, "holding");
   const refused = after(claim, open, failed(no));
   assert.deepEqual([refused.state, refused.refusal, refused.effects], ["none", no, ["drop"]]);
@@ -167,9 +167,9 @@ test("new files are sent at once, and any refusal of them is shown", () => {
       ["none", refusal, ["drop"]],
     );
   }
-  // The tab keeps the seat while the court thinks.
+  // The tab keeps its wish for the seat until the court answers.
   assert.equal(keptWish(after(seated, change)), wish);
-  // While a join is under way there is no second one.
+  // While a join waits for its answer, no second one is sent.
   assert.deepEqual(after(seated, open, change).effects, []);
   for (const event of [change, renew]) assert.equal(after(fresh, event).state, "none");
 });
@@ -190,9 +190,9 @@ test("a seat that is given up is not asked for again", () => {
   assert.deepEqual([left.state, left.lastWish, left.effects], ["left", wish, ["clear"]]);
   assert.equal(after(left, forget).state, "none");
   assert.equal(after(left, forget).lastWish, wish);
-  // The court did not take it: all is as before.
+  // If the court refuses to release the seat, all is as before.
   assert.deepEqual([after(leaving, kept).state, keptWish(after(leaving, kept))], ["holding", wish]);
-  // A grant that was under way comes late: the seat is given up all the same.
+  // A grant that comes after the page has left does not bring the seat back.
   assert.deepEqual(after(seated, open, leave, granted).effects, []);
   assert.equal(after(seated, open, leave, granted, released).state, "left");
 });
@@ -201,7 +201,7 @@ test("a lost seat is told, and nothing fights for it", () => {
   const lost = after(seated, taken);
   assert.deepEqual([lost.state, lost.why, lost.lastWish], ["lost", taken.why, wish]);
   assert.deepEqual(after(lost, open).effects, []);
-  // Told twice, as with a newer round trip.
+  // The loss may be told twice.
   assert.equal(after(lost, taken).lastWish, wish);
   assert.deepEqual([after(lost, forget).state, after(lost, forget).why], ["none", null]);
   assert.deepEqual(after(lost, join, open).effects, ["ask"]);

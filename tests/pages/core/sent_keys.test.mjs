@@ -1,4 +1,4 @@
-// Keys on their way (client/web/src/core/sent_keys.ts).
+// Tests of the keys that a page has sent (client/web/src/core/sent_keys.ts).
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,5 +1,5 @@
-// Frames arrive as badly as they may: what is shown (client/web/src/core/timeline.ts) moves evenly,
-// and is never long ago. Each case gives a list of what was wrong.
+// However badly frames arrive, the moments that a timeline shows move evenly and are never old
+// (client/web/src/core/timeline.ts). Each case returns a list of what was wrong.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -7,7 +7,7 @@ import { Timeline } from "../../../client/web/src/core/timeline.ts";
 
 const frame = (beat, match = 1) => ({ match, beat });
 
-/** Frames of a court; `arrival` says when each arrives [ms], Infinity: never. */
+/** Plays frames of a court; `arrival` gives each frame's arrival time [ms], Infinity: never. */
 function play({ ms, beatsPerMs = 0.05, arrival = (at) => at, timeline, quietMs = 3000 }) {
   const line = timeline ?? new Timeline();
   const trouble = [];
@@ -65,7 +65,7 @@ const CASES = {
       uneven: 0.25,
       behindMs: 80,
     }),
-  // Three frames at a time, as after a slow Wi-Fi.
+  // Three frames arrive at a time, as over a slow Wi-Fi.
   bursts: () =>
     check(play({ ms: 20000, arrival: (at) => Math.ceil(at / 60) * 60 }), {
       uneven: 0.3,
@@ -88,13 +88,13 @@ const CASES = {
       uneven: 0.3,
       behindMs: 130,
     }),
-  // 25 frames a second, every second beat.
+  // A spectator gets 25 frames a second, one for every two beats.
   spectator: () =>
     check(play({ ms: 20000, arrival: (at, beat) => (beat % 2 ? Infinity : at + 10 * chance()) }), {
       uneven: 0.3,
       behindMs: 90,
     }),
-  // Frames arrive, nothing is drawn: rAF stands still in a hidden tab.
+  // Frames arrive, but nothing is drawn, because a hidden tab gets no animation frames.
   hidden: () => {
     const { line, trouble } = play({ ms: 4000 });
     for (let beat = 200; beat < 3200; beat++) line.push(frame(beat), 1000 + beat * 20);
@@ -103,7 +103,7 @@ const CASES = {
     if (3200 - beat > 8) trouble.push(`${3200 - beat} beats behind after the pause`);
     return trouble;
   },
-  // Nothing arrives for a minute, then everything at once: the whole page was frozen.
+  // The whole page was frozen: nothing arrives for a minute, then everything at once.
   frozen: () => {
     const { line, trouble } = play({ ms: 4000 });
     const backMs = 1000 + 3200 * 20;
@@ -120,7 +120,7 @@ const CASES = {
     if (3500 - last > 8) trouble.push(`${3500 - last} beats behind at the end`);
     return trouble;
   },
-  // The court stands still for 5 s and goes on where it was.
+  // The court stands still for 5 s and then goes on from the same beat.
   stopped: () => {
     const { line, trouble } = play({ ms: 4000 });
     const held = line.sample(1000 + 4000 + 4900).beat;
