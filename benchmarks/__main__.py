@@ -38,6 +38,7 @@ def main() -> None:
             f"{figures['ratio']:.3f}",
             "at most 1.10",
         )
+        table.add_row(f"its own part, {arena}", f"{figures['own_us']:.1f} us", "", "", "")
     for arena in ARENAS:
         figures = found[f"match {arena}"] = whole_match(arena, max(1, options.rounds // 4))
         table.add_row(

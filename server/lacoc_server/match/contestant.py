@@ -87,8 +87,6 @@ def leave(match: MatchState, seat: Seat) -> Done:
 
 def unattended(match: MatchState) -> Phrase | None:
     """Say why a match without a referee ends before its game is over; None: it goes on."""
-    if match.rules.start != "ready":
-        return None
     if all(seat.left for seat in match.seats):
         return say("over.everybody-left")
     limit = round(match.rules.unattended_s * BEATS_PER_S)

@@ -137,7 +137,20 @@ class Match(MatchState):
 
     def _move_on(self) -> None:
         """Change the phase where nobody has to decide."""
-        self.silent_beats = (self.silent_beats + 1) * all(seat.silent for seat in self.seats)
+        is_silent = all([seat.silent for seat in self.seats])
+        self.silent_beats = self.silent_beats + 1 if is_silent else 0
+        if self.phase is not Phase.PLAYING:
+            self._move_to_play()
+        if self.phase is Phase.PLAYING and self.time_is_up:  # after a referee moved the clock
+            self.finish(say("over.time"))
+        # A match without a referee ends when nobody is there; a countdown leads to PLAYING.
+        if self.rules.start == "ready" and self.phase in (Phase.PLAYING, Phase.HALTED):
+            why = contestant.unattended(self)
+            if why:
+                self.finish(why)
+
+    def _move_to_play(self) -> None:
+        """Go on from the lobby to play, as far as the seats allow."""
         if self.phase is Phase.LOBBY and not self.missing():
             self.build()
             self.enter(Phase.READY, model=self.physics.model_hash)
@@ -147,11 +160,6 @@ class Match(MatchState):
             self.begin_countdown()
         if self.phase is Phase.COUNTDOWN and self.countdown_beats <= 0:
             self.enter(Phase.PLAYING)
-        if self.phase is Phase.PLAYING and self.time_is_up:  # after a referee moved the clock
-            self.finish(say("over.time"))
-        on = self.phase in (Phase.PLAYING, Phase.HALTED)  # a countdown leads to PLAYING
-        if on and (why := contestant.unattended(self)):
-            self.finish(why)
 
     def _tick(self) -> bool:
         """Run one tick of physics; while the match is played, let the rules judge it.

@@ -33,6 +33,8 @@ MUJOCO_VERSION = mujoco.mj_versionString()
 _STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 """All that the next step depends on; FULLPHYSICS is less, and not exact (docs/facts.md 1)."""
 
+_FLOAT32 = np.dtype("<f4")
+
 _WARNINGS = {
     mujoco.mjtWarning.mjWARN_BADQPOS: say("fault.position"),
     mujoco.mjtWarning.mjWARN_BADQVEL: say("fault.velocity"),
@@ -82,6 +84,7 @@ class World:
         self._pose_qpos = np.array(pose_qpos, np.intp)
         self._touch = TouchTest(self.model, self.data, self._robots, arena.game.markers)
         # Views into MuJoCo's own arrays: they always show the present values.
+        self._qpos: npt.NDArray[np.float64] = self.data.qpos
         self._control = self.data.ctrl
         self._write_control = struct.Struct(f"{self.model.nu}d").pack_into
         self._warned = self.data.warning.number
@@ -117,8 +120,7 @@ class World:
 
     def poses(self) -> bytes:
         """Return the poses of the robots, in the form of `Frame.poses`."""
-        poses: npt.NDArray[np.float32] = self.data.qpos[self._pose_qpos].astype("<f4")
-        return poses.tobytes()
+        return self._qpos[self._pose_qpos].astype(_FLOAT32).tobytes()
 
     def touched(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
         """Return for each seat the markers whose probes it touches now, in ascending order.

@@ -19,9 +19,11 @@ def toward(angles: Posture, target: Posture, step_rad: float) -> Posture:
     reach = step_rad * _ROUNDING
     moved = tuple(
         [
-            goal
-            if -reach <= goal - angle <= reach
-            else angle + (step_rad if goal > angle else -step_rad)
+            angle + step_rad
+            if (gap := goal - angle) > reach
+            else angle - step_rad
+            if gap < -reach
+            else goal
             for angle, goal in zip(angles, target, strict=True)
         ]
     )
