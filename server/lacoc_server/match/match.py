@@ -137,7 +137,7 @@ class Match(MatchState):
 
     def _move_on(self) -> None:
         """Change the phase where nobody has to decide."""
-        is_silent = all([seat.silent for seat in self.seats])
+        is_silent = all(seat.silent for seat in self.seats)
         self.silent_beats = self.silent_beats + 1 if is_silent else 0
         if self.phase is not Phase.PLAYING:
             self._move_to_play()
