@@ -171,7 +171,7 @@ def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path:
         file.write_text(text)
         found = look(capsys, tmp_path, "--contest", str(file))[f"port {port}"]
         assert found["status"] == "problem"
-        assert "court main runs here, and the contest file has court hall here" in found["found"]
+        assert "court main runs here, but the contest file puts court hall here" in found["found"]
         assert "--listen" in found["todo"]
         assert doctor.court_port("127.0.0.1", port, None).status is Status.OK
 
@@ -228,7 +228,7 @@ def test_the_link_to_a_court(
     here = doctor.court_port("127.0.0.1", port, "main")
     assert (here.status, render(here.found)) == (Status.OK, "court main runs here")
     other = look(capsys, tmp_path, "--connect", court.address, "--court", "other")
-    assert "There is main" in other["court other"]["found"]
+    assert "The courts there: main" in other["court other"]["found"]
 
 
 def test_a_court_with_keys_is_known_by_its_own_invitation(tmp_path: Path) -> None:

@@ -118,7 +118,7 @@ def test_ready_for_a_contestant_who_cannot(
     assert [event["kind"] for event in events] == ["phase", "join", "decision", "ready"]
     assert [event["number"] for event in events] == [1, 2, 3, 4]
     code, out, _ = referee.run("log")
-    assert "ready for Slow Hands. Reason: a test" in out
+    assert "Slow Hands is set to ready. Reason: a test" in out
     assert person.poll() is None
 
 
@@ -135,7 +135,7 @@ def test_a_waiting_referee_does_nothing_twice(
 
     monkeypatch.setattr(RefereeClient, "decide", lose_the_answer)
     said = Referee(court, capsys).refused("abort", "--wait", "20", "--reason", "a test")
-    assert "abort: 'lacoc referee log' shows whether it was done." in said
+    assert "see whether \"abort\" was done." in said
     assert len(asked) == 1
 
 
@@ -147,7 +147,7 @@ def test_a_waiting_referee_gives_up_in_time(
     reason = Referee(court, capsys).refused("official", "--wait", "0.7")
 
     assert (
-        "official is still not possible after 0.7 s: it is possible only while the match is"
+        "The decision \"official\" is still not possible after 0.7 s: it is possible only while the match is"
         in reason
     )
 
@@ -217,12 +217,12 @@ def test_a_bot_ends_when_its_seat_is_taken(open_court: OpenCourt) -> None:
     court = open_court("--arena", "othello")
     first = court.start("bot", "straight", *court.where("left"))
     assert first.stdout is not None
-    assert "holds seat left" in first.stdout.readline()
+    assert "holds the left seat" in first.stdout.readline()
     court.start("bot", "straight", *court.where("left"), stdout=subprocess.DEVNULL)
     out, _ = first.communicate(timeout=30)
 
     assert first.returncode == 2
-    assert "The seat is lost: joined from another window or computer." in out
+    assert "The seat is lost: another window or computer has taken it over." in out
 
 
 def test_a_bot_says_that_its_court_is_silent(open_court: OpenCourt) -> None:
@@ -231,7 +231,7 @@ def test_a_bot_says_that_its_court_is_silent(open_court: OpenCourt) -> None:
     bot = court.start("bot", "straight", *court.where("left"))
     assert bot.stdout is not None
     lines = iter(bot.stdout.readline, "")
-    assert any("holds seat left" in line for line in lines)
+    assert any("holds the left seat" in line for line in lines)
     os.kill(court.process.pid, signal.SIGSTOP)
     try:
         said = next(line for line in lines if line.startswith("Link: "))
@@ -248,7 +248,7 @@ def test_a_bot_leaves_when_it_is_asked_to_end(
     court = open_court("--arena", "othello")
     bot = court.start("bot", "straight", *court.where("left"))
     assert bot.stdout is not None
-    assert "holds seat left" in bot.stdout.readline()
+    assert "holds the left seat" in bot.stdout.readline()
     bot.terminate()
     bot.communicate(timeout=60)
 

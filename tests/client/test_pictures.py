@@ -148,7 +148,7 @@ def test_the_lobby_says_who_is_missing() -> None:
     frame = make_frame(sheet, phase=int(Phase.LOBBY), seats=seats)
 
     assert words.phase_hint(frame, sheet) == (
-        "waiting for left to join; Team right has not said ready"
+        "waiting for the left seat to join; Team right has not said ready"
     )
 
 

@@ -62,7 +62,7 @@ def started(open_court: OpenCourt, tmp_path: Path) -> Iterator[tuple[CourtProces
     """Give a court whose match is being played, and the terminal of its left player."""
     court = open_court("--arena", "othello", "--seconds", "60", "--speed", "2")
     terminal = Terminal(tmp_path, "play", "--terminal", "--name", "Ants", *court.where("left"))
-    terminal.sees("Ants", " holds seat left of court main: Robot-Othello.")
+    terminal.sees("Ants", " holds the left seat of court main: Robot-Othello.")
     court.start("bot", "straight", *court.where("right"), stdout=subprocess.DEVNULL)
     terminal.sees("press r when you are ready")
     terminal.press("2")
@@ -87,7 +87,7 @@ def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Pa
     terminal.press("7")
     terminal.sees("[7] refused: your gait file has no such key.")
     terminal.press("\t")
-    terminal.sees("This arena opens level B locomotion only.")
+    terminal.sees("This arena allows only level B locomotion.")
     terminal.press(" ")
     terminal.sees("The terminal has no views")
     terminal.press("k")
@@ -198,7 +198,7 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
     code, said = piped(tmp_path, "0.1 1\n0.3 tab 2\n1 q\n", *words)
 
     assert code == 0, said
-    assert "Taken from this folder: Loco-data.txt." in said
+    assert "Files used from this folder: Loco-data.txt." in said
     assert "[2] refused: your gait file has no such key." in said
     assert [path.suffix for path in (tmp_path / "kept").iterdir()] == [".mcap"]
 
@@ -278,7 +278,7 @@ def test_wrong_files_are_a_table(quiet_court: CourtProcess, tmp_path: Path) -> N
     code, said = piped(tmp_path, "", *words)
 
     assert code == 2
-    assert "1 mistake. Nothing of the file is used until it is right." in said
+    assert "1 mistake. Nothing of the file is used until all are corrected." in said
     assert "│ four.txt │" in said
     assert "6 legs" in said
 
@@ -286,7 +286,7 @@ def test_wrong_files_are_a_table(quiet_court: CourtProcess, tmp_path: Path) -> N
 def test_the_board_at_a_terminal(quiet_court: CourtProcess, tmp_path: Path) -> None:
     """`watch --board` draws the board, and leaves the terminal in order when it is killed."""
     terminal = Terminal(tmp_path, "watch", "--terminal", "--board", *quiet_court.where())
-    terminal.sees("Robot-Othello, match 1", "LOBBY", "waiting for left to join", "L", "R", "R")
+    terminal.sees("Robot-Othello, match 1", "LOBBY", "waiting for the left seat to join", "L", "R", "R")
     terminal.child.kill(signal.SIGTERM)
     terminal.sees(SHOW_CURSOR)
 

@@ -82,7 +82,7 @@ def test_a_workbook_of_sequences_is_named(tmp_path: Path) -> None:
     """A workbook LocoTra-data.xlsx is left out, and a remark says so (rules 2)."""
     write(tmp_path / "LocoTra-data.xlsx", workbook())
     (remark,) = map(render, remarks(tmp_path, gaits_in(tmp_path)))
-    assert "LocoTra-data.xlsx is not taken" in remark
+    assert "LocoTra-data.xlsx is not used" in remark
 
 
 def test_nothing_named_leaves_all_to_the_contest() -> None:
@@ -180,7 +180,7 @@ def test_level_b_is_never_made_against_what_there_is() -> None:
     for keys, expected in (
         ([[0], [2]], "Key 1 of level B uses posture 2, but few.txt has only 0, 1."),
         ([[0], []], "Key 1 of level B has no posture"),
-        ([], "0 keys, the longest of 0 postures, do not fit"),
+        ([], "There are 0 keys, and the longest has 0 postures"),
     ):
         with pytest.raises(UserError, match=expected):
             with_level_b(short, keys)

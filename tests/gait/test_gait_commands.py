@@ -41,9 +41,9 @@ def test_check_says_what_each_key_does(lacoc, folder):
     """`check` tells each key's number of postures and which feet it lifts."""
     code, out, err = lacoc("gait", "check", *sorted(folder.iterdir()))
     assert (code, err) == (0, "")
-    assert "Loco-data.txt: right. Level A, postures, 6 legs." in out
-    assert "Loco-data.xlsx: right. Level A, postures, 6 legs." in out
-    _, locomotion = out.split("LocoTra-data.txt: right. Level B, locomotion, 6 legs.")
+    assert "Loco-data.txt: no mistakes. Level A, postures, 6 legs." in out
+    assert "Loco-data.xlsx: no mistakes. Level A, postures, 6 legs." in out
+    _, locomotion = out.split("LocoTra-data.txt: no mistakes. Level B, locomotion, 6 legs.")
     rows = [[c.strip() for c in line.split("│")[1:-1]] for line in locomotion.splitlines()]
     assert [row for row in rows if row] == [
         ["0", "1", "none"],
@@ -76,7 +76,7 @@ def test_check_shows_right_files_beside_wrong_ones(lacoc, folder):
     (folder / "bad.txt").write_text("?")
     code, out, err = lacoc("gait", "check", folder / "bad.txt", folder / "Loco-data.txt")
     assert code == 2
-    assert "Loco-data.txt: right" in out
+    assert "Loco-data.txt: no mistakes" in out
     assert "bad.txt" in err
 
 
@@ -87,7 +87,7 @@ def test_check_notes_labels_that_are_exchanged(lacoc, tmp_path, workshop, kind):
     write = write_workbook if kind.endswith("xlsx") else write_gait
     (tmp_path / kind).write_bytes(write(workshop, exchanged))
     code, out, err = lacoc("gait", "check", tmp_path / kind)
-    assert (code, f"{kind}: right" in out) == (0, True)
+    assert (code, f"{kind}: no mistakes" in out) == (0, True)
     assert " ".join(err.split()) == (
         f"Note: {kind}, row 12, column 2: the legend says L,F, and joint 0 is a joint of leg R,F. "
         "The order of the columns counts, not the legend."
@@ -147,7 +147,7 @@ def test_check_goes_on_after_a_file_that_is_not_there(lacoc, folder, monkeypatch
     monkeypatch.chdir(folder)
     code, out, _ = lacoc("gait", "check", "*.ods", "Loco-data.txt")
     assert code == 2
-    assert "Loco-data.txt: right" in out
+    assert "Loco-data.txt: no mistakes" in out
     code, out, _ = lacoc("gait", "check", "--json", "*.ods", "Loco-data.txt")
     (mistake,) = json.loads(out)["mistakes"]
     assert (code, mistake["file"]) == (2, "*.ods")
@@ -195,7 +195,7 @@ def test_convert_never_overwrites(lacoc, folder, workshop):
     code, _, err = lacoc("gait", "convert", folder / "Loco-data.txt", target, "--keys", "0")
     assert code == 0
     kept = folder / "LocoTra-data.1.txt"
-    assert f"{target} was there: it is {kept} now." in err
+    assert f"{target} was there already. It is named {kept} now." in err
     assert kept.read_bytes() == before
     assert read_gait_file(target) == to_locomotion(workshop, ((0,),))
 
@@ -207,8 +207,8 @@ def test_convert_never_overwrites(lacoc, folder, workshop):
         ("Loco-data.txt", "LocoTra.txt", "", "is not a list of postures"),
         ("Loco-data.txt", "LocoTra.txt", "0;;1", "is not a list of postures"),
         ("Loco-data.txt", "LocoTra.txt", "0;12", "is not a list of postures"),
-        ("Loco-data.txt", "LocoTra.txt", "0" + ";0" * 10, "11 keys, the longest of 1"),
-        ("Loco-data.txt", "LocoTra.txt", "0" + ",0" * 100, "the longest of 101 postures"),
+        ("Loco-data.txt", "LocoTra.txt", "0" + ";0" * 10, "11 keys, and the longest has 1"),
+        ("Loco-data.txt", "LocoTra.txt", "0" + ",0" * 100, "the longest has 101 postures"),
         ("Loco-data.txt", "Loco-data.xlsx", "0", "--keys is for making locomotion from postures"),
         ("LocoTra-data.txt", "LocoTra.txt", "0", "--keys is for making locomotion from postures"),
         ("Loco-data.txt", "Loco-data.ods", None, "the name of B must end with .txt or .xlsx"),

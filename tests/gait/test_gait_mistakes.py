@@ -7,7 +7,7 @@ from lacoc_shared.mistakes import FileRefused, Mistake
 
 ANGLE = "an angle from -150 to 150 degrees"
 NO_HEADER = (
-    '"Num of Posture" and their number (Loco-data), or the number of keys alone (LocoTra-data)'
+    '"Num of Posture" and the number of postures (Loco-data), or only the number of keys (LocoTra-data)'
 )
 
 CSV = (
@@ -268,7 +268,7 @@ def test_mistakes_of_loco_data(text, expected):
         ),
         pytest.param(
             f"1\n{posture('')}",
-            [(2, None, "18 cells", "the number of postures of key [0] alone, before its postures")],
+            [(2, None, "18 cells", "only the number of postures of key [0], in a row above them")],
             id="no number of postures",
         ),
         pytest.param(

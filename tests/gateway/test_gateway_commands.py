@@ -69,7 +69,7 @@ def test_play_fills_its_page_in(tmp_path: Path, stack: ExitStack) -> None:
     (tmp_path / "LocoTra-data.txt").write_bytes(gait.data)
     play = Command(tmp_path, "play", "--name", "Ants", *court.where("left"))
     assert play.path == "/play"
-    assert "Taken from this folder: LocoTra-data.txt." in play.said
+    assert "Files used from this folder: LocoTra-data.txt." in play.said
     with PageClient(play.url) as stranger:
         assert stranger.welcome["prefill"] is None
     with PageClient(play.url, play.key) as page:

@@ -352,5 +352,5 @@ def test_a_seat_that_can_not_be_had_now_may_be_asked_for_again(venue: Venue) -> 
         except Refused as error:
             refused.append(error)
     assert {(str(error), error.again) for error in refused} == {
-        ("Too many tries to join at once. Wait a few seconds.", True)
+        ("You tried to join too often. Wait a few seconds.", True)
     }

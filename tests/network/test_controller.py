@@ -67,7 +67,7 @@ def test_a_join_may_be_large_but_not_too_large(court: CourtStub, session: Sessio
     room = JOIN_MAX_BYTES - 1024
     small = len(encode(controller(session, postures=SentFile("a", b""))._join))
     controller(session, postures=SentFile("a", bytes(room - small - 4))).join()
-    with pytest.raises(UserError, match="too large together: 63 KiB"):
+    with pytest.raises(UserError, match="too large: 63 KiB"):
         controller(session, postures=SentFile("a", bytes(room))).join()
 
 
@@ -102,7 +102,7 @@ def test_an_unknown_seat_and_an_unknown_court_are_named(session: Session) -> Non
     """The message about an unknown seat or court lists those that exist."""
     with pytest.raises(UserError, match=r'no seat "middle". It has left and right'):
         Controller(session, "main", "middle", "t", "Blue")
-    with pytest.raises(UserError, match=r'no court "mian" at .* There is main'):
+    with pytest.raises(UserError, match=r'no court "mian" at .* The courts there: main'):
         Controller(session, "mian", "left", "t", "Blue")
 
 
@@ -196,7 +196,7 @@ def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session)
     until(lambda: (frame := one.wait_frame(1.0)) and frame.beat > still.beat)  # beats pass again
     for _ in range(5):
         one.join()
-    with pytest.raises(NotNow, match="Too many tries to join"):
+    with pytest.raises(NotNow, match="You tried to join too often"):
         one.join()
     with pytest.raises(UserError, match="not valid for") as refused:
         controller(session, token="guess").join()

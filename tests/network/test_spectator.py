@@ -104,10 +104,10 @@ def test_a_court_whose_frames_do_not_fit_its_sheet_is_told_of(
     """If frames keep naming another scene than the sheet does, an error says so."""
     spectator = Spectator(session, "main")
     court.scene = make_scene("a scene that no sheet describes")
-    with pytest.raises(UserError, match="another scene than its sheet"):
+    with pytest.raises(UserError, match="does not fit its own description"):
         until(lambda: spectator.wait_frame(1.0) and False)
     court.network.publish_scene(court.scene)
-    with pytest.raises(UserError, match="another scene than its sheet"):
+    with pytest.raises(UserError, match="does not fit its own description"):
         spectator.scene()
 
 
@@ -176,7 +176,7 @@ def test_a_request_where_no_court_is(court: CourtStub, session: Session) -> None
     """A request to an unknown court gets no reply, and a spectator's error lists the courts."""
     with pytest.raises(NoReply):
         session.ask("lacoc/other/sheet")
-    with pytest.raises(UserError, match=r'no court "other" .* There is main'):
+    with pytest.raises(UserError, match=r'no court "other" .* The courts there: main'):
         Spectator(session, "other")
 
 

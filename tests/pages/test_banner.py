@@ -42,7 +42,7 @@ def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: s
     """Every page shows the gateway's reason for an unknown court and for one that does not run."""
     venue.web()
     show = opened(open_page, venue, f"{path}?court=centre")
-    show.sees(WAITS[path], 'There is no court "centre" here. There is main.')
+    show.sees(WAITS[path], 'There is no court "centre" here. The courts here: main.')
     show.page.close()
     show = opened(open_page, venue, f"{path}?court=centre", locale="ja-JP")
     show.sees(WAITS[path], "ここにコート「centre」はありません（mainがあります）。")

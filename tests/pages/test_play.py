@@ -478,7 +478,7 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
     page = seated(venue, sit)
     elsewhere = venue.contestant("left", "Ants")
     page.stands("lost")
-    page.sees(".entrance", "oined from another window or computer")
+    page.sees(".entrance", "nother window or computer has taken")
     assert elsewhere.seat["hold"] == "held"
     page.page.click("text=Join again")
     page.stands("seated")

@@ -171,7 +171,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     )
     expect(big(page)).to_have_attribute("aria-disabled", "true")
     seat(page, 0, "Say ready").click()
-    log_has(page, "Referee Kim: ready for Ants.")
+    log_has(page, "Referee Kim: Ants is set to ready.")
     court.contestant("right", "Bees")
     phase(page, 2)
     step(page, "Control+Enter")

@@ -59,8 +59,8 @@ def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> No
     assert moved_m > 0.05
     assert mistake.field == "start.posture_deg"
     assert render(mistake.found) == (
-        "standing with key 0 of level B, "
-        f"a robot that goes {moved_m:.3f} m from its start within 2 s"
+        f"a robot that goes {moved_m:.3f} m from its start within 2 s "
+        "(standing with key 0 of level B)"
     )
     assert render(mistake.expected).startswith("at most 0.05 m")
 

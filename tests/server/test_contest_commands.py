@@ -34,7 +34,7 @@ def test_a_new_file_is_right_for_every_arena(tmp_path: Path, arena: str, seats: 
     file = tmp_path / "contest.toml"
     run("init", str(file), "--arena", arena)
 
-    assert "is right" in run("check", str(file))
+    assert "has no mistakes" in run("check", str(file))
     court = contests.load(file).courts["main"]
     assert court.arena == arena
     assert list(court.seat) == seats
@@ -59,7 +59,7 @@ def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
     text = file.read_text()
     own = '[court.main.seat.right]\ncolour = "#009e73"\npattern = "dots"\n'
     file.write_text(text.replace("[court.main.seat.right]\n", own))
-    assert "is right" in run("check", str(file))
+    assert "has no mistakes" in run("check", str(file))
     court = contests.load(file).courts["main"]
     left, right = arenas.load(court.arena, court.settings, court.looks).seats
     assert (right.colour, right.pattern) == ("#009e73", "dots")

@@ -70,9 +70,9 @@ def test_what_went_wrong_is_said_once() -> None:
         "left seat: 3 refused: too many at once.",
         "left seat: 1 refused: wrong signature.",
         "Referee's desk: 1 refused: wrong token.",
-        "Slow beats: 3, and 3 in all. The latest began 61 ms late.",
+        "Slow beats: 3 more, 3 in all. The worst began 61 ms late.",
         "The record m.mcap can't be written: disk full. Make room on its disk.",
-        "The record is written again.",
+        "The record can be written again.",
     ]
     assert [line["code"] for line in lines][-2:] == ["record.no-room", "log.record-again"]
     assert {line["match_id"] for line in lines} == {"m-1"}
@@ -88,4 +88,4 @@ def test_slow_beats_are_told_now_and_then() -> None:
             log.health("m-1", slow)
     told = [line for line in lines if line["kind"] == "slow"]
     assert [line["count"] for line in told] == [1, 30, 30, 30]
-    assert told[1]["event"].startswith("Slow beats: 30, and 31 in all")
+    assert told[1]["event"].startswith("Slow beats: 30 more, 31 in all")

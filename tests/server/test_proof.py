@@ -88,7 +88,7 @@ def test_bits_may_differ_only_where_another_arithmetic_recorded(
     assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
     if kind is Kind.OTHER_ARITHMETIC:
         assert found.worst == (1, 9)
-        assert "beats 1 to 9, is 1.0e-09 m or rad from the record" in render(found.said)
+        assert "at most by 1.0e-09 m or rad, in beats 1 to 9" in render(found.said)
 
 
 def test_each_segment_says_what_made_it() -> None:
