@@ -135,7 +135,7 @@ def test_a_waiting_referee_does_nothing_twice(
 
     monkeypatch.setattr(RefereeClient, "decide", lose_the_answer)
     said = Referee(court, capsys).refused("abort", "--wait", "20", "--reason", "a test")
-    assert "see whether \"abort\" was done." in said
+    assert 'see whether "abort" was done.' in said
     assert len(asked) == 1
 
 
@@ -147,8 +147,8 @@ def test_a_waiting_referee_gives_up_in_time(
     reason = Referee(court, capsys).refused("official", "--wait", "0.7")
 
     assert (
-        "The decision \"official\" is still not possible after 0.7 s: it is possible only while the match is"
-        in reason
+        'The decision "official" is still not possible after 0.7 s: '
+        "it is possible only while the match is" in reason
     )
 
 

@@ -286,7 +286,9 @@ def test_wrong_files_are_a_table(quiet_court: CourtProcess, tmp_path: Path) -> N
 def test_the_board_at_a_terminal(quiet_court: CourtProcess, tmp_path: Path) -> None:
     """`watch --board` draws the board, and leaves the terminal in order when it is killed."""
     terminal = Terminal(tmp_path, "watch", "--terminal", "--board", *quiet_court.where())
-    terminal.sees("Robot-Othello, match 1", "LOBBY", "waiting for the left seat to join", "L", "R", "R")
+    terminal.sees(
+        "Robot-Othello, match 1", "LOBBY", "waiting for the left seat to join", "L", "R", "R"
+    )
     terminal.child.kill(signal.SIGTERM)
     terminal.sees(SHOW_CURSOR)
 

@@ -7,7 +7,8 @@ from lacoc_shared.mistakes import FileRefused, Mistake
 
 ANGLE = "an angle from -150 to 150 degrees"
 NO_HEADER = (
-    '"Num of Posture" and the number of postures (Loco-data), or only the number of keys (LocoTra-data)'
+    '"Num of Posture" and the number of postures (Loco-data), '
+    "or only the number of keys (LocoTra-data)"
 )
 
 CSV = (

@@ -172,7 +172,10 @@ def test_sequences_are_not_for_workbooks():
 def test_a_workbook_is_not_told_to_be_a_text_file(sample):
     """A message about a workbook gives no advice for text files."""
     mistakes = refused(edited(sample, A1="Number"))
-    assert mistakes[0][5:] == ('"Number"', '"Num of Posture" and the number of postures (Loco-data)')
+    assert mistakes[0][5:] == (
+        '"Number"',
+        '"Num of Posture" and the number of postures (Loco-data)',
+    )
 
 
 def test_other_sheets_are_named():

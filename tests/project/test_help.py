@@ -1,13 +1,17 @@
 """Help that a student understands: every command and every option says what it is for."""
 
 import re
+import tomllib
 from collections.abc import Iterator
+from importlib import resources
 from typing import Any
 
 import pytest
 import typer
 
+from lacoc_shared import words
 from lacoc_shared.command import cli
+from lacoc_shared.command import help as help_text
 
 ROOT: Any = typer.main.get_command(cli.app)
 
@@ -67,3 +71,92 @@ def test_help_is_shown_as_it_is_written(
     compact = "".join(words.split())
     lost = [key for text in texts if text for key in re.findall(r"\[\w+\]", text)]
     assert [key for key in lost if key not in compact] == []
+
+
+TYPER = re.compile(r"Usage|Options|Arguments|Commands|\[required|\[default|\[env var|\[OPTIONS")
+SENTENCE = re.compile(r"[A-Za-z]+ [a-z]{2,} [a-z]+ [a-z]{2,}")
+
+
+def texts_of_help() -> set[str]:
+    """All that the help of the commands says, in English."""
+    found = set(cli._PANELS) | {cli._OTHERS}
+    for command in COMMANDS.values():
+        for part in (command, *command.params):
+            found |= {getattr(part, "help", None) or "", getattr(part, "rich_help_panel", "") or ""}
+    return found - {""}
+
+
+def english_left(shown: str) -> list[str]:
+    """Lines of a Japanese help that are English."""
+    return [line for line in shown.splitlines() if TYPER.search(line) or SENTENCE.search(line)]
+
+
+def japanese_help(name: str, capsys: pytest.CaptureFixture[str]) -> str:
+    """What a command shows with --help to a user of Japanese."""
+    with pytest.raises(SystemExit):
+        cli.main([*name.split()[1:], "--help"])
+    return capsys.readouterr().out
+
+
+@pytest.fixture
+def japanese(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A user of Japanese, with a wide terminal."""
+    monkeypatch.setenv("LACOC_LANGUAGE", "ja")
+    monkeypatch.setenv("COLUMNS", "200")
+    yield
+    words.use("en")
+    help_text.translate_typer()
+
+
+def test_the_table_of_help_has_the_texts_of_the_commands() -> None:
+    """Each English text once, and none that no command has any more."""
+    file = resources.files("lacoc_shared.words") / "texts" / "help.toml"
+    english = [pair["en"] for pair in tomllib.loads(file.read_text("utf-8"))["text"]]
+
+    assert sorted(english) == sorted(texts_of_help())
+
+
+@pytest.mark.usefixtures("japanese")
+def test_help_in_japanese_has_no_english_line(capsys: pytest.CaptureFixture[str]) -> None:
+    """Every command; file names and words to type may be English, sentences may not."""
+    for name in COMMANDS:
+        assert english_left(japanese_help(name, capsys)) == [], name
+
+
+@pytest.mark.usefixtures("japanese")
+def test_an_english_line_is_found(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The check above fails if a text or one of typer's own words is not translated."""
+    whole = help_text.japanese()
+    for text in ("Say ready for a contestant who cannot.", "Options"):
+        rest = {en: ja for en, ja in whole.items() if en != text}
+        monkeypatch.setattr(help_text, "japanese", lambda rest=rest: rest)
+        assert english_left(japanese_help("lacoc referee ready", capsys)) != [], text
+
+
+@pytest.mark.usefixtures("japanese")
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        ("gait chek", "'chek' というコマンドはありません。もしかして：check"),
+        ("gait check --robto x", "--robto というオプションはありません。もしかして：--robot"),
+        ("gait convert", "'A' を指定してください。"),
+        ("demo --seconds x", "'--seconds' の値が正しくありません：数を指定してください。"),
+    ],
+)
+def test_a_mistake_in_the_use_is_told_in_japanese(
+    typed: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        cli.main(typed.split())
+    assert said in capsys.readouterr().err
+
+
+def test_after_japanese_comes_english_again(capsys: pytest.CaptureFixture[str]) -> None:
+    """A process that changes its language shows typer's own words in it."""
+    before = japanese_help("lacoc gait check", capsys)
+    words.use("ja")
+    help_text.translate_typer()
+    words.use("en")
+    assert japanese_help("lacoc gait check", capsys) == before

@@ -22,8 +22,10 @@ from rich.markup import escape
 from typer.core import TyperCommand, TyperGroup
 
 from lacoc_shared import __version__, words
+from lacoc_shared.command import help as help_text
 from lacoc_shared.command import language, plugins, screen
 from lacoc_shared.mistakes import FileRefused, UserError, printable, text_of
+from lacoc_shared.words import render, say
 
 WRONG_USE = 2
 """Exit code: a mistake that the user can correct."""
@@ -58,7 +60,7 @@ class _Commands(UserDict[str, Any]):
         if isinstance(command, EntryPoint):
             command = self.data[name] = _load(command)
             if self._panel:
-                command.rich_help_panel = self._panel.get(name, _OTHERS)
+                command.rich_help_panel = help_text.in_words(self._panel.get(name, _OTHERS))
         return command
 
 
@@ -104,21 +106,22 @@ def _load(entry: EntryPoint) -> Any:
     except Exception as error:
         command = _broken(error)  # a broken command must not hide the others
     command.name = entry.name
-    _join_lines(command)
+    _prepare_help(command)
     command.params = [param for param in command.params if param.name not in _COMPLETION]
     return command
 
 
-def _join_lines(command: Any) -> None:
-    """Let the terminal's width break the lines of help, not the source."""
+def _prepare_help(command: Any) -> None:
+    """Let the terminal's width break the lines of help, not the source; and translate it."""
     if command.help:
         paragraphs = command.help.split("\n\n")
         command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
+    help_text.translate(command)
     subcommands = getattr(command, "commands", {})
     loaded = subcommands.data if isinstance(subcommands, _Commands) else subcommands
     for subcommand in loaded.values():
         if not isinstance(subcommand, EntryPoint):  # others follow when they are loaded
-            _join_lines(subcommand)
+            _prepare_help(subcommand)
 
 
 def _broken(error: Exception) -> TyperCommand:
@@ -130,7 +133,7 @@ def _broken(error: Exception) -> TyperCommand:
     return TyperCommand(
         None,
         callback=fail,
-        help=escape(_missing_extra(error) or f"Can't be loaded: {error}"),
+        help=escape(_missing_extra(error) or render(say("command.broken", error=str(error)))),
         add_help_option=False,
         context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
     )
@@ -141,7 +144,7 @@ def _missing_extra(error: Exception) -> str | None:
     module = (error.name or "").partition(".")[0] if isinstance(error, ImportError) else ""
     if module not in _EXTRAS:
         return None
-    return f'Needs {module}, which is not installed: pip install "lacoc[{_EXTRAS[module]}]"'
+    return render(say("command.missing-package", package=module, extra=_EXTRAS[module]))
 
 
 def _print_version(wanted: bool) -> None:
@@ -187,7 +190,10 @@ def main(args: Sequence[str] | None = None) -> int:
     screen.accept_any_text()
     screen.show_crashes(sys.stderr)
     try:
-        typer.main.get_command(app).main(args=args, prog_name="lacoc")
+        command = typer.main.get_command(app)
+        _prepare_help(command)
+        help_text.translate_typer()
+        command.main(args=args, prog_name="lacoc")
     except UserError as error:
         screen.error(str(error))
         return WRONG_USE
@@ -212,10 +218,7 @@ def main(args: Sequence[str] | None = None) -> int:
 
 def _no_text(error: UnicodeEncodeError) -> str:
     """Say which file name or argument can't be sent or stored because it is not text."""
-    return (
-        f"'{printable(text_of(error.object))}' holds bytes that are not text in UTF-8. "
-        "Rename the file or folder, or write the word again."
-    )
+    return render(say("command.no-text", text=printable(text_of(error.object))))
 
 
 def _flush() -> None:

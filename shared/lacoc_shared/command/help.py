@@ -1,0 +1,136 @@
+"""The help of the commands in the language of the user.
+
+The source has the help in English, where typer reads it. `words/texts/help.toml` pairs each
+English text with its Japanese, and also has typer's own words, such as "Options". The table
+is not read for English. A text that is not in it, such as that of another package, stays as
+it is.
+"""
+
+import tomllib
+from collections.abc import Callable, Mapping
+from difflib import get_close_matches
+from functools import cache, partial
+from importlib import resources
+from typing import Any
+
+from lacoc_shared import words
+
+_TITLES = (
+    "DEPRECATED_STRING",
+    "DEFAULT_STRING",
+    "ENVVAR_STRING",
+    "REQUIRED_LONG_STRING",
+    "ARGUMENTS_PANEL_TITLE",
+    "OPTIONS_PANEL_TITLE",
+    "COMMANDS_PANEL_TITLE",
+    "ERRORS_PANEL_TITLE",
+    "ABORTED_TEXT",
+    "RICH_HELP",
+)
+"""Names of typer's own words in its module `rich_utils`."""
+_TEXT = "_make_rich_text"
+"""Name of the function of `rich_utils` that makes a text for a table."""
+_ERROR = "rich_format_error"
+"""Name of the function of `rich_utils` that shows a mistake in the use of a command."""
+_english: dict[str, Any] = {}
+"""What `rich_utils` has under these names, once it was replaced."""
+
+
+@cache
+def japanese() -> Mapping[str, str]:
+    """Read the table of help: each English text with its Japanese."""
+    file = resources.files("lacoc_shared.words") / "texts" / "help.toml"
+    table = tomllib.loads(file.read_text(encoding="utf-8"))
+    return {pair["en"]: pair["ja"] for pair in table["text"] + table["typer"]}
+
+
+def in_words(text: str) -> str:
+    """Return a text of the help in the language of this process."""
+    return text if words.current() == "en" else japanese().get(text, text)
+
+
+def translate(command: Any) -> None:
+    """Put the help of a command and its parameters into the language of this process."""
+    if words.current() == "en":
+        return
+    for part in (command, *command.params):
+        for name in ("help", "rich_help_panel", "options_metavar", "subcommand_metavar"):
+            if isinstance(text := getattr(part, name, None), str):
+                setattr(part, name, in_words(text))
+    command.context_class = _context(command.context_class)
+    if hasattr(command, "resolve_command"):
+        command.resolve_command = partial(_resolved, command, command.resolve_command)
+
+
+def translate_typer() -> None:
+    """Put typer's own words into the language of this process."""
+    if words.current() == "en" and not _english:
+        return
+    from typer import rich_utils  # heavy; no command in English needs it here
+
+    if not _english:
+        _english.update({name: getattr(rich_utils, name) for name in (*_TITLES, _TEXT, _ERROR)})
+    for name in _TITLES:
+        setattr(rich_utils, name, in_words(_english[name]))
+    for name, change in ((_TEXT, _folded), (_ERROR, _explained)):
+        own = _english[name]
+        setattr(rich_utils, name, own if words.current() == "en" else partial(change, own))
+
+
+def _folded(make: Callable[..., Any], **what: Any) -> Any:
+    """Make a text that breaks anywhere: Japanese has no spaces, and a table cuts long words."""
+    text = make(**what)
+    text.overflow = "fold"
+    return text
+
+
+@cache
+def _context(base: Any) -> Any:
+    """Make a context whose formatter and help option use the language of this process."""
+
+    class Formatter(base.formatter_class):  # type: ignore[misc]
+        def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
+            super().write_usage(prog, args, in_words("Usage: ") if prefix is None else prefix)
+
+    class Context(base):  # type: ignore[misc]
+        formatter_class = Formatter
+
+        def __init__(self, command: Any, *args: Any, **settings: Any) -> None:
+            super().__init__(command, *args, **settings)
+            if option := command.get_help_option(self):
+                option.help = in_words(option.help)
+
+    return Context
+
+
+def _resolved(group: Any, resolve: Callable[..., Any], ctx: Any, args: list[str]) -> Any:
+    """Find the command of a group that the first word names, or say that there is none."""
+    name = args[0]
+    if not name.startswith("-") and group.get_command(ctx, name) is None:
+        near = get_close_matches(name, group.list_commands(ctx))
+        ctx.fail(_sentence("No such command '{}'.", name) + _suggested(near))
+    return resolve(ctx, args)
+
+
+def _explained(show: Callable[[Any], None], error: Any) -> None:
+    """Show a mistake in the use of a command; a kind that is not known here stays English."""
+    message = error.message
+    hint = error.param.get_error_hint() if getattr(error, "param", None) else ""
+    match type(error).__name__:
+        case "NoSuchOption":
+            message = _sentence("No such option: {}", error.option_name)
+            message += _suggested(sorted(error.possibilities or ()))
+        case "MissingParameter":
+            message = _sentence("Missing {}.", hint)
+        case "BadParameter" if hint:
+            message = _sentence("Invalid value for {}: {}", hint, in_words(message))
+    error.format_message = lambda: message
+    show(error)
+
+
+def _sentence(text: str, *values: str) -> str:
+    return in_words(text).format(*values)
+
+
+def _suggested(names: list[str]) -> str:
+    return _sentence("Did you mean {}?", ", ".join(names)) if names else ""
