@@ -5,6 +5,7 @@ import io
 import itertools
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header, Result
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import use
 
 MakeFrame = Callable[..., Frame]
 MakeHeader = Callable[..., Header]
@@ -257,7 +259,7 @@ def test_info(tmp_path: Path, write_match: WriteMatch) -> None:
     assert (found["complete"], found["cut"], found["result"]["scores"]) == (True, "", [20, 16])
     assert found["keys"]["left"] == {"count": 4, "held_most_beats": 0, "late": 0}
     assert found["keys"]["right"] == {"count": 4, "held_most_beats": 6, "late": 2}
-    assert "right: 4, held for 6 beats at most, 2 late" in words.stdout
+    assert "right 4 (2 late, delayed by at most 6 beats)" in words.stdout
 
 
 def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
@@ -351,3 +353,15 @@ def test_a_record_that_contradicts_itself(
     done = CliRunner().invoke(app, words)
     assert isinstance(done.exception, UserError)
     assert "do not fit together" in str(done.exception)
+
+
+def test_info_in_japanese(tmp_path: Path) -> None:
+    """Its headings and sentences are in the language of the user."""
+    path = write_match(tmp_path)
+    use("ja")
+    try:
+        told = CliRunner().invoke(app, ["info", str(path)]).stdout
+    finally:
+        use("en")
+    assert "勝者：左。時間切れ" in told
+    assert not re.findall(r"\b(Match|Court|Teams|Held|Keys|winner|frames|late)\b", told)

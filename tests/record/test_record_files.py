@@ -30,10 +30,16 @@ from lacoc_shared.record.reader import NoMatch, Record
 from lacoc_shared.record.schema import BEAT_NS, KINDS, Header, Result, Touch
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import render
 
 WriteMatch = Callable[..., Path]
 MakeHeader = Callable[..., Header]
 MakeFrame = Callable[..., Frame]
+
+
+def words_of(record: Record) -> str:
+    """Why a record could be read no further, in words."""
+    return render(record.cut) if record.cut else ""
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +75,7 @@ def test_what_is_written_is_read(
     assert [event.beat for event in record.events] == [3, 13, 23, 33]
     assert record.touches[3] == Touch(((1,), ()), (None, (0.1, 0.2, 0.3)))
     assert record.snapshots == [(5, bytes(range(256)) * 4), (25, bytes(range(256)) * 4)]
-    assert (record.last_beat, record.cut) == (39, "")
+    assert (record.last_beat, record.cut) == (39, None)
 
 
 def test_a_segment_is_plain_mcap(segment: Path) -> None:
@@ -118,7 +124,7 @@ def test_a_segment_cut_anywhere_gives_every_whole_message(
     )
     assert [data for _, data in record.snapshots] == whole.get("/lacoc/snapshot", [])
     assert (record.result is not None) == ("/lacoc/result" in whole)
-    assert ("has no end there" in record.cut) == (b"\x0f\x04\0\0\0\0\0\0\0" not in cut)
+    assert ("has no end there" in words_of(record)) == (b"\x0f\x04\0\0\0\0\0\0\0" not in cut)
 
 
 def test_a_packed_file_cut_anywhere_is_read_or_refused(tmp_path: Path, packed: Path) -> None:
@@ -158,9 +164,9 @@ def test_a_damaged_closed_file_says_so(tmp_path: Path, segment: Path) -> None:
     path.write_bytes(data)
     record = Record.read(path)
     assert [beat for beat, _ in record.frames] == list(range(23))
-    assert "stops after beat 22, and is damaged at byte" in record.cut
+    assert "stops after beat 22, and is damaged at byte" in words_of(record)
     assert record.lost
-    assert "Copy it again" in record.cut
+    assert "Copy it again" in words_of(record)
     with pytest.raises(UserError, match=r"not packed, and its segments are kept.*beat 22"):
         pack.pack([path], tmp_path / "m.mcap")
     assert list(tmp_path.iterdir()) == [path]
@@ -177,8 +183,8 @@ def test_a_missing_segment_is_told(
     late.close()
     record = Record.read(late.path)
     assert [beat for beat, _ in record.frames] == list(range(40))
-    assert "stops after beat 39, and has no end there" in record.cut
-    assert f"Beats 40 to 59 are missing before {late.path}" in record.cut
+    assert "stops after beat 39, and has no end there" in words_of(record)
+    assert f"Beats 40 to 59 are missing before {late.path}" in words_of(record)
     with pytest.raises(UserError, match="Beats 40 to 59 are missing"):
         pack.pack(files.segment_paths(tmp_path, "m"), tmp_path / "m.mcap")
     assert len(files.segment_paths(tmp_path, "m")) == 2
@@ -198,7 +204,7 @@ def test_a_segment_without_a_header_holds_nothing(
     third.close()
     record = Record.read(third.path)
     assert [beat for beat, _ in record.frames] == list(range(41))
-    assert record.cut == ""
+    assert record.cut is None
     pack.pack(files.segment_paths(tmp_path, "m"), tmp_path / "m.mcap")
     assert Record.read(tmp_path / "m.mcap") == record
 
@@ -216,8 +222,8 @@ def test_an_unfinished_segment_ends_where_it_stops_making_sense(
     path.write_bytes(data[:start] + bytes(100) + data[start + 100 :])
     before = Record.read(path)
     assert [beat for beat, _ in before.frames] == list(range(38))
-    assert "stops after beat 37, and is damaged at byte" in before.cut
-    assert re.search(r"its last 4\d\d\d bytes can't be read", before.cut)
+    assert "stops after beat 37, and is damaged at byte" in words_of(before)
+    assert re.search(r"its last 4\d\d\d bytes can't be read", words_of(before))
     with_next = RecordWriter(tmp_path, header(segment=1, first_beat=38))
     with_next.frame(38, codec.encode(frame(38)))
     with_next.close()
@@ -290,7 +296,7 @@ def test_a_restarted_court_goes_on_in_a_new_segment(
     assert 39 not in record.inputs
     assert [event.beat for event in record.events] == [3, 13, 23]
     assert list(record.touches) == [3, 13, 23]
-    assert (record.last_beat, record.cut) == (33, "")
+    assert (record.last_beat, record.cut) == (33, None)
     pack.pack(files.segment_paths(tmp_path, "m"), tmp_path / "m.mcap")
     assert Record.read(tmp_path / "m.mcap") == record
 
@@ -318,8 +324,8 @@ def test_files_that_are_no_record_of_one_match_are_refused(
         (newer.path, "has format 7, and this software reads format 1"),
         (late.path, "the segments before it are missing"),
         ([mine, late.path], "belongs to match late"),
-        ([mine, mine], "comes after segment 0"),
-        ([], "There is no match in no files"),
+        ([mine, mine], "given after segment 0"),
+        ([], "no record was named"),
     ):
         with pytest.raises(UserError, match=sentence):
             Record.read(paths)
@@ -362,7 +368,7 @@ def test_a_full_disk_loses_nothing(tmp_path: Path, header: MakeHeader, frame: Ma
     writer.close()
     record = Record.read(writer.path)
     assert [beat for beat, _ in record.frames] == list(range(101))
-    assert record.cut == ""
+    assert record.cut is None
 
 
 def test_a_disk_that_reports_errors_later_is_heard(
@@ -444,11 +450,11 @@ def test_a_damaged_time_ends_what_is_read(
         writer.frame(beat, codec.encode(frame(0)))
     record = Record.read(writer.path)
     assert record.last_beat == 1
-    assert "stops after beat 1, and is damaged at byte" in record.cut
+    assert "stops after beat 1, and is damaged at byte" in words_of(record)
     writer.close()
     record = Record.read(writer.path)
     assert record.last_beat == 1
-    assert "stops after beat 1, and is damaged at byte" in record.cut
+    assert "stops after beat 1, and is damaged at byte" in words_of(record)
 
 
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.8])
@@ -467,7 +473,7 @@ def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: P
         return
     record = Record.read(path)
     assert record.lost
-    assert words in record.cut
+    assert words in words_of(record)
 
 
 def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed: Path) -> None:

@@ -216,7 +216,7 @@ def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
             arrivals_s.append(mail.arrived_s)
         assert max(later - one for one, later in pairwise(arrivals_s)) < SILENT_AFTER_S
     assert sorted(path.name[-9:] for path in folder.iterdir()) == ["-001.mcap", "-002.mcap"]
-    assert [Record.read(path).cut for path in folder.iterdir()] == ["", ""]
+    assert [Record.read(path).cut for path in folder.iterdir()] == [None, None]
 
 
 def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) -> None:
@@ -233,7 +233,7 @@ def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) ->
         assert those.frame.match == 2
         those.reach(Phase.READY)
     assert sorted(path.name[-9:] for path in folder.iterdir()) == ["-001.mcap", "-002.mcap"]
-    assert [Record.read(path).cut for path in folder.iterdir()] == ["", ""]
+    assert [Record.read(path).cut for path in folder.iterdir()] == [None, None]
 
 
 def test_a_court_does_not_open_on_a_full_disk(tmp_path: Path) -> None:

@@ -266,7 +266,7 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
         stack.enter_context(served(contest, folder, before=failing(flag, "start")))
         those.until(lambda: len(list(folder.glob("*[0-9].mcap"))) == 3)
     records = packed(folder, "001", "002", "003", "001")
-    assert all(Record.read(path).cut == "" for path in records)
+    assert all(Record.read(path).cut is None for path in records)
 
 
 def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:

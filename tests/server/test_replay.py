@@ -90,7 +90,7 @@ def test_a_simulated_match_verifies(arena: str, tmp_path: Path) -> None:
     bots = list(ground.bots)
     simulate(made, [player(ground, 0, bots[1]), player(ground, 1, bots[0])], tmp_path)
     record = Record.read(tmp_path / "m.mcap")
-    assert (record.cut, record.result is not None) == ("", True)
+    assert (record.cut, record.result is not None) == (None, True)
     found = verdict(record)
     assert (found.kind, found.differs_at) == (Kind.SAME, None)
     assert found.beats == record.last_beat + 1

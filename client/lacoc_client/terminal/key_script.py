@@ -12,6 +12,8 @@ import threading
 from collections import deque
 from typing import NamedTuple
 
+from lacoc_shared.words import Phrase, say
+
 NAMED = ("tab", "space", "up", "down", "left", "right")
 MOVING = frozenset("0123456789x") | {"up", "down", "left", "right"}
 """Keys that have an effect only while the match is played."""
@@ -35,11 +37,11 @@ class KeyScript:
         """Seconds of play at which the last key that moves the robot was pressed."""
         self._lines = 0
 
-    def add(self, line: str) -> str:
+    def add(self, line: str) -> Phrase | None:
         """Take in a line.
 
         Returns:
-            What is wrong with the line, which is then left out; else "".
+            What is wrong with the line, which is then left out; else None.
         """
         self._lines += 1
         words = line.partition("#")[0].lower().split()
@@ -47,12 +49,12 @@ class KeyScript:
         keys = [key for word in words[wait_s is not None :] for key in _keys(word)]
         wrong = next((key for key in keys if not _known(key)), None)
         if wrong is not None:
-            return f"Line {self._lines} is left out: {wrong!r} is no key and no time in seconds."
+            return say("script.no-key", line=self._lines, key=wrong)
         if wait_s is not None and not 0 <= wait_s < math.inf:
-            return f"Line {self._lines} is left out: {words[0]} is no time in seconds."
+            return say("script.no-time", line=self._lines, time=words[0])
         for index, key in enumerate(keys):
             self._steps.append(_Step(0.0 if index else wait_s or 0.0, key))
-        return ""
+        return None
 
     def due(self, playing_s: float, playing: bool) -> list[str]:
         """Return the keys that are due; of those that move the robot at most one a tick.
@@ -90,7 +92,7 @@ class PipeKeys:
     def __init__(self, descriptor: int) -> None:
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._script = KeyScript()
-        self._said: list[str] = []
+        self._said: list[Phrase] = []
         self._read_all = False
         threading.Thread(target=_read_lines, args=(descriptor, self._lines), daemon=True).start()
 
@@ -112,7 +114,7 @@ class PipeKeys:
         except queue.Empty:
             return self._script.due(playing_s, playing)
 
-    def take_said(self) -> list[str]:
+    def take_said(self) -> list[Phrase]:
         """Return what is wrong with the script; see `keys.Keys`."""
         said, self._said = self._said, []
         return said

@@ -15,6 +15,7 @@ from typing import Protocol
 
 from lacoc_client.terminal.key_script import PipeKeys
 from lacoc_shared.gait.cells import narrow
+from lacoc_shared.words import Phrase
 
 if sys.platform == "win32":
     import msvcrt
@@ -55,7 +56,7 @@ class Keys(Protocol):
             playing: whether it is being played.
         """
 
-    def take_said(self) -> list[str]:
+    def take_said(self) -> list[Phrase]:
         """Return what was wrong with the input since the last call."""
 
 
@@ -129,7 +130,7 @@ class _PosixKeys:
         self.ended = not data
         return self._decoder.feed(data)
 
-    def take_said(self) -> list[str]:
+    def take_said(self) -> list[Phrase]:
         return []
 
 
@@ -151,5 +152,5 @@ if sys.platform == "win32":
             name = _WINDOWS_ARROWS.get(msvcrt.getwch()) if special else key_name(character)
             return [name] if name else []
 
-        def take_said(self) -> list[str]:
+        def take_said(self) -> list[Phrase]:
             return []

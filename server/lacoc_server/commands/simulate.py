@@ -170,7 +170,7 @@ def _play(job: _Job, watch: Any = None) -> Result:
 def _run_one(job: _Job) -> list[Result]:
     duration_s = arenas.load(job.arena, job.overrides).match.duration_s
     with screen.progress() as progress:
-        task = progress.add_task(" against ".join(job.players), total=round(duration_s))
+        task = progress.add_task(" : ".join(job.players), total=round(duration_s))
 
         def watch(frame: Frame) -> None:
             if frame.beat % BEATS_PER_S == 0:
@@ -184,7 +184,7 @@ def _run_many(work: Sequence[_Job], jobs: int | None) -> list[Result]:
     # Each worker is a fresh interpreter: a forked one would inherit the parent's state.
     pool = ProcessPoolExecutor(jobs or os.cpu_count(), mp_context=get_context("spawn"))
     with screen.progress() as progress, pool:
-        task = progress.add_task("matches", total=len(work))
+        task = progress.add_task(render(say("simulate.matches")), total=len(work))
         futures = [pool.submit(_play, job) for job in work]
         for future in as_completed(futures):
             result = future.result()
@@ -194,9 +194,18 @@ def _run_many(work: Sequence[_Job], jobs: int | None) -> list[Result]:
 
 
 def _table(results: Sequence[Result], seats: Sequence[str]) -> Table:
-    table = Table(*seats, "score", "winner", "why it ended", "clock [s]")
+    table = screen.table(
+        *(say("fact.of-seat", seat=seat) for seat in seats),
+        say("fact.score"),
+        say("fact.winner"),
+        say("fact.why-ended"),
+        say("fact.clock-s"),
+    )
     for result in results:
-        winner = result.teams[seats.index(result.official)] if result.official in seats else "draw"
+        drawn = result.official not in seats
+        winner = (
+            render(say("simulate.draw")) if drawn else result.teams[seats.index(result.official)]
+        )
         score = " : ".join(map(str, result.scores))
         table.add_row(*result.teams, score, winner, render(result.reason), f"{result.clock_s:.1f}")
     return table
@@ -215,7 +224,7 @@ def _standings(results: Sequence[Result], work: Sequence[_Job]) -> Table:
                 won[name] += 1
             else:
                 lost[name] += 1
-    table = Table("player", "won", "drawn", "lost")
+    table = screen.table(say("fact.player"), say("fact.won"), say("fact.drawn"), say("fact.lost"))
     for name in sorted(names, key=lambda name: (-won[name], lost[name])):
         table.add_row(name, str(won[name]), str(drawn[name]), str(lost[name]))
     return table

@@ -87,7 +87,7 @@ def _told(record: Record, verdict: Verdict) -> dict[str, Any]:
         "distance": verdict.distance,
         "worst_section": verdict.worst,
         "text": render(verdict.said),
-        "cut": record.cut,
+        "cut": render(record.cut) if record.cut else "",
         "arithmetic": {"record": record.header.arithmetic, "here": dict(arithmetic.here())},
     }
 

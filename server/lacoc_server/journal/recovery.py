@@ -39,7 +39,7 @@ class Unfinished:
     """Hash of the token of each held seat, by seat."""
     health: HealthVerdict | None
     """The verdict until the court was killed."""
-    cut: str
+    cut: Phrase | None
     """Where its record ends, in words."""
     other_arithmetic: Phrase | None = None
     """How this machine computes differently from the machine that made the record; None: both
@@ -81,7 +81,7 @@ def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
         try:
             record = Record.read(segments.values())
             _check_origin(record, name, arena)
-            if record.gap:
+            if record.gap and record.cut:
                 raise UserError(record.cut)
             resumed = resume(record, folder=arena.folder)
             _check_seats(resumed.match, arena)

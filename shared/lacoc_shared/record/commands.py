@@ -15,12 +15,13 @@ from rich.text import Text
 from lacoc_shared.command import keep, screen
 from lacoc_shared.command.cli import lazy_group
 from lacoc_shared.inputs import KeySeat
-from lacoc_shared.messages import HealthVerdict
+from lacoc_shared.messages import HealthVerdict, LinkVerdict
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export import tables as exports
 from lacoc_shared.record.reader import Record
+from lacoc_shared.record.schema import Result
 from lacoc_shared.seat import BEAT_S
-from lacoc_shared.words import counted, render, say
+from lacoc_shared.words import Phrase, render, say
 
 _NOT_IN_NAMES = re.compile(r"[^\w.-]")
 
@@ -47,7 +48,7 @@ def info(
         return
     table = Table(show_header=False, box=None)
     for name, value in _lines(record, found):
-        table.add_row(name, Text(value))
+        table.add_row(render(name), Text(render(value)))
     screen.show(table)
     if record.cut:
         screen.warn(record.cut)
@@ -152,7 +153,7 @@ def _summary(record: Record) -> dict[str, Any]:
         "events": len(record.events),
         "snapshots": len(record.snapshots),
         "complete": not record.cut,
-        "cut": record.cut,
+        "cut": render(record.cut) if record.cut else "",
         "result": msgspec.to_builtins(record.result),
         "health": msgspec.to_builtins(record.health),
     }
@@ -169,61 +170,92 @@ def _keys(record: Record, seat: int) -> dict[str, int]:
     }
 
 
-def _held(health: HealthVerdict | None) -> str:
-    """Say in words how well the match ran."""
+def _how_it_ran(health: HealthVerdict | None) -> Phrase:
+    """Say how well the match ran."""
     if health is None:
-        return "headless, or not played: nothing was measured"
-    words = [
-        f"{health.real_time_factor:.3f} of real time",
-        f"{health.slow_beats} of {health.played_beats} beats slow",
-        f"the latest by {health.worst_late_ms:.0f} ms",
-        f"{health.faults} stops of physics",
-        f"{health.resumptions} resumptions",
-    ]
-    for seat in health.seats:
-        refused = ", ".join(f"{count} {counted(why)}" for why, count in seat.refused.items())
-        words.append(
-            f"{seat.id}: {seat.arrived} of {seat.expected} repeats, {seat.silences} silences of "
-            f"{seat.silent_s:.1f} s, refused {refused or 'nothing'}"
-        )
-    advised = (
-        f"Replay advised: {'; '.join(map(render, health.advice))}" if health.advice else "Well held"
+        return say("info.not-measured")
+    measured = say(
+        "info.measured",
+        factor=health.real_time_factor,
+        slow=health.slow_beats,
+        beats=health.played_beats,
+        worst_ms=health.worst_late_ms,
+        faults=health.faults,
+        restarts=health.resumptions,
+        seats=[_link(seat) for seat in health.seats],
     )
-    return f"{advised} ({'; '.join(words)})"
+    if health.advice:
+        return say("info.replay-advised", reasons=health.advice, measured=measured)
+    return say("info.well", measured=measured)
 
 
-def _lines(record: Record, found: dict[str, Any]) -> list[tuple[str, str]]:
-    result = record.result
+def _link(seat: LinkVerdict) -> Phrase:
+    return say(
+        "info.seat",
+        seat=seat.id,
+        arrived=seat.arrived,
+        expected=seat.expected,
+        times=seat.silences,
+        seconds=seat.silent_s,
+        refused=[say("info.refused", count=count, why=why) for why, count in seat.refused.items()],
+    )
+
+
+def _result(result: Result | None) -> Phrase:
     if result is None:
-        ended = "none: the match was never finished"
-    else:
-        scores = ", ".join(
-            f"{team} {score}" for team, score in zip(result.teams, result.scores, strict=False)
+        return say("info.no-result")
+    pairs = zip(result.teams, result.scores, strict=False)
+    scores = [say("info.score", team=team, score=score) for team, score in pairs]
+    why, clock_s = result.reason, result.clock_s
+    if result.official:
+        return say("info.result", scores=scores, winner=result.official, why=why, clock_s=clock_s)
+    return say(
+        "info.result-not-official",
+        scores=scores,
+        winner=result.computed,
+        why=why,
+        clock_s=clock_s,
+    )
+
+
+def _lines(record: Record, found: dict[str, Any]) -> list[tuple[Phrase, Phrase | str]]:
+    """List the lines that describe a record, each with its heading."""
+    match = say("info.match", match=found["match_id"], arena=found["arena"], number=found["match"])
+    teams = [
+        say("info.team", seat=seat, team=team) if team else say("info.no-team", seat=seat)
+        for seat, team in found["teams"].items()
+    ]
+    keys = [
+        say(
+            "info.keys",
+            seat=seat,
+            count=counts["count"],
+            beats=counts["held_most_beats"],
+            late=counts["late"],
         )
-        winner = result.official or f"{result.computed} (not official)"
-        ended = f"{scores}; winner: {winner}; {render(result.reason)}, after {result.clock_s:.2f} s"
+        for seat, counts in found["keys"].items()
+    ]
+    beats = record.last_beat + 1
+    holds = say(
+        "info.holds",
+        frames=found["frames"],
+        inputs=found["inputs"],
+        events=found["events"],
+        snapshots=found["snapshots"],
+        segments=found["segments"],
+    )
     versions = ", ".join(f"{name} {version}" for name, version in found["versions"].items())
-    counts = ("frames", "inputs", "events", "snapshots", "segments")
+    complete = say("word.yes") if found["complete"] else say("word.no")
     return [
-        ("Match", f"{found['match_id']}: {found['arena']}, match {found['match']}"),
-        ("Court", found["court"]),
-        ("Begun", found["started"]),
-        (
-            "Teams",
-            ", ".join(f"{seat}: {team or 'nobody'}" for seat, team in found["teams"].items()),
-        ),
-        ("Result", ended),
-        ("Held", _held(record.health)),
-        (
-            "Keys",
-            "; ".join(
-                f"{seat}: {keys['count']}, held for {keys['held_most_beats']} beats at most, "
-                f"{keys['late']} late"
-                for seat, keys in found["keys"].items()
-            ),
-        ),
-        ("Length", f"{(record.last_beat + 1) * BEAT_S:.2f} s in {record.last_beat + 1} beats"),
-        ("Holds", ", ".join(f"{found[name]} {name}" for name in counts)),
-        ("Written by", versions),
-        ("Complete", "yes" if found["complete"] else "no"),
+        (say("info-name.match"), match),
+        (say("info-name.court"), found["court"]),
+        (say("info-name.begun"), found["started"]),
+        (say("info-name.teams"), say("plain.sentences", sentences=teams)),
+        (say("info-name.result"), _result(record.result)),
+        (say("info-name.ran"), _how_it_ran(record.health)),
+        (say("info-name.keys"), say("plain.sentences", sentences=keys)),
+        (say("info-name.length"), say("info.length", seconds=beats * BEAT_S, beats=beats)),
+        (say("info-name.holds"), holds),
+        (say("info-name.written-by"), versions),
+        (say("info-name.complete"), complete),
     ]

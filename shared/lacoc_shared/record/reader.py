@@ -13,7 +13,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.schema import Header, Result, Touch
 from lacoc_shared.record.stream import TakeBytes, walk
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 V = TypeVar("V")
 
@@ -23,7 +23,11 @@ class NoMatch(UserError):
 
 
 class _Gap(Exception):
-    """Beats are missing between segments; the message says which."""
+    """Beats are missing between segments."""
+
+    def __init__(self, said: Phrase) -> None:
+        super().__init__()
+        self.said = said
 
 
 @dataclass
@@ -48,8 +52,8 @@ class Record:
     """The newest verdict; None: there is none yet, or the match was not played in real time."""
     last_beat: int = -1
     """The last beat with any message; -1: none."""
-    cut: str = ""
-    """How far the record could be read and why reading stopped, in words; "" if it is whole."""
+    cut: Phrase | None = None
+    """How far the record could be read and why reading stopped; None if it is whole."""
 
     gap: bool = False
     """Whether reading stopped because the next segment does not continue where the last one ends.
@@ -98,14 +102,14 @@ class Record:
                 record._read_file(path, also)
         except _Gap as gap:
             record.gap = record.lost = True
-            record.cut = f"{record.cut} {gap}".lstrip()
-        if not record.headers and record.lost:
-            raise NoMatch(f"Nothing can be read of the match: {record.cut}")
+            cut = record.cut
+            record.cut = say("cut.both", cut=cut, gap=gap.said) if cut else gap.said
+        if not record.headers and record.lost and record.cut:
+            raise NoMatch(say("recording.nothing", cut=record.cut))
+        if not record.headers and paths:
+            raise NoMatch(say("recording.no-match", files=[str(path) for path in paths]))
         if not record.headers:
-            raise NoMatch(
-                f"There is no match in {' '.join(map(str, paths)) or 'no files'}: a record begins "
-                "with its header, and none was written."
-            )
+            raise NoMatch(say("recording.no-files"))
         return record
 
     def _read_file(self, path: Path, also: TakeBytes | None) -> None:
@@ -119,10 +123,10 @@ class Record:
         if stop and len(self.headers) == before and before:
             return  # the court was killed while it opened this segment: nothing in it counts
         self.lost = stop is not None and stop.damaged
-        self.cut = ""
+        self.cut = None
         if stop is not None:
-            where = f"stops after beat {self.last_beat}, and " if self.last_beat >= 0 else ""
-            self.cut = f"{path} {where}{stop.text}"
+            beat = self.last_beat if self.last_beat >= 0 else None
+            self.cut = say("cut.file", file=str(path), beat=beat, why=stop.why)
 
     def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
         """Add one message."""
@@ -182,10 +186,8 @@ class Record:
                 )
             )
         if header.first_beat > self.last_beat + 1:
-            raise _Gap(
-                f"Beats {self.last_beat + 1} to {header.first_beat - 1} are missing before {path}, "
-                "so it was not read: a segment is not there, or is damaged."
-            )
+            first, last = self.last_beat + 1, header.first_beat - 1
+            raise _Gap(say("cut.gap", first=first, last=last, file=str(path)))
         self.headers.append(header)
         self._forget_from(header.first_beat)
 

@@ -16,11 +16,11 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import codec
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.record.protocol_1 import read_event
 from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE
 from lacoc_shared.seat import BEATS_PER_S
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 DAMAGE = (
     McapError,
@@ -57,8 +57,8 @@ Take = Callable[[str, int, bytes, Any], None]
 class Stop(NamedTuple):
     """The reason why a file can't be read any further."""
 
-    text: str
-    """The fault, as the end of a sentence."""
+    why: Phrase
+    """The fault, as the end of a sentence (`cut.*`)."""
     damaged: bool
     """Whether the file is damaged or incomplete; False: it was only not closed, as by a killed
     court.
@@ -123,15 +123,11 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
             whole = file.tell()
     except DAMAGE as error:
         if not _is_cut(data, whole):
-            text = (
-                f"is damaged at byte {whole} of {len(data)} ({error}); its last "
-                f"{len(data) - whole} bytes can't be read. Copy it again from where it was made."
-            )
-            return Stop(text, damaged=True)
-    left = max(0, len(data) - whole)
-    rest = f"; its last {left} bytes can't be read" if left else ""
+            lost, told = len(data) - whole, printable(str(error), 200)
+            fault = say("cut.damaged", byte=whole, bytes=len(data), error=told, lost=lost)
+            return Stop(fault, damaged=True)
     return Stop(
-        f"has no end there: it was never closed, not copied whole, or is damaged{rest}.",
+        say("cut.no-end", lost=max(0, len(data) - whole) or None),
         damaged=_is_packed(data),  # a file is packed whole before it gets its name
     )
 
