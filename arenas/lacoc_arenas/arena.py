@@ -119,9 +119,7 @@ class Arena:
         """
         module = self._source.call(f"{part}.py", importlib.import_module, f"{self._module}.{part}")
         if not hasattr(module, name):
-            raise self._source.wrong(
-                f"{part}.py has no {name}. docs/write-an-arena.md says what stands in it."
-            )
+            raise self._source.wrong(say("game.module-lacks", module=f"{part}.py", name=name))
         return getattr(module, name)
 
     def plays(self, recorded: str) -> bool:
@@ -142,10 +140,7 @@ class Arena:
         """The game's own bots by name, the weakest first."""
         bots: dict[str, BotFactory] = self._part("bots", "BOTS")
         if not (isinstance(bots, dict) and all(map(callable, bots.values()))):
-            raise self._source.wrong(
-                f"BOTS in bots.py is {printable(repr(bots), 80)}. Expected a dict from a name to a "
-                "function (sheet, seat) that makes a brain; {} for a game without bots."
-            )
+            raise self._source.wrong(say("game.bots", found=printable(repr(bots), 80)))
         return bots
 
 

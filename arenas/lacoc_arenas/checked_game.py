@@ -17,7 +17,6 @@ from lacoc_shared.messages import MARKER_STATES, MarkerInfo
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import Phrase, say
 
-_DESCRIBED = "docs/write-an-arena.md says what a game has."
 _VALUES = ("state_type", "markers", "starts", "size_m")
 _RULES = ("start", "step", "board", "score", "over", "winner", "set")
 
@@ -28,7 +27,7 @@ class Source(NamedTuple):
     arena: str
     folder: str
 
-    def wrong(self, what: str) -> UserError:
+    def wrong(self, what: Phrase) -> UserError:
         """Make the error that says what is wrong with the arena's code."""
         return UserError(say("arena.wrong-code", name=self.arena, error=what))
 
@@ -54,15 +53,15 @@ class Source(NamedTuple):
                 raise
             raise self.wrong(self._raised(what, error)) from error
 
-    def _raised(self, what: str, error: Exception) -> str:
+    def _raised(self, what: str, error: Exception) -> Phrase:
         calls = traceback.extract_tb(error.__traceback__)
         own = [call for call in calls if call.filename.startswith(self.folder)]
-        place = f" ({own[-1].filename}, line {own[-1].lineno})" if own else ""
+        file, line = (own[-1].filename, own[-1].lineno) if own else (None, None)
+        told = str(error)
         if isinstance(error, SyntaxError):
-            place, error_text = f" ({error.filename}, line {error.lineno})", error.msg
-        else:
-            error_text = str(error)
-        return f"{what}{place} raised {type(error).__name__}: {printable(error_text, 200)}"
+            file, line, told = error.filename, error.lineno, error.msg
+        kind, told = type(error).__name__, printable(told, 200)
+        return say("game.raised", what=what, file=file, line=line, kind=kind, error=told)
 
 
 def checked(source: Source, game: Any) -> AnyGame:
@@ -83,9 +82,7 @@ def checked(source: Source, game: Any) -> AnyGame:
     missing += [name for name in _RULES if not callable(getattr(game, name, None))]
     if missing:
         found = printable(repr(game), 80)
-        raise source.wrong(
-            f"make returned {found}, which has no {', '.join(missing)}. {_DESCRIBED}"
-        )
+        raise source.wrong(say("game.lacks", found=found, missing=missing))
     _check_values(source, game)
     held = CheckedGame(source, game)
     state = held.start()
@@ -118,9 +115,10 @@ class CheckedGame:
             packed = msgspec.msgpack.encode(state)
             again = msgspec.msgpack.decode(packed, type=self.state_type)
         except (TypeError, ValueError) as error:
-            raise self._wrong("start", state, f"a state that can be recorded ({error})") from None
+            expected = say("game-expects.recordable", error=str(error))
+            raise self._wrong("start", state, expected) from None
         if again != state:
-            raise self._wrong("start", state, "a state that a record gives back as it was")
+            raise self._wrong("start", state, say("game-expects.same-state"))
         return state
 
     def step(
@@ -137,15 +135,13 @@ class CheckedGame:
                 for event in events:
                     self._check_event(event)
                 return self._state("step", after), events
-        raise self._wrong("step", found, "the state after the tick, and a tuple of GameEvent")
+        raise self._wrong("step", found, say("game-expects.step"))
 
     def board(self, state: Any) -> tuple[int, ...]:
         """See `Game.board`."""
         found = self._source.call("board", self._game.board, state)
         if not _whole_numbers(found, len(self.markers)) or any(not 0 <= s <= DOWN for s in found):
-            expected = (
-                f"a tuple of {len(self.markers)} numbers from 0 to {DOWN}, one for each marker"
-            )
+            expected = say("game-expects.board", markers=len(self.markers), most=DOWN)
             raise self._wrong("board", found, expected)
         return tuple(found)
 
@@ -153,7 +149,7 @@ class CheckedGame:
         """See `Game.score`."""
         found = self._source.call("score", self._game.score, state)
         if not _whole_numbers(found, self._seats):
-            expected = f"a tuple of {self._seats} whole numbers, one for each seat"
+            expected = say("game-expects.score", seats=self._seats)
             raise self._wrong("score", found, expected)
         return tuple(found)
 
@@ -161,16 +157,14 @@ class CheckedGame:
         """See `Game.over`."""
         found = self._source.call("over", self._game.over, state)
         if not (found is None or isinstance(found, Phrase)):
-            expected = "a Phrase: why the match is over, or None while it is not"
-            raise self._wrong("over", found, expected)
+            raise self._wrong("over", found, say("game-expects.over"))
         return found
 
     def winner(self, state: Any, scores: tuple[int, ...]) -> int | None:
         """See `Game.winner`."""
         found: int | None = self._source.call("winner", self._game.winner, state, scores)
         if found is not None and not (_is_whole(found) and 0 <= found < self._seats):
-            expected = f"the index of a seat, from 0 to {self._seats - 1}, or None for a draw"
-            raise self._wrong("winner", found, expected)
+            raise self._wrong("winner", found, say("game-expects.winner", last=self._seats - 1))
         return found
 
     def set(self, state: Any, marker: int, value: int) -> Any:
@@ -186,23 +180,23 @@ class CheckedGame:
 
     def _state(self, rule: str, found: Any) -> Any:
         if not isinstance(found, self.state_type):
-            raise self._wrong(rule, found, f"a {self.state_type.__name__}")
+            raise self._wrong(rule, found, say("game-expects.state", type=self.state_type.__name__))
         return found
 
     def _check_event(self, event: Any) -> None:
         if not isinstance(event, GameEvent):
-            raise self._wrong("step", event, "events that are each a GameEvent")
+            raise self._wrong("step", event, say("game-expects.events"))
         if not (_is_whole(event.seat) and 0 <= event.seat < self._seats):
-            raise self._wrong("step", event, f"a seat from 0 to {self._seats - 1}")
+            raise self._wrong("step", event, say("game-expects.seat", last=self._seats - 1))
         unknown = [name for name in (event.marker, *event.also) if name not in self._names]
         if unknown:
-            raise self._wrong("step", event, f"markers of this board; {unknown[0]!r} is none")
+            raise self._wrong("step", event, say("game-expects.markers", unknown=str(unknown[0])))
         if not isinstance(event.said, Phrase):
-            raise self._wrong("step", event, "an event whose said is a Phrase")
+            raise self._wrong("step", event, say("game-expects.said"))
 
-    def _wrong(self, rule: str, found: object, expected: str) -> UserError:
+    def _wrong(self, rule: str, found: object, expected: Phrase) -> UserError:
         shown = printable(repr(found), 120)
-        return self._source.wrong(f"{rule} returned {shown}. Expected {expected}. {_DESCRIBED}")
+        return self._source.wrong(say("game.returned", rule=rule, found=shown, expected=expected))
 
 
 def _check_values(source: Source, game: AnyGame) -> None:
@@ -212,20 +206,20 @@ def _check_values(source: Source, game: AnyGame) -> None:
         UserError: at the first value that is wrong.
     """
 
-    def require(right: bool, name: str, expected: str) -> None:
+    def require(right: bool, name: str, expected: Phrase) -> None:
         if not right:
             shown = printable(repr(getattr(game, name)), 120)
-            raise source.wrong(f"{name} is {shown}. Expected {expected}. {_DESCRIBED}")
+            raise source.wrong(say("game.value", name=name, found=shown, expected=expected))
 
     kind: object = game.state_type
     is_struct = isinstance(kind, type) and issubclass(kind, msgspec.Struct)
-    require(is_struct, "state_type", "a class made from msgspec.Struct")
+    require(is_struct, "state_type", say("game-expects.struct"))
     markers: Any = game.markers
     are_markers = isinstance(markers, tuple) and all(isinstance(m, MarkerInfo) for m in markers)
-    require(are_markers, "markers", "a tuple of MarkerInfo; () for a game without a board")
+    require(are_markers, "markers", say("game-expects.marker-tuple"))
     names = [marker.name for marker in game.markers]
-    require(len(set(names)) == len(names), "markers", "another name for each marker")
-    require(all(n and ":" not in n for n in names), "markers", "names without a colon")
+    require(len(set(names)) == len(names), "markers", say("game-expects.other-names"))
+    require(all(n and ":" not in n for n in names), "markers", say("game-expects.no-colon"))
     starts: Any = game.starts
     require(
         isinstance(starts, tuple)
@@ -234,13 +228,13 @@ def _check_values(source: Source, game: AnyGame) -> None:
             isinstance(s, tuple) and s and all(isinstance(p, Place) for p in s) for s in starts
         ),
         "starts",
-        "for each seat a tuple of one or more Place",
+        say("game-expects.starts"),
     )
     size: Any = game.size_m
     require(
         isinstance(size, tuple) and len(size) == 2 and all(_is_length(length) for length in size),
         "size_m",
-        "width and depth of the field, two lengths above 0 and at most 20 m",
+        say("game-expects.size"),
     )
 
 
@@ -258,11 +252,8 @@ def marker_of_geom(game: AnyGame, geom: str) -> tuple[int, int]:
     state = state.partition(":")[0]
     if name in names and state in MARKER_STATES:
         return names.index(name), MARKER_STATES.index(state)
-    known = printable(", ".join(names), 80) or "there is none"
-    raise UserError(
-        f"The field has a geom {printable(geom, 80)!r}. Expected marker:NAME:STATE with the name "
-        f"of a marker ({known}) and a state ({', '.join(MARKER_STATES)}). {_DESCRIBED}"
-    )
+    known = printable(", ".join(names), 80) or say("game.no-markers")
+    raise UserError(say("game.geom", geom=printable(geom, 80), names=known, states=MARKER_STATES))
 
 
 def _are_places(found: object) -> bool:

@@ -355,7 +355,7 @@ def test_a_record_that_contradicts_itself(
     assert "do not fit together" in str(done.exception)
 
 
-def test_info_in_japanese(tmp_path: Path) -> None:
+def test_info_in_japanese(tmp_path: Path, write_match: WriteMatch) -> None:
     """Its headings and sentences are in the language of the user."""
     path = write_match(tmp_path)
     use("ja")
