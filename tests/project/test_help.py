@@ -111,9 +111,12 @@ def japanese(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_the_table_of_help_has_the_texts_of_the_commands() -> None:
     """Each English text once, and none that no command has any more."""
     file = resources.files("lacoc_shared.words") / "texts" / "help.toml"
-    english = [pair["en"] for pair in tomllib.loads(file.read_text("utf-8"))["text"]]
+    pairs = tomllib.loads(file.read_text("utf-8"))["text"]
+    english = {pair["en"] for pair in pairs}
 
-    assert sorted(english) == sorted(texts_of_help())
+    assert texts_of_help() - english == set(), "add them, with their Japanese"
+    assert english - texts_of_help() == set(), "no command says them any more"
+    assert len(english) == len(pairs)
 
 
 @pytest.mark.usefixtures("japanese")
