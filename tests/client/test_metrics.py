@@ -72,7 +72,7 @@ def test_a_scrape_and_the_log_of_a_court(open_court: OpenCourt) -> None:
     assert all({"timestamp", "level", "court", "kind", "text"} <= line.keys() for line in lines)
     assert {line["match_id"] for line in lines} == {match_id}
     told = {line["text"] for line in lines}
-    assert "left seat: 1 refused: wrong token." in told
+    assert "left seat: 1 message refused (wrong token)." in told
     assert "Ants takes the left seat with the robot Hexapod." in told
     assert not any(token in out for token in (*court.tokens.values(), court.referee))
 

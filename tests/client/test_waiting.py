@@ -30,7 +30,7 @@ def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
     errors = (NotConnected("No link."), NotConnected("No link."), NoCourt("None."), NotNow("Soon."))
     assert Patience(60.0).until(coming(*errors)) == "there"
     assert capsys.readouterr().err.splitlines() == [
-        f"{why} Waiting for it, up to 60 s." for why in ("No link.", "None.", "Soon.")
+        f"{why} Waiting up to 60 s." for why in ("No link.", "None.", "Soon.")
     ]
 
 

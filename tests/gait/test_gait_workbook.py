@@ -184,7 +184,7 @@ def test_other_sheets_are_named():
     book.create_sheet(MIRROR_SHEET)
     assert refused(saved(book))[0][5:] == (
         'the sheets "Sheet" and "Loco-data"',
-        'a sheet "EX (input)", or no other sheet than "Loco-data"',
+        'a sheet "EX (input)", or a workbook whose only sheet is "Loco-data"',
     )
 
 
