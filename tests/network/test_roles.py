@@ -162,10 +162,10 @@ def test_a_user_of_another_token_does_not_get_in(court: KeyedCourt, file: Path) 
     left, right = court.people["left"], court.people["right"]
     thief = left.of_seat("left", right.token)
     for access in (left.of_seat("left", "some other token"), thief, left.of_seat("top", "x" * 20)):
-        with pytest.raises(UserError, match=r"does not take this token.*invitation"):
+        with pytest.raises(UserError, match=r"does not accept this token.*invitation"):
             open_client([left.connect], 0.3, access.credentials)
     assert left.credentials is not None
-    with pytest.raises(UserError, match="does not take this token"):
+    with pytest.raises(UserError, match="does not accept this token"):
         open_client([left.connect], 0.3, Credentials("", "", left.ca))
 
 

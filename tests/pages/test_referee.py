@@ -291,7 +291,7 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
 
     page.on("websocket", lambda socket: socket.on("framesent", heed))
     page.reload()
-    said = "does not take this token" if keys else "not a referee's token of this court"
+    said = "does not accept this token" if keys else "not a referee's token of this court"
     expect(page.locator("#token-refused")).to_contain_text(said)
     page.wait_for_timeout(5000)
     assert len(shown) == 1
