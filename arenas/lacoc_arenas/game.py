@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 import msgspec
 
 from lacoc_shared.messages import MarkerInfo
-from lacoc_shared.words import Phrase, render
+from lacoc_shared.words import Phrase, render, say
 
 NEUTRAL, LEFT, RIGHT, DOWN = range(4)
 """States of a marker, in the order of `MARKER_STATES`. A seat's own state is its index + 1."""
@@ -33,6 +33,21 @@ class NoSuchState(ValueError):
 
     def __str__(self) -> str:
         return render(self.why)
+
+
+class WrongSetting(ValueError):
+    """Raised when entries of [game] are wrong.
+
+    Args:
+        mistakes: each entry, and what is wrong with it (`setting.*`).
+    """
+
+    def __init__(self, *mistakes: Phrase) -> None:
+        super().__init__(*mistakes)
+        self.mistakes = mistakes
+
+    def __str__(self) -> str:
+        return render(say("join.semicolon")).join(map(render, self.mistakes))
 
 
 class Place(NamedTuple):

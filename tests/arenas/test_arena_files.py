@@ -1,6 +1,7 @@
 """Arena files: every setting has an effect, and a wrong setting is named."""
 
 import copy
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import pytest
 
 from lacoc_arenas import arena
 from lacoc_arenas.game import LEFT, RobotView
+from lacoc_shared import words
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.mistakes import UserError
 
@@ -337,3 +339,16 @@ def test_merge_replaces_single_entries() -> None:
     """Merging settings merges nested tables and replaces whole lists."""
     merged = arena.merge({"a": {"b": 1, "c": [1, 2]}, "d": 3}, {"a": {"c": [4]}, "e": 5})
     assert merged == {"a": {"b": 1, "c": [4]}, "d": 3, "e": 5}
+
+
+def test_a_wrong_setting_in_japanese() -> None:
+    """An organiser who reads Japanese is told all mistakes of a layout in it."""
+    words.use("ja")
+    try:
+        with pytest.raises(UserError) as refused:
+            arena.load("flag-strike", {"game": move(3, 0, [1.2, 0.0], [-1.2, 0.0])})
+        told = str(refused.value)
+    finally:
+        words.use("en")
+    assert "flag18 (black, [1.2, 0.0]) が壁の外にあります。" in told
+    assert not re.search(r"[a-z]+ [a-z]+ [a-z]+", told)

@@ -6,7 +6,9 @@ from typing import Annotated, NamedTuple
 
 import msgspec
 
+from lacoc_arenas.game import WrongSetting
 from lacoc_arenas.layout import Length, Point
+from lacoc_shared.words import Phrase, say
 
 FLAGS, COLOURS = 20, 4
 """Numbers of flags and of their colours (workshop 5-2 rule 6)."""
@@ -54,13 +56,18 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     def __post_init__(self) -> None:
         reach_m = self.corner_inset_m + self.corner_radius_m
         if 2 * reach_m > min(self.size_m):
-            raise ValueError(
-                f"corner_inset_m {self.corner_inset_m} and corner_radius_m {self.corner_radius_m} "
-                f"make the corners overlap in a field of {self.size_m[0]} x {self.size_m[1]} m"
+            raise WrongSetting(
+                say(
+                    "setting.corners-overlap",
+                    inset_m=self.corner_inset_m,
+                    radius_m=self.corner_radius_m,
+                    width_m=str(self.size_m[0]),
+                    depth_m=str(self.size_m[1]),
+                )
             )
         for x_m, y_m in self.starts:
             if not self._inside(x_m, y_m):
-                raise ValueError(f"the start [{x_m}, {y_m}] is outside the walls")
+                raise WrongSetting(say("setting.start-outside", x_m=str(x_m), y_m=str(y_m)))
         self._check_colours()
         self._check_flags()
 
@@ -84,13 +91,14 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     def _check_colours(self) -> None:
         if len(self.colour) != COLOURS:
-            raise ValueError(f"there are {len(self.colour)} colours of flags, expected {COLOURS}")
+            found = len(self.colour)
+            raise WrongSetting(say("setting.colours", found=found, expected=COLOURS))
         if len({colour.name for colour in self.colour}) != COLOURS:
-            raise ValueError("two colours of flags have the same name")
+            raise WrongSetting(say("setting.same-name"))
         if len({colour.points for colour in self.colour}) != COLOURS:
-            raise ValueError("two colours of flags have the same points; each needs its own")
+            raise WrongSetting(say("setting.same-points"))
         if len(self.flags) != FLAGS:
-            raise ValueError(f"there are {len(self.flags)} flags, expected {FLAGS}")
+            raise WrongSetting(say("setting.flags", found=len(self.flags), expected=FLAGS))
 
     def _check_flags(self) -> None:
         flags = self.flags
@@ -98,31 +106,38 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         for flag in flags:
             other = standing.setdefault((flag.x_m, flag.y_m), flag)
             if other is not flag:
-                raise ValueError(f"{flag} stands where {other} stands")
-        mistakes = [
-            f"{flag} {mistake}" for flag in flags for mistake in self._mistakes(flag, standing)
-        ]
+                raise WrongSetting(say("setting.same-place", flag=str(flag), other=str(other)))
+        mistakes = [mistake for flag in flags for mistake in self._mistakes(flag, standing)]
         if mistakes:
-            raise ValueError("; ".join(mistakes))
+            raise WrongSetting(*mistakes)
 
-    def _mistakes(self, flag: Flag, standing: dict[tuple[float, float], Flag]) -> Iterator[str]:
+    def _mistakes(self, flag: Flag, standing: dict[tuple[float, float], Flag]) -> Iterator[Phrase]:
+        name = str(flag)
         if not self._inside(flag.x_m, flag.y_m):
-            yield "stands outside the walls"
+            yield say("setting.flag-outside", flag=name)
         partner = standing.get((-flag.x_m, -flag.y_m))
         if partner is None or partner is flag or partner.colour is not flag.colour:
-            yield (
-                f"has no partner: another {flag.colour.name} flag must stand at "
-                f"[{0.0 - flag.x_m}, {0.0 - flag.y_m}]"
-            )
+            place = str([0.0 - flag.x_m, 0.0 - flag.y_m])
+            yield say("setting.no-partner", flag=name, colour=flag.colour.name, place=place)
         for number, (x_m, y_m) in enumerate(self.corners):
             gap_m = math.dist((flag.x_m, flag.y_m), (x_m, y_m)) - self.corner_radius_m
             if gap_m < self.clearance_m:
-                yield self._near(gap_m, f"the edge of corner{number}")
+                yield say(
+                    "setting.near-corner",
+                    flag=name,
+                    gap_m=gap_m,
+                    corner=number,
+                    least_m=self.clearance_m,
+                )
         for x_m, y_m in self.starts:
             for team, start in (("left", (x_m, y_m)), ("right", (0.0 - x_m, 0.0 - y_m))):
                 gap_m = math.dist((flag.x_m, flag.y_m), start)
                 if gap_m < self.clearance_m:
-                    yield self._near(gap_m, f"the {team} start {list(start)}")
-
-    def _near(self, gap_m: float, what: str) -> str:
-        return f"is {gap_m:.3f} m from {what}, nearer than clearance_m {self.clearance_m}"
+                    yield say(
+                        "setting.near-start",
+                        flag=name,
+                        gap_m=gap_m,
+                        seat=team,
+                        place=str(list(start)),
+                        least_m=self.clearance_m,
+                    )

@@ -26,6 +26,7 @@ from lacoc_arenas.game import (
     Observation,
     Place,
     RobotView,
+    WrongSetting,
     leader,
 )
 from lacoc_arenas.layout import Length, opposite
@@ -60,12 +61,10 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     def __post_init__(self) -> None:
         if 2 * self.disc_radius_m > self.pitch_m:
-            raise ValueError(
-                f"disc_radius_m {self.disc_radius_m} is more than half of pitch_m {self.pitch_m}: "
-                "the discs overlap; make the radius smaller or the pitch larger"
-            )
+            radius_m, pitch_m = self.disc_radius_m, self.pitch_m
+            raise WrongSetting(say("setting.discs-overlap", radius_m=radius_m, pitch_m=pitch_m))
         if len(set(self.start_cells)) != len(self.start_cells):
-            raise ValueError("start_cells names a cell twice")
+            raise WrongSetting(say("setting.cell-twice"))
 
 
 class State(msgspec.Struct, frozen=True):

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import msgspec
 
-from lacoc_arenas.game import Claim, GameEvent, NoSuchState, Observation, Place
+from lacoc_arenas.game import Claim, GameEvent, NoSuchState, Observation, Place, WrongSetting
 from lacoc_arenas.layout import Length, Point
 from lacoc_shared.messages import MarkerInfo
 from lacoc_shared.words import Phrase, say
@@ -21,7 +21,8 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     def __post_init__(self) -> None:
         if any(abs(at) >= size / 2 for at, size in zip(self.start, self.size_m, strict=True)):
-            raise ValueError(f"start {list(self.start)} is outside the walls")
+            x_m, y_m = map(str, self.start)
+            raise WrongSetting(say("setting.start-outside", x_m=x_m, y_m=y_m))
 
 
 class State(msgspec.Struct, frozen=True):

@@ -19,7 +19,7 @@ from lacoc_client.stopping import stop_signals
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.network.session import open_client
-from lacoc_shared.words import Phrase, render, say
+from lacoc_shared.words import Phrase, say
 
 app = typer.Typer()
 
@@ -141,8 +141,7 @@ def _play(
         link = controller.link(now_s)
         if well == bool(link):
             well = link is None
-            waits = "The robot stands; when the court is back this goes on."
-            screen.note("The court is back." if link is None else f"Link: {render(link)}. {waits}")
+            screen.note(say("bot.court-back") if link is None else say("bot.no-court", why=link))
         if controller.view.silent_s(now_s) > gone_s:
             raise UserError(say("play.silent", seconds=gone_s))
 

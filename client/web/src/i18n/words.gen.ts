@@ -9,6 +9,7 @@ export const DECIMALS = 6;
 /** Each code with its templates: English, Japanese. */
 export const WORDS: Record<string, readonly [string, string]> = {
   "join.comma": [", ", "、"],
+  "join.semicolon": ["; ", "。"],
   "join.or": [" or ", "または"],
   "join.and": [" and ", "と"],
   "quote.marks": ["\" \"", "「 」"],
