@@ -69,10 +69,14 @@ def translate_typer() -> None:
     from typer import rich_utils  # heavy; no command in English needs it here
 
     if not _english:
-        _english.update({name: getattr(rich_utils, name) for name in (*_TITLES, _TEXT, _ERROR)})
-    for name in _TITLES:
+        # A version of typer that lacks one of them shows that part in English.
+        names = (*_TITLES, _TEXT, _ERROR)
+        _english.update({n: getattr(rich_utils, n) for n in names if hasattr(rich_utils, n)})
+    for name in _english.keys() & set(_TITLES):
         setattr(rich_utils, name, in_words(_english[name]))
     for name, change in ((_TEXT, _folded), (_ERROR, _explained)):
+        if name not in _english:
+            continue
         own = _english[name]
         setattr(rich_utils, name, own if words.current() == "en" else partial(change, own))
 
