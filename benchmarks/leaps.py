@@ -5,7 +5,7 @@
 The search first makes random robots within the contest's limits. Then it changes those that moved
 farthest, step by step, and keeps each change that makes a robot move farther. Every robot is
 weighed in as by a court. A robot that passes stands on both start places of a match, for longer
-than in its trial.
+than in its stand test.
 """
 
 import argparse
@@ -24,8 +24,8 @@ from lacoc_arenas import arena as arenas
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
+from lacoc_robots.stand_test import stand
 from lacoc_robots.standing import FARTHEST_M, mistakes_of
-from lacoc_robots.trial import stand
 from lacoc_server.match.drive import Drive
 from lacoc_server.match.entry import Entry
 from lacoc_server.world.world import World
@@ -80,7 +80,7 @@ class Found(NamedTuple):
     is_robot: bool
     """Whether its robot file has no mistakes."""
     tried_m: float
-    """How far it moved in its trial; 0.0 if its file has mistakes."""
+    """How far it moved in its stand test; 0.0 if its file has mistakes."""
     leap_m: float | None
     """How far it moved in a match; None if it did not pass the weigh-in."""
 
@@ -212,7 +212,7 @@ def main() -> None:
     console.print(
         f"{len(found)} robots in {time.monotonic() - began_s:.0f} s, {len(let_in)} let in. "
         f"Farthest while it stood: {_gone_m(farthest):.4f} m in a match, "
-        f"{farthest.tried_m:.4f} m in its trial; of those not let in "
+        f"{farthest.tried_m:.4f} m in its stand test; of those not let in "
         f"{max(one.tried_m for one in found):.3f} m."
     )
     if _gone_m(farthest) > FARTHEST_M:

@@ -1,6 +1,6 @@
 """Standing: the posture of a robot before play, and the limits within which it must stay.
 
-Pure: a trial in physics (`trial`) or a match says how far the robot moved.
+Pure: a stand test in physics (`stand_test`) or a match says how far the robot moved.
 """
 
 import math
@@ -12,8 +12,8 @@ from lacoc_shared.gait.tables import Gait, Level, Posture
 from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import Phrase, say
 
-TRIAL_S = 2.0
-"""Duration of a trial."""
+STAND_TEST_S = 2.0
+"""Duration of a stand test."""
 FARTHEST_M = 0.05
 """Largest distance of a standing robot's centre from its start."""
 MOST_TILT_RAD = math.radians(30.0)
@@ -26,7 +26,7 @@ REST_M_S = 0.0002
 
 
 class Stood(msgspec.Struct, frozen=True):
-    """What a robot did during a trial."""
+    """What a robot did during a stand test."""
 
     moved_m: float
     """Largest distance of the body's centre from its start, seen from above."""
@@ -82,7 +82,7 @@ def mistakes_of(stood: Stood, file: str, levels: Sequence[Level]) -> list[Mistak
         note(say("robot.unstable"), say("robot.stable"))
     if stood.moved_m > FARTHEST_M:
         note(
-            say("robot.strays", moved_m=stood.moved_m, within_s=TRIAL_S),
+            say("robot.strays", moved_m=stood.moved_m, within_s=STAND_TEST_S),
             say("robot.stays", farthest_m=FARTHEST_M),
         )
     if stood.tilt_rad > MOST_TILT_RAD:
@@ -94,7 +94,7 @@ def mistakes_of(stood: Stood, file: str, levels: Sequence[Level]) -> list[Mistak
         note(
             say(
                 "robot.moves",
-                after_s=TRIAL_S,
+                after_s=STAND_TEST_S,
                 joint_deg_s=math.degrees(stood.joint_rad_s),
                 centre_mm_s=1000 * stood.centre_m_s,
             ),

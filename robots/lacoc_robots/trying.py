@@ -11,9 +11,9 @@ from lacoc_shared.words import Phrase, say
 def tried(
     robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str, notes: list[Phrase]
 ) -> list[Mistake]:
-    """Try whether a robot stands, as `trial.try_standing` does; add a note if MuJoCo is missing."""
+    """Try whether a robot stands (`stand_test.try_standing`); add a note if MuJoCo is missing."""
     try:
-        from lacoc_robots.trial import try_standing
+        from lacoc_robots.stand_test import try_standing
     except ModuleNotFoundError as error:
         if error.name != "mujoco":
             raise

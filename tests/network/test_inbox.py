@@ -140,7 +140,7 @@ def test_a_join_waits_while_its_files_are_weighed_in() -> None:
 
 
 def test_a_mistake_that_takes_long_to_find_is_told() -> None:
-    """A robot whose trial ends in a mistake is refused when the trial is over."""
+    """A robot whose stand test ends in a mistake is refused when the stand test is over."""
     known = False
 
     def weigh(join: Join) -> Join | None:

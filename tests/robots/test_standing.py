@@ -1,4 +1,4 @@
-"""The trial at the weigh-in: a robot must be able to stand (rules 1)."""
+"""The stand test at the weigh-in: a robot must be able to stand (rules 1)."""
 
 import json
 import math
@@ -12,8 +12,8 @@ from lacoc_robots.gait_commands import app as gait_app
 from lacoc_robots.library import find_robot, installed_robots, robot_folder, sample_gait_files
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
+from lacoc_robots.stand_test import stand, try_standing
 from lacoc_robots.standing import Stood, mistakes_of, standing_postures
-from lacoc_robots.trial import stand, try_standing
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture, PostureTable
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.words import faults, render

@@ -52,7 +52,7 @@ def changed(old: bytes, new: bytes) -> Join:
 
 
 def test_a_robot_is_tried_once() -> None:
-    """The first join with a robot waits for its trial; a later one with the same robot does not."""
+    """The first join with a robot waits for its stand test, a later one with the same does not."""
     with Weighing(admission()) as weighing:
         assert weighing(WHOLE) is None
         assert known(weighing, WHOLE) == WHOLE
@@ -61,7 +61,7 @@ def test_a_robot_is_tried_once() -> None:
 
 
 def test_wrong_files_are_told_without_a_trial() -> None:
-    """Files with mistakes are refused at once, without a trial."""
+    """Files with mistakes are refused at once, without a stand test."""
     with Weighing(admission()) as weighing, pytest.raises(FileRefused, match="mass_kg"):
         weighing(changed(b"mass_kg = 0.125", b"mass_kg = 125"))
 

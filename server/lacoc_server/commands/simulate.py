@@ -13,7 +13,7 @@ import typer
 from rich.table import Table
 
 from lacoc_arenas import arena as arenas
-from lacoc_robots.trial import try_standing
+from lacoc_robots.stand_test import try_standing
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate import player, simulate
 from lacoc_shared.command import options, screen

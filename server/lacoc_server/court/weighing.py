@@ -4,21 +4,21 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Self
 
+from lacoc_robots.stand_test import try_standing
 from lacoc_robots.standing import standing_postures
-from lacoc_robots.trial import try_standing
 from lacoc_server.match.entry import Admission, weigh_in
 from lacoc_shared.messages import Join
 from lacoc_shared.mistakes import FileRefused, Mistake
 
 _REMEMBERED = 32
-"""Number of trials whose results are kept; older ones are forgotten."""
+"""Number of stand tests whose results are kept; older ones are forgotten."""
 
 
 class Weighing:
     """Weighs in the files of joins; used as a context manager.
 
-    A trial takes some tens of milliseconds, longer than a beat. So it runs on a separate thread,
-    one at a time, and its result is kept: a second join with the same robot does not wait.
+    A stand test takes some tens of milliseconds, longer than a beat. So it runs on a separate
+    thread, one at a time, and its result is kept: a second join with the same robot does not wait.
 
     Args:
         admission: reads the files.
@@ -27,8 +27,8 @@ class Weighing:
     def __init__(self, admission: Admission) -> None:
         self._admission = admission
         self._worker = ThreadPoolExecutor(1, "weighing")
-        self._trials: dict[object, Future[list[Mistake]]] = {}
-        """Trials by everything that their result depends on; the newest last."""
+        self._tests: dict[object, Future[list[Mistake]]] = {}
+        """Stand tests by everything that their result depends on; the newest last."""
 
     def __enter__(self) -> Self:
         return self
@@ -62,9 +62,9 @@ class Weighing:
             raise FileRefused(mistakes)
         return None if mistakes is None else whole
 
-    def _tried(self, key: object, trial: Callable[[], list[Mistake]]) -> list[Mistake] | None:
-        future = self._trials.pop(key, None) or self._worker.submit(trial)
-        self._trials[key] = future
-        if len(self._trials) > _REMEMBERED:
-            del self._trials[next(iter(self._trials))]
+    def _tried(self, key: object, test: Callable[[], list[Mistake]]) -> list[Mistake] | None:
+        future = self._tests.pop(key, None) or self._worker.submit(test)
+        self._tests[key] = future
+        if len(self._tests) > _REMEMBERED:
+            del self._tests[next(iter(self._tests))]
         return future.result() if future.done() else None

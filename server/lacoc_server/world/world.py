@@ -71,6 +71,7 @@ class World:
                 seats=len(seats),
                 rgba=_rgba(arena.seats[index].colour),
             )
+        self._extend(spec)
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self.scene = make_scene(self.model, arena.game, seats)
@@ -111,7 +112,7 @@ class World:
             None, or the fault; then the state is as before the tick.
         """
         self._write_control(self._control, 0, *chain.from_iterable(angles))
-        mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
+        self._advance()
         if any(self._warned.tobytes()):
             return self._undo()
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
@@ -173,6 +174,13 @@ class World:
         return _chained(digest, saved[8:]) == saved[:8]
 
     # Private
+
+    def _extend(self, spec: mujoco.MjSpec) -> None:
+        """Add to the model, before it is compiled, what changes no path."""
+
+    def _advance(self) -> None:
+        """Let the physics of one tick pass."""
+        mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
 
     def _keep(self) -> None:
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)

@@ -18,6 +18,7 @@ FILES = (
     "files",
     "network",
     "gateway",
+    "studio",
     "commands",
 )
 ON_PAGES = FILES[:-1]

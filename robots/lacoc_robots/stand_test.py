@@ -8,7 +8,7 @@ import numpy as np
 
 from lacoc_robots.model import STEPS_PER_TICK, on_floor
 from lacoc_robots.robot import RobotSpec
-from lacoc_robots.standing import TRIAL_S, Stood, mistakes_of, standing_postures
+from lacoc_robots.standing import STAND_TEST_S, Stood, mistakes_of, standing_postures
 from lacoc_shared.gait.motion import toward
 from lacoc_shared.gait.tables import Gait, Level, Posture
 from lacoc_shared.mistakes import Mistake
@@ -50,7 +50,7 @@ def stand(robot: RobotSpec, posture: Posture) -> Stood:
     data.qpos[[joint.qposadr[0] for joint in joints]] = robot.start_posture
     angles, step_rad = robot.start_posture, robot.ang_min_rad_s * BEAT_S
     moved_m, up = 0.0, 1.0
-    for _ in range(round(TRIAL_S / BEAT_S)):
+    for _ in range(round(STAND_TEST_S / BEAT_S)):
         angles = toward(angles, posture, step_rad)
         data.ctrl[:] = angles
         mj.mj_step(model, data, nstep=STEPS_PER_TICK)

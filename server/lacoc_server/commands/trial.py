@@ -1,0 +1,182 @@
+"""`lacoc trial`: let a robot walk with a gait, and print the figures of its walking."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.text import Text
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.library import find_robot
+from lacoc_robots.robot import RobotSpec
+from lacoc_robots.robot_file import read_robot
+from lacoc_server.match.entry import Entry
+from lacoc_server.trial.bars import foot_bars
+from lacoc_server.trial.course import SETTLE_TICKS, Course
+from lacoc_server.trial.feet import feet_down
+from lacoc_server.trial.figures import Figures, measure
+from lacoc_server.trial.keys import forward_key, parse_keys
+from lacoc_server.trial.walk import Press, Walk
+from lacoc_server.world.sensed import SensedWorld
+from lacoc_shared.command import options, screen
+from lacoc_shared.gait.joining import sample_sequences
+from lacoc_shared.gait.tables import Gait, PostureTable
+from lacoc_shared.gait.workbook import read_gait_file
+from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.words import Phrase, render, say
+
+app = typer.Typer()
+
+FIELD = {"game": {"size_m": [20.0, 20.0]}, "match": {"levels": ["B", "A"]}}
+"""Practice on a field so large that no robot reaches a wall; robots stand as in a contest, where
+level B is open."""
+_MOST_COLUMNS = 100
+
+
+@app.command(name="trial")
+def trial_command(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE", help="A gait file: Loco-data.xlsx, Loco-data.txt or LocoTra-data.txt."
+        ),
+    ],
+    robot: Annotated[
+        str,
+        typer.Option(
+            metavar="ROBOT",
+            help="The robot: an installed one, a robot's folder, or a robot file (.toml).",
+        ),
+    ] = "hexapod",
+    keys: Annotated[
+        str,
+        typer.Option(
+            metavar="KEYS",
+            help="Keys to press: '2', or '1:3, 2' for key 1 for 3 s and then key 2. The last one "
+            "is measured; by default it is 2, forward.",
+        ),
+    ] = "",
+    seconds: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            help="How long the last key is pressed; by default until its sequence was repeated "
+            "6 times.",
+            min=0.1,
+            max=60.0,
+        ),
+    ] = None,
+    json: options.Json = False,
+) -> None:
+    """Let a robot walk alone under the contest's drive, and print the figures of its walking.
+
+    The robot moves exactly as at a court. A file of postures (Loco-data) is tried with the
+    sequences of the sample's keys: 0 stand, 1 turn left, 2 forward, 3 turn right. Figures are of
+    whole cycles; the first cycle, in which the robot gets going, does not count.
+    """
+    spec = read_robot_file(robot)
+    gait = read_trial_gait(file, spec)
+    if keys:
+        presses = parse_keys(keys, gait, SETTLE_TICKS)
+    else:
+        presses = [Press(SETTLE_TICKS, *forward_key(gait))]
+    walk = make_course(spec).walk(gait, presses, seconds)
+    figures = measure(walk)
+    if json:
+        screen.print_json(_as_json(walk, figures))
+        return
+    last = presses[-1]
+    title = say("trial.title", robot=spec.name, level="AB"[last.level], key=last.digit)
+    screen.show(_table(figures, title))
+    for row in _bars(walk):
+        screen.show(Text(row))
+    for note in _notes(walk, figures):
+        screen.warn(note)
+
+
+def read_robot_file(name: str) -> RobotSpec:
+    """Read a robot's file, with the limits of the rules.
+
+    Raises:
+        UserError: if there is no such robot.
+        FileRefused: with every mistake of its file.
+    """
+    file, data = find_robot(name)
+    return read_robot(data, file)
+
+
+def read_trial_gait(file: Path, robot: RobotSpec) -> Gait:
+    """Read a gait file for a trial; level B of a file of postures is that of the sample's keys.
+
+    Raises:
+        UserError: if the file can't be read.
+        FileRefused: with every mistake of the file.
+    """
+    table = read_gait_file(file, legs=robot.labels, range_deg=robot.ranges_deg)
+    if isinstance(table, PostureTable):
+        gait = Gait(table, sample_sequences(table))
+    else:
+        gait = Gait(None, table)
+    if gait.joints != robot.joints:
+        found = say("trial.joints", joints=gait.joints)
+        expected = say("trial.joints-of", joints=robot.joints, robot=robot.name)
+        raise FileRefused([Mistake(file=file.name, found=found, expected=expected)])
+    return gait
+
+
+def make_course(robot: RobotSpec) -> Course:
+    """Make the floor for a robot's trials: the court's own physics, on an open field."""
+    arena = arenas.load("practice", FIELD)
+    world = SensedWorld(arena, Entry(robot, Gait()))
+    return Course(world, robot, arena.match.open_levels[0], arena.match.repeat)
+
+
+def _as_json(walk: Walk, figures: Figures) -> dict[str, Any]:
+    fault = None if walk.fault is None else render(walk.fault)
+    return {"legs": walk.legs, **asdict(figures), "fault": fault}
+
+
+def _table(figures: Figures, title: Phrase) -> Any:
+    """Make a table of the figures that a person asks for first."""
+    table = screen.table(say("trial.figure"), say("trial.value"))
+    table.title, table.title_justify = Text(render(title)), "left"
+    for what, value in (
+        (say("trial.figure-speed"), _number(figures.speed_mm_s, "mm/s")),
+        (say("trial.figure-lateral"), _number(figures.lateral_mm_s, "mm/s")),
+        (say("trial.figure-drift"), _number(figures.drift_deg_s, "deg/s", 2)),
+        (say("trial.figure-stable"), f"{100 * figures.stable_share:.0f} %"),
+        (say("trial.figure-margin"), _number(figures.margin_mm, "mm")),
+        (say("trial.figure-slip"), _number(figures.slip_mm_s, "mm/s")),
+        (say("trial.figure-slip-ratio"), _number(figures.slip_ratio, "", 2)),
+        (say("trial.figure-cost"), _number(figures.cost_of_transport, "", 1)),
+        (say("trial.figure-clearance"), _number(figures.clearance_mm, "mm")),
+        (say("trial.figure-belly"), f"{100 * figures.belly_share:.0f} %"),
+        (say("trial.figure-upright"), _number(figures.upright, "", 2)),
+        (say("trial.figure-duty"), "  ".join(f"{share:.2f}" for share in figures.duty)),
+        (
+            say("trial.figure-cycles"),
+            f"{figures.cycles} × {figures.cycle_s:.2f} s" if figures.cycle_s else "–",
+        ),
+    ):
+        table.add_row(render(what), Text(value))
+    return table
+
+
+def _number(value: float | None, unit: str, digits: int = 1) -> str:
+    return "–" if value is None else f"{value:.{digits}f} {unit}".rstrip()
+
+
+def _bars(walk: Walk) -> list[str]:
+    down = feet_down(walk.load_n, walk.weight_n)
+    return foot_bars(walk.legs, down, walk.starts, SETTLE_TICKS, _MOST_COLUMNS)
+
+
+def _notes(walk: Walk, figures: Figures) -> list[Phrase]:
+    """List what a reader of the figures must know."""
+    notes = []
+    if walk.fault is not None:
+        notes.append(say("trial.fault", why=walk.fault))
+    if not figures.cycles:
+        notes.append(say("trial.no-cycle", seconds=figures.seconds))
+    return notes

@@ -1,0 +1,165 @@
+"""Let a robot walk alone on an open floor, exactly as a court would."""
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from lacoc_arenas.game import Place
+from lacoc_robots.robot import RobotSpec
+from lacoc_server.match.drive import Drive, DriveState
+from lacoc_server.match.physics import Fault
+from lacoc_server.trial.walk import Floats, Press, Sensed, Span, Walk
+from lacoc_shared.gait.tables import Gait, Level, Posture
+from lacoc_shared.seat import BEATS_PER_S
+
+SETTLE_TICKS = BEATS_PER_S // 2
+"""Ticks for which the robot stands before a key is pressed."""
+CYCLES = 5
+"""Whole cycles that are measured, after one that is not: in it the robot gets going."""
+NO_CYCLE_S = 6.0
+"""How long a key is measured whose sequence has one posture, and so never repeats [s]."""
+_MOST_S = 60.0
+
+
+class SensedPhysics(Protocol):
+    """One robot on a floor that it feels; `world.sensed.SensedWorld` implements it."""
+
+    @property
+    def weight_n(self) -> float:
+        """Weight of the robot [N]."""
+
+    @property
+    def digest(self) -> bytes:
+        """Hash chain over the whole state: 8 bytes."""
+
+    def place(self, seat: int, place: Place) -> None:
+        """Put the robot at a start place: start posture, all velocities zero."""
+
+    def step(self, angles: Sequence[Posture]) -> Fault | None:
+        """Let one tick pass, with commanded angles [rad]."""
+
+    def save(self) -> bytes:
+        """Return the whole state."""
+
+    def load(self, saved: bytes) -> None:
+        """Continue from a saved state."""
+
+    def pose(self) -> Floats:
+        """Return position, quaternion and joint angles: (7 + joints,)."""
+
+    def sensed(self) -> Sensed:
+        """Return what was measured in the last tick."""
+
+
+class Course:
+    """A floor on which one robot is tried again and again; each trial begins in the same state.
+
+    Args:
+        world: the robot at its start place.
+        robot: the robot.
+        level: level at which the robot stands before the first key, as the arena has it.
+        repeat: whether sequences repeat while their key stands, as the arena has it.
+    """
+
+    def __init__(self, world: SensedPhysics, robot: RobotSpec, level: Level, repeat: bool) -> None:
+        self._world = world
+        self._robot = robot
+        self._level = level
+        self._repeat = repeat
+        self._start = world.save()
+
+    def walk(self, gait: Gait, presses: Sequence[Press], seconds: float | None = None) -> Walk:
+        """Let the robot stand, press keys, and watch it walk.
+
+        Args:
+            gait: the robot's gait.
+            presses: at least one key, in the order of their ticks; the last one is measured.
+            seconds: time from the last press to the end [s]; None: `CYCLES` whole cycles after the
+                first, or `NO_CYCLE_S` if the key's sequence never begins again.
+        """
+        robot = self._robot
+        drive = Drive(
+            gait,
+            robot.start_posture,
+            robot.ang_min_rad_s,
+            robot.advance,
+            robot.hold_us,
+            self._repeat,
+        )
+        states, starts, span = plan(drive, self._level, presses, seconds)
+        world = self._world
+        world.load(self._start)
+        seen: list[Sensed] = []
+        poses, digests = [], []
+        fault = None
+        for state in states:
+            failed = world.step([state.angles])
+            if failed is not None:
+                fault = failed.why
+                break
+            seen.append(world.sensed())
+            poses.append(world.pose())
+            digests.append(world.digest)
+        done, legs = len(seen), len(robot.legs)
+        pose = _stack(poses, 7 + robot.joints)
+        return Walk(
+            legs=robot.labels,
+            weight_n=world.weight_n,
+            span=Span(min(span.first, done), min(span.end, done), 0 if fault else span.cycles),
+            starts=tuple(start for start in starts if start < done),
+            posture=np.array([state.posture for state in states[:done]], np.int64),
+            body_w=pose[:, :7],
+            angles_rad=pose[:, 7:],
+            commanded_rad=_stack([np.array(state.angles) for state in states[:done]], robot.joints),
+            load_n=_stack([one.load_n for one in seen], legs),
+            other_load_n=np.array([one.other_load_n for one in seen]),
+            power_w=np.array([one.power_w for one in seen]),
+            contact_w_m=_stack([one.contact_w_m for one in seen], legs, 2),
+            grip_n=_stack([one.grip_n for one in seen], legs),
+            slip_m_s=_stack([one.slip_m_s for one in seen], legs),
+            centre_w_m=_stack([one.centre_w_m for one in seen], 2),
+            tip_m=_stack([one.tip_m for one in seen], legs),
+            digests=tuple(digests),
+            fault=fault,
+        )
+
+
+class Plan(NamedTuple):
+    """What a drive will command in a trial, which no physics can change."""
+
+    states: list[DriveState]
+    """State of the drive in each tick."""
+    starts: list[int]
+    """Ticks in which a cycle of the last key begins; also the tick after the end, if one would."""
+    span: Span
+    """Ticks to measure."""
+
+
+def plan(drive: Drive, level: Level, presses: Sequence[Press], seconds: float | None) -> Plan:
+    """Let a drive run through a trial's keys; arguments as in `Course`."""
+    last = presses[-1]
+    due = {press.tick: press for press in presses}
+    most = last.tick + round((_MOST_S if seconds is None else seconds) * BEATS_PER_S)
+    state = drive.begin(level)
+    states: list[DriveState] = []
+    starts: list[int] = []
+    for tick in range(most + 1):
+        press = due.get(tick)
+        before = state if press is None else drive.press(state, press.level, press.digit)
+        state = drive.tick(before)
+        if tick == last.tick or (tick > last.tick and state.posture == 0 != before.posture):
+            starts.append(tick)
+        waited_s = (tick - last.tick) / BEATS_PER_S
+        is_enough = len(starts) == CYCLES + 2 or (len(starts) == 1 and waited_s >= NO_CYCLE_S)
+        if tick == most or (seconds is None and is_enough):
+            break
+        states.append(state)
+    cycles = max(0, len(starts) - 2)
+    span = Span(starts[1], starts[-1], cycles) if cycles else Span(last.tick, len(states), 0)
+    return Plan(states, starts, span)
+
+
+def _stack(rows: Sequence[Floats], *width: int) -> Floats:
+    """Stack one row for each tick; without a tick the rows' shape is `width`."""
+    return np.stack(rows) if rows else np.zeros((0, *width))

@@ -1,0 +1,72 @@
+"""Which feet are down, and when in a cycle they come down.
+
+A foot that touches lightly loses and finds the floor many times a second. So "down" has two bounds:
+a foot comes down above the higher one and is up again below the lower one.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from lacoc_server.trial.walk import Bools, Floats
+
+DOWN_SHARE, UP_SHARE = 0.02, 0.01
+"""A foot is down from a load above the first share of the robot's weight to one below the second"""
+
+
+def feet_down(load_n: Floats, weight_n: float) -> Bools:
+    """Find the feet that are down.
+
+    Args:
+        load_n: (ticks, legs) mean normal force of each tick.
+        weight_n: weight of the robot.
+
+    Returns:
+        (ticks, legs) whether the foot is down; before the first tick all are up.
+    """
+    down = np.zeros(load_n.shape, np.bool_)
+    now = np.zeros(load_n.shape[1], np.bool_)
+    for tick, load in enumerate(load_n):
+        now = np.where(now, load >= UP_SHARE * weight_n, load > DOWN_SHARE * weight_n)
+        down[tick] = now
+    return down
+
+
+def duty(down: Bools) -> list[float]:
+    """Return each foot's duty factor: the share of ticks in which it is down."""
+    return [float(share) for share in down.mean(axis=0)] if len(down) else [0.0] * down.shape[1]
+
+
+def phases(down: Bools, first: int, cycles: Sequence[tuple[int, int]]) -> list[float | None]:
+    """Return when in a cycle each foot comes down, as a part of the cycle from 0 to 1.
+
+    Args:
+        down: (ticks, legs) whether the foot is down.
+        first: a tick before which nothing counts.
+        cycles: first tick of each cycle, and the tick after its last.
+
+    Returns:
+        The mean over all cycles, on a circle: 0.98 and 0.02 give 0. None for a foot that stays up
+        or stays down.
+    """
+    found: list[float | None] = []
+    for leg in range(down.shape[1]):
+        turns = [
+            (tick - begin) / (end - begin) * 2 * math.pi
+            for begin, end in cycles
+            for tick in range(max(begin, first, 1), end)
+            if down[tick, leg] and not down[tick - 1, leg]
+        ]
+        if not turns:
+            found.append(None)
+            continue
+        mean = math.atan2(sum(map(math.sin, turns)), sum(map(math.cos, turns)))
+        found.append(mean / (2 * math.pi) % 1.0)
+    return found
+
+
+def changes_hz(down: Bools, seconds: float) -> list[float]:
+    """Return how often each foot comes down or goes up [1/s]."""
+    changes = (down[1:] != down[:-1]).sum(axis=0)
+    return [float(count) / seconds if seconds else 0.0 for count in changes]

@@ -1,0 +1,85 @@
+"""The keys of a trial, as a person types them: "2", or "1:3, A4:1.5, 2"."""
+
+import math
+import re
+from collections.abc import Iterator
+
+from lacoc_server.trial.walk import Press
+from lacoc_shared.gait.tables import Gait, Level
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import say
+
+FORWARD = 2
+"""The sample's key for forward (workshop Fig. 4-2)."""
+
+_KEY = re.compile(r"(?P<level>[AaBb]?)(?P<digit>[0-9])(:(?P<seconds>[0-9.]+))?", re.ASCII)
+_LONGEST_S = 60.0
+
+
+def forward_key(gait: Gait) -> tuple[Level, int]:
+    """Return the key to try where nobody names one.
+
+    It is `FORWARD`; without it the first key whose sequence moves, else the last key of all.
+    """
+    if gait.locomotion is None:
+        return Level.POSTURE, gait.keys(Level.POSTURE)[-1]
+    sequences = gait.locomotion.sequences
+    moving = [digit for digit, postures in enumerate(sequences) if len(set(postures)) > 1]
+    if FORWARD in moving:
+        return Level.LOCOMOTION, FORWARD
+    return Level.LOCOMOTION, moving[0] if moving else len(sequences) - 1
+
+
+def parse_keys(text: str, gait: Gait, first_tick: int) -> list[Press]:
+    """Read keys that a person typed.
+
+    Args:
+        text: keys in order, parted by commas. Each is a digit, with its level before it where both
+            have the digit ("A4"), and how long it stands after it ("1:3" for 3 s). The last one
+            stands to the end.
+        gait: the gait whose keys they are.
+        first_tick: when the first key is pressed.
+
+    Raises:
+        UserError: if the text is not of this form, or the gait has no such key.
+    """
+    presses: list[Press] = []
+    tick = first_tick
+    words = [word.strip() for word in text.split(",")]
+    for index, word in enumerate(words):
+        found = _KEY.fullmatch(word)
+        seconds = _seconds(found["seconds"]) if found else None
+        is_last = index == len(words) - 1
+        if found is None or seconds is None or (found["seconds"] is None) != is_last:
+            raise UserError(say("trial.wrong-keys", found=word))
+        digit = int(found["digit"])
+        level = _level(found["level"], digit, gait)
+        presses.append(Press(tick, level, digit))
+        tick += max(1, round(seconds * BEATS_PER_S))
+    return presses
+
+
+def _seconds(text: str | None) -> float | None:
+    """Read a time [s]; 0 where there is none. None: it is no time, or too long."""
+    try:
+        seconds = float(text or 0)
+    except ValueError:
+        return None
+    return seconds if math.isfinite(seconds) and seconds <= _LONGEST_S else None
+
+
+def _level(letter: str, digit: int, gait: Gait) -> Level:
+    """Find the level at which a gait has a key; B where both have it."""
+    wanted = {"": (Level.LOCOMOTION, Level.POSTURE), "A": (Level.POSTURE,)}
+    for level in wanted.get(letter.upper(), (Level.LOCOMOTION,)):
+        if gait.sequence(level, digit) is not None:
+            return level
+    there = list(_names(gait))
+    raise UserError(say("trial.no-key", key=f"{letter.upper()}{digit}", keys=there))
+
+
+def _names(gait: Gait) -> Iterator[str]:
+    for level in Level:
+        for digit in gait.keys(level):
+            yield f"{'AB'[level]}{digit}"

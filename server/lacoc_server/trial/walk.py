@@ -1,0 +1,107 @@
+"""What was seen of a trial, tick by tick."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import Phrase
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+
+
+class Press(NamedTuple):
+    """A key, and when it is pressed."""
+
+    tick: int
+    level: Level
+    digit: int
+
+
+class Span(NamedTuple):
+    """Ticks that are measured: from `first` to before `end`."""
+
+    first: int
+    end: int
+    cycles: int
+    """Whole cycles of the key's sequence in the span; 0: none was completed."""
+
+    @property
+    def ticks(self) -> int:
+        """Number of ticks."""
+        return self.end - self.first
+
+    @property
+    def seconds(self) -> float:
+        """Length [s]."""
+        return self.ticks / BEATS_PER_S
+
+
+@dataclass(frozen=True)
+class Sensed:
+    """What was measured in one tick. All but the means are from the tick's last step."""
+
+    load_n: Floats
+    """(legs,) normal force between each shank and the floor, mean over the steps."""
+    other_load_n: float
+    """Normal force between all other parts and the floor, mean over the steps."""
+    power_w: float
+    """Power that the motors put into the joints, mean over the steps; what they brake does not
+    count."""
+    contact_w_m: Floats
+    """(legs, 2) centre of each shank's contact in the plane of the floor, weighted by the force of
+    the steps; 0 without contact."""
+    grip_n: Floats
+    """(legs,) normal force in the last step."""
+    slip_m_s: Floats
+    """(legs,) speed of each shank along the floor where it touches; 0 without contact."""
+    centre_w_m: Floats
+    """(2,) centre of mass in the plane of the floor."""
+    tip_m: Floats
+    """(legs,) height of the lowest point of each shank above the floor."""
+
+
+@dataclass(frozen=True)
+class Walk:
+    """A trial of `ticks` ticks of 20 ms; index k of each array is the state after tick k."""
+
+    legs: tuple[str, ...]
+    """Labels of the legs, in leg order."""
+    weight_n: float
+    """Weight of the robot [N]."""
+    span: Span
+    """Ticks that are measured."""
+    starts: tuple[int, ...]
+    """Ticks in which a cycle of the last key's sequence begins."""
+    posture: npt.NDArray[np.int64]
+    """(ticks,) index of the target posture in the key's sequence."""
+    body_w: Floats
+    """(ticks, 7) position [m] and orientation (quaternion w, x, y, z) of the body."""
+    angles_rad: Floats
+    """(ticks, joints) joint angles that were reached, by joint id."""
+    commanded_rad: Floats
+    """(ticks, joints) commanded joint angles, by joint id."""
+    load_n: Floats
+    """(ticks, legs) normal force between each shank and the floor, mean over a tick's steps."""
+    other_load_n: Floats
+    """(ticks,) normal force between all other parts and the floor, mean over a tick's steps."""
+    power_w: Floats
+    """(ticks,) power that the motors put into the joints, mean over a tick's steps."""
+    contact_w_m: Floats
+    """(ticks, legs, 2) where each shank touches the floor; 0 without contact."""
+    grip_n: Floats
+    """(ticks, legs) normal force between each shank and the floor, at the tick's last step."""
+    slip_m_s: Floats
+    """(ticks, legs) speed of each shank along the floor where it touches; 0 without contact."""
+    centre_w_m: Floats
+    """(ticks, 2) centre of mass in the plane of the floor."""
+    tip_m: Floats
+    """(ticks, legs) height of each foot's lowest point above the floor."""
+    digests: tuple[bytes, ...]
+    """State hash after each tick, as in a match's frames."""
+    fault: Phrase | None = None
+    """Why physics stopped before the end; None: it did not."""

@@ -1,0 +1,110 @@
+"""A world of one robot that also measures its contact with the floor, step by step.
+
+Sensors change no path: `tests/server/test_trial.py` compares the state hashes with those of a world
+without them.
+"""
+
+import mujoco
+import numpy as np
+
+from lacoc_arenas.arena import Arena
+from lacoc_server.match.entry import Entry
+from lacoc_server.trial.walk import Floats, Sensed
+from lacoc_server.world.world import SUBSTEPS, World
+
+GRAVITY_M_S2 = 9.81
+
+_FLOOR = "floor"
+_FORCE, _POSITION = (
+    1 << int(field)
+    for field in (mujoco.mjtConDataField.mjCONDATA_FORCE, mujoco.mjtConDataField.mjCONDATA_POS)
+)
+_NO_FORCE_N = 1e-300
+_NET_FORCE = 3
+"""MuJoCo's reduction of all contacts of a pair to one: their net force, at its centre."""
+
+
+class SensedWorld(World):
+    """A world of one robot that feels the floor; implements `trial.course.SensedPhysics`.
+
+    Args:
+        arena: a field of one seat, with the geom "floor".
+        entry: the robot, weighed in.
+    """
+
+    def __init__(self, arena: Arena, entry: Entry) -> None:
+        self._legs = len(entry.robot.legs)
+        self._prefix = f"{arena.seats[0].id}/"
+        super().__init__(arena, [entry])
+        model, legs = self.model, self._legs
+        shanks = [model.body(f"{self._prefix}leg{leg}_2") for leg in range(legs)]
+        self._shanks = [body.id for body in shanks]
+        self._geoms = [int(body.geomadr[0]) for body in shanks]
+        sizes = model.geom_size[self._geoms]
+        capsule = model.geom_type[self._geoms] == mujoco.mjtGeom.mjGEOM_CAPSULE
+        self._radii_m, self._halves_m = sizes[:, 0], np.where(capsule, sizes[:, 1], 0.0)
+        self._back_emf = entry.robot.back_emf
+        self._root = model.body(f"{self._prefix}body").id
+        self._sensors = np.empty((SUBSTEPS, model.nsensordata))
+        self._torques = np.empty((SUBSTEPS, model.nu))
+        self._speeds = np.empty((SUBSTEPS, model.nu))
+
+    @property
+    def weight_n(self) -> float:
+        """Weight of the robot [N]."""
+        return float(self.model.body_subtreemass[self._root]) * GRAVITY_M_S2
+
+    def pose(self) -> Floats:
+        """Return position [m], quaternion and joint angles [rad] of the robot: (7 + joints,)."""
+        return self._qpos[self._pose_qpos]
+
+    def sensed(self) -> Sensed:
+        """Return what was measured in the last tick."""
+        data, legs = self.data, self._legs
+        feet = self._sensors[:, : 6 * legs].reshape(SUBSTEPS, legs, 6)
+        load_n, at_w_m = np.abs(feet[:, :, 2]), feet[:, :, 3:]
+        whole_n = load_n.sum(axis=0)
+        centre_m = np.einsum("slx,sl->lx", at_w_m[:, :, :2], load_n)
+        # MuJoCo gives a body's velocity at the robot's centre of mass.
+        middle_m, velocity = data.subtree_com[self._root], data.cvel[self._shanks]
+        along_m_s = velocity[:, 3:] + np.cross(velocity[:, :3], at_w_m[-1] - middle_m)
+        # What a motor loses by its own speed never reaches the joint (`lacoc_robots.model`).
+        torques = self._torques - self._back_emf * self._speeds
+        upright = np.abs(data.geom_xmat[self._geoms, 8])
+        robot_n = np.abs(self._sensors[:, -1])
+        return Sensed(
+            load_n=load_n.mean(axis=0),
+            other_load_n=float(np.maximum(0.0, robot_n - load_n.sum(axis=1)).mean()),
+            power_w=float(np.maximum(0.0, torques * self._speeds).sum(axis=1).mean()),
+            contact_w_m=centre_m / np.maximum(whole_n, _NO_FORCE_N)[:, None],
+            grip_n=load_n[-1],
+            slip_m_s=np.hypot(along_m_s[:, 0], along_m_s[:, 1]) * (load_n[-1] > 0),
+            centre_w_m=middle_m[:2].copy(),
+            tip_m=data.geom_xpos[self._geoms, 2] - self._halves_m * upright - self._radii_m,
+        )
+
+    def _extend(self, spec: mujoco.MjSpec) -> None:
+        shank = _FORCE | _POSITION
+        for leg in range(self._legs):
+            self._feel(spec, mujoco.mjtObj.mjOBJ_BODY, f"leg{leg}_2", shank)
+        self._feel(spec, mujoco.mjtObj.mjOBJ_XBODY, "body", _FORCE)
+
+    def _feel(self, spec: mujoco.MjSpec, kind: mujoco.mjtObj, name: str, fields: int) -> None:
+        """Measure the contact of a body with the floor; XBODY: with all bodies that hang on it."""
+        spec.add_sensor(
+            name=f"floor:{name}",
+            type=mujoco.mjtSensor.mjSENS_CONTACT,
+            objtype=kind,
+            objname=self._prefix + name,
+            reftype=mujoco.mjtObj.mjOBJ_GEOM,
+            refname=_FLOOR,
+            intprm=[fields, _NET_FORCE, 1],
+        )
+
+    def _advance(self) -> None:
+        model, data = self.model, self.data
+        for step in range(SUBSTEPS):
+            mujoco.mj_step(model, data)
+            self._sensors[step] = data.sensordata
+            self._torques[step] = data.actuator_force
+            self._speeds[step] = data.actuator_velocity

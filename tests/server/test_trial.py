@@ -1,0 +1,249 @@
+"""Trials of a gait: the court's own physics and drive, and the figures of walking."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lacoc_arenas import arena as arenas
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.commands.trial import FIELD, make_course, read_trial_gait
+from lacoc_server.match.entry import Entry, weigh_in
+from lacoc_server.match.match import Match
+from lacoc_server.trial.bars import foot_bars
+from lacoc_server.trial.course import CYCLES, SETTLE_TICKS, Course
+from lacoc_server.trial.feet import feet_down, phases
+from lacoc_server.trial.figures import measure
+from lacoc_server.trial.keys import forward_key, parse_keys
+from lacoc_server.trial.support import hull, margin_m
+from lacoc_server.trial.walk import Press, Walk
+from lacoc_server.world.world import World
+from lacoc_shared.command import cli
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
+from lacoc_shared.gait.text import write_gait
+from lacoc_shared.inputs import JoinSeat, KeySeat, ReadySeat
+from lacoc_shared.messages import Refusal, SentFile
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import Phase
+
+ROBOTS = ("hexapod", "quadruped", "octopod")
+SAMPLE = Path(__file__).parents[2] / "robots/lacoc_robots/samples/hexapod/Loco-data.txt"
+
+
+def entry(robot: str) -> Entry:
+    """Weigh in a sample robot with its sample gait."""
+    return weigh_in(SentFile(*find_robot(robot)), *sample_gait_files(robot))
+
+
+@pytest.fixture(scope="module")
+def courses() -> dict[str, Course]:
+    """Give a floor for the trials of each sample robot."""
+    return {name: make_course(entry(name).robot) for name in ROBOTS}
+
+
+@pytest.fixture(scope="module")
+def sample(courses: dict[str, Course]) -> Walk:
+    """Give the walk of the workshop's robot with its sample gait, key 2 (forward)."""
+    gait = read_trial_gait(SAMPLE, entry("hexapod").robot)
+    return courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
+
+
+def match_digests(robot: str, gait: Gait, presses: list[Press], ticks: int) -> list[bytes]:
+    """Play the keys in a match of the arena of practice; return its state hash after each tick."""
+    arena = arenas.load("practice", FIELD)
+    setup = Setup(
+        match_id="trial",
+        court="trial",
+        match=1,
+        arena="practice",
+        settings=arena.settings,
+        limits={},
+    )
+    match = Match(setup, World)
+    assert gait.locomotion is not None
+    locomotion = SentFile(
+        "LocoTra-data.txt", write_gait(gait.locomotion, entry(robot).robot.labels)
+    )
+    join = JoinSeat(0, "Team", SentFile(*find_robot(robot)), None, locomotion, token_hash="")
+    outcome = match.beat([join]).outcomes[0]
+    assert not isinstance(outcome, Refusal), outcome
+    due = {press.tick: press for press in presses}
+    found: list[bytes] = []
+    inputs: list[ReadySeat | KeySeat] = [ReadySeat(0, True)]
+    while len(found) < ticks:
+        beat = match.beat(inputs)
+        if beat.ticked:
+            found.append(match.physics.digest)
+        press = due.get(len(found)) if match.phase is Phase.PLAYING else None
+        inputs = [KeySeat(0, len(found), int(press.level), press.digit)] if press else []
+    return found
+
+
+@st.composite
+def tables(draw: st.DrawFn, robot: str) -> Gait:
+    """Draw a gait of one to four keys: whole degrees within 60 degrees of the start posture."""
+    start = entry(robot).robot.start_posture
+    ranges = entry(robot).robot.ranges_rad
+    turn = st.integers(-60, 60)
+    posture = st.lists(turn, min_size=len(start), max_size=len(start)).map(
+        lambda turns: tuple(
+            min(max(math.radians(round(math.degrees(angle)) + by), low), high)
+            for angle, by, (low, high) in zip(start, turns, ranges, strict=True)
+        )
+    )
+    sequence = st.lists(posture, min_size=1, max_size=4).map(tuple)
+    return Gait(None, LocomotionTable(tuple(draw(st.lists(sequence, min_size=1, max_size=4)))))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", ROBOTS)
+@settings(max_examples=5)  # benchmarks/trials.py tries a thousand
+@given(data=st.data())
+def test_a_trial_is_what_a_court_would_do(
+    courses: dict[str, Course], robot: str, data: st.DataObject
+) -> None:
+    """A trial has the state hash of a match after every tick, with sensors and without."""
+    gait = data.draw(tables(robot))
+    assert gait.locomotion is not None
+    # A match reads its gait from a file, which has whole degrees; the trial gets the same angles.
+    sent = SentFile("LocoTra-data.txt", write_gait(gait.locomotion, entry(robot).robot.labels))
+    gait = weigh_in(SentFile(*find_robot(robot)), None, sent).gait
+    keys = data.draw(st.lists(st.integers(0, len(gait.keys(Level.LOCOMOTION)) - 1), min_size=1))
+    gap = data.draw(st.integers(1, 40))
+    presses = [
+        Press(SETTLE_TICKS + gap * index, Level.LOCOMOTION, key)
+        for index, key in enumerate(keys[:4])
+    ]
+    walk = courses[robot].walk(gait, presses, 1.0)
+    assert len(walk.digests) == presses[-1].tick + 50 or walk.fault is not None
+    ticks = len(walk.digests)
+    assert list(walk.digests) == match_digests(robot, gait, presses, ticks)
+
+
+def test_a_trial_can_be_repeated(courses: dict[str, Course], sample: Walk) -> None:
+    """Every trial on a floor begins in the same state, whatever walked there before."""
+    gait = read_trial_gait(SAMPLE, entry("hexapod").robot)
+    courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 1)], 1.0)
+    again = courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
+    assert again.digests == sample.digests
+
+
+def test_the_figures_of_the_sample(sample: Walk) -> None:
+    """The workshop's gait is always stable, walks straight, and slides as fast as it walks."""
+    found = measure(sample)
+    assert found.cycles == CYCLES
+    assert found.speed_mm_s == pytest.approx(60, abs=2)
+    assert abs(found.drift_deg_s) < 0.01
+    assert found.stable_share == 1
+    assert found.few_feet_share == 0
+    assert found.margin_mm == pytest.approx(23, abs=2)
+    assert found.slip_ratio == pytest.approx(0.93, abs=0.03)
+    assert max(found.changes_hz) <= 4
+    assert found.belly_share == 0
+    assert found.upright > 0.99
+    assert found.cost_of_transport is not None
+    assert 2 < found.cost_of_transport < 3
+    # A tripod: each leg moves half a cycle after its neighbours.
+    assert found.phase[0] is not None
+    for leg, phase in enumerate(found.phase):
+        assert phase == pytest.approx((found.phase[0] + leg % 2 / 2) % 1, abs=0.05)
+
+
+def test_feet_that_are_down_are_low(sample: Walk) -> None:
+    """Loads and heights agree: a foot that is down has its lowest point below 1 mm."""
+    part = slice(sample.span.first, sample.span.end)
+    down = feet_down(sample.load_n, sample.weight_n)[part]
+    assert ((sample.tip_m[part] < 0.001) == down).mean() > 0.95
+
+
+def test_contact_has_two_bounds() -> None:
+    """A foot that is down stays down at a load that would not put it down."""
+    load_n = np.array([[0.015], [0.03], [0.015], [0.005], [0.015]])
+    assert feet_down(load_n, 1.0)[:, 0].tolist() == [False, True, True, False, False]
+
+
+def test_phases_are_means_on_a_circle() -> None:
+    """Touchdowns just before and just after a cycle's begin give a phase near its begin."""
+    down = np.zeros((40, 1), bool)
+    down[[9, 10, 21, 22]] = True
+    (found,) = phases(down, 0, [(0, 10), (20, 30)])
+    assert found is not None
+    assert math.cos(2 * math.pi * found) == pytest.approx(1)
+    assert phases(np.ones((40, 1), bool), 0, [(1, 10)]) == [None]
+
+
+@given(
+    st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=3, max_size=8),
+    st.tuples(st.integers(-9, 9), st.integers(-9, 9)),
+)
+def test_margin(feet: list[tuple[int, int]], centre: tuple[int, int]) -> None:
+    """The margin has the sign of "inside", and its size is the distance of the nearest edge."""
+    corners = hull(feet)
+    found = margin_m(feet, centre)
+    assert found is not None
+    edges = list(zip(corners, [*corners[1:], corners[0]], strict=True))
+    ways = np.linspace(0, 1, 2001)[:, None]
+    points = [np.array(a) + ways * (np.array(b) - np.array(a)) for a, b in edges]
+    nearest = min(np.hypot(*(line - centre).T).min() for line in points)
+    assert abs(found) == pytest.approx(nearest, abs=0.02)
+    # A point is inside if the corners are seen from it all around.
+    angles = sorted(math.atan2(y - centre[1], x - centre[0]) for x, y in corners)
+    gaps = [b - a for a, b in zip(angles, [*angles[1:], angles[0] + 2 * math.pi], strict=True)]
+    if abs(found) > 1e-9 and len(corners) > 2:
+        assert (found > 0) == (max(gaps) < math.pi)
+
+
+def test_margin_of_few_feet() -> None:
+    """Two feet or one have no inside; without feet there is no margin."""
+    assert margin_m([], (0, 0)) is None
+    assert margin_m([(3, 4)], (0, 0)) == -5
+    assert margin_m([(-1, 2), (1, 2)], (0, 0)) == -2
+    assert margin_m([(1, 0), (1, 0), (2, 0)], (0, 0)) == -1
+
+
+def test_keys_as_people_type_them() -> None:
+    """A key stands for its seconds, and the last one to the end; the level is B where it can be."""
+    gait = read_trial_gait(SAMPLE, entry("hexapod").robot)
+    assert forward_key(gait) == (Level.LOCOMOTION, 2)
+    assert parse_keys("1:3, A4:0.5,2", gait, 25) == [
+        Press(25, Level.LOCOMOTION, 1),
+        Press(175, Level.POSTURE, 4),
+        Press(200, Level.LOCOMOTION, 2),
+    ]
+    assert parse_keys("8", gait, 0) == [Press(0, Level.POSTURE, 8)]
+    for wrong in ("", "11", "2:3", "1,2", "x", "1:..,2", "1:999,2", "B9", "1:-1,2", "１"):
+        with pytest.raises(UserError):
+            parse_keys(wrong, gait, 0)
+
+
+def test_foot_bars() -> None:
+    """A column is full where the foot is mostly down; the last row marks the cycles."""
+    down = np.array([[True, False]] * 4 + [[False, True]] * 4)
+    rows = foot_bars(["R,F", "L"], down, [0, 4], 0, 4)
+    assert rows == ["R,F ██··", "  L ··██", "    │ │"]
+    assert foot_bars(["R,F"], down[:0, :1], [], 0, 4) == []
+
+
+def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
+    """`lacoc trial` prints the figures; it refuses a gait for another robot."""
+
+    def run(*words: str) -> int:
+        try:
+            return cli.main(["trial", str(SAMPLE), *words])
+        except SystemExit as ended:
+            return int(ended.code or 0)
+
+    assert run("--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["speed_mm_s"] == pytest.approx(60, abs=2)
+    assert len(found["duty"]) == len(found["phase"]) == 6
+    assert run("--keys", "1:1, 2", "--seconds", "2") == 0
+    said = capsys.readouterr()
+    assert "speed forward" in said.out
+    assert "not repeated often enough" in said.err
+    assert run("--robot", "quadruped") == 2
