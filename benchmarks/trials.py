@@ -88,7 +88,7 @@ def compared(seed: int) -> Compared:
     robot = ROBOTS[seed % len(ROBOTS)]
     gait, locomotion = _drawn(rng, robot)
     press = Press(SETTLE_TICKS, Level.LOCOMOTION, rng.randrange(len(gait.keys(Level.LOCOMOTION))))
-    walk = _course(robot).walk(gait, [press])
+    walk = course_of(robot).walk(gait, [press])
     played = _match_digests(robot, locomotion, press, len(walk.digests))
     ends = [*walk.starts[1:], len(walk.digests)]
     differs = next(
@@ -126,7 +126,7 @@ def _agrees(walk: Walk) -> float:
 
 def _drawn(rng: random.Random, robot: str) -> tuple[Gait, SentFile]:
     """Draw a gait of whole degrees, and its file: half of them a sample's, changed in places."""
-    entry = _entry(robot)
+    entry = entry_of(robot)
     spec = entry.robot
     assert entry.gait.locomotion is not None
     sequences = [list(sequence) for sequence in entry.gait.locomotion.sequences]
@@ -187,17 +187,19 @@ def _match_digests(robot: str, locomotion: SentFile, press: Press, ticks: int) -
 
 
 @cache
-def _entry(robot: str) -> Entry:
+def entry_of(robot: str) -> Entry:
+    """Weigh in a sample robot with its sample gait."""
     return weigh_in(SentFile(*find_robot(robot)), *sample_gait_files(robot))
 
 
 @cache
-def _course(robot: str) -> Course:
-    return make_course(_entry(robot).robot)
+def course_of(robot: str) -> Course:
+    """Make the floor for a sample robot's trials."""
+    return make_course(entry_of(robot).robot)
 
 
 def _sample_walk(robot: str) -> Walk:
-    return _course(robot).walk(_entry(robot).gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
+    return course_of(robot).walk(entry_of(robot).gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
 
 
 if __name__ == "__main__":
