@@ -176,7 +176,11 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     phase(page, 2)
     step(page, "Control+Enter")
     log_has(page, "Referee Kim: play begins in 3 seconds.")
+    expect(page.locator(".answer.yes")).to_have_text(
+        re.compile(r"^✓ Done Play begins in 3 seconds\. [1-9]\d* s ago$")
+    )
     phase(page, 4)
+    expect(page.locator(".answer")).to_have_count(0)  # it was of another phase
     # While the match is played.
     seat(page, 0, "Restart").click()
     confirm(page, "fell over")
@@ -194,8 +198,16 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     log_has(page, "Referee Kim: -3 points for Ants. Reason: a warning")
     has_scores(page, 15, 18)
     # While the match is halted: set a disc, take that back, change the clock.
+    expect(page.locator(".why-halted")).to_have_count(0)
     group(page, "Halt").click()
     phase(page, 5)
+    cause = page.locator(".why-halted")
+    expect(cause).to_have_text("Referee Kim: halted.")
+    text_px, large_px = (
+        float(found.evaluate("(at) => parseFloat(getComputedStyle(at).fontSize)"))
+        for found in (page.locator(".log li").first, cause)
+    )
+    assert large_px > 1.3 * text_px
     disc(page, "c0r0").click()
     page.locator(".pick .states .act").nth(2).click()
     confirm(page, "rule")
@@ -605,6 +617,13 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     venue.web()
     page = referee()
     at_the_desk(page)
+    looks: dict[str, set[str | None]] = {}
+    for flag in page.locator(".board g[aria-label^='flag']").all():
+        colour = flag.locator("circle").get_attribute("fill")
+        points = flag.locator("text").text_content() or ""
+        looks.setdefault(points, set()).add(colour)
+    assert sorted(looks) == ["1", "2", "3", "5"]  # also 1 point is shown (rules 6)
+    assert len(set.union(*looks.values())) == 4  # and each number has its colour
     ants, bees = venue.contestant("left", "Ants"), venue.contestant("right", "Bees")
     phase(page, 2)
     step(page)
