@@ -26,15 +26,13 @@ def opened(open_page: OpenPage, venue: Venue, path: str, **options: Any) -> Show
     return Show(open_page(**options), venue.url, path, drawn=False)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     "path",
     [
-        "/play",
         "/overlay",
         *(
             pytest.param(path, marks=pytest.mark.long)
-            for path in ("/watch", "/practice", "/referee")
+            for path in ("/watch", "/play", "/practice", "/referee")
         ),
     ],
 )

@@ -310,7 +310,6 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
     at_the_desk(page)
 
 
-@pytest.mark.long
 def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     """Without the key the page shows everything, and says how to get a link with the key."""
     page = referee(key=False)
@@ -321,7 +320,6 @@ def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     expect(big(page)).to_have_attribute("aria-disabled", "true")
 
 
-@pytest.mark.long
 def test_the_file_that_a_browser_is_given_leads_to_the_page(
     court: Venue, open_page: OpenPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -315,7 +315,6 @@ def test_dragging_turns_the_camera_and_is_no_click(stand: Stand) -> None:
     assert np.allclose(stand.view("eye"), eye, atol=1e-6)
 
 
-@pytest.mark.long
 def test_only_the_left_button_turns_the_camera(stand: Stand) -> None:
     """The right button, and a left button whose release was lost, do not turn the camera."""
     stand.open("othello.bin", speed=0, q="low")
@@ -365,7 +364,6 @@ def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
     assert share_of(stand.pixels(), BLUE) < 0.5 * before
 
 
-@pytest.mark.long
 def test_in_software_it_begins_coarse(stand: Stand) -> None:
     """Without a graphics card low quality is chosen automatically, and a person can change it."""
     stand.open("othello.bin", speed=0, q="auto")

@@ -3,7 +3,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { said, t } from "../../../client/web/src/i18n/index.ts";
-import { clock, clockTicks, eventClock, hint } from "../../../client/web/src/i18n/words.ts";
+import {
+  clock,
+  clockTicks,
+  eventClock,
+  hint,
+  markerName,
+  winnerOf,
+} from "../../../client/web/src/i18n/words.ts";
 
 const PLAYING = 4;
 const seat = (team) => ({ id: team.toLowerCase(), team });
@@ -48,4 +55,24 @@ test("phases are words, and not the names that a program uses", () => {
   for (let number = 0; number <= 8; number++) {
     assert.match(t(`phase.${number}`), /^[A-Z][a-z]+$/);
   }
+});
+
+test("the winner is whom the referee declares, and else the newest by the rules", () => {
+  const result = (winner) => ({ kind: "result", data: { winner } });
+  const declare = (winner) => ({
+    kind: "decision",
+    data: { decision: "declare", arguments: { winner } },
+  });
+  const winner = (...events) => winnerOf({ events: { value: events } });
+  assert.equal(winner(), null);
+  assert.equal(winner(result("left"), result("draw")), "draw");
+  assert.equal(winner(result("left"), declare("right"), result("left")), "right");
+  assert.equal(winner(declare("right"), declare("draw")), "draw");
+});
+
+test("a marker is shown by a word, and not by its name in the record", () => {
+  assert.equal(markerName("flag7"), "flag 7");
+  assert.equal(markerName("corner2"), "corner 2");
+  assert.equal(markerName("c2r3"), "disc c2r3");
+  assert.equal(markerName("line"), "line");
 });
