@@ -150,7 +150,7 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     expect(advice).to_contain_text("of real time (at least 2 is required)")
     log_has(page, "A replay is advised: the match ran at ")
     expect(other.locator(".match .advice h3")).to_have_text("再試合を推奨")
-    expect(other.locator(".match .advice li").first).to_contain_text("実時間比")
+    expect(other.locator(".match .advice li").first).to_contain_text("実時間の")
     step(page)  # advice only: the result is the referee's word
     confirm(page)
     phase(page, 7)
