@@ -113,10 +113,10 @@ def test_a_dry_run_lists_what_would_change(capsys: pytest.CaptureFixture[str]) -
         *first,
         "  event 17 is removed: strike flag18",
         "  new event: capture corner0",
-        "Score then: 5 : 0",
+        "The score would be 5 : 0",
         *first,
         "  No other event changes.",
-        "Score then: 5 : 0",
+        "The score would be 5 : 0",
     ]
 
 
