@@ -173,3 +173,11 @@ def test_field_turned_is_the_same_field(name: str) -> None:
     same = abs(here[:, None] - there[None]).max(axis=2) < 1e-8
     assert (same.sum(axis=0) == 1).all()
     assert (same.sum(axis=1) == 1).all()
+
+
+def test_start_places_look_like_no_target() -> None:
+    """On the field of Flag-Strike only what is worth points is round; start places are square."""
+    model = build("flag-strike").compile()
+    pads = [geom for geom in geoms(model) if geom.name.startswith("pad:")]
+    assert len(pads) == 2 * len(arena.load("flag-strike").game.starts[0])
+    assert {int(pad.type[0]) for pad in pads} == {int(mujoco.mjtGeom.mjGEOM_BOX)}

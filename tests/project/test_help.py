@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Iterator
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -163,3 +164,44 @@ def test_after_japanese_comes_english_again(capsys: pytest.CaptureFixture[str]) 
     help_text.translate_typer()
     words.use("en")
     assert japanese_help("lacoc gait check", capsys) == before
+
+
+FOLDER = Path(__file__).parents[2]
+PAGES = [*sorted(FOLDER.glob("README*.md")), *sorted((FOLDER / "docs").glob("*.md"))]
+CODE = re.compile(r"```(?!mermaid)\w*\n(.*?)```|`([^`\n]+)`", re.DOTALL)
+
+
+def cited(text: str) -> Iterator[list[str]]:
+    """Yield the words of each command in the code of a page, without "lacoc"."""
+    for block, span in CODE.findall(text):
+        for line in (block or span).splitlines():
+            if found := re.search(r"(?:^|[\s/\\])lacoc((?: [^\s|#]+)*)", line):
+                yield found[1].split()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(FOLDER)))
+def test_a_page_names_commands_that_exist(page: Path) -> None:
+    """Every command and option in the README of both languages, and in docs, exists."""
+    text = page.read_text("utf-8").replace("`lacoc password`", "")  # bytes of the protocol
+    for typed in cited(text):
+        name = "lacoc"
+        for word in typed:
+            if f"{name} {word}" not in COMMANDS:
+                break
+            name += f" {word}"
+        rest = typed[len(name.split()) - 1 :]
+        is_group = hasattr(COMMANDS[name], "list_commands")
+        known = {
+            opt for param in COMMANDS[name].params for opt in param.opts + param.secondary_opts
+        }
+        wrong = [word for word in rest if word.startswith("--") and word.split("=")[0] not in known]
+        assert not wrong, f"{name} {' '.join(rest)}"
+        assert not is_group or not rest or rest[0].startswith("-"), f"{name} {' '.join(rest)}"
+
+
+def test_readers_on_windows_are_told_how() -> None:
+    """The README of each language says how to install and start on Windows, without `make`."""
+    for name in ("README.md", "README.ja.md"):
+        text = (FOLDER / name).read_text("utf-8")
+        assert "PowerShell" in text
+        assert ".venv\\Scripts\\lacoc demo" in text
