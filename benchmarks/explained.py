@@ -73,7 +73,9 @@ def tell(seed: int) -> Told:
         [math.degrees(angle) + rng.randint(-_NOISE_DEG, _NOISE_DEG) for angle in posture]
         for posture in entry.gait.locomotion.sequences[KEY]
     ]
-    leg = rng.randrange(len(entry.robot.legs))
+    # The sample's middle legs do not swing: turned around, they would do the same.
+    swinging = [leg for leg in range(len(entry.robot.legs)) if _swings(table, leg)]
+    leg = rng.choice(swinging if name == "swapped" else range(len(entry.robot.legs)))
     put(table, leg, entry.robot, rng)
     sequence = tuple(
         tuple(
@@ -97,6 +99,11 @@ def _legs(phrase: Phrase) -> list[object]:
     cell = phrase.values.get("cell")
     inner = cell.values.get("leg") if isinstance(cell, Phrase) else None
     return [phrase.values.get("leg"), inner]
+
+
+def _swings(table: Table, leg: int) -> bool:
+    roots = [posture[leg] for posture in table]
+    return max(roots) - min(roots) > 4 * _NOISE_DEG
 
 
 def _dragged(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:

@@ -31,7 +31,7 @@ _LIFT_M = 0.008
 """Legs step if they usually lift their feet higher than this."""
 _DRAGGED = 0.35
 """A leg drags if it is lifted less than this part of what is usual."""
-_SWING_M2, _AGAINST = 1e-4, 0.12
+_SWING_M2, _AGAINST = 1e-4, 0.3
 """A leg pushes backward if it swings backward in the air, by this part of what others swing."""
 _APART = 0.12
 """A leg is out of step if it is lifted by this part of the sequence before or after all others."""
