@@ -218,8 +218,7 @@ def _require_whole(module: ModuleType) -> None:
                 "arena.not-whole",
                 folder=str(folder),
                 missing=missing,
-                file=_FILE,
-                parts=[f"{part}.py" for part in _PARTS],
+                parts=[_FILE, *(f"{part}.py" for part in _PARTS)],
                 example=str(Path(__file__).parent / "othello"),
             )
         )
