@@ -104,7 +104,7 @@ class CourtStub:
         self.trouble: Phrase | None = None
         """The reason why no beats pass, such as a full disk; None while they pass.
 
-                While it is set, the court refuses requests and repeats the frame of its last beat.
+        While it is set, the court refuses requests and repeats the frame of its last beat.
         """
         self.inputs: list[Input] = []
         self.scene = make_scene("empty")

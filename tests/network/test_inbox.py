@@ -358,8 +358,7 @@ def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
 
 
 def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
-    """A flood on a seat is limited, its newest command takes effect, and the other seat plays on.
-    """
+    """A flood on a seat is limited; its newest command takes effect and the other seat plays on."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     inbox.beat(0.0, [[], []])

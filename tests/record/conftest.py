@@ -79,9 +79,7 @@ def sheet() -> Sheet:
 
 @pytest.fixture(scope="session")
 def scene() -> Scene:
-    """Give a scene: a floor, a disc in two states for each marker, and two robots drawn with one
-    leg.
-    """
+    """Give a scene of a floor, discs in two states, and two robots drawn with one leg each."""
     bodies = [SceneBody(name="world", parent=-1, pos=_ZERO, quat=_ONE)]
     geoms = [_geom("plane", (0.0, 0.0, 0.1))]
     for marker in range(3):

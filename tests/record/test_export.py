@@ -180,8 +180,7 @@ def _foxglove(record: Record) -> dict[str, list[tuple[int, Any]]]:
 
 
 def test_foxglove_draws_the_match(record: Record) -> None:
-    """A Foxglove file has Foxglove's own schemas, and the pose of each robot's bodies every 40 ms.
-    """
+    """A Foxglove file has Foxglove's own schemas, and the poses of all robot bodies every 40 ms."""
     found = _foxglove(record)
     assert set(found) == {
         "/tf foxglove.FrameTransforms",
@@ -293,8 +292,7 @@ def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> 
 
 
 def test_export_writes_what_is_asked(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay export` writes only the chosen outputs, and none if one of them can't be made.
-    """
+    """`lacoc replay export` writes only the chosen outputs, and none if one can't be made."""
     path, out = write_match(tmp_path), tmp_path / "out"
     args = ["export", str(path), "--out", str(out), "--pos-data", "left"]
     done = CliRunner().invoke(app, args)

@@ -206,8 +206,7 @@ def test_a_throwaway_contest_has_fresh_tokens(file: Path) -> None:
 
 
 def test_the_only_court_needs_no_name(file: Path) -> None:
-    """The name of a contest's only court may be left out; an error about a name lists all courts.
-    """
+    """A contest's only court needs no name; an error about a court's name lists all courts."""
     assert contests.load(file).court()[0] == "main"
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
