@@ -354,9 +354,7 @@ def test_bots_are_pure(name: str) -> None:
 
 
 def test_planner_leaves_the_corner_that_would_lose() -> None:
-    """A planner that is behind avoids the fourth corner, which ends the match (workshop 5-2 rule
-    4).
-    """
+    """A planner that is behind avoids the corner that ends the match (workshop 5-2 rule 4)."""
     ground = arena.load("flag-strike")
     sheet = make_sheet(ground)
     game = ground.game

@@ -143,8 +143,7 @@ def colour_of(geom: Any, swap: bool) -> tuple[float, ...]:
 
 
 def looks(name: str, turn: bool) -> Any:
-    """Return each geom as numbers of its look alone; with `turn`, of the field after a half turn.
-    """
+    """Return each geom as numbers of its look; with `turn`, of the field after a half turn."""
     model = build(name).compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)

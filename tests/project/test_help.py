@@ -59,8 +59,7 @@ def test_every_option_and_argument_has_help(name: str) -> None:
 def test_help_is_shown_as_it_is_written(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`--help` shows words in square brackets unchanged, although rich could take them for styles.
-    """
+    """`--help` shows words in square brackets, which rich could take for styles."""
     monkeypatch.setenv("COLUMNS", "100")
     with pytest.raises(SystemExit) as stop:
         cli.main([*name.split()[1:], "--help"])

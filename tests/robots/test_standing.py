@@ -41,8 +41,7 @@ def test_every_sample_stands(name: str) -> None:
 
 
 def swept(robot: RobotSpec) -> Posture:
-    """Return the start posture with all legs swung back by 90 degrees, which rows the robot away.
-    """
+    """Return the start posture with all legs swung back by 90 degrees, to row the robot away."""
     legs = len(robot.legs)
     return tuple(
         angle - math.radians(90) * (joint < legs) for joint, angle in enumerate(robot.start_posture)
