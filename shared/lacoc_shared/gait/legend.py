@@ -1,5 +1,4 @@
-"""The legend rows of Loco-data (workshop Fig. 4-1): find them, and compare them with the columns.
-"""
+"""The legend rows of Loco-data (workshop Fig. 4-1): find them and compare them with the columns."""
 
 import re
 from collections.abc import Sequence
