@@ -130,8 +130,7 @@ class Pilot:
         return wanted if (seat.level, seat.key) != wanted else None
 
     def _sequence_ended(self, seat: SeatFrame) -> bool:
-        """Say whether the current sequence has ended; true for [0], level A and a single posture.
-        """
+        """Say whether the current sequence has ended; true for [0], level A and one posture."""
         before, self._posture = self._posture, seat.posture
         if seat.level != Level.LOCOMOTION or seat.key == STAND.key:
             return True

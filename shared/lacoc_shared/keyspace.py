@@ -86,7 +86,5 @@ class Keys:
         return f"{self.root}/referee/{ENTER}"
 
     def decision(self, name: str) -> str:
-        """Return the key expression of a decision, which gets a reply; `*` stands for all
-        decisions.
-        """
+        """Return the key expression of a decision, which gets a reply; `*` is for all decisions."""
         return f"{self.root}/referee/{name}"

@@ -190,7 +190,7 @@ class Court:
             self._say_health(now_s)
 
     def _open_next(self) -> None:
-        # Making a match takes longer than a beat, so while the disk fails it is tried twice a second.
+        # Making a match takes longer than a beat: while the disk fails, try it twice a second.
         if self._waits % HEALTH_BEATS:
             raise UserError(self._trouble or "")
         match = self._journal.match

@@ -1,5 +1,4 @@
-"""The look of a Loco-data workbook (workshop Fig. 4-1): its sheets, their colours and input help.
-"""
+"""The look of a Loco-data workbook (workshop Fig. 4-1): sheets, their colours and input help."""
 
 from collections.abc import Sequence
 
