@@ -74,9 +74,7 @@ class Seat:
             self.state = self.drive.stand(self.state)
 
     def restart(self) -> None:
-        """Send the robot back to its start place in this beat; it stands at the same level (rules
-        3).
-        """
+        """Put the robot back at its start place in this beat, standing at its level (rules 3)."""
         self.restarting = True
         if self.drive and self.state:
             self.state = self.drive.begin(self.state.level)
