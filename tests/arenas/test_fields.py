@@ -31,7 +31,7 @@ def geoms(model: Any) -> list[Any]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_names_agree(name: str) -> None:
-    """A field has shapes for all states of each marker, and for nothing else."""
+    """A field has a marker shape for each state of each marker, and no other marker shapes."""
     game = arena.load(name).game
     shown = {
         tuple(geom.name.split(":")[1:3])
@@ -143,7 +143,7 @@ def colour_of(geom: Any, swap: bool) -> tuple[float, ...]:
 
 
 def looks(name: str, turn: bool) -> Any:
-    """Return each geom as numbers that depend only on how it looks; `turn`: of the turned field."""
+    """Return each geom as numbers of its look; with `turn`, of the field after a half turn."""
     model = build(name).compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)

@@ -60,7 +60,7 @@ def test_every_option_and_argument_has_help(name: str) -> None:
 def test_help_is_shown_as_it_is_written(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`--help` shows words in square brackets, which could be taken for styles."""
+    """`--help` shows words in square brackets, which rich could take for styles."""
     monkeypatch.setenv("COLUMNS", "100")
     with pytest.raises(SystemExit) as stop:
         cli.main([*name.split()[1:], "--help"])
@@ -79,7 +79,7 @@ SENTENCE = re.compile(r"[A-Za-z]+ [a-z]{2,} [a-z]+ [a-z]{2,}")
 
 
 def texts_of_help() -> set[str]:
-    """All that the help of the commands says, in English."""
+    """Return every English text in the help of all commands."""
     found = set(cli._PANELS) | {cli._OTHERS}
     for command in COMMANDS.values():
         for part in (command, *command.params):
@@ -88,12 +88,12 @@ def texts_of_help() -> set[str]:
 
 
 def english_left(shown: str) -> list[str]:
-    """Lines of a Japanese help that are English."""
+    """Return the lines of a Japanese help that have an English sentence or a word of typer."""
     return [line for line in shown.splitlines() if TYPER.search(line) or SENTENCE.search(line)]
 
 
 def japanese_help(name: str, capsys: pytest.CaptureFixture[str]) -> str:
-    """What a command shows with --help to a user of Japanese."""
+    """Return what a command prints with --help."""
     with pytest.raises(SystemExit):
         cli.main([*name.split()[1:], "--help"])
     return capsys.readouterr().out
@@ -101,7 +101,7 @@ def japanese_help(name: str, capsys: pytest.CaptureFixture[str]) -> str:
 
 @pytest.fixture
 def japanese(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """A user of Japanese, with a wide terminal."""
+    """Set the language to Japanese and the terminal to 200 columns; later, go back to English."""
     monkeypatch.setenv("LACOC_LANGUAGE", "ja")
     monkeypatch.setenv("COLUMNS", "200")
     yield
@@ -110,7 +110,7 @@ def japanese(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def test_the_table_of_help_has_the_texts_of_the_commands() -> None:
-    """Each English text once, and none that no command has any more."""
+    """The table of help has each English text of the commands once, and no other text."""
     file = resources.files("lacoc_shared.words") / "texts" / "help.toml"
     pairs = tomllib.loads(file.read_text("utf-8"))["text"]
     english = {pair["en"] for pair in pairs}
@@ -122,7 +122,7 @@ def test_the_table_of_help_has_the_texts_of_the_commands() -> None:
 
 @pytest.mark.usefixtures("japanese")
 def test_help_in_japanese_has_no_english_line(capsys: pytest.CaptureFixture[str]) -> None:
-    """Every command; file names and words to type may be English, sentences may not."""
+    """The Japanese help of every command has no English sentence and no English word of typer."""
     for name in COMMANDS:
         assert english_left(japanese_help(name, capsys)) == [], name
 
@@ -131,7 +131,7 @@ def test_help_in_japanese_has_no_english_line(capsys: pytest.CaptureFixture[str]
 def test_an_english_line_is_found(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The check above fails if a text or one of typer's own words is not translated."""
+    """The check for English lines notices a text, or a word of typer, without a translation."""
     whole = help_text.japanese()
     for text in ("Say ready for a contestant who cannot.", "Options"):
         rest = {en: ja for en, ja in whole.items() if en != text}
@@ -158,7 +158,7 @@ def test_a_mistake_in_the_use_is_told_in_japanese(
 
 
 def test_after_japanese_comes_english_again(capsys: pytest.CaptureFixture[str]) -> None:
-    """A process that changes its language shows typer's own words in it."""
+    """After a change to Japanese and back, help is in English as before."""
     before = japanese_help("lacoc gait check", capsys)
     words.use("ja")
     help_text.translate_typer()

@@ -111,7 +111,7 @@ def read_robot_file(name: str) -> RobotSpec:
 
 
 def read_trial_gait(file: Path, robot: RobotSpec) -> Gait:
-    """Read a gait file for a trial; level B of a file of postures is that of the sample's keys.
+    """Read a gait file for a trial; postures are joined into sequences as for the sample's keys.
 
     Raises:
         UserError: if the file can't be read.

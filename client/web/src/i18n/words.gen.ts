@@ -324,7 +324,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "robot.clockwise": ["the legs clockwise, seen from above, starting at the right front", "上から見て右前から時計回りの脚の順番"],
   "robot.stands": ["{found} (standing with key 0 of level {levels:and})", "{found}（レベル {levels:and} のキー 0 で立っているとき）"],
   "robot.unstable": ["a robot that physics can't follow", "物理計算ができないロボット"],
-  "robot.stable": ["heavier links, or a servo with a smaller kp", "より重いリンク、またはより小さい kp のサーボ"],
+  "robot.stable": ["heavier links, or a servo with a smaller kp", "リンクがもっと重いか、サーボの kp がもっと小さいロボット"],
   "robot.strays": ["a robot that goes {moved_m:.3} m from its start within {within_s} s", "{within_s} 秒以内にスタート位置から {moved_m:.3} m 動くロボット"],
   "robot.stays": ["at most {farthest_m} m: bring these angles nearer to key 0, and let every foot stand on the floor", "{farthest_m} m 以内（この角度をキー 0 の姿勢に近づけ、すべての足が床に着くようにしてください）"],
   "robot.leans": ["a robot that leans {tilt_deg:.0} degrees", "{tilt_deg:.0} 度傾くロボット"],
