@@ -15,15 +15,14 @@ from functools import cache
 from multiprocessing import get_context
 from typing import NamedTuple
 
-from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_server.commands.trial import FIELD, make_course
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_server.match.match import Match
 from lacoc_server.trial.course import SETTLE_TICKS, Course
 from lacoc_server.trial.feet import feet_down
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.walk import Press, Walk
+from lacoc_server.world.sensed import make_course, practice_field
 from lacoc_server.world.world import World
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
 from lacoc_shared.gait.text import write_gait
@@ -166,7 +165,7 @@ def _drawn(rng: random.Random, robot: str) -> tuple[Gait, SentFile]:
 
 def _match_digests(robot: str, locomotion: SentFile, press: Press, ticks: int) -> list[bytes]:
     """Play a key in a match of the arena of practice; return its state hash after each tick."""
-    arena = arenas.load("practice", FIELD)
+    arena = practice_field()
     settings = arena.settings
     setup = Setup(
         match_id="trial", court="trial", match=1, arena="practice", settings=settings, limits={}

@@ -10,9 +10,8 @@ from benchmarks.explained import FAULTS, tell
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_server.commands.trial import FIELD, make_course, read_trial_gait
+from lacoc_server.commands.trial import read_trial_gait
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_server.match.match import Match
 from lacoc_server.trial.bars import foot_bars
@@ -23,6 +22,7 @@ from lacoc_server.trial.figures import measure
 from lacoc_server.trial.keys import forward_key, parse_keys
 from lacoc_server.trial.support import hull, margin_m
 from lacoc_server.trial.walk import Press, Walk
+from lacoc_server.world.sensed import make_course, practice_field
 from lacoc_server.world.world import World
 from lacoc_shared.command import cli
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
@@ -57,7 +57,7 @@ def sample(courses: dict[str, Course]) -> Walk:
 
 def match_digests(robot: str, gait: Gait, presses: list[Press], ticks: int) -> list[bytes]:
     """Play the keys in a match of the arena of practice; return its state hash after each tick."""
-    arena = arenas.load("practice", FIELD)
+    arena = practice_field()
     setup = Setup(
         match_id="trial",
         court="trial",

@@ -8,19 +8,17 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
-from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
-from lacoc_server.match.entry import Entry
 from lacoc_server.trial.bars import foot_bars
-from lacoc_server.trial.course import SETTLE_TICKS, Course
+from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.explain import explain
 from lacoc_server.trial.feet import feet_down
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.keys import forward_key, parse_keys
 from lacoc_server.trial.walk import Press, Walk
-from lacoc_server.world.sensed import SensedWorld
+from lacoc_server.world.sensed import make_course
 from lacoc_shared.command import options, screen
 from lacoc_shared.gait.joining import sample_sequences
 from lacoc_shared.gait.tables import Gait, PostureTable
@@ -30,9 +28,6 @@ from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer()
 
-FIELD = {"game": {"size_m": [20.0, 20.0]}, "match": {"levels": ["B", "A"]}}
-"""Practice on a field so large that no robot reaches a wall; robots stand as in a contest, where
-level B is open."""
 _MOST_COLUMNS = 100
 
 
@@ -127,13 +122,6 @@ def read_trial_gait(file: Path, robot: RobotSpec) -> Gait:
         expected = say("trial.joints-of", joints=robot.joints, robot=robot.name)
         raise FileRefused([Mistake(file=file.name, found=found, expected=expected)])
     return gait
-
-
-def make_course(robot: RobotSpec) -> Course:
-    """Make the floor for a robot's trials: the court's own physics, on an open field."""
-    arena = arenas.load("practice", FIELD)
-    world = SensedWorld(arena, Entry(robot, Gait()))
-    return Course(world, robot, arena.match.open_levels[0], arena.match.repeat)
 
 
 def _as_json(walk: Walk, figures: Figures, explained: Sequence[Phrase]) -> dict[str, Any]:

@@ -69,14 +69,21 @@ class Course:
         self._repeat = repeat
         self._start = world.save()
 
-    def walk(self, gait: Gait, presses: Sequence[Press], seconds: float | None = None) -> Walk:
+    def walk(
+        self,
+        gait: Gait,
+        presses: Sequence[Press],
+        seconds: float | None = None,
+        cycles: int = CYCLES,
+    ) -> Walk:
         """Let the robot stand, press keys, and watch it walk.
 
         Args:
             gait: the robot's gait.
             presses: at least one key, in the order of their ticks; the last one is measured.
-            seconds: time from the last press to the end [s]; None: `CYCLES` whole cycles after the
-                first, or `NO_CYCLE_S` if the key's sequence never begins again.
+            seconds: time from the last press to the end [s]; None: whole cycles after the first,
+                or `NO_CYCLE_S` if the key's sequence never begins again.
+            cycles: how many whole cycles that are.
         """
         robot = self._robot
         drive = Drive(
@@ -87,7 +94,7 @@ class Course:
             robot.hold_us,
             self._repeat,
         )
-        states, starts, span = plan(drive, self._level, presses, seconds)
+        states, starts, span = plan(drive, self._level, presses, seconds, cycles)
         world = self._world
         world.load(self._start)
         seen: list[Sensed] = []
@@ -136,8 +143,10 @@ class Plan(NamedTuple):
     """Ticks to measure."""
 
 
-def plan(drive: Drive, level: Level, presses: Sequence[Press], seconds: float | None) -> Plan:
-    """Let a drive run through a trial's keys; arguments as in `Course`."""
+def plan(
+    drive: Drive, level: Level, presses: Sequence[Press], seconds: float | None, cycles: int
+) -> Plan:
+    """Let a drive run through a trial's keys; arguments as in `Course` and `Course.walk`."""
     last = presses[-1]
     due = {press.tick: press for press in presses}
     most = last.tick + round((_MOST_S if seconds is None else seconds) * BEATS_PER_S)
@@ -151,12 +160,12 @@ def plan(drive: Drive, level: Level, presses: Sequence[Press], seconds: float | 
         if tick == last.tick or (tick > last.tick and state.posture == 0 != before.posture):
             starts.append(tick)
         waited_s = (tick - last.tick) / BEATS_PER_S
-        is_enough = len(starts) == CYCLES + 2 or (len(starts) == 1 and waited_s >= NO_CYCLE_S)
+        is_enough = len(starts) == cycles + 2 or (len(starts) == 1 and waited_s >= NO_CYCLE_S)
         if tick == most or (seconds is None and is_enough):
             break
         states.append(state)
-    cycles = max(0, len(starts) - 2)
-    span = Span(starts[1], starts[-1], cycles) if cycles else Span(last.tick, len(states), 0)
+    whole = max(0, len(starts) - 2)
+    span = Span(starts[1], starts[-1], whole) if whole else Span(last.tick, len(states), 0)
     return Plan(states, starts, span)
 
 

@@ -1,0 +1,6 @@
+"""The coach: which numbers of a table matter, and how to change few of them for a better walk.
+
+`goal` says what better means. `table` is a key's sequence as whole degrees in cells. `matter`
+changes each cell a little, `improve` searches. `trials` runs them all in processes. Everything is
+tried under the contest's drive and limits. The same seed searches in the same order.
+"""

@@ -1,0 +1,40 @@
+"""What the coach is asked for, and how well a walk does it."""
+
+from enum import StrEnum
+
+from lacoc_server.trial.figures import Figures
+
+_BELLY, _UPRIGHT = 0.02, 0.9
+"""A walk counts if other parts than feet rest on the floor less, and the body is more upright."""
+_TURN_MM_S_PER_DEG_S = 3.0
+"""A turn of 20 deg/s is worth as much as a walk of 60 mm/s."""
+_DRIFT_FREE_DEG_S = 3.0
+
+
+class Goal(StrEnum):
+    """What a gait is for."""
+
+    FORWARD = "forward"
+    RIGHT = "right"
+    """Turn to the right on the spot."""
+    LEFT = "left"
+
+
+def score(figures: Figures, goal: Goal) -> float:
+    """Say how good a walk is [mm/s]; a robot that rests on its body or tips over gets below 0.
+
+    Args:
+        figures: of the walk.
+        goal: what it is for.
+    """
+    fallen = max(0.0, _UPRIGHT - figures.upright) + max(0.0, figures.belly_share - _BELLY)
+    if fallen:
+        return -100.0 * fallen
+    if goal is Goal.FORWARD:
+        drift_deg_s = max(0.0, abs(figures.drift_deg_s) - _DRIFT_FREE_DEG_S)
+        return (
+            figures.speed_mm_s - abs(figures.lateral_mm_s) / 2 - _TURN_MM_S_PER_DEG_S * drift_deg_s
+        )
+    turn_deg_s = figures.drift_deg_s if goal is Goal.LEFT else -figures.drift_deg_s
+    along_mm_s = abs(figures.speed_mm_s) + abs(figures.lateral_mm_s)
+    return _TURN_MM_S_PER_DEG_S * turn_deg_s - along_mm_s / 2

@@ -1,0 +1,174 @@
+"""Search for a better table, with as few changes as a size allows."""
+
+import random
+from collections.abc import Callable, Iterator, Sequence
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from cmaes import CMAwM  # type: ignore[import-untyped]
+
+from lacoc_server.coach.matter import Matter, Score
+from lacoc_server.coach.table import Angles
+
+_STEPS_DEG = (5, 10, 15, 20, 30)
+_SIGMA_DEG = 12.0
+_POPULATION = 16
+_GIVE_BACK = 0.02
+"""A change goes back if the walk is at most this part worse without it."""
+_FEW = 16
+"""How many of the numbers that matter most are combined for the size "three"."""
+
+
+class Size(StrEnum):
+    """How much of a table may change."""
+
+    CELL = "cell"
+    """One number."""
+    THREE = "three"
+    """At most three numbers."""
+    TABLE = "table"
+    """All numbers."""
+
+
+class Improved(NamedTuple):
+    """The best table so far."""
+
+    angles_deg: Angles
+    score: float
+    trials: int
+    """Tables that were tried."""
+
+
+IsOver = Callable[[], bool]
+"""Whether the time for the search is over."""
+
+
+def improve(
+    table: Angles,
+    ranges_deg: Sequence[tuple[float, float]],
+    size: Size,
+    matters: Sequence[Matter],
+    score: Score,
+    is_over: IsOver,
+    seed: int,
+) -> Iterator[Improved]:
+    """Search for a better table; gives the best one again and again, until the search ends.
+
+    Args:
+        table: the student's own angles [deg].
+        ranges_deg: lowest and highest angle of each number.
+        size: how many numbers may change.
+        matters: what matters in the table, the most first.
+        score: tries tables.
+        is_over: asked after each round of trials.
+        seed: seed of everything that is drawn.
+    """
+    search = _Search(table, ranges_deg, score)
+    yield search.best
+    if size is Size.TABLE:
+        yield from _whole(search, is_over, seed)
+    else:
+        yield from _few(search, matters, 1 if size is Size.CELL else 3, is_over)
+    yield from _give_back(search)
+
+
+class _Search:
+    """The best table so far, and everything that was tried."""
+
+    def __init__(
+        self, table: Angles, ranges_deg: Sequence[tuple[float, float]], score: Score
+    ) -> None:
+        self.own = table
+        self.ranges_deg = ranges_deg
+        self._score = score
+        self._known: dict[Angles, float] = {}
+        self.best = Improved(table, self.tried([table])[0], 1)
+
+    def tried(self, tables: Sequence[Angles]) -> list[float]:
+        """Try tables; one that was tried before is not tried again."""
+        new = list(dict.fromkeys(one for one in tables if one not in self._known))
+        self._known.update(zip(new, self._score(new), strict=True))
+        for one in new:
+            if hasattr(self, "best") and self._known[one] > self.best.score:
+                self.best = Improved(one, self._known[one], len(self._known))
+        return [self._known[one] for one in tables]
+
+    def turned(self, table: Angles, index: int, to_deg: float) -> Angles:
+        """Return a table with another angle in one cell, within the joint's range."""
+        low, high = self.ranges_deg[index]
+        return (*table[:index], round(min(max(to_deg, low), high)), *table[index + 1 :])
+
+
+def _few(
+    search: _Search, matters: Sequence[Matter], most: int, is_over: IsOver
+) -> Iterator[Improved]:
+    """Change one number after another, always the one that helps most."""
+    cells = [one.number for one in matters]
+    if most > 1:
+        cells = cells[:_FEW]
+    changed: list[int] = []
+    while len(changed) < most:
+        before = search.best
+        for step in _STEPS_DEG:
+            search.tried(
+                [
+                    search.turned(before.angles_deg, index, before.angles_deg[index] + sign * step)
+                    for index in cells
+                    for sign in (1, -1)
+                    if index not in changed
+                ]
+            )
+            yield search.best
+            if is_over():
+                break
+        if search.best.angles_deg == before.angles_deg:
+            return
+        changed.append(_first_change(before.angles_deg, search.best.angles_deg))
+        if is_over():
+            return
+    # The numbers are chosen; now each is turned to its best degree.
+    for index in changed:
+        angles = search.best.angles_deg
+        search.tried([search.turned(angles, index, angles[index] + by) for by in range(-4, 5)])
+        yield search.best
+
+
+def _first_change(before: Angles, after: Angles) -> int:
+    return next(i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b)
+
+
+def _whole(search: _Search, is_over: IsOver, seed: int) -> Iterator[Improved]:
+    """Let all numbers change: CMA-ES on whole degrees, around the student's own."""
+    bounds = np.array([(round(low), round(high)) for low, high in search.ranges_deg], float)
+    restarts = random.Random(seed)
+    while not is_over():
+        mean = np.clip(np.array(search.best.angles_deg, float), bounds[:, 0], bounds[:, 1])
+        optimizer = CMAwM(
+            mean=mean,
+            sigma=_SIGMA_DEG,
+            bounds=bounds,
+            steps=np.ones(len(mean)),
+            seed=restarts.randrange(2**31),
+            population_size=_POPULATION,
+        )
+        while not (is_over() or optimizer.should_stop()):
+            asked = [optimizer.ask() for _ in range(_POPULATION)]
+            tables = [tuple(round(float(angle)) for angle in x) for x, _ in asked]
+            scores = search.tried(tables)
+            optimizer.tell([(told, -score) for (_, told), score in zip(asked, scores, strict=True)])
+            yield search.best
+
+
+def _give_back(search: _Search) -> Iterator[Improved]:
+    """Undo each change that hardly helps, so that the change is small and can be understood."""
+    best = search.best
+    for index in range(len(search.own)):
+        own_deg = search.own[index]
+        if best.angles_deg[index] == own_deg:
+            continue
+        without = search.turned(best.angles_deg, index, own_deg)
+        score = search.tried([without])[0]
+        if score >= best.score - _GIVE_BACK * abs(best.score):
+            best = Improved(without, score, best.trials)
+            yield best
