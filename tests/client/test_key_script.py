@@ -46,7 +46,7 @@ def script_of(*lines: str) -> KeyScript:
 def test_a_script_presses_each_key_in_its_time(
     lines: list[str], expected: list[tuple[float, str]]
 ) -> None:
-    """A script moves the robot by at most one key a tick; a time counts from the key before it."""
+    """A script presses at most one robot's key a tick; a time counts from the previous key."""
     assert list(played(script_of(*lines), 3.0)) == expected
 
 
@@ -83,7 +83,7 @@ def test_a_wrong_line_is_left_out_and_named(line: str) -> None:
 
 @given(st.lists(st.text()))
 def test_no_line_breaks_a_script(lines: list[str]) -> None:
-    """Any text gives only known keys, and never an exception."""
+    """A script of any text presses only known keys and raises no exception."""
     script = KeyScript()
     for line in lines:
         script.add(line)

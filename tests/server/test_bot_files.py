@@ -1,4 +1,4 @@
-"""A user's bot in a file: each mistake is reported with its line."""
+"""Tests of bots in users' files: each mistake is reported with its line."""
 
 from pathlib import Path
 from typing import Any
@@ -78,7 +78,7 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
     ],
 )
 def test_the_line_of_a_mistake(tmp_path: Path, text: str, says: str) -> None:
-    """A mistake is reported in one line, with the last line of the bot's own code before it."""
+    """A bot's mistake is reported in one sentence, with the number of the line in the bot's file."""
     with pytest.raises(UserError, match=rf"^The bot .*my_bot\.py.*{says}") as refused:
         play(tmp_path, text)
     assert "\n" not in str(refused.value)

@@ -1,4 +1,4 @@
-"""Cut, damaged or foreign records, and those of other software: verified, and resumed by a court.
+"""Tests of `verify` and of a court's start with cut, damaged or foreign records.
 
 Everything readable is recovered, a message says what is missing, and no record is changed.
 """
@@ -52,7 +52,7 @@ OTHELLO = arenas.load("othello")
 
 
 def play(folder: Path, made: Setup, arena: Path | None = None) -> Path:
-    """Play a match of 120 beats and leave it as a kill does; return its segment."""
+    """Play a match of 120 beats and leave it as a kill does; return its segment's path."""
     journal = Journal(Match(made, World, arena), folder)
     for number in range(BEATS):
         journal.beat(INPUTS.get(number, ()))
@@ -118,7 +118,7 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
 def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder: Path) -> None:
     """With a flipped bit, verify and a court's start end with a message, not with a crash.
 
-    The record stays as it is, and most flips are found.
+    The record stays as it is, and `verify` finds most flips.
     """
     whole = Record.read(segment(folder, left_behind))
     chance = random.Random(7)

@@ -1,4 +1,4 @@
-"""Weighing in: a robot and its gait files are checked together (rules 1 and 2)."""
+"""Tests of weighing in: a robot and its gait files are checked together (rules 1 and 2)."""
 
 import pytest
 from stage import join
