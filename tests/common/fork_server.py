@@ -36,10 +36,10 @@ def preload() -> None:
 def serve(door: socket.socket) -> int:
     """Fork processes until the socket is closed.
 
-    In each forked process this function runs the command and returns, too.
+    In each forked process this function runs the command and then returns as well.
 
     Returns:
-        The exit code.
+        The exit code of this process.
     """
     ring, rung = socket.socketpair()
     rung.setblocking(False)

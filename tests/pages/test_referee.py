@@ -403,7 +403,7 @@ def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> Non
 
 @pytest.mark.long
 def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> None:
-    """If the answer to a decision is lost, the page says so and does not send the decision again."""
+    """If the answer to a decision is lost, the page says so and does not repeat the decision."""
     page = at_the_desk(referee())
     to_playing(page, court)
     group(page, "Halt").click()

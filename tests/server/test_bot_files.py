@@ -78,7 +78,7 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
     ],
 )
 def test_the_line_of_a_mistake(tmp_path: Path, text: str, says: str) -> None:
-    """A bot's mistake is reported in one sentence, with the number of the line in the bot's file."""
+    """A bot's mistake is reported in one sentence, with the number of its line in the bot's file."""
     with pytest.raises(UserError, match=rf"^The bot .*my_bot\.py.*{says}") as refused:
         play(tmp_path, text)
     assert "\n" not in str(refused.value)

@@ -35,7 +35,7 @@ def certificate(path: Path) -> dict[str, Any]:
 
 
 def test_one_command_encrypts_a_contest(file: Path) -> None:
-    """`lacoc contest keys` turns the contest that `init` wrote into one with certificates and TLS."""
+    """`lacoc contest keys` turns the contest that `init` wrote into one with certificates."""
     run("keys", str(file), "--host", "192.168.1.20", "--host", "court.example.org")
 
     contest = contests.load(file)

@@ -1,4 +1,4 @@
-"""The log of a match and its answers to inputs, phrase by phrase (docs/protocol.md, Event)."""
+"""Tests of a match's log and answers to inputs, phrase by phrase (docs/protocol.md, Event)."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Seats in play: [x], silence, refused keys, the order of a beat, and frames (rules 3 and 4)."""
+"""Tests of seats in play: [x], silence, refused keys, the order of inputs, frames (rules 3, 4)."""
 
 import math
 import random
@@ -185,7 +185,7 @@ def test_a_wide_robot_needs_more_room() -> None:
 
 
 def test_both_restart_at_once() -> None:
-    """If both robots go back in one tick, each gets its first place, whichever [x] came first."""
+    """If both seats press [x] in one tick, each robot gets its first place, in either order."""
     for order in ((LEFT, RIGHT), (RIGHT, LEFT)):
         swapped = {LEFT: (0.6, 0.0), RIGHT: (-0.6, 0.0)}
         stage = playing("flag-strike", Script(poses={1: swapped}), ticks=2)

@@ -1,4 +1,4 @@
-"""The phases of a match, and how one leads to the next (rules 4)."""
+"""Tests of the phases of a match, and of how one leads to the next (rules 4)."""
 
 import pytest
 from stage import FORWARD, LEFT, RIGHT, B, Script, Stage, X, decide, join, key, seen
@@ -396,7 +396,7 @@ READY = {"match": {"start": "ready", "countdown_s": 0.1, "unattended_s": 3.0}}
 
 @pytest.mark.parametrize("others", [[], [LeaveSeat(RIGHT)]])
 def test_who_leaves_in_the_countdown_has_left(others: list[LeaveSeat]) -> None:
-    """Rules 7: a team that leaves in the countdown counts as gone; when all are, the match ends."""
+    """Rules 7: a team that leaves in the countdown is gone; without any team the match ends."""
     stage = Stage(overrides=READY).to(P.READY)
     stage.beat()
     assert stage.phase is P.COUNTDOWN

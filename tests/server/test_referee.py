@@ -1,6 +1,6 @@
-"""The referee's decisions: when each is legal, why it is not, and what it does (rules 4.1).
+"""Tests of the referee's decisions: when each is legal, why not, and what it does (rules 4.1).
 
-Workshop 5-1 rule 8 and 5-2 rule 9.
+In the workshop's text these are 5-1 rule 8 and 5-2 rule 9.
 """
 
 import math
@@ -349,7 +349,7 @@ def test_clock_moves_the_end() -> None:
 
 
 def test_clock_in_old_records() -> None:
-    """An old record's `clock` with `seconds` takes time, with the same words in the log as then."""
+    """The `clock` of an old record has `seconds`: it takes time, and its log entry is as it was."""
     old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks

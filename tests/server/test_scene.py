@@ -1,4 +1,4 @@
-"""The scene: everything that a page needs to draw the model, and nothing else."""
+"""Tests of the scene: everything that a page needs to draw the model, and nothing else."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Fairness: a match that is turned by 180 degrees, with its seats swapped, is the same match."""
+"""Tests of fairness: a match turned by 180 degrees, with its seats swapped, is the same match."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from lacoc_shared.inputs import Input
 from lacoc_shared.seat import Phase
 
 Keys = dict[int, tuple[int, int]]
-"""Tick -> (seat, digit)."""
+"""The keys of a match: tick -> (seat, digit)."""
 
 
 def swapped(keys: Keys) -> Keys:
