@@ -189,7 +189,7 @@ def test_a_court_that_stands_still() -> None:
 
 
 def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Doctor checks the link to each court of a contest; --court chooses one of them."""
+    """Doctor checks the links to all courts of a contest, even if one is down, or only --court's."""
     with CourtStub() as court:
         text = Path(contest(tmp_path, int(court.address.rpartition(":")[2]))).read_text()
         port = free()

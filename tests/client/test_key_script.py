@@ -61,7 +61,7 @@ def test_keys_that_move_the_robot_wait_for_play() -> None:
 
 
 def test_time_stands_still_while_the_match_is_halted() -> None:
-    """The times of a script count only while the match is played, so a halt delays its keys."""
+    """A script's time runs only while the match is played, so a halt delays its keys."""
     script = script_of("2", "1.0 3")
 
     assert script.due(0.02, True) == ["2"]

@@ -77,7 +77,7 @@ def test_the_document_has_every_path_and_hold() -> None:
 
 @given(st.binary(max_size=300))
 def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
-    """Any bytes from a page are read, or refused with the documented error."""
+    """Any bytes from a page can be read or raise `Unreadable`, and no other exception."""
     with contextlib.suppress(wire.Unreadable):
         wire.read(data)
     wire.read_id(data)
@@ -90,7 +90,7 @@ def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
     )
 )
 def test_no_map_of_a_page_breaks_the_reader(fields: dict[str, Any]) -> None:
-    """Any map with the fields of a request is read, or refused with the documented error."""
+    """Any map with fields of requests can be read or raises `Unreadable`, and no other exception."""
     data = msgpack.packb(fields, unicode_errors="surrogatepass")
     with contextlib.suppress(wire.Unreadable):
         wire.read(data)
@@ -285,7 +285,7 @@ def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
     "where", ["", "here", "127.0.0.1", ":80", "127.0.0.1:99999", "no.such.name.example:0", "[::1"]
 )
 def test_a_wrong_place_to_listen_is_said(where: str) -> None:
-    """A wrong address to listen at is refused with one sentence."""
+    """A wrong address to listen at is refused, and the error says so."""
     with pytest.raises(UserError, match=r"not a place to listen|not possible to listen"):
         server.listen(where)
 

@@ -20,7 +20,7 @@ TIMEOUT_MS = 30_000
 
 
 class Contestant:
-    """One page in a browser profile of its own.
+    """A contestant's page in a browser profile of its own.
 
     Args:
         open_page: function that opens a page.

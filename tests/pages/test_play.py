@@ -285,7 +285,7 @@ def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
 
 
 def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: Sit) -> None:
-    """`lacoc play` fills in the card of its page, so that one click joins the match."""
+    """`lacoc play` fills in the join form of its page, so that one click joins the match."""
     url, key = own
     page = sit(url)
     page.open(key=key)

@@ -476,7 +476,7 @@ def test_damage(
 def test_a_damaged_packed_file_says_so(
     library: Venue, flags: Path, open_page: OpenPage, tmp_path: Path
 ) -> None:
-    """The page reports a packed file with a changed byte."""
+    """The page reports a changed byte in the compressed record of a finished match."""
     data = bytearray(flags.read_bytes())
     data[len(data) // 2] ^= 4
     path = tmp_path / "packed.mcap"

@@ -54,7 +54,7 @@ def stand(page: Page, address: str) -> Stand:
 
 
 class Recorded:
-    """The sheet and frames of a match file of the stand, read by Python."""
+    """The sheet and frames of a match file that the test page `stand` shows."""
 
     def __init__(self, site: Path, arena: str) -> None:
         data = msgspec.msgpack.decode((site / f"{arena}.bin").read_bytes())

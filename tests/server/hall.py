@@ -101,9 +101,9 @@ class Hall:
         return [event for event in self.view.events if event.kind == "silent"]
 
     def loses(self, lose: Callable[[], object]) -> None:
-        """Call `lose`; check that the left seat alone falls silent and stands a second later.
+        """Call `lose`; check that the left seat alone falls silent and stands in time (rules 3).
 
-        So rules 3 say. The health report must agree with the frames.
+        That is a second later, with `LATE_BEATS`. Frames and the health report must agree.
         """
         before = len(self.silences())
         lose()

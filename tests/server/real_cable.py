@@ -26,8 +26,8 @@ def cable() -> Iterator[tuple[str, tuple[str, ...], Callable[[str], None]]]:
     """Connect a second network namespace by a cable.
 
     Yields:
-        The address of this side; the words that run a command on the other side, when they
-        precede it; a function that sets the cable "up" or "down".
+        The address of this side; the words to put before a command, to run it on the other side;
+        a function that sets the cable "up" or "down".
     """
     name = f"lacoc{os.getpid()}"
     ip("netns", "add", name)

@@ -195,7 +195,7 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
 def test_a_record_of_another_version_is_refused(
     change: Callable[[bytes, Path], bytes], words: str, left_behind: bytes, tmp_path: Path
 ) -> None:
-    """A record of other software or another arena is refused with the reason and stays unchanged.
+    """A court refuses a record of other software or another arena, says why and leaves it as it is.
 
     `serve --fresh` opens a new match beside it.
     """
@@ -222,7 +222,7 @@ def setup_of(arena: str) -> Setup:
 
 
 def other_model(data: bytes) -> tuple[bytes, bytes]:
-    """Return the model's hash from the event of READY, and another one to replace it."""
+    """Return the model's hash from the event of READY, and another hash to replace it."""
     at = data.rindex(b"\xa5model\xb0") + 7
     return data[at : at + 16], b"0" * 16
 

@@ -270,7 +270,7 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
 
 
 def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:
-    """SIGTERM ends a match in PLAYING, so the next start opens a new one, even if a kill follows."""
+    """SIGTERM ends a match in PLAYING: the next start opens a new one, even if a kill follows."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     with served(contest, folder) as first, party(contest) as those:
         those.play()

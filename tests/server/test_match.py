@@ -104,7 +104,7 @@ def test_x_locks_for_5_s_of_clock() -> None:
 
 
 def test_the_lock_is_a_setting() -> None:
-    """The 5 s after [x] are a setting; it is 0 in practice, where a digit works at once."""
+    """The lock of 5 s after [x] is a setting; in the arena practice it is 0."""
     stage = playing(match={"restart_freeze_s": 0.1, "countdown_s": 0.02})
     stage.beat(key(LEFT, X))
     stage.run(4)
@@ -414,7 +414,7 @@ def test_a_frame_has_at_most_320_bytes(arena: str) -> None:
 
 
 def test_scores_and_board_are_in_every_frame() -> None:
-    """Rules 5: after a flip, a frame has the new board, and each score is a number of discs."""
+    """Rules 5: after a flip, a frame has the new board and the new scores, which count discs."""
     script = Script(poses={1: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}})
     stage = playing(script=script, ticks=3)
     assert stage.scores == (19, 17)

@@ -158,7 +158,7 @@ def test_a_new_robot_in_ready_is_built_even_if_ready_is_said_in_the_same_beat(
 
 
 def test_files_with_mistakes_are_refused_and_the_seat_stays_as_it_was() -> None:
-    """Rules 2: files with mistakes are refused with every mistake, and the seat does not change."""
+    """Rules 2: files with mistakes are refused, all mistakes are listed, and the seat stays as it is."""
     stage, twin = Stage().to(P.LOBBY), Stage().to(P.LOBBY)
     bad = join(LEFT, robot_file=b"name = 3")
     outcome = stage.send(bad)
@@ -305,7 +305,7 @@ def test_a_fault_in_ready_goes_back_to_lobby() -> None:
 @pytest.mark.parametrize("phase", [p for p in P if p not in (P.CREATED, P.PLAYING)])
 @pytest.mark.parametrize("digit", [FORWARD, X])
 def test_keys_work_only_in_playing(phase: Phase, digit: int) -> None:
-    """Rules 4: in every phase but PLAYING, keys are refused with the reason."""
+    """Rules 4: in every phase but PLAYING, keys are refused, and the answer says why."""
     stage, twin = Stage().to(phase), Stage().to(phase)
     outcome = stage.send(key(LEFT, digit, seq=7))
     twin.beat()

@@ -1,4 +1,4 @@
-"""Tests of what `verify` proves, with the same arithmetic and with another (docs/reliability.md)."""
+"""Tests of what `verify` proves, with the same and another arithmetic (docs/reliability.md)."""
 
 import json
 import struct
@@ -82,7 +82,7 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
 def test_bits_may_differ_only_where_another_arithmetic_recorded(
     made_by: Mapping[str, str], finding: Finding, kind: Kind
 ) -> None:
-    """A record that names this machine's arithmetic must match in each bit; others may round."""
+    """A record of this machine's arithmetic must match in each bit; others may be rounded else."""
     found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
     assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
     assert found.differs_at == (5 if kind is Kind.DIFFERS else None)

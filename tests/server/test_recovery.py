@@ -129,7 +129,7 @@ def test_settings_that_were_changed_count_from_the_next_match(contest: Path, fol
 
 
 def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> None:
-    """The health verdict includes the time before a kill, and counts the restart (limit here: 0)."""
+    """The health verdict includes the time before a kill; too many restarts advise a replay."""
     lasts(contest, 4)
     contest.write_text("health.resumptions = 0\n" + contest.read_text())
     with ExitStack() as stack:

@@ -91,7 +91,7 @@ def test_practice_with_an_end() -> None:
 
 
 def test_files_with_mistakes_are_refused() -> None:
-    """A player's file with mistakes is refused with every mistake."""
+    """A player's file with mistakes is refused, and the error lists all mistakes."""
     good = player(OTHELLO, 0, "straight")
     bad = Player(join(1, robot_file=b"legs = 3"), good.bot)
     with pytest.raises(FileRefused) as refused:

@@ -111,7 +111,7 @@ def _touching(stage: Stage) -> int:
 
 
 def claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], int]]:
-    """Return the game's claims (seat, kind, marker, also, tick), sorted."""
+    """Return the game's claims (seat, kind, marker, further markers, tick), sorted."""
     return sorted(
         (e.seat, e.kind, e.data["marker"], tuple(sorted(e.data["also"])), e.clock_ticks)
         for e in stage.events

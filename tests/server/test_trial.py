@@ -134,7 +134,7 @@ def test_a_trial_can_be_repeated(courses: dict[str, Course], sample: Walk) -> No
 
 
 def test_the_figures_of_the_sample(sample: Walk) -> None:
-    """The workshop's gait is always stable, walks straight, and slides as fast as it walks."""
+    """The workshop's gait is stable and straight; its feet slide nearly as fast as it walks."""
     found = measure(sample)
     assert found.cycles == CYCLES
     assert found.speed_mm_s == pytest.approx(60, abs=2)
@@ -155,7 +155,7 @@ def test_the_figures_of_the_sample(sample: Walk) -> None:
 
 
 def test_feet_that_are_down_are_low(sample: Walk) -> None:
-    """In over 95 % of cases, a foot that is down by its load has its tip below 1 mm, and no other."""
+    """Load and height (below 1 mm) agree in over 95 % of cases on whether a foot is down."""
     part = slice(sample.span.first, sample.span.end)
     down = feet_down(sample.load_n, sample.weight_n)[part]
     assert ((sample.tip_m[part] < 0.001) == down).mean() > 0.95
