@@ -112,7 +112,7 @@ def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
 
 
 def test_packages_that_are_not_there(tmp_path: Path) -> None:
-    """An old Python or a missing package is a problem; a package for courts is only a note."""
+    """An old Python or a missing package is a problem; if only courts need it, it is a note."""
     needs = 'Requires-Dist: no-such-thing>=2\nRequires-Dist: no-engine>=3; extra == "server"'
     metadata = f"Name: lacoc\nVersion: 9\nRequires-Python: >=3.99\n{needs}"
     found = packages_beside(tmp_path, {"lacoc-9": metadata})
@@ -189,7 +189,7 @@ def test_a_court_that_stands_still() -> None:
 
 
 def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Doctor checks the links to all courts of a contest, even if one is down, or only --court's."""
+    """Doctor checks the links to all courts of a contest, even if one is down, or to one court."""
     with CourtStub() as court:
         text = Path(contest(tmp_path, int(court.address.rpartition(":")[2]))).read_text()
         port = free()
@@ -217,7 +217,7 @@ def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
 def test_the_link_to_a_court(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, open_court: OpenCourt
 ) -> None:
-    """Doctor checks the version, round trip and frames of a real court, and knows its port."""
+    """Doctor checks the version, round trip and frames of a real court, and recognises its port."""
     court = open_court()
     found = look(capsys, tmp_path, "--connect", court.address, "--seconds", "1")
     assert found["court main"]["status"] == "ok"

@@ -1,6 +1,6 @@
 """Forks `lacoc` processes for tests, so that Python and its libraries are loaded only once.
 
-`lacoc_process` starts this server with the number of a Unix socket. A request carries the file
+`lacoc_process` starts this server with the descriptor of a Unix socket. A request carries the file
 descriptors of the new process, and the server answers with its process id. When the process ends,
 the server writes its wait status to the last of these descriptors. The server ends when the socket
 is closed.

@@ -103,7 +103,7 @@ class PageClient:
         return reply["value"]
 
     def waits_for(self, number: int) -> bool:
-        """Return whether a reply has not come yet; only for replies that `reply` has not taken."""
+        """Return whether the reply to a request is missing; ask only before `reply` takes it."""
         return number not in self._replies
 
     def wait(self, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:

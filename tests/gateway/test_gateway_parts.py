@@ -90,7 +90,7 @@ def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
     )
 )
 def test_no_map_of_a_page_breaks_the_reader(fields: dict[str, Any]) -> None:
-    """Any map with fields of requests can be read or raises `Unreadable`, and no other exception."""
+    """Any map with a request's fields can be read or raises `Unreadable`, and nothing else."""
     data = msgpack.packb(fields, unicode_errors="surrogatepass")
     with contextlib.suppress(wire.Unreadable):
         wire.read(data)
@@ -232,7 +232,7 @@ def test_a_log_that_begins_again() -> None:
 
 
 def test_a_log_is_held_against_what_the_court_says() -> None:
-    """A log differs from a court's report if it lacks events, or has extra ones up to that beat."""
+    """A log differs from a court's report if it lacks events, or has extra ones from before it."""
     log: EventLog[str] = EventLog()
     assert not log.differs(1, 0, 0)
     assert log.differs(1, 500, 3)
@@ -328,7 +328,7 @@ def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
 
 
 def test_browsers_without_a_screen_are_not_opened(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without a screen no browser is opened: one for terminals would take over the terminal."""
+    """Without a screen no browser is opened: a text browser would take over the terminal."""
     monkeypatch.setattr("sys.platform", "linux")
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
         monkeypatch.delenv(name, raising=False)

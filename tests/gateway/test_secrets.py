@@ -1,4 +1,4 @@
-"""Test that secrets stay in their files: search all that a match sends, prints and records."""
+"""Tests that secrets stay in their files: they search what a match sends, prints and records."""
 
 import subprocess
 from collections.abc import Iterator

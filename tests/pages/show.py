@@ -17,7 +17,7 @@ STALE = ".stale"
 
 
 class Show:
-    """An open page.
+    """A page that shows a match, open in a browser.
 
     Args:
         page: a new page.

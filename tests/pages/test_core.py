@@ -1,4 +1,4 @@
-"""Tests of the pages' source without a browser: its pure parts in Node, and its layers."""
+"""Tests of the pages' source: its pure parts run in Node, and the linter checks its layers."""
 
 import re
 import shutil

@@ -22,7 +22,7 @@ Practise = Callable[..., Contestant]
 
 @pytest.fixture
 def address(tmp_path: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
-    """Give the address and page key of `lacoc practice`, which outlives the browser's page."""
+    """Give the address and page key of `lacoc practice`, which runs during the test."""
     with own_page(tmp_path, "practice") as address:
         yield address
 
@@ -225,7 +225,7 @@ def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
 
 @pytest.mark.long
 def test_accessible(practise: Practise) -> None:
-    """Axe-core finds no serious mistake in the practice page, its dialogs and its end."""
+    """Axe-core finds no serious mistake on the practice page, in its dialogs and after leaving."""
     pytest.importorskip("axe_core_python")
     page = practise()
     page.phase(Phase.PLAYING)

@@ -637,7 +637,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: Referee) -> None:
-    """With equal links the page shows each seat's round trip and the common delay."""
+    """With equal links (rules 3) the page shows each seat's round trip and the common delay."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     venue.court()
@@ -652,7 +652,7 @@ def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: R
 
 @pytest.mark.long
 def test_the_log_is_filtered(court: Venue, referee: Referee) -> None:
-    """The log can be filtered, for instance by links or by decisions."""
+    """The log can be filtered, for instance by "Links" or by "Decisions"."""
     page = at_the_desk(referee())
     court.contestant("left", "Ants")
     log_has(page, "Ants is ready.")

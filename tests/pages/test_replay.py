@@ -132,7 +132,7 @@ class Player(Show):
 def test_what_is_shown_is_what_was_played(
     library: Venue, record: Record, open_page: OpenPage
 ) -> None:
-    """At a beat the page shows the score, clock, board and poses that Python reads there."""
+    """At each beat the page shows the score, clock, board and poses that Python reads there."""
     page = open_page()
     sockets: list[str] = []
     page.on("websocket", lambda socket: sockets.append(socket.url))
@@ -233,7 +233,7 @@ def record_length(first: int, last: int) -> str:
 
 @pytest.mark.long
 def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> None:
-    """Each game event has a labelled mark; marks, keys and the log lead to a second before it."""
+    """Each game event has a labelled mark; marks, keys and the log lead to one second before it."""
     show = Player(open_page(viewport=LAPTOP), library, "?file=b-flags.mcap&t=0")
     game = [event for event in record.events if "marker" in event.data]
     for seat in (0, 1):
@@ -274,7 +274,7 @@ def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> N
 def test_the_servers_list_and_the_address(
     library: Venue, open_page: OpenPage, console: Any
 ) -> None:
-    """A recording has an address, and so has a moment of it; Back returns to the list."""
+    """Each recording and each moment in it has an address; Back returns to the list."""
     console.expect("404")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     expect(show.find(".recordings b")).to_have_count(2, timeout=WAIT_MS)
@@ -502,7 +502,7 @@ def test_without_the_servers_list(
 
 @pytest.mark.long
 def test_a_phone(library: Venue, open_page: OpenPage) -> None:
-    """On an upright phone nothing lies outside the width, and buttons are large enough to touch."""
+    """On an upright phone everything fits the width, and buttons are large enough to touch."""
     page = open_page(viewport=PHONE, has_touch=True, is_mobile=True)
     show = Player(page, library, "?file=b-flags.mcap&t=20")
     show.sees(".board")

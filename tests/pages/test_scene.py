@@ -65,7 +65,7 @@ class Recorded:
         return unpack_states(frame.markers, len(self.sheet.markers))
 
     def change(self) -> tuple[Frame, Frame, int]:
-        """Return the frames before and after a marker first becomes a seat's; and its index."""
+        """Return the frames before and after the first marker becomes a seat's, and its index."""
         for before, after in zip(self.frames, self.frames[1:], strict=False):
             was, now = self.states(before), self.states(after)
             for marker, (one, other) in enumerate(zip(was, now, strict=True)):
@@ -119,7 +119,7 @@ def test_the_page_has_every_body_where_mujoco_has_it(
 
 
 def test_the_picture_shows_the_frame(stand: Stand, site: Path) -> None:
-    """A robot is drawn at its place in a frame, or between two frames at the place between."""
+    """A robot is drawn at its place in a frame; between two frames it is drawn half-way."""
     frames = Recorded(site, "othello").frames
     one, other = frames[600], frames[601]
     stand.open("othello.bin", speed=0, beat=one.beat, q="low")

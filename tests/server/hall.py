@@ -103,7 +103,7 @@ class Hall:
     def loses(self, lose: Callable[[], object]) -> None:
         """Call `lose`; check that the left seat alone falls silent and stands in time (rules 3).
 
-        That is a second later, with `LATE_BEATS`. Frames and the health report must agree.
+        In time means within a second and `LATE_BEATS`. Frames and the health report must agree.
         """
         before = len(self.silences())
         lose()

@@ -53,7 +53,7 @@ def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> N
 
 
 def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
-    """Rules 4: a team may have its own colour and pattern; the default is those of its seat."""
+    """Rules 4: a team may have its own colour and pattern; by default it has those of its seat."""
     file = tmp_path / "contest.toml"
     run("init", str(file))
     text = file.read_text()

@@ -243,7 +243,7 @@ def test_no_code_runs_because_a_record_names_it(tmp_path: Path, left_behind: byt
 
 
 def test_a_folder_that_the_user_names_plays_its_record(tmp_path: Path) -> None:
-    """If the user names the folder of a game, its record is verified and resumed.
+    """A record of a game in a folder is verified and resumed if the user names the folder.
 
     The folder may have moved since the match was recorded.
     """

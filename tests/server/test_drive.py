@@ -262,7 +262,7 @@ def path(it: Drive, script: list[tuple[int, Level, int]]) -> list[DriveState]:
 def test_never_faster_than_ang_min_and_the_same_again(
     it: Drive, script: list[tuple[int, Level, int]]
 ) -> None:
-    """No angle moves faster than the robot's speed; the same keys give the same angles again."""
+    """No angle moves faster than the commanded speed; the same keys give the same angles again."""
     states = path(it, script)
     step = it._step_rad * (1 + 1e-8)
     for before, now in pairwise(states):

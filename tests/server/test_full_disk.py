@@ -88,7 +88,7 @@ def read(folder: Path) -> Record:
 
 
 def is_given(those: Party, reason: str) -> bool:
-    """Return whether an event gives this reason; the event comes after the frame of its beat."""
+    """Return whether a received event gives this reason; events come after their beat's frame."""
     given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
@@ -162,7 +162,7 @@ runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 
 
 def sync(flag: Path, what: str) -> list[str]:
-    """Return the words before a court's command line that run it with the changed `fsync`."""
+    """Return the words to put before a command line, to run it with the changed `fsync`."""
     return [sys.executable, "-c", SYNC, str(flag), what]
 
 

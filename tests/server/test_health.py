@@ -160,7 +160,7 @@ def test_repeats_that_come_a_little_early_or_late() -> None:
 
 
 def test_repeats_of_a_match_that_is_often_halted() -> None:
-    """If a match is often halted, no repeat counts as lost, because only whole seconds count."""
+    """If a match is often halted, no repeat counts as lost: only whole seconds are measured."""
     held = Held()
     for _ in range(6):
         for beat in range(60):

@@ -1,4 +1,4 @@
-"""Tests with processes of contestants that are lost, and of watchers that freeze.
+"""Tests in which contestants' processes or connections are lost, and watchers freeze.
 
 Rules 3: a robot whose controller is not heard for a second stands, and keeps its seat.
 Times are counted in beats of the court, so that a busy machine does not change the result.
@@ -180,7 +180,7 @@ def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
 
 @pytest.mark.long
 def test_a_real_cable(tmp_path: Path) -> None:
-    """When the kernel's own link goes down and up, the robot stands and walks again.
+    """When a virtual cable goes down and up, the robot stands and walks again.
 
     The match runs in another process: a new network would interrupt a browser's page loads.
     """

@@ -216,7 +216,7 @@ def test_being_put_back_claims_nothing() -> None:
 
 
 def test_being_put_back_is_no_walk() -> None:
-    """Rules 5: [x] onto a disc of the other colour flips nothing, even from a disc of one's own."""
+    """Rules 5: a robot that [x] puts on a disc of the other colour flips nothing."""
     script = Script(poses={1: {LEFT: (-0.45, -0.15)}})
     stage = playing(script=script, ticks=3)
     stage.beat(decide(d.Set("c0r2", "right")))

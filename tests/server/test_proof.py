@@ -82,7 +82,7 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
 def test_bits_may_differ_only_where_another_arithmetic_recorded(
     made_by: Mapping[str, str], finding: Finding, kind: Kind
 ) -> None:
-    """A record of this machine's arithmetic must match in each bit; others may be rounded else."""
+    """A record of this machine's arithmetic must match bit for bit; another only within a bound."""
     found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
     assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
     assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
@@ -138,7 +138,7 @@ def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> None:
-    """With another arithmetic an honest record is the same match, and no forgery passes."""
+    """With another arithmetic an honest record verifies as the same match; no forgery passes."""
     lines = elsewhere("benchmarks.proof", ["verdicts", *map(str, paths)]).splitlines()
     found = [json.loads(line) for line in lines]
     assert [one["kind"] for one in found] == [Kind.OTHER_ARITHMETIC] * len(paths), found
@@ -160,7 +160,7 @@ def test_no_forgery_passes(paths: Sequence[Path]) -> None:
 def test_a_pose_is_told_beyond_the_bound_only(
     made_by: Mapping[str, str], paths: Sequence[Path]
 ) -> None:
-    """The same arithmetic finds every changed pose; another finds changes beyond the bound."""
+    """Verify finds each changed pose; with another arithmetic, only a change beyond the bound."""
     record = with_arithmetic(Record.read(paths[0]), made_by)
     at = len(record.frames) // 2
     beat, encoded = record.frames[at]

@@ -349,7 +349,7 @@ def test_clock_moves_the_end() -> None:
 
 
 def test_clock_in_old_records() -> None:
-    """The `clock` of an old record has `seconds`: it takes time, and its log entry is as it was."""
+    """An old record's `clock` with positive `seconds` takes time; its log entry stays the same."""
     old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks

@@ -222,7 +222,7 @@ def test_keys_as_people_type_them() -> None:
 
 
 def test_foot_bars() -> None:
-    """A column is full where the foot is mostly down; the last row marks the cycles."""
+    """A full block means that the foot is mostly down; the last row marks the cycles."""
     down = np.array([[True, False]] * 4 + [[False, True]] * 4)
     rows = foot_bars(["R,F", "L"], down, [0, 4], 0, 4)
     assert rows == ["R,F ██··", "  L ··██", "    │ │"]
