@@ -173,7 +173,7 @@ def _referee(contest: Path) -> None:
                     view.wait_frame(0.1)
                     legal = {} if view.health is None else view.health.decisions
                     for word, decision in _GOES_ON.items():
-                        if legal.get(word) == "":
+                        if word in legal and legal[word] is None:
                             view.health = None
                             hand.decide(decision, "a trial", "trial")
         except (NoCourt, NotNow):

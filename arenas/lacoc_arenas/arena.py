@@ -84,7 +84,9 @@ class Arena:
         """
         self.name = name
         self.settings = settings
-        """The whole file as plain values; `name` and these values make the same arena again."""
+        """The whole file with the contest's overrides, as plain values; `name` and these values
+        make the same arena again.
+        """
         self.folder = folder
         """The folder of an arena that is not installed; its code runs because a user named it."""
         self._module = module.__name__
@@ -218,8 +220,7 @@ def _require_whole(module: ModuleType) -> None:
                 "arena.not-whole",
                 folder=str(folder),
                 missing=missing,
-                file=_FILE,
-                parts=[f"{part}.py" for part in _PARTS],
+                parts=[_FILE, *(f"{part}.py" for part in _PARTS)],
                 example=str(Path(__file__).parent / "othello"),
             )
         )

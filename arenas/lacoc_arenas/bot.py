@@ -20,7 +20,9 @@ class Key(NamedTuple):
 
 
 Brain = Callable[[Frame], Key | None]
-"""Called with each new frame of PLAYING; None keeps the current command."""
+"""A function that is called with each new frame of the phase PLAYING and returns the key to press;
+None keeps the current command.
+"""
 
 BotFactory = Callable[[Sheet, int], Brain]
 """(sheet, seat's index) -> a brain for one match."""

@@ -43,12 +43,13 @@ def checked(name: str, bot: BotFactory) -> BotFactory:
 
 
 def broken(name: str, error: Exception, file: str | None) -> UserError:
-    """Make the error for an exception of a bot, with the last line of the bot's code in it.
+    """Make the error for an exception of a bot; it names the line of the bot's file that failed.
 
     Args:
         name: the bot's name, as the user typed it.
         error: the exception.
-        file: the bot's file as tracebacks name it; None if none of its lines ran.
+        file: the file of the bot's code, as tracebacks name it; None if the bot has no file. Then
+            the error names no line.
     """
     calls = traceback.extract_tb(error.__traceback__)
     lines = [call.lineno for call in calls if call.filename == file]

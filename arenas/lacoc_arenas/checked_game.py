@@ -22,7 +22,7 @@ _RULES = ("start", "step", "board", "score", "over", "winner", "set")
 
 
 class Source(NamedTuple):
-    """Where an arena's code lies; used in error messages."""
+    """The name and the folder of an arena's code, for error messages."""
 
     arena: str
     folder: str
@@ -43,7 +43,8 @@ class Source(NamedTuple):
             refuses: whether it may raise ValueError, for a setting or a state of a marker.
 
         Raises:
-            UserError: if it raises anything else; with the line of the arena's code.
+            UserError: if the function raises anything else; the error has the line of the arena's
+                code.
             ValueError: if the function raises it and `refuses` is true.
         """
         try:
@@ -93,7 +94,7 @@ def checked(source: Source, game: Any) -> AnyGame:
 
 
 class CheckedGame:
-    """A game that checks each result of its rules; everything else is passed through."""
+    """A game that checks each result of its rules; all other attributes are the game's own."""
 
     def __init__(self, source: Source, game: AnyGame) -> None:
         self._source = source

@@ -14,7 +14,9 @@ from lacoc_shared.messages import MarkerInfo
 from lacoc_shared.words import Phrase, render, say
 
 NEUTRAL, LEFT, RIGHT, DOWN = range(4)
-"""States of a marker, in the order of `MARKER_STATES`. A seat's own state is its index + 1."""
+"""States of a marker, in the order of `MARKER_STATES`. A marker that a seat owns has the seat's
+index + 1 as its state.
+"""
 
 Claim = tuple[int, str]
 """(seat, marker) of an event that a referee strikes out (rules 4.1)."""

@@ -24,6 +24,6 @@ def turned(place: Place) -> Place:
 
 
 def opposite(places: Iterable[Place]) -> tuple[tuple[Place, ...], tuple[Place, ...]]:
-    """Return the start places of both seats: the left ones, and these turned for the right seat."""
+    """Return the start places of the left seat, and the same places turned for the right seat."""
     left = tuple(places)
     return left, tuple(map(turned, left))

@@ -1,7 +1,7 @@
 """Steering for bots: read poses from frames, and choose keys that bring a robot to a point.
 
-The keys are those of Fig. 4-2, which every sample gait follows: [0] stand, [1] turn
-left, [2] forward, [3] turn right, at the level of locomotion.
+The keys are those of workshop Fig. 4-2, which every sample gait follows: [0] stand, [1] turn left,
+[2] forward, [3] turn right, at the level of locomotion.
 """
 
 import math
@@ -26,7 +26,9 @@ _FLOAT_BYTES = 4
 _STRAY_RAD = math.radians(16)
 """Half the angle of one turn sequence: if the bearing is smaller than this, the robot walks."""
 _NEAR_M = 0.10
-"""This near to the target the bearing changes fast: the robot walks until `_NEAR_STRAY_RAD`."""
+"""Nearer to the target than this, the robot walks at bearings up to `_NEAR_STRAY_RAD`, because the
+bearing changes fast there.
+"""
 _NEAR_STRAY_RAD = math.radians(45)
 
 _FALLEN_TICKS = 2 * BEATS_PER_S
@@ -47,7 +49,7 @@ _WALL_M = 0.20
 
 
 class Pose(NamedTuple):
-    """Where a robot is."""
+    """The place, heading and tilt of a robot."""
 
     x_m: float
     y_m: float
@@ -128,7 +130,7 @@ class Pilot:
         return wanted if (seat.level, seat.key) != wanted else None
 
     def _sequence_ended(self, seat: SeatFrame) -> bool:
-        """Say whether the key just came back to its first posture, or has only one."""
+        """Say whether the current sequence has ended; true for [0], level A and one posture."""
         before, self._posture = self._posture, seat.posture
         if seat.level != Level.LOCOMOTION or seat.key == STAND.key:
             return True
@@ -178,7 +180,7 @@ class Pilot:
         return _key_for(bearing_rad, _NEAR_STRAY_RAD if near else _STRAY_RAD)
 
     def _pass(self, pose: Pose, other: Pose, bearing_rad: float) -> float:
-        """Go round the other robot if it stands in the way: both keep to the right."""
+        """Return the bearing, changed to pass a robot in the way: on the right if there is room."""
         blocked_rad = pose.bearing_rad(other.x_m, other.y_m)
         if abs(math.remainder(bearing_rad - blocked_rad, math.tau)) > _AHEAD_RAD:
             return bearing_rad

@@ -109,7 +109,7 @@ def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = N
 
 
 def gaits_in(folder: Path) -> list[Path]:
-    """Return the gait files of a folder (workshop 4-1): for each level the newest."""
+    """Return the newest gait file of each level in a folder, found by name (workshop 4-1)."""
     found = (
         [path for pattern in patterns for path in sorted(folder.glob(pattern))]
         for patterns in (_POSTURES, _LOCOMOTION)
@@ -118,7 +118,7 @@ def gaits_in(folder: Path) -> list[Path]:
 
 
 def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
-    """Return warnings about the gait files taken from a folder."""
+    """Return warnings: a LocoTra workbook is not read, or the sequences are the older file."""
     said = [
         say("play.no-workbook", file=path.name) for path in sorted(folder.glob("LocoTra*.xlsx"))
     ]

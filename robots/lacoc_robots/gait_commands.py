@@ -168,7 +168,7 @@ def convert(
 
 
 def _is_locomotion(target: Path) -> bool:
-    """Say whether the file to write holds locomotion (level B), by its name.
+    """Say from its name whether the file to write holds locomotion (level B).
 
     Raises:
         UserError: if this command does not write such files.
@@ -179,7 +179,7 @@ def _is_locomotion(target: Path) -> bool:
 
 
 def _joined(table: PostureTable, source: Path, keys: str) -> LocomotionTable:
-    """Join postures to sequences as --keys says.
+    """Join postures into sequences as --keys says.
 
     Raises:
         UserError: if --keys is written wrong, or names a posture that does not exist.
@@ -234,7 +234,7 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 
 
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
-    """Name the feet lifted in each posture of a sequence; equal neighbours count once."""
+    """Name the feet lifted in each posture of a sequence, without repeats; at most six steps."""
     steps = [step for step, _ in itertools.groupby(_lifted(p, labels) for p in sequence)]
     none, then = render(say("gait-command.no-feet")), render(say("gait-command.then"))
     shown = then.join(" ".join(step) or none for step in steps[:6])

@@ -60,7 +60,7 @@ def collision_bits(seat: int, seats: int) -> tuple[int, int]:
 
 
 def accent_colour(rgba: Sequence[float]) -> list[float]:
-    """Mix a colour half with white, or with black if it is bright, for the accent legs."""
+    """Mix a colour in equal parts with white (a bright one with black), for the accent legs."""
     red, green, blue, alpha = rgba
     toward = 1.0 if 0.299 * red + 0.587 * green + 0.114 * blue < 0.6 else 0.0
     return [(red + toward) / 2, (green + toward) / 2, (blue + toward) / 2, alpha]

@@ -31,8 +31,7 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
     advance: Literal["reached", "time"]
     """When a sequence goes on to its next posture (rules 3)."""
     hold_us: int
-    """How long a posture is held: from when it is reached, or from when it is commanded; see
-    `advance`."""
+    """How long a posture is held [µs], from when it is reached or commanded; see `advance`."""
     kp: float
     """Servo stiffness [N m/rad]."""
     kv: float

@@ -1,7 +1,7 @@
 """Read a robot file: TOML in degrees, metres and kilograms (rules 1, workshop 4-3).
 
 First every entry is checked by itself, then the robot as a whole. A wrong entry becomes NaN, and a
-check of the whole robot finds a mistake only if all its numbers are known.
+check of the whole robot finds a mistake only if all numbers that it needs are known.
 """
 
 import math
@@ -65,7 +65,7 @@ def _parse(text: str | bytes, file: str) -> dict[str, object]:
 
 
 def _robot(root: Entries, limits: Limits) -> RobotSpec:
-    """Read every table; each mistake is noted, and becomes NaN in the robot."""
+    """Read every table; a wrong number is noted as a mistake and becomes NaN in the robot."""
     body, start = root.table("body"), root.table("start")
     drive, servo = root.table("drive", optional=True), root.table("servo", optional=True)
     surface = root.table("surface", optional=True)

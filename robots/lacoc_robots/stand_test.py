@@ -27,7 +27,7 @@ def try_standing(
         file: name of the robot file, for error messages.
 
     Returns:
-        What keeps it from standing; nothing if it stays in place.
+        The mistakes that keep it from standing; empty if it stays in place.
     """
     postures = standing_postures(gait, levels, robot.start_posture)
     return [

@@ -41,7 +41,7 @@ class Stood(msgspec.Struct, frozen=True):
 
 
 def standing_posture(gait: Gait, level: Level, start: Posture) -> Posture:
-    """Return the posture of a robot that is told to stand at a level (decision 15).
+    """Return the posture of a robot that is told to stand at a level (rules 3).
 
     Args:
         gait: the robot's gait.

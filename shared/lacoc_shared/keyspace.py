@@ -49,7 +49,7 @@ class Keys:
 
     @property
     def event(self) -> str:
-        """Key expression of events: numbered and never lost; a query returns all of the match."""
+        """Key expression of events: numbered, never lost; a query returns those of the match."""
         return f"{self.root}/event"
 
     @property
@@ -86,5 +86,5 @@ class Keys:
         return f"{self.root}/referee/{ENTER}"
 
     def decision(self, name: str) -> str:
-        """Return the key expression of a decision, which gets a reply; `*`: of all decisions."""
+        """Return the key expression of a decision, which gets a reply; `*` is for all decisions."""
         return f"{self.root}/referee/{name}"

@@ -335,7 +335,7 @@ class LinkVerdict(msgspec.Struct, frozen=True, kw_only=True):
     silent_s: float
     """Time of PLAYING during which the seat was silent [s]."""
     expected: int
-    """Repeats of its command that were due in PLAYING: ten a second."""
+    """Repeats of the seat's command that were due in PLAYING: ten a second."""
     arrived: int
     """Repeats that arrived."""
     refused: dict[str, int]

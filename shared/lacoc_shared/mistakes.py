@@ -19,8 +19,8 @@ from lacoc_shared.words import Phrase, render, say
 ESCAPED = "lacoc-escaped"
 r"""Error handler of `str.encode`: characters that an encoding lacks become escape codes.
 
-A character becomes its JSON escape (`\u30c1`), so that a line of JSON stays valid. A byte of
-a file name that is not UTF-8 becomes `\x98`.
+A character becomes its JSON escape (`\u30c1`), so that a line of JSON stays valid. A byte of a file
+name that is not UTF-8 becomes its number, such as `\x98`.
 """
 
 
@@ -70,7 +70,7 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         )
 
     def in_words(self) -> "Mistake":
-        """Return the mistake in the language of the process, for output that programs read."""
+        """Return the mistake with `found` and `expected` as text in the language of the process."""
         found, expected = render(self.found), render(self.expected)
         return msgspec.structs.replace(self, found=found, expected=expected)
 
@@ -109,7 +109,8 @@ class UserError(Exception):
 def printable(text: str, longest: int = 40) -> str:
     """Shorten a foreign text and make it safe for a terminal, to quote it in a message.
 
-    An unusual space or an invisible mark is replaced by its name.
+    An unusual space or an invisible mark is replaced by its name, any other unprintable character
+    by U+FFFD.
     """
     safe = "".join(c if c.isprintable() else _named(c) for c in text[:longest])
     return safe if len(text) <= longest else f"{safe}…"
@@ -124,8 +125,8 @@ def _named(character: str) -> str:
 def text_of(name: str | os.PathLike[str]) -> str:
     r"""Turn a file name or a command-line word into text that can be sent and stored.
 
-    The system gives names as bytes. Python keeps bytes that are not UTF-8 as characters
-    that no encoding accepts; this function replaces each such byte by `\x98`.
+    The system gives names as bytes. Python keeps bytes that are not UTF-8 as characters that no
+    encoding accepts; this function writes the number of each such byte, such as `\x98`.
     """
     return os.fspath(name).encode("utf-8", ESCAPED).decode()
 

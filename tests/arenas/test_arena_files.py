@@ -21,7 +21,7 @@ INSTALLED = ["othello", "flag-strike", "practice"]
 
 
 def look(name: str, overrides: dict[str, Any] | None = None) -> bytes:
-    """Return all that a game and its field tell, as bytes."""
+    """Return as bytes the facts of a game and its field that settings can change."""
     ground = arena.load(name, overrides)
     game = ground.game
     spec = mujoco.MjSpec()
@@ -47,7 +47,7 @@ def _all_left(game: Any) -> Any:
 
 
 def _flanked(game: Any) -> Any:
-    """Return the Robot-Othello board after the left robot closed a row; None for other games."""
+    """Return the Robot-Othello board after the left robot flips a run; None for other games."""
     if not game.markers or game.markers[0].kind != "disc":
         return None
     state = game.start()
@@ -86,7 +86,7 @@ def test_setting_changes_what_it_says(name: str, key: str, value: Any) -> None:
 
 
 def test_every_setting_is_tested() -> None:
-    """The table above has every entry of [game], except two that have tests of their own."""
+    """`SETTINGS` has every entry of [game], except two that have tests of their own."""
     for name in INSTALLED:
         tested = {key for arena_name, key, _ in SETTINGS if arena_name == name}
         tested |= {"clearance_m", "colour"} if name == "flag-strike" else set()
@@ -342,7 +342,7 @@ def test_merge_replaces_single_entries() -> None:
 
 
 def test_a_wrong_setting_in_japanese() -> None:
-    """An organiser who reads Japanese is told all mistakes of a layout in it."""
+    """A message in Japanese about a wrong layout contains no English sentence."""
     words.use("ja")
     try:
         with pytest.raises(UserError) as refused:

@@ -71,7 +71,7 @@ def make_frame(
     upside_down: bool = False,
     postures: tuple[int, ...] = (0, 0),
 ) -> Frame:
-    """Return a frame of PLAYING with robots at (x, y, heading) [m, m, rad]."""
+    """Return a frame of the phase PLAYING with robots at (x, y, heading) [m, m, rad]."""
     packed = b""
     for x, y, heading in poses:
         half = (heading - math.pi / 2) / 2
@@ -354,7 +354,7 @@ def test_bots_are_pure(name: str) -> None:
 
 
 def test_planner_leaves_the_corner_that_would_lose() -> None:
-    """A planner that is behind leaves the fourth corner, the match's end (workshop 5-2 rule 4)."""
+    """A planner that is behind avoids the corner that ends the match (workshop 5-2 rule 4)."""
     ground = arena.load("flag-strike")
     sheet = make_sheet(ground)
     game = ground.game

@@ -31,7 +31,7 @@ def geoms(model: Any) -> list[Any]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_names_agree(name: str) -> None:
-    """A field has shapes for all states of each marker, and for nothing else."""
+    """A field has a marker shape for each state of each marker, and no other marker shapes."""
     game = arena.load(name).game
     shown = {
         tuple(geom.name.split(":")[1:3])
@@ -143,7 +143,7 @@ def colour_of(geom: Any, swap: bool) -> tuple[float, ...]:
 
 
 def looks(name: str, turn: bool) -> Any:
-    """Return each geom as numbers that depend only on how it looks; `turn`: of the turned field."""
+    """Return each geom as numbers of its look; with `turn`, of the field after a half turn."""
     model = build(name).compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -173,3 +173,11 @@ def test_field_turned_is_the_same_field(name: str) -> None:
     same = abs(here[:, None] - there[None]).max(axis=2) < 1e-8
     assert (same.sum(axis=0) == 1).all()
     assert (same.sum(axis=1) == 1).all()
+
+
+def test_start_places_look_like_no_target() -> None:
+    """On the field of Flag-Strike only what is worth points is round; start places are square."""
+    model = build("flag-strike").compile()
+    pads = [geom for geom in geoms(model) if geom.name.startswith("pad:")]
+    assert len(pads) == 2 * len(arena.load("flag-strike").game.starts[0])
+    assert {int(pad.type[0]) for pad in pads} == {int(mujoco.mjtGeom.mjGEOM_BOX)}

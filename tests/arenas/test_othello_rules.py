@@ -41,7 +41,7 @@ def middle(name: str, game: Othello = GAME) -> tuple[float, float]:
 
 
 def board(*rows: str) -> tuple[int, ...]:
-    """Return the cells of a picture, row 5 first; rows that it leaves out are neutral."""
+    """Return the cells of a board picture whose first line is row 5; missing rows are neutral."""
     filled = [*rows, *["......"] * (6 - len(rows))]
     return tuple(".LR".index(cell) for row in reversed(filled) for cell in row)
 

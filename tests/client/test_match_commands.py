@@ -8,13 +8,17 @@ import time
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from court_process import CourtProcess, OpenCourt
 
 from lacoc_client.asking import NoAnswer
+from lacoc_client.commands.referee import _default_name, _show_reply
 from lacoc_client.referee import RefereeClient
 from lacoc_shared.command import cli
 from lacoc_shared.decisions import DECISIONS
+from lacoc_shared.messages import DecisionReply
+from lacoc_shared.words import say
 
 pytestmark = pytest.mark.slow
 
@@ -89,6 +93,40 @@ def test_the_referee_has_every_decision(
     referee.decide("abort")
     referee.decide("next")
     assert referee.decided == set(DECISIONS) - {"ready"}  # see the next test
+
+
+def test_a_dry_run_lists_what_would_change(capsys: pytest.CaptureFixture[str]) -> None:
+    """For a person, `--dry-run` says that nothing is done, and lists each event that changes."""
+    changes = (
+        say("change.vanishes", event=17, kind="strike", marker="flag18"),
+        say("change.appears", kind="capture", marker="corner0"),
+    )
+    done = say("decision.take-back", event=17)
+    tried = DecisionReply(beat=900, said=done, scores=(5, 0), changes=changes)
+    _show_reply(tried)
+    _show_reply(msgspec.structs.replace(tried, changes=()))
+    first = [
+        "Dry run: nothing is done. This is what would be done:",
+        "  Event 17 is taken back.",
+    ]
+    assert capsys.readouterr().out.splitlines() == [
+        *first,
+        "  event 17 is removed: strike flag18",
+        "  new event: capture corner0",
+        "The score would be 5 : 0",
+        *first,
+        "  No other event changes.",
+        "The score would be 5 : 0",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("account", "named"), [("kim", "kim"), ("root", "referee"), ("admin", "referee")]
+)
+def test_a_referee_has_a_name(account: str, named: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without --by a decision has the account's name, unless that names no person."""
+    monkeypatch.setenv("LOGNAME", account)
+    assert _default_name() == named
 
 
 def test_ready_for_a_contestant_who_cannot(

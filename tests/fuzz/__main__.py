@@ -1,4 +1,4 @@
-"""`make fuzz`: the long run. All inputs come from the seed, so the same seed repeats a run."""
+"""`make fuzz`: the long run of the fuzz tests. The same seed repeats a run input by input."""
 
 import argparse
 import faulthandler

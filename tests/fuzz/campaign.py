@@ -40,7 +40,7 @@ class Figures:
 
 
 def feed(target: Target, count: int, seed: int) -> Iterator[Figures]:
-    """Feed a number of inputs to a target.
+    """Feed a target its seeds, and then hostile inputs until it has had `count` inputs.
 
     Yields:
         The figures so far, after every 1000 inputs and at the end.

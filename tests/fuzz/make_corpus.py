@@ -264,7 +264,7 @@ def _with_part(name: str, content: bytes) -> bytes:
 
 
 def _chunk(inside: bytes, told: int | None) -> bytes:
-    """Return an MCAP chunk and a file's end; `told` is the size that the chunk claims [bytes]."""
+    """Return an MCAP chunk; `told` is the size [bytes] that it claims, None for the true size."""
     data = zstandard.ZstdCompressor(19).compress(inside)
     told = len(inside) if told is None else told
     body = struct.pack("<QQQII", 0, 0, told, 0, 4) + b"zstd" + struct.pack("<Q", len(data)) + data
@@ -272,7 +272,7 @@ def _chunk(inside: bytes, told: int | None) -> bytes:
 
 
 def _records_of(packed: bytes, code: int) -> list[bytes]:
-    """Return the records with this code that follow a file's chunks."""
+    """Return the records of an MCAP file that have this opcode, without those inside chunks."""
     at, found = 8, []
     while at + 9 <= len(packed) - 8:
         kind, size = struct.unpack_from("<BQ", packed, at)

@@ -1,4 +1,4 @@
-"""The code that reads bytes from outside, as functions that raise only undocumented errors."""
+"""A function for each reader of foreign bytes; it raises only errors that are not documented."""
 
 import os
 import tempfile

@@ -1,4 +1,4 @@
-"""The workshop's sample gait (Fig. 4-1)."""
+"""The workshop's sample gait (workshop Fig. 4-1)."""
 
 import math
 
@@ -6,7 +6,8 @@ import pytest
 
 from lacoc_shared.gait.tables import PostureTable
 
-# The table of Fig. 4-1. Its columns 16 and 17, which the print lacks, follow the gait's pattern.
+# The table of workshop Fig. 4-1. Its columns 16 and 17, which the print lacks, follow the pattern
+# of the gait.
 _TABLE = """
  0  | 45   0 -45 -45   0  45 | 20  20  20  20  20  20 |  0   0   0   0   0   0
  1  |  0   0 -45   0   0  45 | 20  20  20  20  20  20 | 40   0  40   0  40   0

@@ -1,4 +1,4 @@
-"""Properties: what is written reads back, and wrong bytes raise only FileRefused (rules 2)."""
+"""Property tests: a written gait reads back unchanged, and wrong bytes raise only FileRefused."""
 
 import io
 import math
@@ -101,7 +101,7 @@ def test_a_written_text_reads_back(table, encoding, line_end, gap):
 @settings(patient)
 @given(posture_tables_of(degrees.map(lambda value: float(f"{value:.15g}"))))
 def test_a_written_workbook_reads_back(table):
-    """A table whose numbers have 15 digits reads back from a workbook, which keeps no more."""
+    """A table whose numbers have at most 15 digits reads back from a workbook."""
     labels = leg_labels(table.joints // 3)
     assert read_workbook(write_workbook(table, labels), "x", legs=labels) == table
 

@@ -52,19 +52,19 @@ def _row(first: str) -> bytes:
 
 
 def test_figure_4_1_is_read(workshop, legs):
-    """The text of Fig. 4-1 reads as the workshop's nine postures."""
+    """The text of workshop Fig. 4-1 reads as the workshop's nine postures."""
     assert read_gait(FIGURE_4_1.encode(), "Loco-data.txt", legs=legs) == workshop
 
 
 def test_figure_4_2_is_read(workshop, legs):
-    """The 18 lines of Fig. 4-2 read as the sample keys: stand, turn left, forward, turn right."""
+    """The 18 lines of workshop Fig. 4-2 read as the four sample keys."""
     assert len(FIGURE_4_2.splitlines()) == 18
     table = read_gait(FIGURE_4_2.encode(), "LocoTra-data.txt", legs=legs)
     assert table == to_locomotion(workshop, SAMPLE_KEYS)
 
 
 def test_the_figures_are_written(workshop, legs):
-    """We write the layout of Fig. 4-1 and Fig. 4-2, legend rows included."""
+    """We write the layout of workshop Fig. 4-1 and Fig. 4-2, legend rows included."""
     assert write_gait(workshop, legs).decode() == FIGURE_4_1
     assert write_gait(to_locomotion(workshop, SAMPLE_KEYS), legs).decode() == FIGURE_4_2
 

@@ -53,7 +53,7 @@ def refused(data: bytes, **robot: object) -> list[tuple[object, ...]]:
 
 
 def test_both_sheets_have_the_cells_of_figure_4_1(sample, workshop, legs):
-    """Both sheets hold the table of Fig. 4-1 from cell A1, one as values and one as formulas."""
+    """Both sheets hold workshop Fig. 4-1 from cell A1 on, one as values and one as formulas."""
     values = openpyxl.load_workbook(io.BytesIO(sample), data_only=True)
     assert values.sheetnames == [INPUT_SHEET, MIRROR_SHEET]
     text = [line.split("\t") for line in write_gait(workshop, legs).decode().splitlines()]
@@ -70,7 +70,7 @@ def test_both_sheets_have_the_cells_of_figure_4_1(sample, workshop, legs):
 
 
 def test_the_mirror_is_made_of_live_formulas_with_values(sample):
-    """The formulas come with their values, for programs that don't calculate."""
+    """Each formula has a stored value, for programs that don't calculate."""
     formulas = openpyxl.load_workbook(io.BytesIO(sample))[MIRROR_SHEET]
     values = openpyxl.load_workbook(io.BytesIO(sample), data_only=True)
     for row in formulas["A1:S13"]:

@@ -1,4 +1,4 @@
-"""`make mutants`: change the code of the rules and the match bit by bit, and see if a test notices.
+"""`make mutants`: change the code in one place at a time, and see if a test fails.
 
 mutmut makes the mutants in a copy of the tree under build/mutants, and runs for each mutant the
 tests that reach it. It does not mutate code that it can't reach: class bodies, tables, properties.

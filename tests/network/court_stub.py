@@ -102,7 +102,10 @@ class CourtStub:
         desk = DecisionDesk([tokens.hash_token(WHISTLE)])
         self.network = CourtNetwork(KEYS, [listen], inbox, desk, protection)
         self.trouble: Phrase | None = None
-        """If set: why no beats pass and the last frame is sent again, as while the disk is full."""
+        """The reason why no beats pass, such as a full disk; None while they pass.
+
+        While it is set, the court refuses requests and repeats the frame of its last beat.
+        """
         self.inputs: list[Input] = []
         self.scene = make_scene("empty")
         self.silent = False

@@ -55,7 +55,7 @@ class Pair(NamedTuple):
 
 
 class Played(NamedTuple):
-    """What came of a match between the two controllers."""
+    """The keys, the last health message and the record of a match between the two controllers."""
 
     pairs: list[Pair]
     lost: int

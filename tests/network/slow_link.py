@@ -131,7 +131,7 @@ class SlowLink:
         writer.close()
 
     async def _carry(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        """Carry one direction, until its sender has gone and everything is delivered."""
+        """Forward data in one direction until its sender closes and everything is delivered."""
         under_way: asyncio.Queue[tuple[float, bytes]] = asyncio.Queue()
         delivering = asyncio.ensure_future(self._deliver(under_way, writer))
         try:

@@ -109,7 +109,7 @@ def test_an_unknown_seat_and_an_unknown_court_are_named(session: Session) -> Non
 def test_a_key_is_applied_once_and_its_round_trip_is_known(
     court: CourtStub, session: Session
 ) -> None:
-    """A key that is repeated takes effect once, and the controller measures its round trip."""
+    """A key whose command is repeated takes effect once, and its round trip is measured."""
     one = held(session)
     assert one.press(1, 2) == 1
     until(lambda: one.poll(time.monotonic()) and one.round_trip_ms is not None)
@@ -205,7 +205,7 @@ def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session)
 
 @pytest.mark.parametrize("seat", ["", "a//b", "le?ft", "#"])
 def test_a_seat_that_is_no_key_is_said(court: CourtStub, session: Session, seat: str) -> None:
-    """A seat's name that can't be part of a key expression is refused with the right names."""
+    """If a seat's name can't be part of a key expression, the refusal lists the court's seats."""
     with pytest.raises(UserError, match=r"has no seat .* It has left and right"):
         Controller(session, "main", seat, "t", "Blue")
 

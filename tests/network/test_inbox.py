@@ -53,7 +53,7 @@ def check_files(join: Join) -> Join:
 
 
 class Court(Inbox):
-    """An inbox with what its match knows about each seat's silence."""
+    """An inbox that remembers, in place of a match, which seats are silent."""
 
     silent = (False, False)
 
@@ -232,7 +232,7 @@ def test_a_command_counts_once_and_its_repetition_is_a_sign_of_life() -> None:
 
 
 def test_the_newest_restart_comes_before_the_newest_digit() -> None:
-    """Of a beat's commands the newest [x] enters the match, and then the newest digit."""
+    """In each beat, a seat's newest [x] enters the match first, and then its newest digit."""
     inbox = make()
     joined = take_seat(inbox)
     keys = (3, RESTART_KEY, 1, RESTART_KEY, 4)
@@ -358,7 +358,7 @@ def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
 
 
 def test_a_flood_is_capped_a_beat_and_a_second_and_the_newest_wins() -> None:
-    """A flood on a seat is limited, its newest command counts, and the other seat plays on."""
+    """A flood on a seat is limited; its newest command takes effect and the other seat plays on."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     inbox.beat(0.0, [[], []])

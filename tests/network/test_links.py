@@ -78,7 +78,7 @@ def warm(left: int, right: int, most_ms: int = MOST_MS) -> Clock:
 
 
 def test_a_round_trip_is_counted_by_the_courts_own_beats() -> None:
-    """A round trip lasts from the sending of a frame to the beat that has the answer."""
+    """A round trip lasts from the sending of a frame to the beat that receives the answer."""
     clock = warm(3, 11, most_ms=0)
     for seat, beats in ((LEFT, 3), (RIGHT, 11)):
         trip_s = beats * BEAT_S - SENT_S
@@ -98,7 +98,7 @@ def test_a_slow_court_counts_the_time_that_passed() -> None:
 
 
 def test_p95_is_the_longest_but_one_of_twenty() -> None:
-    """If one round trip in twenty is longer, the p95 does not include it."""
+    """If one round trip in twenty is longer, the 95th percentile does not include it."""
     clock = Clock()
     for number in range(WINDOW_BEATS):
         clock.begin()
@@ -110,7 +110,7 @@ def test_p95_is_the_longest_but_one_of_twenty() -> None:
 
 
 def test_the_same_frame_again_is_no_new_round_trip() -> None:
-    """A command that names an older frame again gives no new round trip."""
+    """A command that names a frame again, or an older one, gives no new round trip."""
     clock = warm(2, 2)
     for ago in range(1, 200):
         clock.begin()
@@ -198,7 +198,7 @@ def test_the_delay_follows_seldom_and_falls_only_by_much() -> None:
 
 
 def test_an_old_frame_gains_no_more_than_two_beats() -> None:
-    """A key that claims to answer an older frame gains at most two beats, and counts as late."""
+    """A key that names an older frame is at most two beats earlier, and counts as late."""
     clock = warm(2, 12)
     for claim in (2, 5, 12, 200):
         clock.begin()
@@ -211,7 +211,7 @@ def test_an_old_frame_gains_no_more_than_two_beats() -> None:
 
 
 def test_a_link_that_was_never_measured_is_not_believed() -> None:
-    """Without a known round trip, a key that names an old frame gains two beats at most."""
+    """Without a known round trip, naming an old frame makes a key at most two beats earlier."""
     clock = warm(1, 12)
     for _ in range(WINDOW_BEATS + MEASURE_BEATS):
         clock.begin()

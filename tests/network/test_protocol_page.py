@@ -22,7 +22,7 @@ JOIN = Keys("main").request("left", "join")
 
 
 def of_page(court: str, user: str = "", password: str = "", ca: str = "") -> zenoh.Config:
-    """Return the page's configuration for this court; without a user, without the part for keys."""
+    """Return the page's configuration for this court; its part for keys only if a user is given."""
     (text,) = re.findall(r"```json5\n(.*?)```", PAGE, re.DOTALL)
     for there, here in (
         ("tls/court.example.org:7447", court),

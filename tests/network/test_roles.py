@@ -78,7 +78,7 @@ def test_a_seat_is_steered_by_its_own_user(
 def test_a_seat_is_steered_by_nobody_else(
     court: KeyedCourt, sessions: dict[str, Session], who: str
 ) -> None:
-    """Access rules stop other users at a seat, even with the seat's token and secret."""
+    """Access rules keep other users from a seat, even if they have its token and its secret."""
     controller = Controller(sessions["left"], "main", "left", TOKENS["left"], "Ants")
     controller.join()
     joined = controller._joined
@@ -146,7 +146,7 @@ def test_nobody_speaks_for_the_court(
 def test_nobody_hears_what_is_said_to_the_court(
     court: KeyedCourt, sessions: dict[str, Session], who: str
 ) -> None:
-    """No user receives another user's commands, with any subscription."""
+    """No user receives another user's commands, whatever key expression it subscribes to."""
     boxes = [sessions[who].mailbox(key, 64) for key in (f"{KEYS.root}/seat/**", "lacoc/**", "**")]
     sender = next(one for one in TOKENS if one != who)
     controller = Controller(sessions[sender], "main", sender, TOKENS[sender], "Ants")

@@ -88,7 +88,7 @@ def test_an_unknown_name_is_said_at_once() -> None:
 
 
 def test_requests_are_answered_refused_or_in_vain(router: Session) -> None:
-    """A request that nobody gets raises NoReply, and one without an answer in time TooLate."""
+    """A request raises NoReply if no desk gets it, and TooLate if no answer comes in time."""
     desk = router.desk("lacoc/main/sheet", 1)
     with open_client(router.locators()) as client:
 

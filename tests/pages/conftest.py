@@ -29,8 +29,15 @@ from venue import Venue
 WAIT_MS = 45_000
 SLOW_SCREEN = """(() => {
   const next = window.requestAnimationFrame.bind(window);
-  window.requestAnimationFrame = (draw) => setTimeout(() => next(draw), 80);
-  window.cancelAnimationFrame = clearTimeout;
+  const cancelled = new Set();
+  window.requestAnimationFrame = (draw) => {
+    const id = setTimeout(() => next((ms) => cancelled.delete(id) || draw(ms)), 80);
+    return id;
+  };
+  window.cancelAnimationFrame = (id) => {
+    clearTimeout(id);
+    cancelled.add(id);
+  };
 })()"""
 """Limits pages to about ten pictures a second: drawing sixty would be most of a test's work."""
 

@@ -26,15 +26,13 @@ def opened(open_page: OpenPage, venue: Venue, path: str, **options: Any) -> Show
     return Show(open_page(**options), venue.url, path, drawn=False)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     "path",
     [
-        "/play",
         "/overlay",
         *(
             pytest.param(path, marks=pytest.mark.long)
-            for path in ("/watch", "/practice", "/referee")
+            for path in ("/watch", "/play", "/practice", "/referee")
         ),
     ],
 )
@@ -45,7 +43,7 @@ def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: s
     show.sees(WAITS[path], 'There is no court "centre" here. The courts here: main.')
     show.page.close()
     show = opened(open_page, venue, f"{path}?court=centre", locale="ja-JP")
-    show.sees(WAITS[path], "ここにコート「centre」はありません（mainがあります）。")
+    show.sees(WAITS[path], "ここにコート「centre」はありません（あるコート：main）。")
     show.page.close()
     show = opened(open_page, venue, path)
     show.sees(WAITS[path], "Waiting for court main")

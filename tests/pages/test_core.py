@@ -13,6 +13,11 @@ pytestmark = pytest.mark.slow
 
 NODE = Path(sys.executable).with_name("node")
 """Node of this Python environment: an older Node on the path does not read TypeScript."""
+NODE_OF_PAGES = [
+    *(NODE, "--experimental-transform-types", "--disable-warning=ExperimentalWarning"),
+    *("--import", Path(__file__).with_name("core") / "page.mjs"),
+]
+"""Node with the means to load any module of the pages that draws nothing."""
 CASES = sorted(Path(__file__).with_name("core").glob("*.test.mjs"))
 
 
@@ -20,7 +25,11 @@ def test_the_pure_parts_of_the_pages() -> None:
     """All cases in tests/pages/core pass in Node; the output names those that fail."""
     assert CASES
     done = subprocess.run(
-        [NODE, "--test", *CASES], capture_output=True, text=True, encoding="utf-8", check=False
+        [*NODE_OF_PAGES, "--test", *CASES],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
 

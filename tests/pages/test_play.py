@@ -59,7 +59,10 @@ def playing(venue: Venue, page: Contestant) -> PageClient:
 
 def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """The join form shows every mistake; the browser keeps the team's name but not the token."""
+    venue.contest.write_text('[contest]\nname = "Autumn cup"\n' + venue.contest.read_text())
     page = opened(venue, sit)
+    page.sees(".entrance", "Autumn cup")
+    page.sees(".seat.on", "left")
     page.sees(".safety", "'lacoc play' on your own computer is safer")
     page.page.click("button[type=submit]")
     page.sees("#join-name-error", "1 to 24 characters")
@@ -97,6 +100,7 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
     other = sit(venue.url)
     other.open(key=venue.key)
     other.sees(".seats [data-seat='0']", "Ants sits here")
+    other.sees(".seat.on", "right")  # a taken seat is not offered
 
 
 def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: Path) -> None:
@@ -316,7 +320,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     page = seated(venue, sit, "--seconds", "120")
     page.press("2")
     page.is_toasted("[2] Keys work only while the match is being played")
-    page.page.click("button.ready")
+    page.press("r")
     page.is_told("You are ready. Waiting for the right seat")
     page.page.click(".ready.said button")
     page.is_told("Press Ready when you are ready")
@@ -678,6 +682,11 @@ def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
         shown = pos_data(page, seat, joints, frames)
         assert shown["text"] == expected.text()
         assert "saved from 0:02.0 on, when this page was loaded" in shown["says"]
+        assert "The record of the match has the whole path." in shown["says"]
+        assert (
+            shown["saysInPractice"] + " The record of the match has the whole path."
+            == (shown["says"])
+        )  # practice keeps a record only if it is asked to
 
 
 @pytest.mark.long

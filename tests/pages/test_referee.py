@@ -150,7 +150,7 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     expect(advice).to_contain_text("of real time (at least 2 is required)")
     log_has(page, "A replay is advised: the match ran at ")
     expect(other.locator(".match .advice h3")).to_have_text("再試合を推奨")
-    expect(other.locator(".match .advice li").first).to_contain_text("実時間比")
+    expect(other.locator(".match .advice li").first).to_contain_text("実時間の")
     step(page)  # advice only: the result is the referee's word
     confirm(page)
     phase(page, 7)
@@ -176,7 +176,11 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     phase(page, 2)
     step(page, "Control+Enter")
     log_has(page, "Referee Kim: play begins in 3 seconds.")
+    expect(page.locator(".answer.yes")).to_have_text(
+        re.compile(r"^✓ Done Play begins in 3 seconds\. [1-9]\d* s ago$")
+    )
     phase(page, 4)
+    expect(page.locator(".answer")).to_have_count(0)  # it was of another phase
     # While the match is played.
     seat(page, 0, "Restart").click()
     confirm(page, "fell over")
@@ -194,8 +198,16 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     log_has(page, "Referee Kim: -3 points for Ants. Reason: a warning")
     has_scores(page, 15, 18)
     # While the match is halted: set a disc, take that back, change the clock.
+    expect(page.locator(".why-halted")).to_have_count(0)
     group(page, "Halt").click()
     phase(page, 5)
+    cause = page.locator(".why-halted")
+    expect(cause).to_have_text("Referee Kim: halted.")
+    text_px, large_px = (
+        float(found.evaluate("(at) => parseFloat(getComputedStyle(at).fontSize)"))
+        for found in (page.locator(".log li").first, cause)
+    )
+    assert large_px > 1.3 * text_px
     disc(page, "c0r0").click()
     page.locator(".pick .states .act").nth(2).click()
     confirm(page, "rule")
@@ -298,7 +310,6 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
     at_the_desk(page)
 
 
-@pytest.mark.long
 def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     """Without the page key the page shows everything, and says how to get a link with it."""
     page = referee(key=False)
@@ -309,7 +320,6 @@ def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
     expect(big(page)).to_have_attribute("aria-disabled", "true")
 
 
-@pytest.mark.long
 def test_the_file_that_a_browser_is_given_leads_to_the_page(
     court: Venue, open_page: OpenPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -605,6 +615,13 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     venue.web()
     page = referee()
     at_the_desk(page)
+    looks: dict[str, set[str | None]] = {}
+    for flag in page.locator(".board g[aria-label^='flag']").all():
+        colour = flag.locator("circle").get_attribute("fill")
+        points = flag.locator("text").text_content() or ""
+        looks.setdefault(points, set()).add(colour)
+    assert sorted(looks) == ["1", "2", "3", "5"]  # also 1 point is shown (rules 6)
+    assert len(set.union(*looks.values())) == 4  # and each number has its colour
     ants, bees = venue.contestant("left", "Ants"), venue.contestant("right", "Bees")
     phase(page, 2)
     step(page)

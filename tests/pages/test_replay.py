@@ -291,7 +291,7 @@ def test_the_servers_list_and_the_address(
     show.page.go_back()
     show.sees(".recordings")
     missing = Player(open_page(), library, "?file=none.mcap", drawn=False)
-    missing.sees(".trouble", "no recording none.mcap")
+    missing.sees(".trouble", "does not have the recording none.mcap")
     missing.sees(".recordings")
 
 

@@ -158,7 +158,7 @@ def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) ->
 
 def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
     """A match that the referee declares void is shown without a winner."""
-    venue.court()
+    court = venue.court()
     venue.web()
     referee = playing(venue)
     show = Show(open_page(), venue.url, LOW)
@@ -168,6 +168,9 @@ def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
     decide(referee, "fire alarm", type="abort")
     show.sees(".result h1", "The match is void")
     assert show.find(".result .won").count() == 0
+    court.kill()  # after the end of a match nothing is missing without its court
+    show.sees(".banner.calm", "The match is over, and its court has closed.")
+    show.misses(STALE)
 
 
 @pytest.mark.long
@@ -335,6 +338,8 @@ def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
         box = show.find(selector).last.bounding_box()
         assert box is not None
         assert box["x"] + box["width"] <= PHONE["width"], selector
+    show.sees(".view-tag b")
+    expect(show.find(".view-tag span").first).to_be_hidden()  # a name would hide the robots
     show.page.set_viewport_size(LAPTOP)
     mark = show.find(".view-tag b").first.bounding_box()
     tag = show.find(".view-tag").first.bounding_box()
@@ -385,8 +390,11 @@ def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
 
 
 def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
-    """Without WebGL the page draws the match as a flat map."""
-    venue.court()
+    """Without WebGL the page draws a flat map; on a phone the banner covers neither score nor map.
+
+    The court is killed for that: its banner is as long as any.
+    """
+    court = venue.court()
     venue.web()
     playing(venue)
     page = open_page(viewport=LAPTOP)
@@ -399,6 +407,22 @@ def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
     assert show.view("quality") == "map"
     show.has_scores(18, 18)
     show.moves()
+    page.set_viewport_size(PHONE)
+    court.kill()
+    show.sees(".banner", "Waiting for court main: no answer for")
+    show.until(lambda: bottom(show, ".banner") <= top(show, ".head"), "the banner covers the score")
+
+
+def top(show: Show, selector: str) -> float:
+    box = show.find(selector).first.bounding_box()
+    assert box is not None
+    return box["y"]
+
+
+def bottom(show: Show, selector: str) -> float:
+    box = show.find(selector).first.bounding_box()
+    assert box is not None
+    return box["y"] + box["height"]
 
 
 @pytest.mark.long

@@ -59,6 +59,9 @@ def test_the_services_hang_together() -> None:
     assert SERVICES["web"]["command"][-1].endswith(f":{WEB_PORT}")
     connects = {service["environment"].get("LACOC_CONNECT") for service in SERVICES.values()}
     assert connects == {None, f"court:{PORT}"}
+    commands = [service["command"] for service in SERVICES.values()]
+    waiting = [command[0] for command in commands if "--wait" in command]
+    assert waiting == ["bot", "bot", "referee"]  # `web` always waits for its court
     assert (ROOT / "docker" / SERVICES["court"]["build"]["context"]).resolve() == ROOT
     assert order()[:2] == ["contest", "court"]
 

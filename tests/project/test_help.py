@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Iterator
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -59,7 +60,7 @@ def test_every_option_and_argument_has_help(name: str) -> None:
 def test_help_is_shown_as_it_is_written(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`--help` shows words in square brackets, which could be taken for styles."""
+    """`--help` shows words in square brackets, which rich could take for styles."""
     monkeypatch.setenv("COLUMNS", "100")
     with pytest.raises(SystemExit) as stop:
         cli.main([*name.split()[1:], "--help"])
@@ -78,7 +79,7 @@ SENTENCE = re.compile(r"[A-Za-z]+ [a-z]{2,} [a-z]+ [a-z]{2,}")
 
 
 def texts_of_help() -> set[str]:
-    """All that the help of the commands says, in English."""
+    """Return every English text in the help of all commands."""
     found = set(cli._PANELS) | {cli._OTHERS}
     for command in COMMANDS.values():
         for part in (command, *command.params):
@@ -87,12 +88,12 @@ def texts_of_help() -> set[str]:
 
 
 def english_left(shown: str) -> list[str]:
-    """Lines of a Japanese help that are English."""
+    """Return the lines of a Japanese help that have an English sentence or a word of typer."""
     return [line for line in shown.splitlines() if TYPER.search(line) or SENTENCE.search(line)]
 
 
 def japanese_help(name: str, capsys: pytest.CaptureFixture[str]) -> str:
-    """What a command shows with --help to a user of Japanese."""
+    """Return what a command prints with --help."""
     with pytest.raises(SystemExit):
         cli.main([*name.split()[1:], "--help"])
     return capsys.readouterr().out
@@ -100,7 +101,7 @@ def japanese_help(name: str, capsys: pytest.CaptureFixture[str]) -> str:
 
 @pytest.fixture
 def japanese(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """A user of Japanese, with a wide terminal."""
+    """Set the language to Japanese and the terminal to 200 columns; later, go back to English."""
     monkeypatch.setenv("LACOC_LANGUAGE", "ja")
     monkeypatch.setenv("COLUMNS", "200")
     yield
@@ -109,7 +110,7 @@ def japanese(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def test_the_table_of_help_has_the_texts_of_the_commands() -> None:
-    """Each English text once, and none that no command has any more."""
+    """The table of help has each English text of the commands once, and no other text."""
     file = resources.files("lacoc_shared.words") / "texts" / "help.toml"
     pairs = tomllib.loads(file.read_text("utf-8"))["text"]
     english = {pair["en"] for pair in pairs}
@@ -121,7 +122,7 @@ def test_the_table_of_help_has_the_texts_of_the_commands() -> None:
 
 @pytest.mark.usefixtures("japanese")
 def test_help_in_japanese_has_no_english_line(capsys: pytest.CaptureFixture[str]) -> None:
-    """Every command; file names and words to type may be English, sentences may not."""
+    """The Japanese help of every command has no English sentence and no English word of typer."""
     for name in COMMANDS:
         assert english_left(japanese_help(name, capsys)) == [], name
 
@@ -130,7 +131,7 @@ def test_help_in_japanese_has_no_english_line(capsys: pytest.CaptureFixture[str]
 def test_an_english_line_is_found(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The check above fails if a text or one of typer's own words is not translated."""
+    """The check for English lines notices a text, or a word of typer, without a translation."""
     whole = help_text.japanese()
     for text in ("Say ready for a contestant who cannot.", "Options"):
         rest = {en: ja for en, ja in whole.items() if en != text}
@@ -157,9 +158,50 @@ def test_a_mistake_in_the_use_is_told_in_japanese(
 
 
 def test_after_japanese_comes_english_again(capsys: pytest.CaptureFixture[str]) -> None:
-    """A process that changes its language shows typer's own words in it."""
+    """After a change to Japanese and back, help is in English as before."""
     before = japanese_help("lacoc gait check", capsys)
     words.use("ja")
     help_text.translate_typer()
     words.use("en")
     assert japanese_help("lacoc gait check", capsys) == before
+
+
+FOLDER = Path(__file__).parents[2]
+PAGES = [*sorted(FOLDER.glob("README*.md")), *sorted((FOLDER / "docs").glob("*.md"))]
+CODE = re.compile(r"```(?!mermaid)\w*\n(.*?)```|`([^`\n]+)`", re.DOTALL)
+
+
+def cited(text: str) -> Iterator[list[str]]:
+    """Yield the words of each command in the code of a page, without "lacoc"."""
+    for block, span in CODE.findall(text):
+        for line in (block or span).splitlines():
+            if found := re.search(r"(?:^|[\s/\\])lacoc((?: [^\s|#]+)*)", line):
+                yield found[1].split()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(FOLDER)))
+def test_a_page_names_commands_that_exist(page: Path) -> None:
+    """Every command and option in the README of both languages, and in docs, exists."""
+    text = page.read_text("utf-8").replace("`lacoc password`", "")  # bytes of the protocol
+    for typed in cited(text):
+        name = "lacoc"
+        for word in typed:
+            if f"{name} {word}" not in COMMANDS:
+                break
+            name += f" {word}"
+        rest = typed[len(name.split()) - 1 :]
+        is_group = hasattr(COMMANDS[name], "list_commands")
+        known = {
+            opt for param in COMMANDS[name].params for opt in param.opts + param.secondary_opts
+        }
+        wrong = [word for word in rest if word.startswith("--") and word.split("=")[0] not in known]
+        assert not wrong, f"{name} {' '.join(rest)}"
+        assert not is_group or not rest or rest[0].startswith("-"), f"{name} {' '.join(rest)}"
+
+
+def test_readers_on_windows_are_told_how() -> None:
+    """The README of each language says how to install and start on Windows, without `make`."""
+    for name in ("README.md", "README.ja.md"):
+        text = (FOLDER / name).read_text("utf-8")
+        assert "PowerShell" in text
+        assert ".venv\\Scripts\\lacoc demo" in text

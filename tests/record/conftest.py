@@ -79,7 +79,7 @@ def sheet() -> Sheet:
 
 @pytest.fixture(scope="session")
 def scene() -> Scene:
-    """Give a scene: a floor, a disc in two states for each marker, and two robots with one leg."""
+    """Give a scene of a floor, discs in two states, and two robots drawn with one leg each."""
     bodies = [SceneBody(name="world", parent=-1, pos=_ZERO, quat=_ONE)]
     geoms = [_geom("plane", (0.0, 0.0, 0.1))]
     for marker in range(3):
@@ -104,7 +104,7 @@ def scene() -> Scene:
 
 @pytest.fixture(scope="session")
 def frame() -> Callable[..., Frame]:
-    """Give a function that makes frames, by default in PLAYING."""
+    """Give a function that makes frames, by default in the phase PLAYING."""
     return make_frame
 
 

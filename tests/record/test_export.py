@@ -180,7 +180,7 @@ def _foxglove(record: Record) -> dict[str, list[tuple[int, Any]]]:
 
 
 def test_foxglove_draws_the_match(record: Record) -> None:
-    """A Foxglove file has official schemas and a pose of each robot's bodies every 40 ms."""
+    """A Foxglove file has Foxglove's own schemas, and the poses of all robot bodies every 40 ms."""
     found = _foxglove(record)
     assert set(found) == {
         "/tf foxglove.FrameTransforms",
@@ -292,7 +292,7 @@ def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> 
 
 
 def test_export_writes_what_is_asked(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay export` writes only the chosen outputs, or none if one is impossible."""
+    """`lacoc replay export` writes only the chosen outputs, and none if one can't be made."""
     path, out = write_match(tmp_path), tmp_path / "out"
     args = ["export", str(path), "--out", str(out), "--pos-data", "left"]
     done = CliRunner().invoke(app, args)
@@ -356,7 +356,7 @@ def test_a_record_that_contradicts_itself(
 
 
 def test_info_in_japanese(tmp_path: Path, write_match: WriteMatch) -> None:
-    """Its headings and sentences are in the language of the user."""
+    """`lacoc replay info` prints headings and sentences in the user's language."""
     path = write_match(tmp_path)
     use("ja")
     try:

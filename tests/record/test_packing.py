@@ -83,7 +83,7 @@ def test_packing_that_fails_keeps_the_segments(tmp_path: Path, write_match: Writ
 
 @pytest.mark.slow
 def test_packing_in_the_background(tmp_path: Path, write_match: WriteMatch) -> None:
-    """A court packs in another process, which reports a match without segments."""
+    """A court packs in another process, which prints an error for a match without segments."""
     record = Record.read(write_match(tmp_path))
     assert pack.pack_in_background(tmp_path, ["m"]).wait(60) == 0
     assert Record.read(tmp_path / "m.mcap") == record

@@ -38,7 +38,7 @@ MakeFrame = Callable[..., Frame]
 
 
 def words_of(record: Record) -> str:
-    """Why a record could be read no further, in words."""
+    """Return in words why a record could not be read to its end; empty if it could."""
     return render(record.cut) if record.cut else ""
 
 
@@ -477,7 +477,7 @@ def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: P
 
 
 def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed: Path) -> None:
-    """Half of a packed file can't be read, and the message says why that may be."""
+    """The first half of a packed file can't be read, and the message names the possible causes."""
     path = tmp_path / "part.mcap"
     data = packed.read_bytes()
     path.write_bytes(data[: len(data) // 2])
@@ -486,7 +486,7 @@ def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed:
 
 
 def test_what_a_killed_court_leaves_is_not_lost(tmp_path: Path, segment: Path) -> None:
-    """A segment that a kill has cut counts as complete: it has every message that was written."""
+    """A segment that ends in the middle, as after a kill, is reported as cut but not as lost."""
     path = tmp_path / "m.000.live.mcap"
     data = segment.read_bytes()
     path.write_bytes(data[: len(data) // 2])

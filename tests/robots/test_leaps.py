@@ -1,7 +1,9 @@
-"""A short search of `benchmarks.leaps`: no robot that is let in leaves its start place."""
+"""Searches of `benchmarks.leaps`: no robot that is let in leaves its start place."""
+
+import os
 
 import pytest
-from benchmarks.leaps import at_random, changed, judge
+from benchmarks.leaps import at_random, changed, judge, search
 
 from lacoc_robots.standing import FARTHEST_M
 
@@ -17,3 +19,12 @@ def test_no_robot_that_is_let_in_leaps() -> None:
     assert len(leaps_m) >= 5
     assert max(leaps_m) <= FARTHEST_M
     assert max(refused_m) > 2 * FARTHEST_M  # some refused robots did leave it
+
+
+@pytest.mark.long
+def test_no_search_finds_a_leap() -> None:
+    """Of 2,000 random robots and 2,000 changes of the farthest, none leaves its start place."""
+    found = list(search(2000, 2000, os.cpu_count() or 1, seed=0))
+    leaps_m = [one.leap_m for one in found if one.leap_m is not None]
+    assert len(leaps_m) > 500
+    assert max(leaps_m) <= FARTHEST_M

@@ -11,7 +11,7 @@ HEXAPOD = find_robot("hexapod")[1].decode()
 
 
 def lacoc(*words: str) -> int:
-    """Run the command line; return its exit code, however it ends."""
+    """Run the command line and return its exit code, also if it ends with SystemExit."""
     with pytest.raises(SystemExit) as end:
         sys.exit(cli.main(words))
     assert isinstance(end.value.code, int)
@@ -33,7 +33,7 @@ def test_check_weighs_in(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_check_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
-    """--json prints the same facts for a program."""
+    """`robot check --json` prints the same facts for a program."""
     assert lacoc("robot", "check", "quadruped", "--json") == 0
     facts = json.loads(capsys.readouterr().out)
     assert (facts["legs"], facts["joints"], facts["mass_kg"]) == (4, 12, 0.76)
@@ -51,7 +51,7 @@ def test_check_names_every_mistake(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_mistakes_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """--json prints every mistake as JSON, with its field and what was found."""
+    """`robot check --json` prints every mistake as JSON, with its field and what was found."""
     file = tmp_path / "mine.toml"
     file.write_text(HEXAPOD.replace("kp = 20.0", "kp = nan").replace('"Hexapod"', "6"))
     assert lacoc("robot", "check", "--json", str(file)) == 2
@@ -89,7 +89,7 @@ def test_an_integer_of_many_digits(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 def test_check_by_a_contest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """With --contest, the limits of that contest apply."""
+    """`robot check --contest` applies the limits of that contest."""
     contest = tmp_path / "contest.toml"
     assert lacoc("contest", "init", str(contest)) == 0
     assert lacoc("robot", "check", "hexapod", "--contest", str(contest)) == 0

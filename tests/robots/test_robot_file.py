@@ -270,7 +270,7 @@ def test_broken_toml_names_the_line() -> None:
     ],
 )
 def test_hostile_bytes(data: bytes, found: str) -> None:
-    """Hostile bytes that are not a robot file give a mistake like any other."""
+    """Hostile bytes that are not a robot file are refused with a mistake."""
     assert any(found in mistake.found for mistake in mistakes_of(data))
 
 

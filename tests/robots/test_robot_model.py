@@ -39,7 +39,7 @@ def pose(model: mj.MjModel, robot: RobotSpec, posture: tuple[float, ...]) -> mj.
 
 
 def test_official_options(hexapod: RobotSpec, compile_world: Compile) -> None:
-    """A tick has ten steps of 2 ms, and the solver has the options that we chose."""
+    """A tick has ten steps of 2 ms, and the solver has the options of docs/facts.md 2."""
     option = compile_world(hexapod).opt
     assert pytest.approx(BEAT_S) == TIMESTEP_S * STEPS_PER_TICK
     assert option.timestep == TIMESTEP_S

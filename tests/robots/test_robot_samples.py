@@ -98,14 +98,14 @@ def test_folder(folder: Path) -> None:
 
 @samples
 def test_keys_mean_the_same(folder: Path) -> None:
-    """In each sample [0] stands, [1] turns left, [2] walks and [3] turns right (Fig. 4-2)."""
+    """In each sample [0] stands, [1] turns left, [2] walks, [3] turns right (workshop Fig. 4-2)."""
     robot, postures, locomotion = load(folder)
     assert locomotion == to_locomotion(postures, SAMPLE_KEYS)
     assert postures.postures[0] == pytest.approx(robot.start_posture)
 
 
 def test_workshop_tables() -> None:
-    """The hexapod's files hold the workshop's complete table and the 18 lines of Fig. 4-2."""
+    """The hexapod's files hold the workshop's whole table and the 18 lines of workshop Fig. 4-2."""
     folder = FOLDERS[0]
     _, postures, _ = load(folder)
     for key, row in enumerate(RULES_2_TABLE.strip().splitlines()):

@@ -41,7 +41,7 @@ def test_every_sample_stands(name: str) -> None:
 
 
 def swept(robot: RobotSpec) -> Posture:
-    """Return the start posture with all legs swung back by 90 degrees: that rows the robot away."""
+    """Return the start posture with all legs swung back by 90 degrees, to row the robot away."""
     legs = len(robot.legs)
     return tuple(
         angle - math.radians(90) * (joint < legs) for joint, angle in enumerate(robot.start_posture)
@@ -49,7 +49,7 @@ def swept(robot: RobotSpec) -> Posture:
 
 
 def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> None:
-    """The mistake names the level, how far the robot went and how far is allowed."""
+    """The mistake of a robot that rows away names the level, the distance and the limit."""
     gait = Gait(PostureTable({0: hexapod.start_posture}), LocomotionTable(((swept(hexapod),),)))
     assert try_standing(hexapod, gait, (A,), "robot.toml") == []
     mistakes = try_standing(hexapod, gait, (A, B), "robot.toml")

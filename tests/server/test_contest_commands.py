@@ -120,3 +120,11 @@ def test_a_court_says_where_it_is_open_and_not_that_its_match_is_new(
     serve._open_doors("main", entry, "m-1", at, metrics=None, made_here=False, json=False)
     said = capsys.readouterr().out
     assert said == "Court main is open at tcp/127.0.0.1:7447: match m-1.\n"
+
+
+def test_a_court_without_a_contest_file_may_have_any_name() -> None:
+    """`serve --court bar` without a contest file makes a contest whose only court is "bar"."""
+    contest, made_here = serve._contest(None, "othello", None, "bar")
+    assert made_here
+    assert contest.court("bar")[0] == "bar"
+    assert list(contest.courts) == ["bar"]

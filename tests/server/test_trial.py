@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.explained import FAULTS, tell
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -16,6 +17,7 @@ from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_server.match.match import Match
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import CYCLES, SETTLE_TICKS, Course
+from lacoc_server.trial.explain import explain
 from lacoc_server.trial.feet import feet_down, phases
 from lacoc_server.trial.figures import measure
 from lacoc_server.trial.keys import forward_key, parse_keys
@@ -221,6 +223,31 @@ def test_keys_as_people_type_them() -> None:
             parse_keys(wrong, gait, 0)
 
 
+@pytest.mark.parametrize("seed", range(len(FAULTS)), ids=FAULTS)
+def test_the_first_sentence_names_the_fault(seed: int) -> None:
+    """A table with one fault is explained by that fault and its leg; without one none is named."""
+    told = tell(seed)
+    assert told.named, told
+
+
+def test_a_walk_that_fell_is_explained(courses: dict[str, Course]) -> None:
+    """A robot that lies on its side is told so, though no cycle of its key was completed."""
+    robot = entry("quadruped").robot
+    start, legs = robot.start_posture, len(robot.legs)
+    fallen = tuple(
+        math.radians(80) if joint in (legs, legs + 1) else angle
+        for joint, angle in enumerate(start)
+    )
+    gait = Gait(None, LocomotionTable(((start,), (fallen,))))
+    press = Press(SETTLE_TICKS, Level.LOCOMOTION, 1)
+    walk = courses["quadruped"].walk(gait, [press])
+    figures = measure(walk)
+    assert figures.cycles == 0
+    assert figures.margin_mm is not None
+    said = explain(robot, walk, figures, press, (fallen,))
+    assert said[0].code in ("explain.belly", "explain.tipped", "explain.limit")
+
+
 def test_foot_bars() -> None:
     """A full block means that the foot is mostly down; the last row marks the cycles."""
     down = np.array([[True, False]] * 4 + [[False, True]] * 4)
@@ -245,5 +272,6 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert run("--keys", "1:1, 2", "--seconds", "2") == 0
     said = capsys.readouterr()
     assert "speed forward" in said.out
+    assert "The feet slide at" not in said.out  # nothing is explained without a whole cycle
     assert "not repeated often enough" in said.err
     assert run("--robot", "quadruped") == 2

@@ -7,7 +7,7 @@ from lacoc_shared.network.allowance import Allowance
 
 
 def test_a_burst_then_the_rate() -> None:
-    """A burst is taken at once, then only the rate; unused allowance never exceeds the burst."""
+    """A burst is granted at once, then units at the rate; unused units never exceed the burst."""
     allowance = Allowance(2.0, 5)
     assert allowance.take(7, 1000.0) == 5
     assert allowance.take(1, 1000.4) == 0
@@ -24,7 +24,7 @@ def test_a_burst_then_the_rate() -> None:
 def test_never_more_than_promised(
     rate_hz: float, burst: int, asked: list[tuple[float, int]]
 ) -> None:
-    """In any time, at most the burst plus the rate times that time is taken."""
+    """Within any time span, at most the burst plus the rate times that span is granted."""
     allowance, now_s, passed = Allowance(rate_hz, burst), 50.0, 0
     for wait_s, wanted in asked:
         now_s += wait_s

@@ -79,7 +79,7 @@ COMMANDS = {
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Replace the installed commands by those above."""
+    """Replace the installed commands by those of `COMMANDS`, and hide MuJoCo."""
     import textwrap
 
     for name, source in COMMANDS.items():

@@ -81,7 +81,7 @@ def test_a_scene_is_named_by_8_bytes_of_its_hash() -> None:
 
 
 def test_states_are_two_bits_the_first_lowest() -> None:
-    """A marker's state has two bits; the first marker's are the lowest of the first byte."""
+    """A marker's state has two bits; the first marker's bits are the lowest of the first byte."""
     assert pack_states((1, 2, 3, 0, 2)) == bytes([0b00_11_10_01, 0b10])
     assert unpack_states(bytes([0b00_11_10_01, 0b10]), 5) == (1, 2, 3, 0, 2)
     assert [len(pack_states((0,) * count)) for count in (0, 1, 4, 5, 8, 36)] == [0, 1, 1, 2, 2, 9]

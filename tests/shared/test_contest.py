@@ -72,7 +72,7 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
 
 
 def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
-    """Links are not made equal unless the court says so; then the delay has a maximum."""
+    """Links are made equal only if the court's entry says so; the delay is then at most 400 ms."""
     assert contests.load(file).courts["main"].most_delay_ms == 0
     equal = 'arena = "othello"\ninput_delay = "equal"'
     file.write_text(GOOD.replace('arena = "othello"', equal))
@@ -206,7 +206,7 @@ def test_a_throwaway_contest_has_fresh_tokens(file: Path) -> None:
 
 
 def test_the_only_court_needs_no_name(file: Path) -> None:
-    """A contest's only court needs no name; with several, a missing or wrong name lists them."""
+    """A contest's only court needs no name; an error about a court's name lists all courts."""
     assert contests.load(file).court()[0] == "main"
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
@@ -217,7 +217,7 @@ def test_the_only_court_needs_no_name(file: Path) -> None:
 
 
 def test_access_without_a_file(file: Path) -> None:
-    """Without a contest file, options give the access, and a missing one is named."""
+    """Without a contest file, the access comes from options; an error names a missing option."""
     access = entrances.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
 
     assert access == Access(
@@ -235,7 +235,7 @@ def test_access_without_a_file(file: Path) -> None:
 
 
 def test_access_from_a_file(file: Path) -> None:
-    """The contest file gives missing options, and given options win."""
+    """Options that are not given come from the contest file; given options override the file."""
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 
@@ -251,7 +251,7 @@ def test_access_from_a_file(file: Path) -> None:
 
 
 def test_join_lines_name_the_host(file: Path) -> None:
-    """The lines to hand out have the court's public address, or HOST in its place."""
+    """The command lines to hand out have the court's public address, or HOST in its place."""
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 

@@ -63,7 +63,7 @@ def test_what_is_no_invitation_is_said(tmp_path: Path, text: str, said: str) -> 
 
 
 def test_an_invitation_is_for_one_role(tmp_path: Path) -> None:
-    """An invitation for a seat opens only that seat, and lets its owner watch."""
+    """An invitation works only for its own role, but every invitation lets its owner watch."""
     left, referee, gateway = (written(tmp_path, one) for one in (LEFT, REFEREE, GATEWAY))
     nothing = (None, None, None)
 

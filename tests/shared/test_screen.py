@@ -69,7 +69,7 @@ def test_one_mistake_is_one(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 NOT_UTF_8 = os.fsdecode(b"Bad\x98\x8b.txt")
-"""A file name in Shift-JIS, as from a zip file of Japanese Windows, in Python's form."""
+"""A file name in Shift-JIS, as a zip file from Japanese Windows has it, decoded by Python."""
 
 
 def test_a_name_that_is_no_text_becomes_text() -> None:

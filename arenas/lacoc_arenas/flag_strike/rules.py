@@ -5,10 +5,10 @@ The markers are "corner0" to "corner3" (bottom left, bottom right, top left, top
 stands, LEFT or RIGHT when it has fallen for that team, and DOWN when it has fallen for nobody (only
 a referee sets this).
 
-Claims that a referee struck out (rules 4.1): after a struck capture the robot counts as inside the
-corner without having taken it, until it leaves and comes back. A struck touch of a flag is void
-from that tick until the robot lets go of the pole; otherwise the flag would fall again one tick
-later. A void touch does not count, so the other robot can strike the flag.
+A referee may take a claim back (rules 4.1). After a capture that was taken back, the robot counts
+as inside the corner without having taken it, until it leaves and comes back. A touch of a flag that
+was taken back is void until the robot lets go of the flag. Meanwhile the other robot can strike the
+flag.
 
 All events of one tick happen at the same time. They are listed in the order of the markers, which
 does not favour a seat.
@@ -51,7 +51,7 @@ class State(msgspec.Struct, frozen=True):
     inside: tuple[int, int]
     """The corner that each robot's centre is in, or `NO_CORNER`."""
     void: tuple[tuple[int, int], ...] = ()
-    """(seat, marker) of each touch that a referee struck out and that has not ended."""
+    """(seat, marker) of each touch that a referee took back and that has not ended."""
 
 
 class FlagStrike:
@@ -138,7 +138,7 @@ class FlagStrike:
         inside: tuple[int, int],
         struck: AbstractSet[Claim],
     ) -> Iterator[tuple[int, int]]:
-        """Yield (corner, seat) of each capture: outside in the tick before, inside now."""
+        """Yield (corner, seat) for each robot that has just come into a corner and takes it."""
         came = [
             now if now != self._inside(was, robot) else NO_CORNER
             for now, was, robot in zip(inside, state.inside, observation, strict=True)

@@ -69,7 +69,7 @@ class _Walker(ABC):
 
 
 class Nearest(_Walker):
-    """Goes to the nearest disc that flips; if none does, to an own disc beside one that can."""
+    """Goes to the nearest disc that it can flip, or else to an own disc beside such a disc."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
         """Return the nearest useful cell."""
@@ -141,7 +141,7 @@ class Planner(_Walker):
 
 
 def _around(cell: int) -> list[int]:
-    """Return the up to eight cells next to a cell, the diagonal ones too."""
+    """Return the cells next to a cell (at most eight), including the diagonal ones."""
     row, column = divmod(cell, SIDE)
     return [
         SIDE * r + c

@@ -259,7 +259,7 @@ def make(settings: dict[str, Any]) -> Othello:
 
 
 def _rays(cell: int) -> tuple[tuple[int, ...], ...]:
-    """Return the rays from a disc: right, left, up and down to the board's edge; none empty."""
+    """Return the discs right, left, above and below a disc, the nearest first; no empty rays."""
     row, column = divmod(cell, SIDE)
     rays = (
         tuple(SIDE * row + c for c in range(column + 1, SIDE)),

@@ -58,11 +58,11 @@ class Practice:
         return ()
 
     def score(self, state: State) -> tuple[int, ...]:
-        """Return 0, always."""
+        """Return 0 points for the only seat."""
         return (0,)
 
     def over(self, state: State) -> Phrase | None:
-        """Return None: practice is never over early."""
+        """Return None: practice has no early end."""
         return None
 
     def winner(self, state: State, scores: tuple[int, ...]) -> int | None:

@@ -99,7 +99,7 @@ class _End:
 
 
 def _print_json(view: Spectator, hz: float, end: _End) -> None:
-    """Print a line for each event, for frames, and for each second without word from the court."""
+    """Print a line for each event, for frames, and for each second in which the court is silent."""
     frame_s = silent_s = 0.0
     while True:
         frame = view.wait_frame(0.1)

@@ -71,9 +71,10 @@ def _round_trip(session: Session, view: Spectator) -> Finding:
 
 
 def _frames(view: Spectator, seconds: float) -> Finding:
-    """Measure frames a second, and the longest gap between two; an overtaken frame counts as lost.
+    """Measure the frames a second and the longest gap between two frames.
 
-    A repeated frame does not count: a court that can't go on sends its last one again.
+    A frame counts as lost if a newer one replaced it before it was read. A repeated frame does not
+    count: a court that can't go on sends its last one again.
     """
     about = say("doctor.frames", court=view.keys.court)
     first = view.wait_frame(_FIRST_S)

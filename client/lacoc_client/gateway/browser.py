@@ -1,8 +1,8 @@
 """Opens a page in this person's browser, without a secret in a command line.
 
 Every user of a machine can read the command lines of all programs, and a browser gets its address
-there. So an address with a key is written into a file that only its owner can read. The browser
-opens the file, which redirects to the address.
+there. So an address with a page key is written into a file that only its owner can read. The
+browser opens the file, which redirects to the address.
 """
 
 import html
@@ -29,7 +29,7 @@ def unseen(address: str) -> Iterator[str]:
     If no file can be written, give `address` itself.
 
     Args:
-        address: an address with a key in its fragment.
+        address: an address with a page key in its fragment.
     """
     with ExitStack() as stack:
         try:

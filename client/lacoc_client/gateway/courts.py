@@ -67,8 +67,8 @@ class Courts:
     def why_full(self, viewer: Viewer) -> Phrase | None:
         """Say why there is no room for a page; None if there is room.
 
-        Pages that may act have the key, and a limit of their own. So no crowd of spectators, and
-        nobody who opens many pages without the key, can take their places.
+        Pages that may act have the page key, and a limit of their own. So no crowd of spectators,
+        and nobody who opens many pages without the page key, can take their places.
         """
         acts = viewer.can_act
         most = ACTING_MOST if acts else self.home.viewers_most

@@ -16,11 +16,13 @@ Kind = Literal["venue", "player", "practice"]
 VIEWERS_MOST = 400
 """Most pages that only watch: 25 frames a second for 400 pages need 3 MB/s."""
 ACTING_MOST = 100
-"""Most pages with the key, in addition: several for each seat and referee of a large contest."""
+"""Most pages with the page key, in addition: several for each seat and referee of a large
+contest.
+"""
 
 
 def new_key() -> str:
-    """Make a random key."""
+    """Make a random page key."""
     return secrets.token_urlsafe(16)
 
 
@@ -53,13 +55,13 @@ class Home:
     exporter: Exporter | None = None
     """Serves the gateway's metrics."""
     key: str = field(default_factory=new_key)
-    """With this key a page may act; without it a page only watches."""
+    """The page key: with it a page may act; without it a page only watches."""
 
 
 def lasting_key(contest: Contest) -> str:
-    """Return a contest's key, which is the same at each start of its gateway.
+    """Return a contest's page key, which is the same at each start of its gateway.
 
-    So open pages keep working after a restart. The key is as secret as the contest file.
+    So open pages keep working after a restart. The page key is as secret as the contest file.
     """
     secret = " ".join(court.referee.token for court in contest.courts.values())
     digest = hashlib.blake2b(secret.encode(), digest_size=16, person=b"lacoc web key").digest()

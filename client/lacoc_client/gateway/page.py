@@ -214,7 +214,7 @@ class Page:
         )
 
     def _log(self, text: str, kind: str, **particulars: object) -> None:
-        """Log a line about this page, once it is at a court."""
+        """Log a line about this page; while the page is at no court, log nothing."""
         client, feed = self._websocket.client, self._feed
         if feed is not None:
             feed.log(text, kind, page=client and f"{client.host}:{client.port}", **particulars)

@@ -38,7 +38,7 @@ class Viewer:
         self._next_s = 0.0
         self.frames = Frames()
         self.can_act = False
-        """Whether the page showed the gateway's key."""
+        """Whether the page showed the gateway's page key."""
         socket.drained = self._send_slot
 
     def rate(self, hz: float) -> None:

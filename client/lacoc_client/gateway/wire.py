@@ -62,7 +62,7 @@ class _Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
 
 
 class Watch(_Ask, frozen=True, kw_only=True, tag="watch"):
-    """The first message: which court, how many frames a second, and the key to act with."""
+    """The first message: which court, how many frames a second, and the page key."""
 
     court: _Short | None = None
     hz: float | None = None

@@ -57,7 +57,7 @@ class KeyScript:
         return None
 
     def due(self, playing_s: float, playing: bool) -> list[str]:
-        """Return the keys that are due; of those that move the robot at most one a tick.
+        """Return the keys that are due, with at most one among them that moves the robot.
 
         Args:
             playing_s: how long the match has been played [s].

@@ -1,5 +1,6 @@
 """`lacoc trial`: let a robot walk with a gait, and print the figures of its walking."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,6 +15,7 @@ from lacoc_robots.robot_file import read_robot
 from lacoc_server.match.entry import Entry
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import SETTLE_TICKS, Course
+from lacoc_server.trial.explain import explain
 from lacoc_server.trial.feet import feet_down
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.keys import forward_key, parse_keys
@@ -69,7 +71,7 @@ def trial_command(
     ] = None,
     json: options.Json = False,
 ) -> None:
-    """Let a robot walk alone under the contest's drive, and print the figures of its walking.
+    """Let a robot walk alone under the contest's drive: figures, foot bars, and what explains them.
 
     The robot moves exactly as at a court. A file of postures (Loco-data) is tried with the
     sequences of the sample's keys: 0 stand, 1 turn left, 2 forward, 3 turn right. Figures are of
@@ -82,15 +84,17 @@ def trial_command(
     else:
         presses = [Press(SETTLE_TICKS, *forward_key(gait))]
     walk = make_course(spec).walk(gait, presses, seconds)
-    figures = measure(walk)
+    figures, last = measure(walk), presses[-1]
+    explained = explain(spec, walk, figures, last, gait.sequence(last.level, last.digit) or ())
     if json:
-        screen.print_json(_as_json(walk, figures))
+        screen.print_json(_as_json(walk, figures, explained))
         return
-    last = presses[-1]
     title = say("trial.title", robot=spec.name, level="AB"[last.level], key=last.digit)
     screen.show(_table(figures, title))
     for row in _bars(walk):
         screen.show(Text(row))
+    for said in explained:
+        screen.show(said)
     for note in _notes(walk, figures):
         screen.warn(note)
 
@@ -107,7 +111,7 @@ def read_robot_file(name: str) -> RobotSpec:
 
 
 def read_trial_gait(file: Path, robot: RobotSpec) -> Gait:
-    """Read a gait file for a trial; level B of a file of postures is that of the sample's keys.
+    """Read a gait file for a trial; postures are joined into sequences as for the sample's keys.
 
     Raises:
         UserError: if the file can't be read.
@@ -132,9 +136,10 @@ def make_course(robot: RobotSpec) -> Course:
     return Course(world, robot, arena.match.open_levels[0], arena.match.repeat)
 
 
-def _as_json(walk: Walk, figures: Figures) -> dict[str, Any]:
+def _as_json(walk: Walk, figures: Figures, explained: Sequence[Phrase]) -> dict[str, Any]:
     fault = None if walk.fault is None else render(walk.fault)
-    return {"legs": walk.legs, **asdict(figures), "fault": fault}
+    sentences = [render(said) for said in explained]
+    return {"legs": walk.legs, **asdict(figures), "fault": fault, "explained": sentences}
 
 
 def _table(figures: Figures, title: Phrase) -> Any:

@@ -98,7 +98,7 @@ class Court:
         self._trouble: Phrase | None = None
         """The problem with the record's disk (`record.*`); None: there is none."""
         self._waits = 0
-        """Beats skipped while the disk refused writes."""
+        """Number of beats skipped in a row because the disk refuses writes."""
         if left is None:
             self._journal = self._open(1)
         else:
@@ -190,7 +190,8 @@ class Court:
             self._say_health(now_s)
 
     def _open_next(self) -> None:
-        if self._waits % HEALTH_BEATS:  # making a match takes longer than a beat
+        # Making a match takes longer than a beat: while the disk fails, try it twice a second.
+        if self._waits % HEALTH_BEATS:
             raise UserError(self._trouble or "")
         match = self._journal.match
         following = self._open(match.setup.match + 1)

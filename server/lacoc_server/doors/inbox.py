@@ -364,9 +364,10 @@ class Inbox:
         return request
 
     def _presence(self, seat: _Seat, is_silent: bool) -> list[Input]:
-        """Return the input that corrects what the match believes about a seat's silence.
+        """Return the input that corrects the match if it is wrong about a seat's silence.
 
-        A match that is new, or goes on after a restart, may be wrong about it too.
+        `is_silent` is what the match believes. A new match, or one that goes on after a restart of
+        the court, may believe the opposite of what the inbox knows.
         """
         if not seat.joined:
             return []

@@ -10,7 +10,7 @@ _REMEMBERED = 64
 
 
 class Why(StrEnum):
-    """Why a message was refused: the names of `count.*`, which a referee sees counted."""
+    """Reasons why a message was refused. They are names of `count.*`; a referee sees the counts."""
 
     BAD_BYTES = "bad-bytes"
     TOO_LONG = "too-long"

@@ -30,7 +30,7 @@ from lacoc_shared.record.schema import Header, Result
 from lacoc_shared.words import say
 
 _SCENE_BOUND = 1e-9
-"""Most by which a drawn length [m] may differ in a model built on another kind of machine."""
+"""Largest difference of a drawn length [m] in a model built on another kind of machine."""
 
 
 class RecordedPhysics:

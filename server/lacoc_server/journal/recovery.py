@@ -21,7 +21,8 @@ from lacoc_shared.words import Phrase, say
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 """Phases in which the court halts a match after a restart."""
 _OPENING_BYTES = 1 << 14
-"""A smaller file [bytes] without a header was cut while it was opened, and holds nothing."""
+"""A file smaller than this [bytes] and without a header was cut while it was opened; it is empty.
+"""
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Unfinished:
     health: HealthVerdict | None
     """The verdict until the court was killed."""
     cut: Phrase | None
-    """Where its record ends, in words."""
+    """Where the match's record ends early and why; None if it is whole."""
     other_arithmetic: Phrase | None = None
     """How this machine computes differently from the machine that made the record; None: both
     compute the same.

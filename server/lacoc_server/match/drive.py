@@ -63,7 +63,7 @@ class Drive:
         return DriveState(level, 0, 0, 0, self._start, stands=True)
 
     def stand(self, state: DriveState) -> DriveState:
-        """Let the robot stand: key 0 at the same level, only its first posture (decision 15)."""
+        """Let the robot stand: it takes the first posture of key 0 at the same level (rules 3)."""
         if state.stands:
             return state
         return DriveState(state.level, 0, 0, 0, state.angles, stands=True)

@@ -53,7 +53,7 @@ class Seat:
         return self.join.team if self.join else self.id
 
     def begin(self, repeat: bool, level: Level) -> None:
-        """Stand in the start posture, with a new drive made from robot and gait."""
+        """Make a new drive from robot and gait; the robot stands in its start posture."""
         if self.entry is None:
             return
         self.strays = 0
@@ -69,12 +69,12 @@ class Seat:
         self.state = self.drive.begin(level)
 
     def stand(self) -> None:
-        """Stand: key 0 at the same level, but only its first posture (silence, freeze)."""
+        """Let the robot stand in the first posture of key 0 at the same level (silence, freeze)."""
         if self.drive and self.state:
             self.state = self.drive.stand(self.state)
 
     def restart(self) -> None:
-        """Go back to the start place in this beat, and stand at the same level (rules 3)."""
+        """Put the robot back at its start place in this beat, standing at its level (rules 3)."""
         self.restarting = True
         if self.drive and self.state:
             self.state = self.drive.begin(self.state.level)

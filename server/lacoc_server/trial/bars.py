@@ -11,17 +11,17 @@ _DOWN, _UP, _MARK = "█", "·", "│"
 def foot_bars(
     legs: Sequence[str], down: Bools, starts: Sequence[int], first: int, columns: int
 ) -> list[str]:
-    """Draw a row for each leg; a column is as many ticks as make the walk fit.
+    """Draw a row for each leg, with as many ticks in each column as make the walk fit.
 
     Args:
         legs: labels of the legs.
         down: (ticks, legs) whether the foot is down.
         starts: ticks in which a cycle begins; a last row marks them.
         first: first tick that is drawn.
-        columns: width of the bars.
+        columns: largest width of the bars.
 
     Returns:
-        The rows. Their last one is empty if no cycle begins.
+        A row for each leg, and then the row of marks, which is empty if no cycle begins.
     """
     ticks = len(down) - first
     if ticks <= 0:

@@ -12,7 +12,9 @@ import numpy as np
 from lacoc_server.trial.walk import Bools, Floats
 
 DOWN_SHARE, UP_SHARE = 0.02, 0.01
-"""A foot is down from a load above the first share of the robot's weight to one below the second"""
+"""Shares of the robot's weight: a foot comes down when its load rises above the first, and is up
+again when it falls below the second.
+"""
 
 
 def feet_down(load_n: Floats, weight_n: float) -> Bools:

@@ -57,7 +57,7 @@ class Figures:
     slip_ratio: float | None
     """Slip speed over forward speed; None if the robot hardly moves."""
     cost_of_transport: float | None
-    """Work of the motors per weight and way; what they brake does not count. None without a way."""
+    """Work of the motors divided by weight and way, without braking. None without a way."""
     clearance_mm: float
     """95th percentile of the height of the feet [mm]."""
     clearance_legs_mm: list[float]

@@ -49,7 +49,8 @@ class _Limb(NamedTuple):
     end: int
     """Index after its last part."""
     reach_m: float
-    """Largest distance of any of its points from the first part's centre, at any angles."""
+    """Upper bound of the distance of its points from the first part's centre, for all joint angles.
+    """
 
 
 class TouchTest:
@@ -170,7 +171,7 @@ class _Outline:
 
 
 def _gap_m2(x_m: float, y_m: float, end_x_m: float, end_y_m: float) -> float:
-    """Return the squared distance of a point from the segment between an end and its opposite."""
+    """Return the squared distance of a point from the segment between -end and end."""
     along = x_m * end_x_m + y_m * end_y_m
     whole = end_x_m * end_x_m + end_y_m * end_y_m
     share = along / whole if abs(along) < whole else math.copysign(1.0, along)
@@ -230,9 +231,10 @@ def _limb_of(model: Any, geom: int) -> int:
 
 
 def _reach_m(model: Any, geom: int, base: int) -> float:
-    """Return how far a geom can be from a body's origin, at any angles of the hinges between [m].
+    """Return an upper bound [m] of the distance of a geom's points from a body's origin.
 
-    Every hinge goes through the origin of its own body.
+    It holds at all angles of the hinges between them, because each hinge goes through the origin of
+    its own body.
     """
     reach_m = _middle_m(model, geom) + float(model.geom_rbound[geom])
     body = model.geom_bodyid[geom]

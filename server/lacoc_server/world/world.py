@@ -176,7 +176,7 @@ class World:
     # Private
 
     def _extend(self, spec: mujoco.MjSpec) -> None:
-        """Add to the model, before it is compiled, what changes no path."""
+        """Add elements that change no path, before the model is compiled; here there are none."""
 
     def _advance(self) -> None:
         """Let the physics of one tick pass."""

@@ -33,7 +33,7 @@ _TEXT = "_make_rich_text"
 _ERROR = "rich_format_error"
 """Name of the function of `rich_utils` that shows a mistake in the use of a command."""
 _english: dict[str, Any] = {}
-"""What `rich_utils` has under these names, once it was replaced."""
+"""The original values of these names of `rich_utils`; empty until they are first replaced."""
 
 
 @cache

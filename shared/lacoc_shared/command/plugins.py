@@ -29,7 +29,7 @@ def package(group: str, what: str, name: str) -> ModuleType:
 
     Args:
         group: the entry-point group.
-        what: its name in error messages, such as "game".
+        what: the word for such a package in error messages, such as "arena".
         name: an installed name, or the path of a folder (anything with a slash or a dot).
 
     Raises:

@@ -82,7 +82,7 @@ class Court(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     input_delay: Literal["none", "equal"] = "none"
     """Whether keys are delayed until the links of all seats have the same delay."""
     input_delay_max_ms: Annotated[int, msgspec.Meta(ge=20, le=1000)] = 400
-    """Largest delay added for this; a slower link stays slower."""
+    """Largest delay that is added to make links equal; a link slower than this stays slower."""
 
     @property
     def most_delay_ms(self) -> int:

@@ -44,7 +44,7 @@ class KeyFolder:
         return self.path / "invitations"
 
     def invitation(self, user: str) -> Path:
-        """Return the path of a user's invitation; a user is such as "main.left"."""
+        """Return the path of the invitation of a user, such as "main.left"."""
         return self.invitations / f"{user}.toml"
 
     def read(self, path: Path) -> str:

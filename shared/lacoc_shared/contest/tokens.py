@@ -1,4 +1,4 @@
-"""Random tokens: each opens a seat or the referee's desk."""
+"""Random tokens, such as those that open a seat or the referee's desk."""
 
 import base64
 import secrets

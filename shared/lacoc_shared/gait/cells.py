@@ -1,4 +1,4 @@
-"""The cells of a gait file, by row and column (rules 2, Fig. 4-1, Fig. 4-2).
+"""The cells of a gait file, by row and column (rules 2, workshop Fig. 4-1 and Fig. 4-2).
 
 Text files and workbooks hold the same table: both are written from the cells made here, and
 `reader` reads both once they are split into cells. Files have degrees, LACOC has radians.
@@ -49,7 +49,7 @@ class Row:
 
 
 def posture_cells(table: PostureTable, legs: Sequence[str]) -> list[list[str | float]]:
-    """Return the cells of Fig. 4-1: number of postures, postures [deg], three legend rows.
+    """Return the cells of workshop Fig. 4-1: number of postures, postures [deg], three legend rows.
 
     Raises:
         ValueError: if the table is not for a robot with these legs.
@@ -68,7 +68,7 @@ def posture_cells(table: PostureTable, legs: Sequence[str]) -> list[list[str | f
 
 
 def locomotion_cells(table: LocomotionTable, legs: Sequence[str]) -> list[list[str | float]]:
-    """Return the cells of Fig. 4-2: number of keys, then the postures of each key [deg].
+    """Return the cells of workshop Fig. 4-2: number of keys, then the postures of each key [deg].
 
     Raises:
         ValueError: if the table is not for a robot with these legs.

@@ -1,4 +1,4 @@
-"""The legend rows of Loco-data: find them, and compare them with the columns (Fig. 4-1)."""
+"""The legend rows of Loco-data (workshop Fig. 4-1): find them and compare them with the columns."""
 
 import re
 from collections.abc import Sequence
@@ -88,7 +88,7 @@ def trimmed(cells: Sequence[str]) -> list[str]:
 
 
 def _is_legend(cells: Sequence[str]) -> bool:
-    """Say whether a row belongs to the legend: words without angles, or the joint ids (Fig. 4-1).
+    """Say whether a row belongs to the legend: words without angles, or the joint ids.
 
     The labels may be in any language, but a row that could be a posture never counts as legend.
     """

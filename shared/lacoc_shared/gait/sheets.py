@@ -1,4 +1,4 @@
-"""The look of a Loco-data workbook: its two sheets, their colours and input help (Fig. 4-1)."""
+"""The look of a Loco-data workbook (workshop Fig. 4-1): sheets, their colours and input help."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ _LEGEND_ROWS = 3
 _MIRRORED_ROWS = 1 + MAX_KEYS + _LEGEND_ROWS + 6  # a full table with some blank rows
 
 _LEVEL_COLOURS = (("#DEEAF6", "#9DC3E6"), ("#E5F2DC", "#A9D18E"), ("#FCECDF", "#F4B183"))
-"""Colours for root, 1st and 2nd: behind the angles, and behind the legend."""
+"""Colours for the columns of the root, 1st and 2nd joints: behind the angles, and in the legend."""
 _LABEL_COLOUR, _EDGE_COLOUR, _WRONG_COLOUR = "#E7E6E6", "#BFBFBF", "#FF7C80"
 _MIRROR_COLOUR = "#595959"  # grey: not for editing
 
@@ -26,7 +26,7 @@ def add_sheets(book: Workbook, cells: Sequence[Sequence[str | float]], legs: int
 
     Args:
         book: the workbook.
-        cells: the cells of Fig. 4-1: a header row, the postures, three legend rows.
+        cells: the cells of workshop Fig. 4-1: a header row, the postures, three legend rows.
         legs: number of legs; each level has as many columns.
     """
     book.formats[0].set_font_name("Arial")  # every system has it, or a font of the same widths

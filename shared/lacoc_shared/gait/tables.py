@@ -14,7 +14,7 @@ Posture = tuple[float, ...]
 
 JOINTS_PER_LEG = 3
 LEVEL_NAMES = ("Root", "1st", "2nd")
-"""The three joints of a leg, from the body outward (Fig. 4-1)."""
+"""The three joints of a leg, from the body outward (workshop Fig. 4-1)."""
 
 
 class Level(IntEnum):
@@ -85,7 +85,7 @@ class Gait(msgspec.Struct, frozen=True):
 
 
 SAMPLE_KEYS: tuple[tuple[int, ...], ...] = ((0,), (8, 7, 6, 5), (1, 2, 3, 4), (5, 6, 7, 8))
-"""Fig. 4-2: [0] stand, [1] turn left, [2] forward, [3] turn right."""
+"""The keys of workshop Fig. 4-2: [0] stand, [1] turn left, [2] forward, [3] turn right."""
 
 
 def to_locomotion(table: PostureTable, keys: tuple[tuple[int, ...], ...]) -> LocomotionTable:

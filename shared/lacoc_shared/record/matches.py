@@ -83,7 +83,7 @@ def is_over(name: MatchName, segments: Mapping[int, Path]) -> bool:
 
 
 def unpacked(folder: Path, court: str) -> list[str]:
-    """Return the ids of a court's matches that are over, not packed, and not being packed."""
+    """Return the ids of a court's matches that are over and whose segments wait to be packed."""
     return [
         str(name)
         for name, segments in court_matches(folder, court).items()

@@ -19,7 +19,7 @@ V = TypeVar("V")
 
 
 class NoMatch(UserError):
-    """No match was written into these files."""
+    """These files hold no match that can be read."""
 
 
 class _Gap(Exception):

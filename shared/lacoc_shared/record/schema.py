@@ -87,7 +87,7 @@ PROFILE = "lacoc"
 """MCAP profile of a record: distinguishes it from other MCAP files."""
 
 BEAT_NS = 20_000_000
-"""A message's time in the file is its beat times this."""
+"""Nanoseconds in a beat: a message's time in the file is its beat number times this."""
 
 KINDS: dict[str, Any] = {
     "/lacoc/header": Header,

@@ -1,1 +1,1 @@
-"""The workshop's six-legged robot, with the gait of Fig. 4-1 and Fig. 4-2."""
+"""The workshop's six-legged robot, with the gait of workshop Fig. 4-1 and Fig. 4-2."""

@@ -209,7 +209,8 @@ function begin(alone: boolean): { court: Court; player: Player } {
 function posData(seat: number, joints: number[], frames: Uint8Array[], most: number) {
   const data = new PosData(seat, joints, most);
   for (const frame of frames) data.add(readFrame(frame));
-  return { text: data.parts().join(""), says: aboutData(data, false, null) };
+  const [says, saysInPractice] = [false, true].map((alone) => aboutData(data, alone, null));
+  return { text: data.parts().join(""), says, saysInPractice };
 }
 
 function speak(word: Word): void {

@@ -1,0 +1,176 @@
+"""Puts one fault into each of many tables: does the first sentence name it, and its leg?
+
+python -m benchmarks.explained --tables 200
+"""
+
+import argparse
+import math
+import random
+import sys
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from typing import NamedTuple
+
+from benchmarks.trials import course_of, entry_of
+from lacoc_robots.robot import RobotSpec
+from lacoc_server.trial.course import SETTLE_TICKS
+from lacoc_server.trial.explain import explain
+from lacoc_server.trial.figures import measure
+from lacoc_server.trial.walk import Press
+from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
+from lacoc_shared.words import Phrase, render
+
+KEY = 2
+_NOISE_DEG = 3
+"""Each angle of a table differs by at most so much from the sample's, so that no two are equal."""
+_AIM = 0.9
+
+Table = list[list[float]]
+"""For each posture its angles [deg], by joint id."""
+
+
+class Told(NamedTuple):
+    """A fault, and what was said of it."""
+
+    fault: str
+    leg: str
+    named: bool
+    """Whether the first sentence names the fault, and its leg if it has one."""
+    said: tuple[str, ...]
+
+
+def main() -> None:
+    """Put in faults, print what was named, and exit with 1 below the aim."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.explained", description=__doc__)
+    parser.add_argument("--tables", type=int, default=200)
+    parser.add_argument("--verbose", action="store_true", help="print each that was not named")
+    options = parser.parse_args()
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+        told = list(pool.map(tell, range(options.tables), chunksize=4))
+    named = sum(one.named for one in told)
+    for fault in FAULTS:
+        of = [one for one in told if one.fault == fault]
+        print(f"{fault:10} {sum(one.named for one in of):4} of {len(of)}")
+    print(f"named by the first sentence: {named} of {len(told)}")
+    if options.verbose:
+        for one in told:
+            if not one.named:
+                print(one.fault, one.leg, *one.said, sep=" | ")
+        print(Counter(one.said[0].split()[0] for one in told if one.said and not one.named))
+    sys.exit(named < _AIM * len(told))
+
+
+def tell(seed: int) -> Told:
+    """Put a fault into a table, try it, and read what is said."""
+    rng = random.Random(seed)
+    name = tuple(FAULTS)[seed % len(FAULTS)]
+    code, put = FAULTS[name]
+    entry = entry_of("hexapod")
+    assert entry.gait.locomotion is not None
+    table = [
+        [math.degrees(angle) + rng.randint(-_NOISE_DEG, _NOISE_DEG) for angle in posture]
+        for posture in entry.gait.locomotion.sequences[KEY]
+    ]
+    # The sample's middle legs do not swing: turned around, they would do the same.
+    swinging = [leg for leg in range(len(entry.robot.legs)) if _swings(table, leg)]
+    leg = rng.choice(swinging if name == "swapped" else range(len(entry.robot.legs)))
+    put(table, leg, entry.robot, rng)
+    sequence = tuple(
+        tuple(
+            math.radians(round(min(max(angle, low), high)))
+            for angle, (low, high) in zip(posture, entry.robot.ranges_deg, strict=True)
+        )
+        for posture in table
+    )
+    start = (entry.robot.start_posture,)
+    gait = Gait(None, LocomotionTable((*(start,) * KEY, sequence)))
+    press = Press(SETTLE_TICKS, Level.LOCOMOTION, KEY)
+    walk = course_of("hexapod").walk(gait, [press])
+    said = explain(entry.robot, walk, measure(walk), press, sequence)
+    label = entry.robot.labels[leg]
+    named = bool(said) and said[0].code in code and (name in WHOLE or label in _legs(said[0]))
+    return Told(name, label, named, tuple(render(phrase) for phrase in said))
+
+
+def _legs(phrase: Phrase) -> list[object]:
+    """List the legs that a sentence names."""
+    cell = phrase.values.get("cell")
+    inner = cell.values.get("leg") if isinstance(cell, Phrase) else None
+    return [phrase.values.get("leg"), inner]
+
+
+def _swings(table: Table, leg: int) -> bool:
+    roots = [posture[leg] for posture in table]
+    return max(roots) - min(roots) > 4 * _NOISE_DEG
+
+
+def _dragged(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
+    """The foot is never lifted: 1st and 2nd joint stay as they stand."""
+    legs = len(robot.legs)
+    for posture in table:
+        for joint in (leg + legs, leg + 2 * legs):
+            posture[joint] = math.degrees(robot.start_posture[joint]) + rng.randint(-1, 1)
+
+
+def _swapped(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
+    """The leg has the angles of a leg on the other side: its root turns the wrong way."""
+    roots = [posture[leg] for posture in table]
+    for posture in table:
+        posture[leg] = max(roots) + min(roots) - posture[leg]
+
+
+def _late(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
+    """The leg does everything one posture late."""
+    legs = len(robot.legs)
+    for joint in range(leg, len(table[0]), legs):
+        angles = [posture[joint] for posture in table]
+        for posture, angle in zip(table, angles[-1:] + angles[:-1], strict=True):
+            posture[joint] = angle
+
+
+def _seam(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
+    """A joint goes on turning from posture to posture, and back in one go."""
+    joint = leg + len(robot.legs) * rng.choice((0, 2))
+    step = rng.choice((-1, 1)) * rng.randint(13, 18)
+    middle = table[0][joint]
+    for index, posture in enumerate(table):
+        posture[joint] = middle + step * (index - 1.5)
+
+
+def _limit(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
+    """An angle is at the end of the joint's range."""
+    joint = leg + len(robot.legs) * rng.randrange(2)
+    rng.choice(table)[joint] = rng.choice(robot.ranges_deg[joint])
+
+
+def _belly(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
+    """All legs bend up in a posture: the body comes down on the floor."""
+    legs = len(robot.legs)
+    posture = rng.choice(table)
+    for joint in range(legs, 2 * legs):
+        posture[joint] = rng.randint(50, 60)
+
+
+def _none(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
+    """Leave the table as it is: nothing must be blamed."""
+
+
+FAULTS: dict[
+    str, tuple[tuple[str, ...], Callable[[Table, int, RobotSpec, random.Random], None]]
+] = {
+    "dragged": (("explain.dragged",), _dragged),
+    "swapped": (("explain.backward",), _swapped),
+    "late": (("explain.out-of-step",), _late),
+    "seam": (("explain.seam",), _seam),
+    "limit": (("explain.limit",), _limit),
+    "belly": (("explain.belly",), _belly),
+    "none": (("explain.slides", "explain.turns", "explain.unstable", "explain.walks"), _none),
+}
+"""Faults by name: the sentences that name each, and what puts it into a table."""
+WHOLE = frozenset({"belly", "none"})
+"""Faults of the whole robot, which have no leg."""
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,318 @@
+"""Say in at most three sentences why a robot walks as it does, the most useful first.
+
+Each rule looks for one situation (docs/studio.md 3) and names the leg, the cell of the table and
+the figure that show it. A cause that stands in the table comes before an effect that physics shows.
+Nothing is said about what did not happen.
+"""
+
+import math
+import statistics
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+from lacoc_robots.robot import RobotSpec
+from lacoc_server.trial.feet import feet_down
+from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.walk import Bools, Press, Walk
+from lacoc_shared.gait.tables import LEVEL_NAMES, Posture
+from lacoc_shared.words import Phrase, say
+
+MOST_SENTENCES = 3
+
+_TIPPED = 0.8
+"""Least `upright` of a robot that walks: a lean of 37 degrees."""
+_AT_LIMIT_DEG = 0.5
+_SEAM_DEG, _SEAM_RATIO = 12.0, 1.6
+"""A leg jumps at the seam if an angle changes there by so much more, and so many times more, than
+in any other step."""
+_LIFT_M = 0.008
+"""Legs step if they usually lift their feet higher than this."""
+_DRAGGED = 0.35
+"""A leg drags if it is lifted less than this part of what is usual."""
+_SWING_M2, _AGAINST = 1e-4, 0.3
+"""A leg pushes backward if it swings backward in the air, by this part of what others swing."""
+_APART = 0.12
+"""A leg is out of step if it is lifted by this part of the sequence before or after all others."""
+_BELLY, _FALLS, _TURNS_DEG_S, _SLIDES_MM_S, _SLOW_MM_S = 0.05, 0.9, 3.0, 20.0, 15.0
+
+
+class Finding(NamedTuple):
+    """A situation that was found."""
+
+    rank: float
+    """The highest rank is told first."""
+    said: Phrase
+
+
+@dataclass(frozen=True)
+class Seen:
+    """All that the rules look at."""
+
+    robot: RobotSpec
+    walk: Walk
+    figures: Figures
+    press: Press
+    """The key that was measured."""
+    sequence: tuple[Posture, ...]
+    """Its postures [rad]."""
+    down: Bools
+    """(ticks, legs) whether each foot is down, in the ticks measured."""
+
+    def cell(self, posture: int, leg: int, level: int) -> Phrase:
+        """Name a cell of the table."""
+        return say(
+            "explain.cell",
+            key=self.press.digit,
+            posture=posture + 1,
+            postures=len(self.sequence),
+            leg=self.walk.legs[leg],
+            level=LEVEL_NAMES[level],
+        )
+
+    def degrees(self, posture: int, leg: int, level: int) -> float:
+        """Return the angle in a cell [deg]."""
+        joint = leg + len(self.walk.legs) * level
+        return math.degrees(self.sequence[posture % len(self.sequence)][joint])
+
+
+def explain(
+    robot: RobotSpec, walk: Walk, figures: Figures, press: Press, sequence: Sequence[Posture]
+) -> list[Phrase]:
+    """Explain a walk.
+
+    Args:
+        robot: the robot.
+        walk: its trial.
+        figures: figures of the trial.
+        press: the key that was measured.
+        sequence: postures of the key [rad].
+
+    Returns:
+        At most `MOST_SENTENCES` phrases (`explain.*`), the most useful first.
+    """
+    part = slice(walk.span.first, walk.span.end)
+    down = feet_down(walk.load_n, walk.weight_n)[part]
+    seen = Seen(robot, walk, figures, press, tuple(sequence), down)
+    found = [finding for rule in _RULES for finding in rule(seen)]
+    found.sort(key=lambda finding: -finding.rank)
+    return [finding.said for finding in found[:MOST_SENTENCES]]
+
+
+# Causes in the table.
+
+
+def _limits(seen: Seen) -> Iterator[Finding]:
+    """Angles at the end of a joint's range."""
+    cells = [
+        (posture, leg, level)
+        for posture in range(len(seen.sequence))
+        for level in range(len(LEVEL_NAMES))
+        for leg, spec in enumerate(seen.robot.legs)
+        if _at_limit(seen.degrees(posture, leg, level), spec.range_deg)
+    ]
+    if cells:
+        cell = seen.cell(*cells[0])
+        yield Finding(90, say("explain.limit", cell=cell, angle_deg=seen.degrees(*cells[0])))
+
+
+def _at_limit(angle_deg: float, range_deg: tuple[float, float]) -> bool:
+    return any(abs(angle_deg - end) < _AT_LIMIT_DEG for end in range_deg)
+
+
+def _seam(seen: Seen) -> Iterator[Finding]:
+    """A jump from the last posture to the first."""
+    postures = len(seen.sequence)
+    if postures < 3:
+        return
+    jumps = []
+    for leg in range(len(seen.walk.legs)):
+        for level in range(len(LEVEL_NAMES)):
+            angles = [seen.degrees(posture, leg, level) for posture in range(postures)]
+            steps = [abs(b - a) for a, b in pairwise(angles)]
+            seam_deg, other_deg = abs(angles[0] - angles[-1]), max(steps)
+            if seam_deg > max(other_deg * _SEAM_RATIO, other_deg + _SEAM_DEG):
+                jumps.append((seam_deg - other_deg, seam_deg, leg, level))
+    if jumps:
+        _, seam_deg, leg, level = max(jumps)
+        cell = seen.cell(postures - 1, leg, level)
+        yield Finding(80, say("explain.seam", cell=cell, jump_deg=seam_deg))
+
+
+# Causes in the way a leg moves, as the table commands it.
+
+
+@dataclass(frozen=True)
+class Steps:
+    """What each leg's foot does from posture to posture, in the body frame."""
+
+    ahead_m: list[list[float]]
+    """For each leg and posture, how far its foot is forward."""
+    lift_m: list[list[float]]
+    """For each leg and posture, how far its foot is above the lowest foot of that posture."""
+
+    @property
+    def highest_m(self) -> list[float]:
+        """For each leg, its highest lift."""
+        return [max(lift) for lift in self.lift_m]
+
+    @property
+    def swing_m2(self) -> list[float]:
+        """For each leg, its way forward weighted by its lift; negative: it swings backward."""
+        return [
+            sum(
+                (ahead[index] - ahead[index - 1]) * (lift[index] + lift[index - 1]) / 2
+                for index in range(len(ahead))
+            )
+            for ahead, lift in zip(self.ahead_m, self.lift_m, strict=True)
+        ]
+
+    @property
+    def phase(self) -> list[float]:
+        """For each leg, the part of the sequence around which it is lifted, from 0 to 1."""
+        phases = []
+        for lift in self.lift_m:
+            turns = [2 * math.pi * index / len(lift) for index in range(len(lift))]
+            up = sum(height * math.sin(turn) for height, turn in zip(lift, turns, strict=True))
+            along = sum(height * math.cos(turn) for height, turn in zip(lift, turns, strict=True))
+            phases.append(math.atan2(up, along) / (2 * math.pi) % 1.0)
+        return phases
+
+    def swings_to(self, leg: int) -> int:
+        """Return the posture to which a leg swings forward: there its foot should be in the air."""
+        ahead = self.ahead_m[leg]
+        return max(range(len(ahead)), key=lambda index: ahead[index] - ahead[index - 1])
+
+
+def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
+    """Compute where a sequence puts the feet."""
+    tips = [[leg[3] for leg in robot.points(posture)] for posture in sequence]
+    lowest_m = [min(tip.z for tip in feet) for feet in tips]
+    legs = range(len(robot.legs))
+    return Steps(
+        [[feet[leg].y for feet in tips] for leg in legs],
+        [[feet[leg].z - low for feet, low in zip(tips, lowest_m, strict=True)] for leg in legs],
+    )
+
+
+def _legs(seen: Seen) -> Iterator[Finding]:
+    """One leg that does not do what the others do: it drags, pushes backward, or is out of step."""
+    if len(seen.sequence) < 2 or not seen.figures.cycles:
+        return
+    labels, legs = seen.walk.legs, range(len(seen.walk.legs))
+    steps = steps_of(seen.robot, seen.sequence)
+    highest_m, swing_m2 = steps.highest_m, steps.swing_m2
+    usual_m, usual_m2 = statistics.median(highest_m), statistics.median(swing_m2)
+    dragged = [leg for leg in legs if highest_m[leg] < _DRAGGED * usual_m and usual_m > _LIFT_M]
+    for leg in dragged:
+        cell = seen.cell(steps.swings_to(leg), leg, 1)
+        slip_mm_s = seen.figures.slip_legs_mm_s[leg]
+        yield Finding(
+            70 + 1 - highest_m[leg] / usual_m,
+            say("explain.dragged", leg=labels[leg], cell=cell, slip_mm_s=slip_mm_s),
+        )
+    for leg in legs:
+        against = -swing_m2[leg] * math.copysign(1, usual_m2)
+        if against > _AGAINST * abs(usual_m2) > _AGAINST * _SWING_M2 and leg not in dragged:
+            ahead = steps.ahead_m[leg]
+            yield Finding(
+                72 + min(1.0, against / abs(usual_m2)),
+                say(
+                    "explain.backward",
+                    leg=labels[leg],
+                    cell=seen.cell(steps.swings_to(leg), leg, 0),
+                    push_mm=1000 * (max(ahead) - min(ahead)),
+                ),
+            )
+    yield from _out_of_step(seen, steps, [leg for leg in legs if leg not in dragged])
+
+
+def _out_of_step(seen: Seen, steps: Steps, legs: Sequence[int]) -> Iterator[Finding]:
+    """One leg that is lifted when no other leg is, while all others have partners."""
+    if len(seen.sequence) < 3 or len(legs) < 4:
+        return
+    phases = steps.phase
+    gaps = {
+        leg: min(abs(_turn(phases[leg], phases[other])) for other in legs if other != leg)
+        for leg in legs
+    }
+    leg = max(gaps, key=lambda one: gaps[one])
+    others = [gap for one, gap in gaps.items() if one != leg]
+    if gaps[leg] > _APART and max(others) < _APART:
+        cycle_s = seen.figures.cycle_s or 0.0
+        yield Finding(
+            60 + gaps[leg],
+            say(
+                "explain.out-of-step",
+                leg=seen.walk.legs[leg],
+                cell=seen.cell(steps.swings_to(leg), leg, 1),
+                apart_s=gaps[leg] * cycle_s,
+                cycle_s=cycle_s,
+            ),
+        )
+
+
+def _turn(one: float, other: float) -> float:
+    """Return the difference of two phases, from -0.5 to 0.5."""
+    return (one - other + 0.5) % 1.0 - 0.5
+
+
+# What physics shows.
+
+
+def _ended(seen: Seen) -> Iterator[Finding]:
+    """Physics stopped, or the robot tipped over."""
+    if seen.walk.fault is not None:
+        yield Finding(100, say("explain.fault", why=seen.walk.fault))
+    elif seen.figures.upright < _TIPPED:
+        lean_deg = math.degrees(math.acos(max(-1.0, seen.figures.upright)))
+        yield Finding(55, say("explain.tipped", lean_deg=lean_deg))
+
+
+def _balance(seen: Seen) -> Iterator[Finding]:
+    """The body on the floor, or the centre of mass outside the support polygon."""
+    figures = seen.figures
+    if figures.belly_share > _BELLY:
+        yield Finding(78, say("explain.belly", percent=100 * figures.belly_share))
+    if figures.stable_share < _FALLS:
+        percent = 100 * (1 - figures.stable_share)
+        margin_mm = figures.margin_low_mm if figures.margin_low_mm is not None else 0.0
+        yield Finding(35, say("explain.unstable", percent=percent, margin_mm=margin_mm))
+
+
+def _way(seen: Seen) -> Iterator[Finding]:
+    """Where the robot goes: round, hardly at all, or well."""
+    figures = seen.figures
+    if not figures.cycles:
+        return
+    speed_mm_s = abs(figures.speed_mm_s)
+    if abs(figures.drift_deg_s) > _TURNS_DEG_S:
+        side = "left" if figures.drift_deg_s > 0 else "right"
+        drift_deg_s = abs(figures.drift_deg_s)
+        yield Finding(40, say("explain.turns", side=side, drift_deg_s=drift_deg_s))
+    if figures.slip_mm_s > _SLIDES_MM_S:
+        legs = figures.slip_legs_mm_s
+        leg = max(range(len(legs)), key=legs.__getitem__)
+        yield Finding(
+            30,
+            say(
+                "explain.slides",
+                slip_mm_s=figures.slip_mm_s,
+                speed_mm_s=speed_mm_s,
+                leg=seen.walk.legs[leg],
+                leg_mm_s=legs[leg],
+            ),
+        )
+    if speed_mm_s > _SLOW_MM_S:
+        yield Finding(20, say("explain.walks", speed_mm_s=figures.speed_mm_s))
+
+
+_RULES: tuple[Callable[[Seen], Iterator[Finding]], ...] = (
+    _ended,
+    _limits,
+    _seam,
+    _legs,
+    _balance,
+    _way,
+)

@@ -1,0 +1,38 @@
+// Tests of what a key of the keyboard means (client/web/src/core/keys.ts).
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { readKey } from "../../../client/web/src/core/keys.ts";
+
+const key = (code, held = {}) => readKey({ code, key: "Process", keyCode: 229, ...held });
+
+test("each action has a key of its own (rules 3)", () => {
+  const does = Object.fromEntries(
+    ["KeyX", "KeyZ", "KeyR", "Tab", "Space"].map((code) => [code, key(code).does]),
+  );
+  assert.deepEqual(does, {
+    KeyX: "restart",
+    KeyZ: "leave",
+    KeyR: "ready",
+    Tab: "level",
+    Space: "view",
+  });
+});
+
+test("digits and arrows are known by their place, whatever they type", () => {
+  assert.deepEqual(key("Digit7"), { does: "digit", digit: 7 });
+  assert.deepEqual(key("Numpad7"), { does: "digit", digit: 7 });
+  const arrows = ["ArrowUp", "ArrowLeft", "ArrowRight", "ArrowDown"];
+  assert.deepEqual(
+    arrows.map((code) => key(code).digit),
+    [2, 1, 3, 0],
+  );
+});
+
+test("the browser's own keys stay its own", () => {
+  for (const held of ["ctrlKey", "altKey", "metaKey"]) {
+    assert.equal(key("KeyR", { [held]: true }), null);
+  }
+  assert.equal(key("Tab", { shiftKey: true }), null);
+  assert.equal(key("KeyK"), null);
+});

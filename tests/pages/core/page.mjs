@@ -1,0 +1,11 @@
+// Lets Node load modules of the pages as a browser does: "./words" is words.ts, at an address.
+
+import { registerHooks } from "node:module";
+
+registerHooks({
+  resolve(name, context, next) {
+    const isOurs = name.startsWith(".") && context.parentURL.includes("/client/web/src/");
+    return next(isOurs && !name.endsWith(".ts") ? `${name}.ts` : name, context);
+  },
+});
+globalThis.location = new URL("http://127.0.0.1/play?lang=en");

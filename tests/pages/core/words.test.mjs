@@ -1,0 +1,78 @@
+// Tests of clocks and hints in words (client/web/src/i18n/words.ts).
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { said, t } from "../../../client/web/src/i18n/index.ts";
+import {
+  clock,
+  clockTicks,
+  eventClock,
+  hint,
+  markerName,
+  winnerOf,
+} from "../../../client/web/src/i18n/words.ts";
+
+const PLAYING = 4;
+const seat = (team) => ({ id: team.toLowerCase(), team });
+const sheet = { duration_s: 180, seats: [seat("Ants"), seat("Bees")] };
+const practice = { duration_s: 0, seats: [seat("Ants")] };
+
+test("an event has the time that the clock showed, which counts down", () => {
+  assert.equal(eventClock({ clock_ticks: 0 }, sheet), "3:00.0");
+  assert.equal(eventClock({ clock_ticks: 3120 }, sheet), "1:57.6");
+  assert.equal(clock(clockTicks({ clock_ticks: 3120 }, sheet)), "1:58");
+  assert.equal(eventClock({ clock_ticks: 9000 }, sheet), "0:00.0");
+});
+
+test("events have different times also where the referee gave more time than was played", () => {
+  // 38 s were played, and 90 s are given: the clock shows 3:52.
+  assert.equal(eventClock({ clock_ticks: 1900 - 4500 }, sheet), "3:52.0");
+  assert.equal(eventClock({ clock_ticks: 1950 - 4500 }, sheet), "3:51.0");
+});
+
+test("without an end, an event has the time that was played", () => {
+  assert.equal(eventClock({ clock_ticks: 3120 }, practice), "1:02.4");
+});
+
+test("who leads is told without a verb that depends on the name", () => {
+  const leads = (left, right) => {
+    const seats = [{ score: left }, { score: right }];
+    const frame = { value: { phase: PLAYING, seats } };
+    return hint({ frame, sheet: { value: sheet }, events: { value: [] } });
+  };
+  assert.equal(leads(20, 16), "Ants: ahead by 4");
+  assert.equal(leads(16, 20), "Bees: ahead by 4");
+  assert.equal(leads(18, 18), "Tied");
+});
+
+test("phases are words, and not the names that a program uses", () => {
+  const why = { code: "over.time" };
+  const names = ["lobby", "ready", "countdown", "playing", "halted", "official", "void"];
+  const phrases = names.map((phase) => ({ code: `event.${phase}` }));
+  for (const phrase of [...phrases, { code: "event.finished", values: { why } }]) {
+    assert.match(said(phrase), /^(The|All|Play) [a-z].*\.$/);
+  }
+  for (let number = 0; number <= 8; number++) {
+    assert.match(t(`phase.${number}`), /^[A-Z][a-z]+$/);
+  }
+});
+
+test("the winner is whom the referee declares, and else the newest by the rules", () => {
+  const result = (winner) => ({ kind: "result", data: { winner } });
+  const declare = (winner) => ({
+    kind: "decision",
+    data: { decision: "declare", arguments: { winner } },
+  });
+  const winner = (...events) => winnerOf({ events: { value: events } });
+  assert.equal(winner(), null);
+  assert.equal(winner(result("left"), result("draw")), "draw");
+  assert.equal(winner(result("left"), declare("right"), result("left")), "right");
+  assert.equal(winner(declare("right"), declare("draw")), "draw");
+});
+
+test("a marker is shown by a word, and not by its name in the record", () => {
+  assert.equal(markerName("flag7"), "flag 7");
+  assert.equal(markerName("corner2"), "corner 2");
+  assert.equal(markerName("c2r3"), "disc c2r3");
+  assert.equal(markerName("line"), "line");
+});
