@@ -96,7 +96,7 @@ def test_the_referee_has_every_decision(
 
 
 def test_a_dry_run_lists_what_would_change(capsys: pytest.CaptureFixture[str]) -> None:
-    """For a person, `--dry-run` says that nothing is done, and lists each event that changes."""
+    """`--dry-run` prints that nothing is done, and lists each event that would change."""
     changes = (
         say("change.vanishes", event=17, kind="strike", marker="flag18"),
         say("change.appears", kind="capture", marker="corner0"),
@@ -124,7 +124,7 @@ def test_a_dry_run_lists_what_would_change(capsys: pytest.CaptureFixture[str]) -
     ("account", "named"), [("kim", "kim"), ("root", "referee"), ("admin", "referee")]
 )
 def test_a_referee_has_a_name(account: str, named: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without --by a decision has the account's name, unless that names no person."""
+    """Without --by a decision has the account's name; "referee" replaces a name such as "root"."""
     monkeypatch.setenv("LOGNAME", account)
     assert _default_name() == named
 

@@ -225,13 +225,13 @@ def test_keys_as_people_type_them() -> None:
 
 @pytest.mark.parametrize("seed", range(len(FAULTS)), ids=FAULTS)
 def test_the_first_sentence_names_the_fault(seed: int) -> None:
-    """A table with one fault is explained by that fault and its leg; without one none is named."""
+    """The first sentence names a gait's only fault and its leg; without a fault it names none."""
     told = tell(seed)
     assert told.named, told
 
 
 def test_a_walk_that_fell_is_explained(courses: dict[str, Course]) -> None:
-    """A robot that lies on its side is told so, though no cycle of its key was completed."""
+    """A robot's fall is explained even if no cycle of its key was completed."""
     robot = entry("quadruped").robot
     start, legs = robot.start_posture, len(robot.legs)
     fallen = tuple(
