@@ -303,7 +303,7 @@ def test_no_path_leads_out(open_venue: Venue, records: Path, path: str) -> None:
 
 
 def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
-    """A page beyond the limit is sent away and told why; when another page leaves, one may come."""
+    """A page beyond the limit is sent away and told why; when a page leaves, another may come."""
     venue.court()
     venue.web("--viewers", "2")
     first, second = venue.page(), venue.page()

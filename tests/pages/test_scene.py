@@ -65,7 +65,7 @@ class Recorded:
         return unpack_states(frame.markers, len(self.sheet.markers))
 
     def change(self) -> tuple[Frame, Frame, int]:
-        """Return the frames before and after the first marker becomes a seat's, and its index."""
+        """Return the frames before and after a marker first becomes a seat's, and which marker."""
         for before, after in zip(self.frames, self.frames[1:], strict=False):
             was, now = self.states(before), self.states(after)
             for marker, (one, other) in enumerate(zip(was, now, strict=True)):

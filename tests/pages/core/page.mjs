@@ -1,4 +1,4 @@
-// Lets Node load the pages' modules as a browser does: "./words" is words.ts, and `location` is set.
+// Lets Node load the pages' modules like a browser: "./words" is words.ts, and `location` is set.
 
 import { registerHooks } from "node:module";
 
