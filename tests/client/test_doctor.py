@@ -1,4 +1,4 @@
-"""Tests of `lacoc doctor` on a real machine with real ports and courts, right and wrong ones."""
+"""Tests of `lacoc doctor` on this machine, with real ports, courts and stubs of courts."""
 
 import json
 import os
@@ -72,7 +72,7 @@ def test_this_machine(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Non
 
 
 def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """For a person, doctor prints a table that says what to do."""
+    """Without --json, doctor prints a table that says what to do."""
     with pytest.raises(SystemExit):
         cli.main(["doctor", "--seconds", "0.2", "--recordings", str(tmp_path)])
     out = capsys.readouterr().out
@@ -81,7 +81,7 @@ def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
 
 
 def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
-    """Return doctor's findings on packages when `metadata` replaces that of the installed ones."""
+    """Return doctor's findings on packages when `metadata` hides that of the installed packages."""
     for name, text in metadata.items():
         (folder / f"{name}.dist-info").mkdir()
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
@@ -103,7 +103,7 @@ def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
 
 
 def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
-    """A package of a wrong version is a problem, with the version to install and the command."""
+    """A package of a wrong version is a problem, and doctor gives the command that installs it."""
     found = packages_beside(tmp_path, {"mcap-0.1": "Name: mcap\nVersion: 0.1"})
     wrong = [finding for finding in found if finding[1] == Status.PROBLEM]
     assert [finding[0] for finding in wrong] == ["mcap"]
@@ -112,7 +112,7 @@ def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
 
 
 def test_packages_that_are_not_there(tmp_path: Path) -> None:
-    """An old Python or a missing package is a problem; for a court's package it is only a note."""
+    """An old Python or a missing package is a problem; if only courts need it, it is a note."""
     needs = 'Requires-Dist: no-such-thing>=2\nRequires-Dist: no-engine>=3; extra == "server"'
     metadata = f"Name: lacoc\nVersion: 9\nRequires-Python: >=3.99\n{needs}"
     found = packages_beside(tmp_path, {"lacoc-9": metadata})
@@ -143,7 +143,7 @@ def test_ports_that_are_taken(
 
 @pytest.mark.skipif(sys.platform != "linux", reason="a folder in which nobody can write")
 def test_a_disk_that_takes_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    """A folder in which no record can be written is a problem, and the advice is --recordings."""
+    """A folder in which no record can be written is a problem, and doctor advises --recordings."""
     found = look(capsys, Path("/proc/records"))["disk"]
     assert found["status"] == "problem"
     assert "--recordings" in found["todo"]
@@ -177,7 +177,7 @@ def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path:
 
 
 def test_a_court_that_stands_still() -> None:
-    """Doctor sees that a court with a full disk only repeats its last frame."""
+    """Doctor reports that a court stands still and that its record can't be written."""
     with CourtStub() as court:
         court.trouble = say("plain.text", text="The record m-1 can't be written.")
         access = Access(court="main", connect=court.address)
@@ -189,7 +189,7 @@ def test_a_court_that_stands_still() -> None:
 
 
 def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Each court's link is checked; a missing court does not hide the others."""
+    """Doctor checks the links to all courts of a contest, even if one is down, or to one court."""
     with CourtStub() as court:
         text = Path(contest(tmp_path, int(court.address.rpartition(":")[2]))).read_text()
         port = free()
@@ -217,7 +217,7 @@ def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
 def test_the_link_to_a_court(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, open_court: OpenCourt
 ) -> None:
-    """Doctor checks the version, round trip and frames of a real court, and knows its port."""
+    """Doctor checks the version, round trip and frames of a real court, and recognises its port."""
     court = open_court()
     found = look(capsys, tmp_path, "--connect", court.address, "--seconds", "1")
     assert found["court main"]["status"] == "ok"

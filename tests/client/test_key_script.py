@@ -46,7 +46,7 @@ def script_of(*lines: str) -> KeyScript:
 def test_a_script_presses_each_key_in_its_time(
     lines: list[str], expected: list[tuple[float, str]]
 ) -> None:
-    """A script moves the robot by at most one key a tick; a time counts from the key before it."""
+    """A script presses at most one key for the robot each tick; times count from the last key."""
     assert list(played(script_of(*lines), 3.0)) == expected
 
 
@@ -61,7 +61,7 @@ def test_keys_that_move_the_robot_wait_for_play() -> None:
 
 
 def test_time_stands_still_while_the_match_is_halted() -> None:
-    """The times of a script count only while the match is played, so a halt delays its keys."""
+    """A script's time runs only while the match is played, so a halt delays its keys."""
     script = script_of("2", "1.0 3")
 
     assert script.due(0.02, True) == ["2"]
@@ -83,7 +83,7 @@ def test_a_wrong_line_is_left_out_and_named(line: str) -> None:
 
 @given(st.lists(st.text()))
 def test_no_line_breaks_a_script(lines: list[str]) -> None:
-    """Any text gives only known keys, and never an exception."""
+    """A script of any text presses only known keys and raises no exception."""
     script = KeyScript()
     for line in lines:
         script.add(line)

@@ -1,4 +1,4 @@
-"""Whole matches by commands: court, bots and spectators are processes, as in a contest."""
+"""Tests of whole matches by commands; courts, bots and spectators are processes."""
 
 import json
 import os
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.slow
 
 
 class Referee:
-    """`lacoc referee` at a court; it runs in this process, which saves starting another one."""
+    """`lacoc referee` at a court; it runs in the test's process, which saves time."""
 
     def __init__(self, court: CourtProcess, capsys: pytest.CaptureFixture[str]) -> None:
         self._where = court.where()
@@ -33,7 +33,7 @@ class Referee:
         self.decided: set[str] = set()
 
     def run(self, *words: str) -> tuple[int, str, str]:
-        """Run a command; return its exit code, standard output and standard error."""
+        """Run `lacoc referee`; return its exit code, standard output and standard error."""
         self._capsys.readouterr()
         try:
             code = cli.main(["referee", *words, *self._where])
@@ -96,7 +96,7 @@ def test_the_referee_has_every_decision(
 
 
 def test_a_dry_run_lists_what_would_change(capsys: pytest.CaptureFixture[str]) -> None:
-    """For a person, `--dry-run` says that nothing is done, and lists each event that changes."""
+    """`--dry-run` prints that nothing is done, and lists each event that would change."""
     changes = (
         say("change.vanishes", event=17, kind="strike", marker="flag18"),
         say("change.appears", kind="capture", marker="corner0"),
@@ -124,7 +124,7 @@ def test_a_dry_run_lists_what_would_change(capsys: pytest.CaptureFixture[str]) -
     ("account", "named"), [("kim", "kim"), ("root", "referee"), ("admin", "referee")]
 )
 def test_a_referee_has_a_name(account: str, named: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without --by a decision has the account's name, unless that names no person."""
+    """Without --by a decision has the account's name; "referee" replaces a name such as "root"."""
     monkeypatch.setenv("LOGNAME", account)
     assert _default_name() == named
 
@@ -163,7 +163,7 @@ def test_ready_for_a_contestant_who_cannot(
 def test_a_waiting_referee_does_nothing_twice(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A decision whose answer was lost is not asked again, because the court may have made it."""
+    """`lacoc referee` does not repeat a decision whose answer was lost: it may have been made."""
     court = open_court("--arena", "othello")
     decide, asked = RefereeClient.decide, []
 
@@ -229,7 +229,7 @@ def test_bots_play_match_after_match(
 
 
 def _a_ghost_plays_the_record_again(court: CourtProcess, referee: Referee, folder: Path) -> None:
-    """Let a ghost take the left seat and play the first match's record again."""
+    """Let a ghost take the left seat and press the keys of the first match's record again."""
     record = _packed(folder / "recordings", "*-001.mcap")
     court.start("bot", f"ghost:{record}:left", *court.where("left"), stdout=subprocess.DEVNULL)
     deadline_s = time.monotonic() + 60

@@ -163,7 +163,7 @@ OTHELLO = Field(0.0, 0.0, 1.02, 1.02)
 
 
 def test_a_board_needs_no_colours() -> None:
-    """Without colours, letters and shades show whose each disc is; the top row is north."""
+    """Without colours, letters and shades show each disc's owner; the top row is north."""
     sheet = make_sheet("othello")
     states = (1,) * 6 + (0,) * 24 + (2,) * 6  # the southern row is left's, the northern right's
     lines = draw(make_frame(sheet, states), sheet, OTHELLO, 20)

@@ -77,7 +77,7 @@ def started(open_court: OpenCourt, tmp_path: Path) -> Iterator[tuple[CourtProces
 
 
 def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Path) -> None:
-    """Every key works at a terminal (rules 3, workshop 4-4), and an older Pos-data.txt is kept."""
+    """Keys work at a terminal as rules 3 and workshop 4-4 say; an older Pos-data.txt is kept."""
     _, terminal = started
     (tmp_path / "Pos-data.txt").write_text("older")
     terminal.press("1")
@@ -182,7 +182,7 @@ def test_practice_walks_with_the_sample_keys(tmp_path: Path) -> None:
     rows = [line.split("\t") for line in (tmp_path / "Pos-data.txt").read_text().splitlines()[1:]]
     by_time = {float(row[0]): float(row[2]) for row in rows}
     middle_m = by_time[min(by_time, key=lambda time_s: abs(time_s - 4.6))]
-    assert middle_m > 0.08  # 42 mm/s (the start takes a little)
+    assert middle_m > 0.08  # the sample walks 42 mm/s, more slowly at first
     assert float(rows[-1][2]) > middle_m + 0.06
     times_s = [float(row[0]) for row in rows]
     assert times_s[-1] > 6

@@ -59,7 +59,7 @@ def test_a_folder_s_gaits_are_the_ones_saved_last(
 
 
 def test_files_saved_in_one_moment_go_by_their_names(tmp_path: Path) -> None:
-    """Among files of the same age the workshop's names, Loco-data.txt and LocoTra-data.txt, win."""
+    """If files have the same age, those named Loco-data.txt and LocoTra-data.txt are taken."""
     for name in ("Loco-data-6legs.txt", "Loco-data.txt", "LocoTra-data.txt", "LocoTra-data1.txt"):
         write(tmp_path / name, b"")
 
@@ -86,7 +86,7 @@ def test_a_workbook_of_sequences_is_named(tmp_path: Path) -> None:
 
 
 def test_nothing_named_leaves_all_to_the_contest() -> None:
-    """If a contestant names neither robot nor gait, no file is sent, and the contest's are used."""
+    """A contestant who names neither robot nor gait sends no file: the court's own are used."""
     assert gather(None, []) == SeatFiles()
 
 
@@ -99,7 +99,7 @@ def test_a_robot_brings_the_gait_beside_it() -> None:
 
 
 def test_each_file_goes_to_its_level(tmp_path: Path) -> None:
-    """The content of a file decides its level, not its name; text is sent unchanged."""
+    """A file's content, not its name, decides its level; text is sent unchanged."""
     first = write(tmp_path / "b.txt", LOCOMOTION)
     second = write(tmp_path / "a.txt", POSTURES)
 

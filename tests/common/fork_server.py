@@ -1,6 +1,6 @@
 """Forks `lacoc` processes for tests, so that Python and its libraries are loaded only once.
 
-`lacoc_process` starts this server with the number of a Unix socket. A request carries the file
+`lacoc_process` starts this server with the descriptor of a Unix socket. A request carries the file
 descriptors of the new process, and the server answers with its process id. When the process ends,
 the server writes its wait status to the last of these descriptors. The server ends when the socket
 is closed.
@@ -36,10 +36,10 @@ def preload() -> None:
 def serve(door: socket.socket) -> int:
     """Fork processes until the socket is closed.
 
-    In each forked process this function runs the command and returns, too.
+    In each forked process this function runs the command and then returns as well.
 
     Returns:
-        The exit code.
+        The exit code of this process.
     """
     ring, rung = socket.socketpair()
     rung.setblocking(False)

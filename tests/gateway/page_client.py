@@ -41,7 +41,7 @@ class Refused(Exception):
 
 
 def refusal(code: str) -> pytest.RaisesExc[Refused]:
-    """Expect a refusal with this code."""
+    """Expect that a block of code raises `Refused` with this code of its reason."""
     return pytest.raises(Refused, check=lambda error: error.why.code == code)
 
 
@@ -81,7 +81,7 @@ class PageClient:
 
     @property
     def waits_why(self) -> str:
-        """Return the code of the reason why there is no court; "" while there is one."""
+        """Return the code of the reason why the gateway has no court; "" while it has one."""
         return (self.link.get("why") or {"code": ""})["code"]
 
     def ask(self, do: str, **fields: Any) -> Any:
@@ -103,7 +103,7 @@ class PageClient:
         return reply["value"]
 
     def waits_for(self, number: int) -> bool:
-        """Return whether a reply, which `reply` has not taken yet, is still missing."""
+        """Return whether the reply to a request is missing; ask only before `reply` takes it."""
         return number not in self._replies
 
     def wait(self, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:
@@ -207,7 +207,7 @@ class SleepyPage:
         self._flush()
 
     def read_until(self, beat: int) -> list[int]:
-        """Read frames up to a beat, and return the beats of all of them in order of arrival."""
+        """Read frames up to a beat, and return the beats of all frames in order of arrival."""
         beats: list[int] = []
         deadline_s = time.monotonic() + TIMEOUT_S
         while not beats or beats[-1] < beat:
@@ -233,6 +233,6 @@ class SleepyPage:
 
 
 def x_of(frame: Frame, robot: int, bytes_a_robot: int) -> float:
-    """Return a robot's x coordinate [m]."""
+    """Return a robot's x coordinate in a frame [m]; `robot` is its seat's index."""
     (x_m,) = struct.unpack_from("<f", frame.poses, robot * bytes_a_robot)
     return float(x_m)

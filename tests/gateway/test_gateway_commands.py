@@ -61,7 +61,7 @@ def stack() -> Iterator[ExitStack]:
 
 
 def test_play_fills_its_page_in(tmp_path: Path, stack: ExitStack) -> None:
-    """The page gets seat, name and files of the command line, and joins with its token."""
+    """The page of `lacoc play` gets the command's seat, name and files, and joins by its token."""
     court = CourtProcess(tmp_path, "--arena", "othello")
     stack.callback(court.close)
     gait = sample_gait_files("hexapod").locomotion
@@ -118,7 +118,7 @@ def browse(folder: Path, home: Path) -> tuple[Lacoc, str, str]:
 
 @pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="reads /proc")
 def test_the_key_stands_in_no_command_line(tmp_path: Path) -> None:
-    """The browser's command line names a file that other users can't read, and not the key."""
+    """No command line has the page key: the browser opens a file that other users can't read."""
     play, key, opened = browse(tmp_path, tmp_path)
     try:
         titles = b""
@@ -142,7 +142,7 @@ def test_the_key_stands_in_no_command_line(tmp_path: Path) -> None:
 
 
 def test_without_a_home_the_page_opens_all_the_same(tmp_path: Path) -> None:
-    """If the file with the key can't be written, the browser gets the address with the key."""
+    """If the file with the page key can't be written, the browser gets the address with the key."""
     play, key, opened = browse(tmp_path, tmp_path / "nowhere")
     play.send_signal(signal.SIGINT)
     play.communicate(timeout=30)
@@ -177,7 +177,7 @@ def test_practice_has_a_court_of_its_own(tmp_path: Path) -> None:
 
 
 def test_watch_shows_a_court(tmp_path: Path, stack: ExitStack) -> None:
-    """The address that `lacoc watch` opens has no key, so its page can only watch."""
+    """The address that `lacoc watch` opens has no page key, so its page can only watch."""
     court = CourtProcess(tmp_path, "--arena", "othello")
     stack.callback(court.close)
     watch = Command(tmp_path, "watch", *court.where())
@@ -188,7 +188,7 @@ def test_watch_shows_a_court(tmp_path: Path, stack: ExitStack) -> None:
 
 
 def test_demo_says_where_its_page_is_early(tmp_path: Path) -> None:
-    """`lacoc demo` prints its page's address before the match, and ends after the result."""
+    """`lacoc demo` first prints its page's address, and ends after the official result."""
     words = ("demo", "--seconds", "2", "--speed", "4")
     no_screen = {**environment(), "DISPLAY": "", "WAYLAND_DISPLAY": "", "BROWSER": ""}
     done = run_lacoc(*words, cwd=tmp_path, env=no_screen, timeout_s=90)

@@ -1,4 +1,4 @@
-"""Tests of who is let in by a gateway, and that bad input disturbs nobody else."""
+"""Tests of whom a gateway lets in, and that bad input disturbs nobody else."""
 
 import http.client
 import json
@@ -38,7 +38,7 @@ ACTS: list[tuple[str, dict[str, Any]]] = [
 
 
 def get(venue: Venue, path: str, **headers: str) -> tuple[int, http.client.HTTPMessage, bytes]:
-    """Fetch a path exactly as it is written, also with dots."""
+    """Fetch a path exactly as written, dots included; return status, headers and body."""
     connection = http.client.HTTPConnection("127.0.0.1", venue.web_port, timeout=60)
     try:
         connection.putrequest("GET", path, skip_host="Host" in headers)
@@ -65,7 +65,7 @@ def get(venue: Venue, path: str, **headers: str) -> tuple[int, http.client.HTTPM
     ],
 )
 def test_the_names_of_this_machine_are_known(open_venue: Venue, host: str) -> None:
-    """A request's host may be an IP address, localhost, this machine's name or one of --host."""
+    """A request's host may be an IP address, localhost, this machine's name or a --host name."""
     status, _, _ = get(open_venue, "/recordings", Host=host.format(port=open_venue.web_port))
     assert status == 200
 
@@ -118,7 +118,7 @@ def test_the_own_page_gets_a_socket(open_venue: Venue) -> None:
 def test_without_the_key_a_page_only_watches(
     open_venue: Venue, key: str | None, do: str, fields: dict[str, Any]
 ) -> None:
-    """Without the key a page only watches, even with the right token of a seat or referee."""
+    """Without the page key a page only watches, even with the right token of seat or referee."""
     with PageClient(open_venue.url, key) as page:
         assert page.welcome["can_act"] is False
         with refusal("gateway.only-watch"):
@@ -296,14 +296,14 @@ def test_recordings_are_listed_and_fetched(open_venue: Venue, records: Path) -> 
     ],
 )
 def test_no_path_leads_out(open_venue: Venue, records: Path, path: str) -> None:
-    """No path leads to a file that is neither a recording nor part of the pages."""
+    """A path that leads to no recording and no file of the pages gets a 404."""
     status, _, body = get(open_venue, path)
     assert status == 404
     assert b"secret" not in body
 
 
 def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
-    """A page beyond the limit is sent away with the reason, until another page leaves."""
+    """A page beyond the limit is sent away and told why; when a page leaves, another may come."""
     venue.court()
     venue.web("--viewers", "2")
     first, second = venue.page(), venue.page()
@@ -325,7 +325,7 @@ def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
 
 
 def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
-    """When all viewers' places are taken, pages with the key still get in."""
+    """When all viewers' places are taken, pages with the page key still get in."""
     venue.court()
     venue.web("--viewers", "1")
     venue.page()
@@ -339,7 +339,7 @@ def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
 
 
 def test_pages_with_the_key_have_a_bound_too(venue: Venue) -> None:
-    """Pages with the key have their own limit, and take no spectator's place."""
+    """Pages with the page key have their own limit, and take no spectator's place."""
     venue.web()
     for _ in range(ACTING_MOST):
         venue.page(venue.key, hz=1)
@@ -373,13 +373,13 @@ def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
         assert 5 <= said.count("") <= 6 + took_s
         assert page.order.count(Kind.SCENE) <= said.count("")
         page.wait(lambda: page.frame)
-        time.sleep(1.1)  # the limit is one of time
+        time.sleep(1.1)  # the limit is a number of requests in a time
         page.ask("watch")
 
 
 @pytest.mark.long
 def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
-    """A contestant's keys take effect within a few beats while other pages send all they can."""
+    """A contestant's keys take effect, mostly in 8 beats, while other pages flood the gateway."""
     venue.court()
     venue.web()
     left, right = venue.contestant("left"), venue.contestant("right")

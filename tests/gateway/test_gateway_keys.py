@@ -1,4 +1,4 @@
-"""Tests of referees' tokens at a court with keys, which takes two seconds to refuse a wrong one."""
+"""Tests of referees' tokens in a contest with keys: its court refuses a wrong token after 2 s."""
 
 import pytest
 from page_client import PageClient, Refused

@@ -1,4 +1,4 @@
-"""Whole matches through one gateway: real court, real Zenoh, pages without a browser."""
+"""Tests of whole matches through a gateway, with a real court and pages without a browser."""
 
 import signal
 import time
@@ -31,7 +31,7 @@ def started(venue: Venue) -> tuple[PageClient, PageClient, PageClient]:
 
 
 def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
-    """A match is played through one gateway to its official end; a late page gets all of it."""
+    """A match is played through a gateway to its official end; a late page gets the whole log."""
     venue.court("--seconds", "4")
     venue.web()
     left, right, referee = started(venue)
@@ -79,7 +79,7 @@ def test_a_match_is_played_to_its_official_end(venue: Venue) -> None:
 
 
 def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
-    """A robot whose page has gone stands (rules 3); a page that comes back joins and goes on."""
+    """A robot whose page is gone stands (rules 3); a new page joins its seat and goes on."""
     venue.court()
     venue.web()
     left, _, referee = started(venue)
@@ -92,7 +92,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     gone = referee.frame.beat
 
     def silences() -> list[Event]:
-        """Return this seat's silences after its key; a busy machine may cause earlier ones."""
+        """Return the left seat's silences after its key; a busy machine may cause earlier ones."""
         return [
             event
             for event in referee.events
@@ -184,7 +184,7 @@ def test_one_referee_acts_until_another_takes_over(venue: Venue) -> None:
 
 
 def test_a_killed_court_comes_back(venue: Venue) -> None:
-    """Pages say that their court is gone; when it comes back, they go on and keep their seats."""
+    """Pages learn that their court is gone; when the court is back, they keep their seats."""
     court = venue.court()
     venue.web()
     left, _, referee = started(venue)
@@ -214,7 +214,7 @@ def test_a_killed_court_comes_back(venue: Venue) -> None:
 
 
 def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
-    """When a court starts afresh, no event of the old match with the same number is kept."""
+    """When a court starts afresh, no page keeps an event of the old match."""
     court = venue.court()
     venue.web()
     watcher = venue.page()
@@ -265,7 +265,7 @@ def test_a_gateway_may_come_before_its_court(venue: Venue) -> None:
 
 
 def test_a_restarted_gateway_knows_its_pages_again(venue: Venue) -> None:
-    """A restarted gateway of a contest has the same key, so pages that were open can act again."""
+    """A contest's gateway has the same page key after a restart, so open pages can act again."""
     venue.court()
     web = venue.web()
     left = started(venue)[0]
@@ -306,7 +306,7 @@ def test_a_page_gets_as_many_frames_as_it_asks_for(
 
 
 def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
-    """A page that stops reading for eight seconds gets a few old frames and then new ones."""
+    """A page that reads nothing for 8 s then gets less than 4 s of old frames, and new ones."""
     with PageClient(open_venue.url, hz=50) as quick, SleepyPage(open_venue.url) as sleepy:
         sleepy.watch(hz=50)
         quick.wait(lambda: quick.frame is not None)
@@ -322,7 +322,7 @@ def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
 
 
 def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
-    """An unreadable frame disturbs no page; only a sheet tells that the court's version differs."""
+    """An unreadable frame disturbs no page; a sheet shows that the court's version differs."""
     with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
         venue.web()
         page = venue.page()
@@ -342,7 +342,7 @@ def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
 
 
 def test_a_seat_that_can_not_be_had_now_may_be_asked_for_again(venue: Venue) -> None:
-    """A join that is refused for now may be asked again; one with a wrong token may not."""
+    """A page may repeat a join that was refused as too frequent, but not one with a wrong token."""
     venue.court()
     venue.web()
     pages = [venue.page(venue.key) for _ in range(12)]

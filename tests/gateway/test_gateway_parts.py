@@ -38,7 +38,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "gateway.md").read_text(encoding="u
 
 
 def asyncio_run(do: Callable[[], Coroutine[Any, Any, T]]) -> T:
-    """Run a coroutine on a new thread, because tests of pages may have left a loop in this one."""
+    """Run a coroutine on a new thread: tests of pages may have left an event loop in this one."""
     with ThreadPoolExecutor(1) as aside:
         return aside.submit(lambda: asyncio.run(do())).result()
 
@@ -77,7 +77,7 @@ def test_the_document_has_every_path_and_hold() -> None:
 
 @given(st.binary(max_size=300))
 def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
-    """Any bytes from a page are read, or refused with the documented error."""
+    """Any bytes from a page can be read or raise `Unreadable`, and no other exception."""
     with contextlib.suppress(wire.Unreadable):
         wire.read(data)
     wire.read_id(data)
@@ -90,7 +90,7 @@ def test_no_bytes_of_a_page_break_the_reader(data: bytes) -> None:
     )
 )
 def test_no_map_of_a_page_breaks_the_reader(fields: dict[str, Any]) -> None:
-    """Any map with the fields of a request is read, or refused with the documented error."""
+    """Any map with a request's fields can be read or raises `Unreadable`, and nothing else."""
     data = msgpack.packb(fields, unicode_errors="surrogatepass")
     with contextlib.suppress(wire.Unreadable):
         wire.read(data)
@@ -108,7 +108,7 @@ def test_no_map_of_a_page_breaks_the_reader(fields: dict[str, Any]) -> None:
     ],
 )
 def test_a_refusal_says_what_a_page_can_do(error: UserError, told: set[str]) -> None:
-    """A refusal tells the page whether to ask again, and whether its request may have been done."""
+    """A refusal says whether to ask again, whether the token is wrong, or that no answer came."""
     body = msgpack.unpackb(wire.refusal(7, error)[3:])
     assert {name for name, value in body.items() if value is True} == told
     assert (body["id"], body["error"]) == (7, msgspec.to_builtins(error.phrase))
@@ -168,7 +168,7 @@ def test_a_viewer_has_one_slot() -> None:
     [(50, 500), (25, 250), (10, 100), (1, 10), (0, 10), (-3, 10), (1e9, 500), (float("nan"), 500)],
 )
 def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
-    """Frames are spaced evenly in spite of jitter; an invalid rate is replaced by a valid one."""
+    """A page gets its rate of frames in spite of jitter; a valid rate replaces an invalid one."""
     socket = Wire()
     viewer = Viewer(socket)  # type: ignore[arg-type]
     viewer.rate(hz)
@@ -218,7 +218,7 @@ def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:
 
 
 def test_a_log_that_begins_again() -> None:
-    """A repeated event is not new; an event that differs replaces those from its number on."""
+    """A repeated event changes nothing; a different event replaces those from its number on."""
     log: EventLog[str] = EventLog()
     assert [log.add(event(n, "old"), f"old {n}") for n in (1, 2, 3)] == [True] * 3
     assert [log.add(event(n, "old"), "again") for n in (1, 2, 3)] == [False] * 3
@@ -232,7 +232,7 @@ def test_a_log_that_begins_again() -> None:
 
 
 def test_a_log_is_held_against_what_the_court_says() -> None:
-    """A log differs from the court's report if it has fewer or more events, later ones aside."""
+    """A log differs from a court's report if it lacks events, or has extra ones from before it."""
     log: EventLog[str] = EventLog()
     assert not log.differs(1, 0, 0)
     assert log.differs(1, 500, 3)
@@ -245,7 +245,7 @@ def test_a_log_is_held_against_what_the_court_says() -> None:
 
 
 def test_the_courts_list_stands_for_the_log() -> None:
-    """The court's list replaces the log, and gives only the events that are new in it."""
+    """The court's list replaces the log; `restore` returns the events that the log did not have."""
     log: EventLog[str] = EventLog()
     for number in (4, 5):
         log.add(event(number, "a"), f"live {number}")
@@ -259,7 +259,7 @@ def test_the_courts_list_stands_for_the_log() -> None:
 
 
 def test_the_newest_of_a_very_long_log_are_kept() -> None:
-    """A log keeps as many of the newest events as a court lists, and is still complete."""
+    """A log keeps as many of the newest events as a court lists, and still counts as complete."""
     log: EventLog[int] = EventLog()
     for number in range(1, 3 * EVENTS_LISTED):
         log.add(event(number, "a"), number)
@@ -285,7 +285,7 @@ def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
     "where", ["", "here", "127.0.0.1", ":80", "127.0.0.1:99999", "no.such.name.example:0", "[::1"]
 )
 def test_a_wrong_place_to_listen_is_said(where: str) -> None:
-    """A wrong address to listen at is refused with one sentence."""
+    """A wrong address to listen at is refused, and the error says so."""
     with pytest.raises(UserError, match=r"not a place to listen|not possible to listen"):
         server.listen(where)
 
@@ -299,7 +299,7 @@ def test_a_port_that_is_in_use_is_said() -> None:
 
 
 def test_small_messages_do_not_wait_for_the_one_before() -> None:
-    """Small messages are sent at once: Nagle's algorithm made a key's frame 40 ms late."""
+    """Nagle's algorithm, which made a key's frame 40 ms late, is off in a gateway's connections."""
 
     async def asked() -> bool:
         found: asyncio.Future[int] = asyncio.get_running_loop().create_future()
@@ -319,7 +319,7 @@ def test_small_messages_do_not_wait_for_the_one_before() -> None:
 
 
 def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
-    """The key of a contest always follows from its tokens; any other key is random."""
+    """A contest's page key always follows from its tokens; any other page key is random."""
     contest, other = throwaway("othello"), throwaway("othello")
     assert home.lasting_key(contest) == home.lasting_key(contest)
     assert home.lasting_key(contest) != home.lasting_key(other)
@@ -328,7 +328,7 @@ def test_the_key_of_a_contest_lasts_and_no_other_is_like_it() -> None:
 
 
 def test_browsers_without_a_screen_are_not_opened(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without a screen no browser is opened: one for terminals would take over the terminal."""
+    """Without a screen no browser is opened: a text browser would take over the terminal."""
     monkeypatch.setattr("sys.platform", "linux")
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
         monkeypatch.delenv(name, raising=False)

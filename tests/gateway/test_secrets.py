@@ -1,4 +1,4 @@
-"""Secrets stay in their files: all that a match sends, prints and records is searched for them."""
+"""Tests that secrets stay in their files: they search what a match sends, prints and records."""
 
 import subprocess
 from collections.abc import Iterator
@@ -116,7 +116,7 @@ def in_record(path: Path) -> bytes:
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="reads /proc")
 def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
-    """No secret shows in a short match of a bot, a page and a referee, with wrong tokens tried.
+    """No secret leaks in a short match of a bot and a page, in which wrong tokens are tried too.
 
     The test searches all that the court publishes, all that pages receive, the output, logs and
     command lines of all processes, and the record.

@@ -17,7 +17,7 @@ REFEREE = "w" * 26
 
 
 class Process:
-    """A process that prints one line of JSON when it is open."""
+    """A process that prints one line of JSON when it is ready."""
 
     def __init__(self, folder: Path, *words: str, name: str = "process") -> None:
         with (folder / f"{name}.log").open("ab") as log:
@@ -32,7 +32,7 @@ class Process:
             )
         assert self.process.stdout is not None
         self.said = self.process.stdout.readline()
-        """Its output: the first line, and after `close` all of it."""
+        """The standard output: its first line, and after `close` all of it."""
         self.opened = json.loads(self.said)
 
     def kill(self) -> None:

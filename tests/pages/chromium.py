@@ -19,15 +19,15 @@ FLAGS = (
     "--no-sandbox",  # tests may run as root, in a container
     "--enable-unsafe-swiftshader",
     "--use-gl=angle",
-    "--use-angle=swiftshader",  # draws without a graphics card, and everywhere the same
+    "--use-angle=swiftshader",  # draws without a graphics card, the same on every machine
     "--ignore-gpu-blocklist",
-    # What is around the picture is put together without OpenGL: in software it takes half the time.
+    # Chromium composes the page in plain software, not with software OpenGL: half the time.
     "--disable-gpu-compositing",
     "--disable-background-networking",
 )
 
 OpenPage = Callable[..., Page]
-"""A function that opens a page in a context of its own, with options of `Browser.new_context`."""
+"""A function that opens a page in its own browser context, with `Browser.new_context` options."""
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 _HOW = (
@@ -43,10 +43,10 @@ class NoBrowser(Exception):
 
 
 def find_chromium() -> str:
-    """Return the path of a Chromium; install Debian's where that is allowed.
+    """Return Chromium's path; if it is missing, install Debian's when the user is root.
 
     Raises:
-        NoBrowser: if there is none.
+        NoBrowser: if none is found and none can be installed.
     """
     named = os.environ.get("CHROMIUM")
     if named:
@@ -65,7 +65,7 @@ def find_chromium() -> str:
 
 
 def build_pages() -> Path:
-    """Return the folder of the built pages; build them again if their source is newer.
+    """Return the folder of the built pages; build them if they are missing or out of date.
 
     Raises:
         RuntimeError: if they can't be built.
@@ -91,12 +91,12 @@ def npm(*words: str, web: Path = WEB) -> None:
     """Run npm in the pages' source, and install the pages' packages first if they are missing.
 
     Raises:
-        RuntimeError: if it fails.
+        RuntimeError: if npm fails.
     """
     found = shutil.which("npm")
     command = [found] if found else [sys.executable, "-c", _NPM]
     with locked("npm"):
-        # npm writes this file last: without it the packages are not whole.
+        # npm writes this file last: without it the packages are incomplete.
         if not (web / "node_modules" / ".package-lock.json").exists():
             _run([*command, "ci", "--no-audit", "--no-fund"], web)
     _run([*command, *words], web)
@@ -128,7 +128,7 @@ def _on_path() -> str | None:
 
 
 def _install() -> None:
-    """Try to install Debian's Chromium; the caller looks whether it is there."""
+    """Try to install Debian's Chromium; the caller checks whether that worked."""
     quiet = {
         "stdout": subprocess.DEVNULL,
         "env": {**os.environ, "DEBIAN_FRONTEND": "noninteractive"},

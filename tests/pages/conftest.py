@@ -1,4 +1,4 @@
-"""Gives tests a browser and pages, whose errors fail the test; makes test modules importable."""
+"""Gives tests a browser and its pages, and makes the tests' helper modules importable."""
 
 import re
 import sys
@@ -99,13 +99,13 @@ def console() -> Iterator[Console]:
 
 @pytest.fixture
 def slow_screen() -> bool:
-    """Tell pages to draw seldom; a module that tests the drawing itself returns False instead."""
+    """Give True: pages draw about ten pictures a second. Tests of the drawing override it."""
     return True
 
 
 @pytest.fixture
 def open_page(browser: Browser, console: Console, slow_screen: bool) -> Iterator[OpenPage]:
-    """Give a function that opens pages, each in a fresh context, as if by different people."""
+    """Give a function that opens pages, each in a fresh browser context, as different people do."""
     contexts: list[BrowserContext] = []
 
     def opened(**options: Any) -> Page:
@@ -140,5 +140,5 @@ def venue(tmp_path: Path, built_pages: Path) -> Iterator[Venue]:
 
 @pytest.fixture
 def sit(open_page: OpenPage) -> Sit:
-    """Give a function that opens contestants' pages at a gateway: `sit(url, locale="ja-JP")`."""
+    """Give a function that makes a contestant's page for a gateway: `sit(url, locale="ja-JP")`."""
     return lambda url, **options: Contestant(open_page, url, **options)

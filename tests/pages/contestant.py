@@ -20,7 +20,7 @@ TIMEOUT_MS = 30_000
 
 
 class Contestant:
-    """One page in a browser profile of its own.
+    """A contestant's page in a browser profile of its own.
 
     Args:
         open_page: function that opens a page.
@@ -35,7 +35,7 @@ class Contestant:
         self.page.set_default_timeout(TIMEOUT_MS)
 
     def open(self, path: str = "/play", key: str | None = None, query: str = "") -> None:
-        """Go to the page; `key` allows the page to act."""
+        """Go to a path of the gateway; with `key`, the page key, the page may act."""
         fragment = "" if key is None else f"#key={key}"
         self.page.goto(f"{self.url}{path}?q=low{query}{fragment}")
 
@@ -69,7 +69,7 @@ class Contestant:
         self.sees(f'.score-bug .phase[data-phase="{int(phase)}"]')
 
     def join(self, token: str, name: str = "Ants", seat: str = "left") -> None:
-        """Fill in the card of the entrance and send it."""
+        """Fill in the form for joining a match and send it."""
         self.sees(".entrance .seat")
         self.find(f".seats input[value={seat}]").check(force=True)
         self.page.fill("#join-name", name)
@@ -81,11 +81,11 @@ class Contestant:
             self.page.keyboard.press(key)
 
     def key_stands(self, digit: int) -> None:
-        """Wait until the pad shows this key as the one that is in effect."""
+        """Wait until the pad on the page shows that this key is in effect."""
         self.sees(f'.key[data-key="{digit}"][aria-pressed=true]')
 
     def until(self, condition: str) -> None:
-        """Wait until JavaScript is true; the pages' content policy forbids `wait_for_function`."""
+        """Wait until JavaScript gives true; the pages' policy forbids `wait_for_function`."""
         end_s = time.monotonic() + TIMEOUT_MS / 1000
         while not self.page.evaluate(condition):
             assert time.monotonic() < end_s, condition
@@ -109,7 +109,7 @@ class Contestant:
 
 @contextmanager
 def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
-    """Run a command that opens a page for one person; give the gateway's address and key."""
+    """Run a command that opens a page for one person; give the gateway's address and page key."""
     process = Lacoc(
         *(*words, "--no-open"),
         stdout=subprocess.PIPE,
@@ -131,4 +131,4 @@ def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
 
 
 Sit = Callable[..., Contestant]
-"""A function that opens a contestant's page at a gateway: `sit(url, locale="ja-JP")`."""
+"""A function that makes a contestant's page for a gateway: `sit(url, locale="ja-JP")`."""

@@ -8,7 +8,7 @@ from playwright.sync_api import Page
 
 
 def drop(page: Page, files: Mapping[str, bytes]) -> None:
-    """Send a page the events of files that are dropped on it."""
+    """Send a page the browser's events of dropped files; `files` maps names to contents."""
     data = page.evaluate_handle(
         """(files) => {
           const data = new DataTransfer();

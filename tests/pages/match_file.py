@@ -16,12 +16,12 @@ def match_file(arena: str, seconds: float, robots: Sequence[str] = ("hexapod", "
 
     Args:
         arena: an installed arena.
-        seconds: length of play.
+        seconds: length of play [s].
         robots: names of the seats' robots.
 
     Returns:
-        msgpack of {sheet, scene, frames}, each message as its own bytes. The frames are those of
-        the last scene, which has the robots in it.
+        msgpack of {sheet, scene, frames}; each message in it is msgpack by itself. The frames
+        begin with the last scene, the one that contains the robots.
     """
     ground = arenas.load(arena, {"match": {"duration_s": seconds, "countdown_s": 1.0}})
     bots = ("planner", "nearest")

@@ -11,13 +11,13 @@ from venue import Venue
 from lacoc_shared.seat import Phase
 
 WAIT_MS = 45_000
-"""The longest wait, for a machine with two busy cores; a test goes on as soon as it can."""
+"""The longest wait [ms], for a machine with two busy cores; a test goes on as soon as it can."""
 
 STALE = ".stale"
 
 
 class Show:
-    """An open page.
+    """A page that shows a match, open in a browser.
 
     Args:
         page: a new page.
@@ -38,7 +38,7 @@ class Show:
         return self.page.evaluate(f"window.__lacoc?.views?.[{index}]?.{what}")
 
     def until(self, condition: Callable[[], Any], otherwise: str) -> None:
-        """Wait until a condition is true; the pages' content policy forbids `wait_for_function`."""
+        """Wait until a condition is true; the pages' policy forbids `wait_for_function`."""
         end_s = time.monotonic() + WAIT_MS / 1000
         while not condition():
             assert time.monotonic() < end_s, otherwise

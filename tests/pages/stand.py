@@ -28,12 +28,12 @@ _PIXELS = """async (png) => {
 
 class _Quiet(SimpleHTTPRequestHandler):
     def log_message(self, format: str, *args: Any) -> None:
-        """Say nothing."""
+        """Log nothing."""
 
 
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
-    """Serve a folder on a free port of this machine, and give its address."""
+    """Serve a folder on a free port of this machine, and give the server's address."""
     server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
@@ -58,7 +58,7 @@ class Stand:
         self._address = address
 
     def open(self, match: str, frames: int = 3, **options: object) -> None:
-        """Show a match, and wait until a number of pictures have been drawn."""
+        """Show a match, and wait until more than `frames` pictures are drawn (0: do not wait)."""
         words = "&".join(f"{name}={value}" for name, value in options.items())
         self.page.goto(f"{self._address}/index.html?match={match}&{words}")
         self.page.wait_for_selector("body[data-ready]")
@@ -84,14 +84,14 @@ class Stand:
         return pixels_of(self.page, self.page)
 
     def pixel(self, x_m: float, y_m: float, z_m: float = 0.003) -> npt.NDArray[np.uint8]:
-        """Return the colour of the picture at a point of the world."""
+        """Return the picture's colour at a point of the world: the median of 3 x 3 pixels."""
         left, top = self.view(f"screen({x_m}, {y_m}, {z_m})")
         picture = self.pixels()[round(top) - 1 : round(top) + 2, round(left) - 1 : round(left) + 2]
         return np.median(picture.reshape(-1, 3), axis=0).astype(np.uint8)
 
 
 def pixels_of(page: Page, reader: Page) -> npt.NDArray[np.uint8]:
-    """Return a page's picture (height, width, 3); `reader` is a page that may fetch data."""
+    """Return a page's picture (height, width, 3); the page `reader` may load `data:` addresses."""
     png = base64.b64encode(page.screenshot()).decode()
     width, height, text = reader.evaluate(_PIXELS, png)
     flat = np.frombuffer(base64.b64decode(text), np.uint8)
@@ -99,7 +99,7 @@ def pixels_of(page: Page, reader: Page) -> npt.NDArray[np.uint8]:
 
 
 def share_of(picture: npt.NDArray[np.uint8], colour: str, near: int = 60) -> float:
-    """Return the share of a picture's pixels that are near a colour "#rrggbb"."""
+    """Return the share of pixels that differ by less than `near` from a colour "#rrggbb"."""
     wanted = np.array([int(colour[at : at + 2], 16) for at in (1, 3, 5)])
     far = np.abs(picture.astype(int) - wanted).max(axis=-1)
     return float((far < near).mean())

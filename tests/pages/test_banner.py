@@ -37,7 +37,7 @@ def opened(open_page: OpenPage, venue: Venue, path: str, **options: Any) -> Show
     ],
 )
 def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: str) -> None:
-    """Every page shows the gateway's reason for an unknown court and for one that does not run."""
+    """Every page says why it waits when its court is unknown or does not run."""
     venue.web()
     show = opened(open_page, venue, f"{path}?court=centre")
     show.sees(WAITS[path], 'There is no court "centre" here. The courts here: main.')
@@ -79,7 +79,7 @@ def test_a_full_hall_is_said_and_not_stormed(
 
 
 def test_a_court_of_another_version_is_said(venue: Venue, open_page: OpenPage) -> None:
-    """Frames of a court of another version are not sent on; the banner and the log say why."""
+    """The gateway drops the frames of a court of another version; banner and log say why."""
     with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
         web = venue.web()
         page = venue.page()

@@ -1,4 +1,4 @@
-"""Tests of the pages' source without a browser: its pure parts in Node, and its layers."""
+"""Tests of the pages' source: its pure parts run in Node, and the linter checks its layers."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ NODE_OF_PAGES = [
     *(NODE, "--experimental-transform-types", "--disable-warning=ExperimentalWarning"),
     *("--import", Path(__file__).with_name("core") / "page.mjs"),
 ]
-"""Node with the means to load any module of the pages that draws nothing."""
+"""The words that start Node so that it loads the pages' modules, except those that draw."""
 CASES = sorted(Path(__file__).with_name("core").glob("*.test.mjs"))
 
 

@@ -1,4 +1,4 @@
-"""`lacoc demo` at a screen, with a browser: the README's first command."""
+"""Tests of `lacoc demo`, the README's first command, in a terminal and with a browser."""
 
 import os
 import pty

@@ -35,7 +35,7 @@ PIXELS = """async (png) => {
 
 
 def alphas(page: Page, blank: Page) -> dict[str, float]:
-    """Return the page's alpha at its edge and in its middle (0 to 255), and its opaque share."""
+    """Return the page's alpha at its edge and middle (0 to 255), and the share of opaque pixels."""
     png = base64.b64encode(page.screenshot(omit_background=True)).decode()
     found: dict[str, float] = blank.evaluate(PIXELS, png)
     return found
@@ -77,7 +77,7 @@ def test_flags_of_the_address(venue: Venue, open_page: OpenPage) -> None:
 
 
 def test_the_workshops_two_windows(venue: Venue, open_page: OpenPage) -> None:
-    """With split=1 each robot has a window, and both share one score (workshop 5-4, Fig. 5-11)."""
+    """With split=1 each robot has a window, and there is one score board (workshop Fig. 5-11)."""
     venue.court()
     venue.web()
     playing(venue)
@@ -99,7 +99,7 @@ def test_the_workshops_two_windows(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
-    """With `delay`, score, events and picture come that many seconds later, and together."""
+    """With `delay`, score, events and picture all come that many seconds later."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -122,7 +122,7 @@ def test_delay_holds_everything_back(venue: Venue, open_page: OpenPage) -> None:
         return bool(now["score"] == "23" and now["third"] == "+5")
 
     late.until(came, "the score never came")
-    # Score and event did not show the decision while the picture was still before its beat.
+    # Score and event did not show the decision while the picture was still before that beat.
     # On a slow machine the picture may be late itself: 50 beats (one second) are allowed for that.
     before = [now for now in seen if now["beat"] < beat - 50]
     assert all((now["score"], now["third"]) == ("18", "") for now in before)

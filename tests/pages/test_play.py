@@ -29,7 +29,7 @@ pytestmark = pytest.mark.slow
 
 
 def opened(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
-    """Start a court and its gateway, and open a contestant's page with the key."""
+    """Start a court and its gateway, and open a contestant's page with the page key."""
     venue.court(*words)
     venue.web()
     page = sit(venue.url, **options)
@@ -58,7 +58,7 @@ def playing(venue: Venue, page: Contestant) -> PageClient:
 
 
 def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """The card shows every mistake; the browser keeps the team's name but not the token."""
+    """The join form shows every mistake; the browser keeps the team's name but not the token."""
     venue.contest.write_text('[contest]\nname = "Autumn cup"\n' + venue.contest.read_text())
     page = opened(venue, sit)
     page.sees(".entrance", "Autumn cup")
@@ -104,7 +104,7 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
 
 
 def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """A file's content decides where it belongs, and its name and encoding do not (rules 2)."""
+    """The page tells files apart by their content, not by their names or encodings."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     sample = sample_gait_files("hexapod")
@@ -221,7 +221,7 @@ def test_tabs_of_one_browser_have_their_own_files(
 
 @pytest.mark.long
 def test_a_kept_seat_of_another_court_is_none(venue: Venue, sit: Sit) -> None:
-    """A page that finds another court at its address forgets the seat that it kept."""
+    """A page that kept a seat of another court forgets it and lets its user join again."""
     page = opened(venue, sit)
     page.sees(".entrance .seat")
     wish = {"court": "side", "seat": "left", "token": "x", "name": "Ants"}
@@ -268,7 +268,7 @@ def test_the_court_is_chosen(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
 @pytest.fixture
 def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
-    """Give the address and key of a `lacoc play` that got seat, name, token and gait."""
+    """Give the address and page key of `lacoc play`, started with seat, name, token and gait."""
     court = venue.court()
     sample = sample_gait_files("hexapod").locomotion
     assert sample is not None
@@ -280,7 +280,7 @@ def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
 
 @pytest.mark.long
 def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
-    """With equal links the page shows its own round trip and the delay of both seats."""
+    """With equal links (rules 3) the page shows its own round trip and the delay of both seats."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     page = seated(venue, sit)
@@ -289,7 +289,7 @@ def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
 
 
 def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: Sit) -> None:
-    """`lacoc play` fills in the card of its page, so that one click joins the match."""
+    """`lacoc play` fills in the join form of its page, so that one click joins the match."""
     url, key = own
     page = sit(url)
     page.open(key=key)
@@ -305,7 +305,7 @@ def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: S
 
 
 def test_a_link_without_the_key_only_watches(venue: Venue, sit: Sit) -> None:
-    """Without the key the page only watches, and says how to get a link with the key."""
+    """Without the page key, /play only watches and says how to get a link with the key."""
     venue.court()
     venue.web()
     page = sit(venue.url)
@@ -316,7 +316,7 @@ def test_a_link_without_the_key_only_watches(venue: Venue, sit: Sit) -> None:
 
 
 def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """A contestant uses every key of the page, from the lobby to Pos-data.txt (workshop 5-4)."""
+    """A contestant plays by the page's keys, from the lobby to Pos-data.txt (workshop 5-4)."""
     page = seated(venue, sit, "--seconds", "120")
     page.press("2")
     page.is_toasted("[2] Keys work only while the match is being played")
@@ -397,7 +397,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
 
 def moved_m(before: Frame, after: Frame | None, seat: int) -> float:
-    """Return the distance between a robot's places in two frames [m]."""
+    """Return how far a robot's place on the floor moved between two frames [m]."""
     assert after is not None
     size = 4 * (7 + 18)
     places = [np.frombuffer(f.poses[seat * size :][:8], "<f4") for f in (before, after)]
@@ -445,7 +445,7 @@ def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
 
 
 def test_the_key_test_and_the_language(venue: Venue, sit: Sit) -> None:
-    """The settings show what each key does, and change the language at once."""
+    """The key test in the settings shows what each key does; the language changes at once."""
     page = seated(venue, sit)
     page.page.click("text=Settings")
     page.page.click(".keytest")
@@ -472,13 +472,13 @@ def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None
     page.press("2")
     page.is_toasted("キーは試合中だけ使えます")
     words = page.find("main").inner_text().replace("LACOC", "")
-    # Names, keys and units stay.
+    # Names, keys and units stay English.
     english = set(re.findall(r"[A-Za-z]{4,}", words)) - {"Ants", "Space", "Hexapod", "main"}
     assert english <= {"Robot", "Othello"}, english
 
 
 def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> None:
-    """A page that lost its seat says so, and takes the seat back only after a click."""
+    """A page whose seat was taken elsewhere says so, and takes it back only after a click."""
     page = seated(venue, sit)
     elsewhere = venue.contestant("left", "Ants")
     page.stands("lost")
@@ -491,7 +491,7 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
 
 @pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None:
-    """While court or gateway is lost, a banner shows and keys are grey; then the page goes on."""
+    """While court or gateway is down, the page shows a banner and grey keys; then it goes on."""
     court = venue.court("--seconds", "120")
     web = venue.web()
     page = sit(venue.url)
@@ -532,7 +532,7 @@ def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None
 
 @pytest.mark.long
 def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
-    """While its court sends nothing, the page shows a banner and a bad link."""
+    """While its court sends nothing, the page shows a banner and calls the connection bad."""
     court = venue.court()
     venue.web()
     page = sit(venue.url)
@@ -547,7 +547,7 @@ def test_a_silent_court_is_not_shown_as_live(venue: Venue, sit: Sit) -> None:
 
 
 def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: Sit) -> None:
-    """The page shows who won and why, and keeps its seat for the next match."""
+    """The page shows who won and why, links to the replay, and keeps its seat."""
     page = seated(venue, sit, "--seconds", "1")
     other = playing(venue, page)
     page.sees(".result h1", "A draw")
@@ -612,7 +612,7 @@ def test_a_tablet_and_a_phone(venue: Venue, sit: Sit) -> None:
 
 
 def test_accessible(venue: Venue, sit: Sit) -> None:
-    """Axe-core finds no serious mistake in the card, in the match and in the dialogs."""
+    """Axe-core finds no serious mistake in the join form, the match and the dialogs."""
     pytest.importorskip("axe_core_python")
     page = opened(venue, sit)
     page.sees(".entrance .seat")
@@ -691,7 +691,7 @@ def test_pos_data_is_what_python_writes(venue: Venue, sit: Sit) -> None:
 
 @pytest.mark.long
 def test_pos_data_keeps_the_newest(venue: Venue, sit: Sit) -> None:
-    """Of a long practice the page keeps only the newest rows, and says when they begin."""
+    """The page keeps only the newest rows of a long practice, and says when they begin."""
     frames = list(walk(random.Random(0), (12, 18)))
     whole = PosData(1, (12, 18))
     for frame in frames:
@@ -739,7 +739,7 @@ def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
             numbers += [*place, *(part / length for part in quat), *angles]
         poses = b"" if phase == Phase.LOBBY else np.array(numbers, "<f4").tobytes()
         seat = SeatFrame(3, 0, 0, 0, 0, 0, 0, 0, 0, 0)
-        clock = min(index, len(beats) - 2)  # nothing moves in the last frame, a decision's
+        clock = min(index, len(beats) - 2)  # the clock stands in the last frame
         frames.append(
             Frame(1, beat, int(phase), 0, clock, (seat, seat), b"", poses, bytes(8), bytes(8))
         )
@@ -747,7 +747,7 @@ def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
 
 
 def test_no_message_stands_in_two_catalogues() -> None:
-    """Each message name is in one part of the catalogue only: of two, the later one would win."""
+    """Each message name is in only one part of the catalogue: a second would replace it."""
     folder = Path(__file__).parents[2] / "client" / "web" / "src" / "i18n"
     names = [
         name

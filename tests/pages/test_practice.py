@@ -22,14 +22,14 @@ Practise = Callable[..., Contestant]
 
 @pytest.fixture
 def address(tmp_path: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
-    """Give the address and key of a `lacoc practice`, which ends after the browser's page."""
+    """Give the address and page key of `lacoc practice`, which runs during the test."""
     with own_page(tmp_path, "practice") as address:
         yield address
 
 
 @pytest.fixture
 def practise(address: tuple[str, str], sit: Sit) -> Practise:
-    """Give a function that opens the page of practice in the tests' browser."""
+    """Give a function that opens the practice page in the tests' browser."""
 
     def begin(**options: object) -> Contestant:
         url, key = address
@@ -42,7 +42,7 @@ def practise(address: tuple[str, str], sit: Sit) -> Practise:
 
 @pytest.fixture
 def practise_in(tmp_path: Path, built_pages: Path, sit: Sit) -> Iterator[Practise]:
-    """Give a function that starts practice in a folder of the test's files and opens its page."""
+    """Give a function that starts practice in the test's folder and opens its page."""
     with ExitStack() as stack:
 
         def begin(**options: object) -> Contestant:
@@ -61,7 +61,7 @@ def lessons(page: Contestant, *keys: int) -> None:
         page.sees(".steps li.now", str(key))
         page.press(str(key))
         page.key_stands(key)
-        page.page.wait_for_timeout(400)  # "slow keyboard inputs" (workshop 4-4): 45 degrees
+        page.page.wait_for_timeout(400)  # a move of 45 degrees (workshop 4-4: slow inputs)
 
 
 def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> None:
@@ -104,7 +104,7 @@ def test_a_student_s_first_five_minutes(practise: Practise, tmp_path: Path) -> N
     assert name == "Pos-data.txt"
     rows = [line.split("\t") for line in text.splitlines()[1:]]
     assert max(float(row[2]) for row in rows) > 0.04
-    yaws_deg = [float(row[6]) for row in rows]  # rules 2: page and file use one zero
+    yaws_deg = [float(row[6]) for row in rows]  # rules 2: page and file have the same zero
     assert min(abs((yaw_deg - heading_deg + 180) % 360 - 180) for yaw_deg in yaws_deg[-100:]) < 1
     times_s = [float(row[0]) for row in rows]
     assert times_s[0] == 0
@@ -170,7 +170,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
 
 
 def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_path: Path) -> None:
-    """The form shows the folder's files and offers those that are saved again (workshop 4-1)."""
+    """The form shows the folder's files; the page offers a file that changed (workshop 4-1)."""
     book = tmp_path / "Loco-data.xlsx"
     sample = sample_gait_files("hexapod")
     assert sample.postures is not None
@@ -209,7 +209,7 @@ def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_pat
 
 @pytest.mark.long
 def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
-    """On a phone the whole pad is visible without scrolling, in the browser's language."""
+    """On a phone the whole pad fits on the screen, and the page is in the browser's language."""
     phone = {"width": 390, "height": 844}
     page = practise(viewport=phone, has_touch=True, is_mobile=True, locale="ja-JP")
     page.phase(Phase.PLAYING)
@@ -225,7 +225,7 @@ def test_practice_on_a_phone_in_japanese(practise: Practise) -> None:
 
 @pytest.mark.long
 def test_accessible(practise: Practise) -> None:
-    """Axe-core finds no serious mistake in accessibility."""
+    """Axe-core finds no serious mistake on the practice page, in its dialogs and after leaving."""
     pytest.importorskip("axe_core_python")
     page = practise()
     page.phase(Phase.PLAYING)

@@ -17,7 +17,7 @@ from lacoc_server.keys.make import make_keys
 pytestmark = pytest.mark.slow
 
 WAIT_MS = 45_000
-"""The longest wait, for a machine with two busy cores; a test goes on as soon as it can."""
+"""The longest wait [ms], for a machine with two busy cores; a test goes on as soon as it can."""
 JAPANESE_NAMES = re.compile(
     r"Kim|Ants|Bees|Left|Right|Hexapod|LACOC|Robot-Othello|Ctrl|Enter|main|MuJoCo|lacoc web"
 )
@@ -31,7 +31,7 @@ IN_LOBBY = "Now the match is in the lobby"
 
 @pytest.fixture
 def court(venue: Venue) -> Venue:
-    """Give a contest with its court in the lobby, and its gateway."""
+    """Give a contest whose court is in the lobby and whose gateway runs."""
     venue.court()
     venue.web()
     return venue
@@ -39,7 +39,7 @@ def court(venue: Venue) -> Venue:
 
 @pytest.fixture
 def referee(venue: Venue, open_page: OpenPage) -> Referee:
-    """Give a function that opens the referee's page, each time as another person."""
+    """Give a function that opens the referee's page, each time in a fresh browser context."""
 
     def opened(key: bool = True, size: tuple[int, int] = (1366, 768), query: str = "") -> Page:
         page = open_page(viewport={"width": size[0], "height": size[1]})
@@ -59,7 +59,7 @@ def enter(page: Page, name: str = "Kim", token: str = REFEREE) -> None:
 
 
 def at_the_desk(page: Page, name: str = "Kim") -> Page:
-    """Enter as the acting referee."""
+    """Enter as the acting referee, and return the page."""
     enter(page, name)
     expect(page.locator(".acting.mine")).to_be_visible()
     return page
@@ -70,7 +70,7 @@ def big(page: Page) -> Locator:
 
 
 def step(page: Page, key: str = "") -> None:
-    """Press the big button, or its key, once what the button says has stood for a moment."""
+    """Press the big button, or the given key for it, when its text is no longer new."""
     expect(page.locator(".big.fresh")).to_have_count(0)
     if key:
         page.keyboard.press(key)
@@ -311,7 +311,7 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
 
 
 def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
-    """Without the key the page shows everything, and says how to get a link with the key."""
+    """Without the page key the page shows everything, and says how to get a link with it."""
     page = referee(key=False)
     expect(page.locator(".enter")).to_contain_text("#key=")
     expect(page.locator("input[name=token]")).to_have_count(0)
@@ -323,7 +323,7 @@ def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
 def test_the_file_that_a_browser_is_given_leads_to_the_page(
     court: Venue, open_page: OpenPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The file that a browser opens leads to the page, which takes the key out of its address."""
+    """The file that a browser opens leads to the page, which removes the key from its address."""
     monkeypatch.setenv("HOME", str(tmp_path))
     page = open_page()
     with unseen(f"{court.url}/referee#key={court.key}") as address:
@@ -335,7 +335,7 @@ def test_the_file_that_a_browser_is_given_leads_to_the_page(
 
 
 def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
-    """A decision that is not legal now can't be pressed, and its button says why."""
+    """The button of a decision that is not legal now can't be pressed, and says why."""
     page = at_the_desk(referee())
     expect(big(page)).to_have_attribute("aria-disabled", "true")
     assert why(big(page)) == (
@@ -355,7 +355,7 @@ def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
     expect(bubble).to_have_text(f"{ONLY} finished. {IN_LOBBY}")
     page.keyboard.press("Control+Enter")  # not legal: nothing happens
     expect(page.locator(".log li")).to_have_count(1)
-    # A click on the board opens a popover, whose choices also say why not.
+    # Enter on a disc opens a popover, whose choices also say why they can't be pressed.
     disc(page, "c3r3").focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
@@ -413,7 +413,7 @@ def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> Non
 
 @pytest.mark.long
 def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> None:
-    """A lost answer is not shown as a refusal, and the page does not offer the decision again."""
+    """If the answer to a decision is lost, the page says so and does not repeat the decision."""
     page = at_the_desk(referee())
     to_playing(page, court)
     group(page, "Halt").click()
@@ -453,7 +453,7 @@ def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
     big(page).evaluate("(button) => { button.click(); button.click(); }")
     expect(good).to_contain_text("Play begins")
     phase(page, 4)
-    page.evaluate(  # not by the driver, whose presses may be a second apart on a busy machine
+    page.evaluate(  # the page does it: the driver's presses may be a second apart on a busy machine
         "() => { for (const _ of [1, 2]) dispatchEvent(new KeyboardEvent("
         "'keydown', { key: 'Enter', code: 'Enter', ctrlKey: true, cancelable: true })); }"
     )
@@ -476,7 +476,7 @@ def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
 
 
 def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
-    """When a popover closes, the reason shown for a choice in it disappears, too."""
+    """When a popover closes, the reason shown for a choice in it disappears."""
     page = at_the_desk(referee())
     disc(page, "c2r2").click()
     page.locator(".pick .states .act").first.hover()
@@ -510,7 +510,7 @@ def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) -> None:
-    """The dialog shows the score and winner to be made official, also if they change meanwhile."""
+    """The open dialog shows the score and winner to be made official, and follows changes."""
     venue.court("--seconds", "1")
     venue.web()
     page = at_the_desk(referee())
@@ -529,7 +529,7 @@ def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) 
 
 @pytest.mark.long
 def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
-    """A marker is shown in the page's language, and not by its name in the record."""
+    """The page names a marker in the page's language, not as the record does."""
     text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")
     venue.contest.write_text(text, "utf-8")
     venue.court()
@@ -570,7 +570,7 @@ def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_a_reload_goes_on(court: Venue, referee: Referee) -> None:
-    """After a reload the referee still acts; after leaving, the page has the name but no token."""
+    """After a reload the referee still acts; after leaving, the page only keeps the name."""
     page = at_the_desk(referee())
     page.reload()
     expect(page.locator(".acting.mine")).to_contain_text("Kim")
@@ -654,7 +654,7 @@ def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: Referee) -> None:
-    """With equal links the page shows each seat's round trip and the common delay."""
+    """With equal links (rules 3) the page shows each seat's round trip and the common delay."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     venue.court()
@@ -669,7 +669,7 @@ def test_both_links_are_shown_and_what_makes_them_equal(venue: Venue, referee: R
 
 @pytest.mark.long
 def test_the_log_is_filtered(court: Venue, referee: Referee) -> None:
-    """The log can be filtered, here for links and for decisions."""
+    """The log can be filtered, for instance by "Links" or by "Decisions"."""
     page = at_the_desk(referee())
     court.contestant("left", "Ants")
     log_has(page, "Ants is ready.")

@@ -82,7 +82,7 @@ class Player(Show):
     Args:
         page: a new page.
         venue: the gateway.
-        query: such as "?file=b-flags.mcap&t=0"; with a time `t` it does not play.
+        query: such as "?file=b-flags.mcap&t=0"; at a time `t` [s] the recording begins paused.
     """
 
     def __init__(self, page: Page, venue: Venue, query: str = "", **options: Any) -> None:
@@ -132,7 +132,7 @@ class Player(Show):
 def test_what_is_shown_is_what_was_played(
     library: Venue, record: Record, open_page: OpenPage
 ) -> None:
-    """Score, clock, board and poses at a beat equal those that Python reads at that beat."""
+    """At each beat the page shows the score, clock, board and poses that Python reads there."""
     page = open_page()
     sockets: list[str] = []
     page.on("websocket", lambda socket: sockets.append(socket.url))
@@ -196,7 +196,7 @@ def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: Ope
         def enough() -> bool:
             sample = "[performance.now() / 1000, window.__replay.recording.beat.value]"
             then.extend(show.page.evaluate(sample))
-            # A busy machine may draw nothing for longer than that.
+            # A busy machine may draw nothing for longer than 1.2 s.
             return then[-2] - then[0] > 1.2 and then[-1] > then[1]
 
         show.until(enough, "time stands still")
@@ -233,7 +233,7 @@ def record_length(first: int, last: int) -> str:
 
 @pytest.mark.long
 def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> None:
-    """Each game event has a labelled mark of its seat; marks, keys and the log lead to it."""
+    """Each game event has a labelled mark; marks, keys and the log lead to one second before it."""
     show = Player(open_page(viewport=LAPTOP), library, "?file=b-flags.mcap&t=0")
     game = [event for event in record.events if "marker" in event.data]
     for seat in (0, 1):
@@ -274,7 +274,7 @@ def test_marks_and_log(library: Venue, record: Record, open_page: OpenPage) -> N
 def test_the_servers_list_and_the_address(
     library: Venue, open_page: OpenPage, console: Any
 ) -> None:
-    """A recording has an address, and so has a moment of it; Back returns to the list."""
+    """Each recording and each moment in it has an address; Back returns to the list."""
     console.expect("404")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     expect(show.find(".recordings b")).to_have_count(2, timeout=WAIT_MS)
@@ -349,7 +349,7 @@ def test_files_of_this_machine(
 
 
 def write_segments(record: Record, folder: Path) -> list[Path]:
-    """Write the match in two parts, as a court that was killed and started again records it."""
+    """Write a match in two parts, as a killed and restarted court does; return their paths."""
     killed, again = 700, 650
     sheet, scene = record.sheet_at(again), record.scene_at(again)
     assert sheet is not None
@@ -369,7 +369,7 @@ def write_segments(record: Record, folder: Path) -> list[Path]:
             (first if beat < again else second).event(event)
         if beat >= again:
             second.frame(beat, data)
-        if again <= beat < killed:  # the second part replaces this frame
+        if again <= beat < killed:  # the second part replaces this frame: its score is wrong
             frame = decode(data, Frame)
             seats = tuple(msgspec.structs.replace(seat, score=99) for seat in frame.seats)
             data = encode(msgspec.structs.replace(frame, seats=seats))
@@ -380,7 +380,7 @@ def write_segments(record: Record, folder: Path) -> list[Path]:
     open_bytes = first.path.read_bytes()
     first.close()
     second.close()
-    first.path.write_bytes(open_bytes + b"\x05\x40")  # in the middle of a message
+    first.path.write_bytes(open_bytes + b"\x05\x40")  # it ends in the middle of a message
     return [first.path, second.path]
 
 
@@ -476,7 +476,7 @@ def test_damage(
 def test_a_damaged_packed_file_says_so(
     library: Venue, flags: Path, open_page: OpenPage, tmp_path: Path
 ) -> None:
-    """The page reports a packed file with a changed byte."""
+    """The page reports a changed byte in the compressed record of a finished match."""
     data = bytearray(flags.read_bytes())
     data[len(data) // 2] ^= 4
     path = tmp_path / "packed.mcap"
@@ -502,7 +502,7 @@ def test_without_the_servers_list(
 
 @pytest.mark.long
 def test_a_phone(library: Venue, open_page: OpenPage) -> None:
-    """On an upright phone nothing lies outside the width, and buttons are large enough to touch."""
+    """On an upright phone everything fits the width, and buttons are large enough to touch."""
     page = open_page(viewport=PHONE, has_touch=True, is_mobile=True)
     show = Player(page, library, "?file=b-flags.mcap&t=20")
     show.sees(".board")
@@ -521,7 +521,7 @@ def test_a_phone(library: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_accessible(library: Venue, open_page: OpenPage) -> None:
-    """Axe-core finds no serious mistake in accessibility."""
+    """Axe-core finds no serious mistake in the list, the recording and the result."""
     pytest.importorskip("axe_core_python")
     show = Player(open_page(viewport=LAPTOP), library, drawn=False)
     show.sees(".recordings li")

@@ -44,7 +44,7 @@ def address(site: Path) -> Iterator[str]:
 
 @pytest.fixture
 def slow_screen() -> bool:
-    """Let pages draw as often as the browser can."""
+    """Give False: pages draw as often as the browser can."""
     return False
 
 
@@ -54,7 +54,7 @@ def stand(page: Page, address: str) -> Stand:
 
 
 class Recorded:
-    """The sheet and frames of a match file of the stand, read by Python."""
+    """The sheet and frames of a match file that the test page `stand` shows."""
 
     def __init__(self, site: Path, arena: str) -> None:
         data = msgspec.msgpack.decode((site / f"{arena}.bin").read_bytes())
@@ -65,7 +65,7 @@ class Recorded:
         return unpack_states(frame.markers, len(self.sheet.markers))
 
     def change(self) -> tuple[Frame, Frame, int]:
-        """Return the frames before and after a marker first becomes a team's, and its index."""
+        """Return the frames before and after a marker first becomes a seat's, and which marker."""
         for before, after in zip(self.frames, self.frames[1:], strict=False):
             was, now = self.states(before), self.states(after)
             for marker, (one, other) in enumerate(zip(was, now, strict=True)):
@@ -119,7 +119,7 @@ def test_the_page_has_every_body_where_mujoco_has_it(
 
 
 def test_the_picture_shows_the_frame(stand: Stand, site: Path) -> None:
-    """A robot's body is drawn at its place in a frame, or half-way between its places in two."""
+    """A robot is drawn at its place in a frame; between two frames it is drawn half-way."""
     frames = Recorded(site, "othello").frames
     one, other = frames[600], frames[601]
     stand.open("othello.bin", speed=0, beat=one.beat, q="low")
@@ -168,13 +168,13 @@ def test_quaternions_go_the_short_way(stand: Stand) -> None:
 def test_a_marker_that_changes_moves_and_ends_in_its_new_state(
     stand: Stand, site: Path, arena: str
 ) -> None:
-    """A disc turns over and a flag falls in motion, and then the new state is drawn."""
+    """A marker that changes is drawn in motion, and then in its new state."""
     recorded = Recorded(site, arena)
     before, after, index = recorded.change()
     stand.open(f"{arena}.bin", speed=0, beat=before.beat, q="low", camera="top", labels=0)
     assert stand.view(f"marker({index})") == recorded.states(before)[index]
     stand.page.evaluate("(beat) => stand.seek(beat)", after.beat)
-    # Asked between two pictures: on a busy machine the next one may be drawn after the movement.
+    # Asked every 10 ms: on a busy machine the next picture may be drawn after the movement.
     stand.page.wait_for_function("__lacoc.view.moving", polling=10)
     stand.page.wait_for_function("!__lacoc.view.moving")
     assert stand.view(f"marker({index})") == recorded.states(after)[index]
@@ -253,7 +253,7 @@ def test_the_picture_is_there(stand: Stand, site: Path, arena: str) -> None:
 def test_the_whole_field_fits(
     open_page: OpenPage, address: str, size: tuple[int, int], camera: str
 ) -> None:
-    """The whole field fits a window of any shape, below a bar of 40 pixels, and nearly fills it."""
+    """The whole field fits each window below a bar of 40 pixels, and takes up much of it."""
     width, height = size
     stand = Stand(open_page(viewport={"width": width, "height": height}), address)
     stand.open("flag-strike.bin", speed=0, q="low", camera=camera, top=40)
@@ -299,7 +299,7 @@ def test_a_flag_can_be_clicked_at_its_pole(stand: Stand, site: Path) -> None:
 
 
 def test_dragging_turns_the_camera_and_is_no_click(stand: Stand) -> None:
-    """A drag turns the camera and picks nothing, the wheel zooms, a double click undoes both."""
+    """Drag and wheel move the camera and click nothing; a double click undoes both."""
     stand.open("othello.bin", speed=0, q="low")
     eye = np.array(stand.view("eye"))
     stand.page.mouse.move(400, 225)

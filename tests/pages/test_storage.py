@@ -1,4 +1,4 @@
-"""All pages work in a browser that stores nothing, until they are closed."""
+"""Tests of the pages in a browser that denies them its storage."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ DENIED = """for (const name of ["sessionStorage", "localStorage"])
 
 @pytest.mark.long
 def test_who_shows_needs_no_storage(venue: Venue, open_page: OpenPage) -> None:
-    """Pages that show a match work where reading the storage fails, as with blocked cookies."""
+    """Pages that show a match work when the storage is denied, as with blocked cookies."""
     venue.court()
     venue.web()
     for path in ("/watch", "/overlay"):
@@ -36,7 +36,7 @@ def test_who_shows_needs_no_storage(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_who_acts_needs_no_storage(venue: Venue, sit: Sit, console: Any) -> None:
-    """Without storage an open page keeps its key and seat, also when its connection breaks."""
+    """Without storage an open page keeps its seat or desk when its connection breaks."""
     venue.court()
     web = venue.web()
     page = sit(venue.url)

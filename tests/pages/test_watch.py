@@ -138,7 +138,7 @@ def test_the_winner_is_whom_the_referee_says(venue: Venue, open_page: OpenPage) 
 
 @pytest.mark.long
 def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) -> None:
-    """The result follows when the referee changes the score or takes that back (rules 4.1)."""
+    """The shown result follows when the referee changes the score or undoes this (rules 4.1)."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -175,7 +175,7 @@ def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
 
 @pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: Any) -> None:
-    """While court or gateway is lost, the picture is marked as old and a banner says why."""
+    """While court or gateway is down, the picture is marked as old and a banner says why."""
     console.expect("WebSocket|ERR_CONNECTION")
     court, web = venue.court(), venue.web()
     decide(playing(venue), "two", type="adjust", seat="left", points=2)
@@ -206,7 +206,7 @@ def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: A
 
 
 def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
-    """Keys choose the camera, panel and settings; keys typed in a dialog do nothing else."""
+    """Keys choose the camera and open panel and settings; while a dialog is open they do not."""
     venue.court()
     venue.web()
     playing(venue)
@@ -280,7 +280,7 @@ def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
     [1000, *(pytest.param(width, marks=pytest.mark.long) for width in (1280, 1366, 1440, 1920))],
 )
 def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: int) -> None:
-    """At any width, brand, choice of court, score and buttons do not overlap."""
+    """At each width the brand, the choice of court, the score and the buttons do not overlap."""
     text = venue.contest.read_text()
     side = text.replace("court.main", "court.second-court")
     venue.contest.write_text(text + side.replace(str(venue.court_port), str(free_port())))
@@ -392,7 +392,7 @@ def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
 def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
     """Without WebGL the page draws a flat map; on a phone the banner covers neither score nor map.
 
-    The court is killed for that: its banner is as long as any.
+    The court is killed for this check, because a lost court has one of the longest banners.
     """
     court = venue.court()
     venue.web()
@@ -427,7 +427,7 @@ def bottom(show: Show, selector: str) -> float:
 
 @pytest.mark.long
 def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> None:
-    """The colours that a viewer chooses show at once, and everywhere after a reload."""
+    """The colours that a viewer chooses show at once, and still after a reload."""
     venue.court("--seconds", "1")
     venue.web()
     referee = playing(venue)
@@ -507,7 +507,7 @@ def test_who_wants_less_motion_sees_nothing_turn(venue: Venue, open_page: OpenPa
 
 @pytest.mark.long
 def test_accessible(venue: Venue, open_page: OpenPage) -> None:
-    """Axe-core finds no serious mistake in accessibility."""
+    """Axe-core finds no serious mistake in the phases, the settings and the start page."""
     pytest.importorskip("axe_core_python")
     venue.court("--seconds", "1")
     venue.web()

@@ -1,4 +1,4 @@
-"""Put `stage` (the builders of the court's tests) on the import path, and give fixtures."""
+"""Makes the helper modules of these tests and `benchmarks` importable, and gives fixtures."""
 
 import json
 import logging
@@ -18,7 +18,7 @@ from lacoc_server.world import arithmetic
 
 @pytest.fixture
 def loud() -> Iterator[None]:
-    """Set the level of the log to INFO, as `start` does."""
+    """Let the log take lines of level INFO during the test, as in a running court."""
     before = structlog.get_config()
     structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.INFO))
     yield
@@ -27,7 +27,7 @@ def loud() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def has_other_arithmetic() -> None:
-    """Skip the test if a second process can't be given another arithmetic on this machine."""
+    """Skip the test if no process on this machine can get arithmetic that gives other bits."""
     there = json.loads(elsewhere("benchmarks.proof", ["fingerprint"]))
     if arithmetic.same(arithmetic.here(), there):
         pytest.skip("the second arithmetic of this machine is the first")

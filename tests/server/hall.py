@@ -1,4 +1,4 @@
-"""A court with a spectator and a referee, whose contestants are processes that can be lost."""
+"""A running court for tests that lose a contestant's process or connection."""
 
 import signal
 import subprocess
@@ -19,7 +19,7 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
 
 LATE_BEATS = 10
-"""Tolerance in beats: a late court makes five beats at once, and a frame travels for one or two."""
+"""Tolerance in beats: a late court makes up to five at once, and a frame travels for one or two."""
 
 
 class Hall:
@@ -55,7 +55,7 @@ class Hall:
     def bot(
         self, seat: str, connect: str = "", before: tuple[str, ...] = ()
     ) -> subprocess.Popen[bytes]:
-        """Start the program of a contestant that presses a key every half second."""
+        """Start a bot in a seat; it presses another key every half second of the clock."""
         (self.folder / "walker.py").write_text(
             "from lacoc_arenas.bot import Key\nfrom lacoc_shared.gait.tables import Level\n"
             "def bot(sheet, seat):\n"
@@ -101,9 +101,9 @@ class Hall:
         return [event for event in self.view.events if event.kind == "silent"]
 
     def loses(self, lose: Callable[[], object]) -> None:
-        """Call `lose`, and check that the left seat alone falls silent and stands a second later.
+        """Call `lose`; check that the left seat alone falls silent and stands in time (rules 3).
 
-        Rules 3. Frames show the seat as silent in the beat in which it stands, and health agrees.
+        In time means within a second and `LATE_BEATS`. Frames and the health report must agree.
         """
         before = len(self.silences())
         lose()

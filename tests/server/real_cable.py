@@ -17,7 +17,7 @@ CLONE_NEWNET = 0x40000000
 
 
 def ip(*words: str) -> None:
-    """Run the `ip` command, which changes this machine's network."""
+    """Run the `ip` command, which changes the network of this process's namespace."""
     subprocess.run(["ip", *words], check=True, capture_output=True)
 
 
@@ -26,8 +26,8 @@ def cable() -> Iterator[tuple[str, tuple[str, ...], Callable[[str], None]]]:
     """Connect a second network namespace by a cable.
 
     Yields:
-        Our address; the words before a command that run it there; a function that sets the
-        cable "up" or "down".
+        The address of this side; the words to put before a command, to run it on the other side;
+        a function that sets the cable "up" or "down".
     """
     name = f"lacoc{os.getpid()}"
     ip("netns", "add", name)
@@ -47,7 +47,7 @@ def pull_a_real_cable(folder: Path) -> bool:
     """Play a match over a cable that goes down, up and down; the court is ended while it is down.
 
     Returns:
-        False if this user may not make network namespaces.
+        False if this user may not make network namespaces; then nothing was played.
     """
     if ctypes.CDLL(None).unshare(CLONE_NEWNET):
         return False

@@ -132,14 +132,14 @@ class Party:
             self.reach(then)
 
     def play(self) -> None:
-        """Start the match."""
+        """Start the match, and wait until it is being played."""
         self.reach(Phase.READY)
         self.decide(Start(), Phase.PLAYING)
 
 
 @contextmanager
 def party(contest: Path) -> Iterator[Party]:
-    """Join and ready all contestants at a contest's running court."""
+    """Join all contestants at a contest's running court, and say ready for each."""
     _, court = load(contest).court()
     with open_client([court.address()]) as session:
         yield Party(session, contest)

@@ -43,7 +43,7 @@ def setup(arena: str, overrides: Mapping[str, Any] | None = None) -> Setup:
 def join(
     seat: int, team: str | None = None, robot: str = "hexapod", robot_file: bytes | None = None
 ) -> JoinSeat:
-    """Return the join of a team with a sample robot and its gait, or with another robot file."""
+    """Return a team's join with a sample robot and its gait, or with another robot file."""
     (name, data), gait = _files(robot)
     return JoinSeat(
         seat,

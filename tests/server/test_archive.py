@@ -1,4 +1,4 @@
-"""A finished match's record: the last error that its disk reported is in the court's log."""
+"""Tests of the archive: it closes a finished match's record and logs an error of the disk."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A user's bot in a file: each mistake is reported with its line."""
+"""Tests of bots in users' files: each mistake is reported with its line."""
 
 from pathlib import Path
 from typing import Any
@@ -53,7 +53,7 @@ def test_what_is_a_key(tmp_path: Path, returns: str, expected: Key | None) -> No
     ["2", "(1, 2)", "Key(1, 42)", "Key(1, -1)", "Key(2, 1)", "Key('B', 2)", "Key(1, 2.0)"],
 )
 def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
-    """A brain that returns something else than a key or None is refused with a message."""
+    """If a brain returns neither a key nor None, the error says what was expected."""
     with pytest.raises(UserError, match=r"my_bot\.py:5\) returned .*Expected a Key\(level"):
         play(tmp_path, brain(returns))
 
@@ -78,7 +78,7 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
     ],
 )
 def test_the_line_of_a_mistake(tmp_path: Path, text: str, says: str) -> None:
-    """A mistake is reported in one line, with the last line of the bot's own code before it."""
+    """The message of a bot's mistake has no line break, and names the line of the bot's file."""
     with pytest.raises(UserError, match=rf"^The bot .*my_bot\.py.*{says}") as refused:
         play(tmp_path, text)
     assert "\n" not in str(refused.value)

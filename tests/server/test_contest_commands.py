@@ -1,4 +1,4 @@
-"""`lacoc contest`: the file that it writes is private and loads, and every setting is checked."""
+"""Tests of `lacoc contest`: it writes a private and valid file, and checks every setting."""
 
 import json
 import stat
@@ -30,7 +30,7 @@ def run(*args: str) -> str:
     ],
 )
 def test_a_new_file_is_right_for_every_arena(tmp_path: Path, arena: str, seats: list[str]) -> None:
-    """The file that `init` writes passes `check` and has a token for every seat."""
+    """The file that `init` writes passes `check` and has the seats of its arena."""
     file = tmp_path / "contest.toml"
     run("init", str(file), "--arena", arena)
 
@@ -53,7 +53,7 @@ def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> N
 
 
 def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
-    """Rules 4: a team may have its own colour and pattern; the default is those of its seat."""
+    """Rules 4: a team may have its own colour and pattern; by default it has those of its seat."""
     file = tmp_path / "contest.toml"
     run("init", str(file))
     text = file.read_text()
@@ -70,7 +70,7 @@ def test_a_team_may_have_its_own_look(tmp_path: Path) -> None:
 
 
 def test_show_as_json(tmp_path: Path) -> None:
-    """A program that hands out the tokens can read them from `show --json`, by court and person."""
+    """`show --json` gives the command of each person with its token, by court and person."""
     file = tmp_path / "contest.toml"
     run("init", str(file), "--court", "hall")
     lines = json.loads(run("show", str(file), "--json", "--host", "10.0.0.1"))
@@ -114,7 +114,7 @@ def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
 def test_a_court_says_where_it_is_open_and_not_that_its_match_is_new(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The line "is open at" does not call the match new: it may be one that was resumed."""
+    """The line "is open at" does not call the match new, because it may be a resumed one."""
     entry = contests.throwaway("othello").courts["main"]
     at = ("tcp/127.0.0.1:7447",)
     serve._open_doors("main", entry, "m-1", at, metrics=None, made_here=False, json=False)

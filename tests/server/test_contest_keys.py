@@ -1,4 +1,4 @@
-"""`lacoc contest keys`: which files it makes, who may read them, and that it destroys nothing."""
+"""Tests of `lacoc contest keys`: its files, who may read them, and that it destroys nothing."""
 
 import ssl
 import stat
@@ -35,7 +35,7 @@ def certificate(path: Path) -> dict[str, Any]:
 
 
 def test_one_command_encrypts_a_contest(file: Path) -> None:
-    """`lacoc contest keys` makes the file that `init` wrote into a contest with TLS."""
+    """`lacoc contest keys` turns the contest that `init` wrote into one with certificates."""
     run("keys", str(file), "--host", "192.168.1.20", "--host", "court.example.org")
 
     contest = contests.load(file)
@@ -126,7 +126,7 @@ def test_every_court_is_named_that_can_be_started_next(file: Path) -> None:
 
 
 def test_renew_keeps_the_old_with_a_number(file: Path) -> None:
-    """`--renew` makes a new authority, and moves the older folder of keys to one with a number."""
+    """`--renew` makes a new authority, and adds a number to the name of the older key folder."""
     keys = file.parent / "keys"
     run("keys", str(file), "--host", "one.example")
     first = (keys / "ca.pem").read_bytes()
@@ -175,7 +175,7 @@ def test_the_entry_goes_into_any_contest_file(tmp_path: Path) -> None:
     ],
 )
 def test_a_wrong_file_is_said_and_left(file: Path, old: str, new: str, said: str) -> None:
-    """If a contest file can't be served, the command makes no keys and does not change the file."""
+    """If a contest file has a mistake, the command makes no keys and does not change the file."""
     file.write_text(file.read_text().replace(old, new, 1))
     text = file.read_text()
     with pytest.raises(UserError, match=said):
@@ -237,7 +237,7 @@ def test_show_names_the_invitations(file: Path) -> None:
 
 @pytest.mark.parametrize("seat", ["referee", "gateway", "spectators"])
 def test_a_seat_is_not_called_like_somebody_else(file: Path, seat: str) -> None:
-    """A seat can't be called like another user of the court."""
+    """A seat can't have the name of another user of the court, such as "referee"."""
     file.write_text(file.read_text().replace("main.seat.left", f"main.seat.{seat}"))
     with pytest.raises(UserError, match="can't be called"):
         contests.load(file)

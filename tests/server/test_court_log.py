@@ -1,4 +1,4 @@
-"""The court's log: events of a match, and lines about refusals, slow beats and the disk."""
+"""Tests of the court's log: events of a match, and lines on refusals, slow beats and the disk."""
 
 import msgspec
 import pytest

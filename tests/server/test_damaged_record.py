@@ -1,4 +1,4 @@
-"""Cut, damaged or foreign records, and those of other software: verified, and resumed by a court.
+"""Tests of `verify` and of a court's start with cut, damaged or foreign records.
 
 Everything readable is recovered, a message says what is missing, and no record is changed.
 """
@@ -52,7 +52,7 @@ OTHELLO = arenas.load("othello")
 
 
 def play(folder: Path, made: Setup, arena: Path | None = None) -> Path:
-    """Play a match of 120 beats and leave it as a kill does; return its segment."""
+    """Play a match of 120 beats and leave it as a kill does; return its segment's path."""
     journal = Journal(Match(made, World, arena), folder)
     for number in range(BEATS):
         journal.beat(INPUTS.get(number, ()))
@@ -118,7 +118,7 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
 def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder: Path) -> None:
     """With a flipped bit, verify and a court's start end with a message, not with a crash.
 
-    The record stays as it is, and most flips are found.
+    The record stays as it is, and `verify` finds most flips.
     """
     whole = Record.read(segment(folder, left_behind))
     chance = random.Random(7)
@@ -195,7 +195,7 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
 def test_a_record_of_another_version_is_refused(
     change: Callable[[bytes, Path], bytes], words: str, left_behind: bytes, tmp_path: Path
 ) -> None:
-    """A record of other software or another arena is refused with the reason and stays unchanged.
+    """A court refuses a record of other software or another arena, says why and leaves it as it is.
 
     `serve --fresh` opens a new match beside it.
     """
@@ -222,7 +222,7 @@ def setup_of(arena: str) -> Setup:
 
 
 def other_model(data: bytes) -> tuple[bytes, bytes]:
-    """Return the model's hash from the event of READY, and another one to replace it."""
+    """Return the model's hash from the event of READY, and another hash to replace it."""
     at = data.rindex(b"\xa5model\xb0") + 7
     return data[at : at + 16], b"0" * 16
 
@@ -243,7 +243,7 @@ def test_no_code_runs_because_a_record_names_it(tmp_path: Path, left_behind: byt
 
 
 def test_a_folder_that_the_user_names_plays_its_record(tmp_path: Path) -> None:
-    """If the user names the folder of a game, its record is verified and resumed.
+    """A record of a game in a folder is verified and resumed if the user names the folder.
 
     The folder may have moved since the match was recorded.
     """

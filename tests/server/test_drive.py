@@ -1,4 +1,4 @@
-"""The drive: commanded angles tick by tick, compared with tables (rules 3)."""
+"""Tests of the drive: commanded angles tick by tick, compared with tables (rules 3)."""
 
 import math
 from itertools import pairwise
@@ -173,7 +173,7 @@ def test_a_key_starts_at_its_first_posture_at_once(advance: str) -> None:
 
 
 def test_level_a_holds_its_posture() -> None:
-    """Rules 3: at level A, every joint moves to one posture at AngMin and stays there."""
+    """Rules 3: at level A, every joint moves to its angle of one posture and stays there."""
     it = drive(postures={0: 0.0, 5: 45.0})
     states = ticks(it, it.press(it.begin(A), A, 5), 100)
     assert [s.angles == posture(45.0) for s in states] == [False] * 18 + [True] * 82
@@ -212,7 +212,7 @@ def test_who_is_told_to_stand_takes_one_posture(advance: str) -> None:
 
 @pytest.mark.parametrize("repeat", [True, False])
 def test_key_0_of_who_stands_begins_its_sequence(repeat: bool) -> None:
-    """Rules 3: if a standing robot's own key 0 is pressed, the whole sequence of key 0 begins."""
+    """Rules 3: if key 0 is pressed while a robot stands, the whole sequence of key 0 begins."""
     it = drive((24.0, -24.0, 0.0), (0.0,), advance="time", hold_s=0.04, repeat=repeat)
     pressed = it.press(it.tick(it.begin(B)), B, 0)
     assert targets(it, pressed, 6) == [0, 0, 1, 1, 2, 2]
@@ -262,7 +262,7 @@ def path(it: Drive, script: list[tuple[int, Level, int]]) -> list[DriveState]:
 def test_never_faster_than_ang_min_and_the_same_again(
     it: Drive, script: list[tuple[int, Level, int]]
 ) -> None:
-    """No angle moves faster than AngMin, and the same keys give the same angles again."""
+    """No angle moves faster than the commanded speed; the same keys give the same angles again."""
     states = path(it, script)
     step = it._step_rad * (1 + 1e-8)
     for before, now in pairwise(states):

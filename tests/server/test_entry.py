@@ -1,4 +1,4 @@
-"""Weighing in: a robot and its gait files are checked together (rules 1 and 2)."""
+"""Tests of weighing in: a robot and its gait files are checked together (rules 1 and 2)."""
 
 import pytest
 from stage import join
@@ -106,7 +106,7 @@ def test_the_contests_limits() -> None:
 
 
 def test_a_legend_that_contradicts_the_columns_is_told_with_the_join() -> None:
-    """If a legend contradicts the columns, the columns count and the contestant gets a note."""
+    """If a legend contradicts the columns, the columns are used and the contestant gets a note."""
     assert HEXAPOD.postures is not None
     exchanged = HEXAPOD.postures.data.replace(b"R,F", b"x").replace(b"L,F", b"R,F")
     (note,) = weigh_in(HEXAPOD.robot, SentFile("mine.txt", exchanged), None).notes

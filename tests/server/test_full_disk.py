@@ -1,4 +1,4 @@
-"""A disk that is full in the middle of a match (docs/decisions/0013-full-disk.md)."""
+"""Tests of a court whose disk is full or slow, or reports errors (decisions/0013-full-disk.md)."""
 
 import resource
 import shutil
@@ -69,7 +69,7 @@ def small(contest: Path, folder: Path) -> Iterator[Disk]:
 
         def fill() -> None:
             with (seen / "other").open("wb", buffering=0) as other:
-                for size in (1 << 20, 1 << 12, 1):  # to the last byte of its last page
+                for size in (1 << 20, 1 << 12, 1):  # to the disk's last byte
                     while True:
                         try:
                             other.write(bytes(size))
@@ -88,7 +88,7 @@ def read(folder: Path) -> Record:
 
 
 def is_given(those: Party, reason: str) -> bool:
-    """Return whether an event gives this reason; the event comes after the frame of its beat."""
+    """Return whether a received event gives this reason; events come after their beat's frame."""
     given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
@@ -162,7 +162,7 @@ runpy.run_module("lacoc_shared", run_name="__main__", alter_sys=True)
 
 
 def sync(flag: Path, what: str) -> list[str]:
-    """Return the words before a court's command line that run it with the changed `fsync`."""
+    """Return the words to put before a command line, to run it with the changed `fsync`."""
     return [sys.executable, "-c", SYNC, str(flag), what]
 
 
@@ -185,7 +185,7 @@ def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -
 
 
 def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
-    """If no file can be made for the next match, the last one stays open; the court says why."""
+    """If no file can be made for the next match, the old match stays; the court says why."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     with served(contest, folder), party(contest) as those:
         those.decide(Abort())

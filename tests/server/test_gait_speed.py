@@ -1,4 +1,4 @@
-"""How fast the workshop's gait walks and turns, measured in matches of practice."""
+"""Tests of how fast the workshop's gait walks and turns, measured in matches of practice."""
 
 import math
 from functools import cache
@@ -36,7 +36,7 @@ def practice(heading_deg: float, joins: JoinSeat | None = None) -> Stage:
 
 
 def measure(stage: Stage, frames: list[np.ndarray]) -> Walk:
-    """Return the speeds of a walk, from one pose a tick."""
+    """Return the speeds of a walk; `frames` has the body's pose in each tick."""
     poses = np.array(frames, dtype=float)
     w, x, y, z = poses[:, 3:7].T
     yaw = np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
@@ -56,7 +56,7 @@ def pose(stage: Stage) -> np.ndarray:
 
 @cache
 def by_hand(digits: tuple[int, ...], heading_deg: float = 90.0) -> Walk:
-    """Walk with level A: press a key every 0.5 s, as at a keyboard."""
+    """Walk at level A by a key every 0.5 s, as at a keyboard, and return the speeds."""
     stage = practice(heading_deg)
     frames = [pose(stage)]
     for number, digit in zip(range(int(RUN_S / 0.5)), cycle(digits)):
@@ -69,7 +69,7 @@ def by_hand(digits: tuple[int, ...], heading_deg: float = 90.0) -> Walk:
 
 
 def by_sequence(joins: JoinSeat | None = None) -> Walk:
-    """Walk with level B: press one key once."""
+    """Walk forward at level B by one press of a key, and return the speeds."""
     stage = practice(90.0, joins)
     frames = [pose(stage)]
     stage.beat(key(0, FORWARD, level=B))
@@ -104,7 +104,7 @@ def test_5678_turns_right_and_8765_left() -> None:
 
 
 def test_0_stands() -> None:
-    """Key 0 lets the robot stand."""
+    """With key 0 the robot stays where it is."""
     walk = by_hand((0,))
     assert abs(walk.forward_mm_s) < 0.5
     assert abs(walk.turn_deg_s) < 0.1

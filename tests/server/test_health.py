@@ -1,4 +1,4 @@
-"""The health verdict: what it measures, when it advises a replay, and how the record keeps it."""
+"""Tests of the health verdict: its measurements, its advice, and its place in the record."""
 
 import json
 from collections import Counter
@@ -124,7 +124,7 @@ def test_only_the_time_that_is_played_counts() -> None:
 
 @pytest.mark.parametrize("speed", [1.0, 4.0])
 def test_slow_beats_and_the_real_time_factor(speed: float) -> None:
-    """One stall of 0.1 s each second gives a real-time factor of 1/1.08, at any court's speed."""
+    """One beat of 0.1 s in 50 gives a real-time factor of 1/1.08, at each speed of the court."""
     held = Held(speed=speed)
     held.beat(took_s=0.02 / speed)
     for beat in range(250):
@@ -139,7 +139,7 @@ def test_slow_beats_and_the_real_time_factor(speed: float) -> None:
 def test_repeats_of_a_lossy_link() -> None:
     """A seat that is heard 6 times a second instead of 10 has lost commands.
 
-    More than 10 a second later do not make up for the lost ones.
+    If it is heard more often later, that does not make up for the lost ones.
     """
     held = Held()
     held.seconds(1)
@@ -160,7 +160,7 @@ def test_repeats_that_come_a_little_early_or_late() -> None:
 
 
 def test_repeats_of_a_match_that_is_often_halted() -> None:
-    """If a match is often halted, no repeat counts as lost, because only whole seconds count."""
+    """If a match is often halted, no repeat counts as lost: only whole seconds are measured."""
     held = Held()
     for _ in range(6):
         for beat in range(60):
@@ -277,7 +277,7 @@ def test_advice_is_an_event_of_the_match() -> None:
 
 @pytest.mark.slow
 def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
-    """The verdict is not part of the result, because the result must follow from the inputs."""
+    """A record has the health verdict beside the result, and a replay gives the same result."""
     match = Match(setup("othello", QUICK), World)
     health = MatchHealth(match, HealthLimits(), [Door(0, {})] * 2)
     journal = Journal(match, tmp_path, measure=health.measure)

@@ -1,4 +1,4 @@
-"""A court is killed at random moments in every phase of a match (benchmarks/kills.py)."""
+"""Test of a court that is killed at random moments in every phase (benchmarks/kills.py)."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""A court goes on only with its own match, and only if the match was not ended."""
+"""Tests that a court goes on only with its own match, and only if the match was not ended."""
 
 import os
 import signal
@@ -39,7 +39,7 @@ LATER = "20260501-100500"
 def held(
     folder: Path, court: str = "main", opened: str = TEN, number: int = 1, arena: str = "othello"
 ) -> Journal:
-    """Play a match to PLAYING (practice: to READY), and return its open journal."""
+    """Play 50 beats of a match, to PLAYING (practice: in LOBBY); return its open journal."""
     made = msgspec.structs.replace(
         setup(arena, QUICK), match_id=f"{opened}-{court}-{number:03d}", court=court, match=number
     )
@@ -207,7 +207,7 @@ def failing(flag: Path, what: str) -> list[str]:
 
 
 def packed(folder: Path, *numbers: str) -> list[Path]:
-    """Return a folder's packed files, once it holds those of these matches and nothing else."""
+    """Wait until a folder holds the packed files of these matches and nothing else; return them."""
     end_s, wanted = time.monotonic() + WAIT_S, sorted(f"-{number}.mcap" for number in numbers)
     while sorted(path.name[-9:] for path in folder.iterdir()) != wanted:
         assert time.monotonic() < end_s, list(folder.iterdir())
@@ -270,7 +270,7 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
 
 
 def test_a_stopped_court_ends_its_match(tmp_path: Path) -> None:
-    """SIGTERM in PLAYING ends the match, so the next start opens another one, however early."""
+    """SIGTERM ends a match in PLAYING: the next start opens a new one, even if a kill follows."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     with served(contest, folder) as first, party(contest) as those:
         those.play()

@@ -1,4 +1,4 @@
-"""Contestants that are lost and watchers that freeze, as real processes on real connections.
+"""Tests in which contestants' processes or connections are lost, and watchers freeze.
 
 Rules 3: a robot whose controller is not heard for a second stands, and keeps its seat.
 Times are counted in beats of the court, so that a busy machine does not change the result.
@@ -129,7 +129,7 @@ def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
 def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
     hall: Hall, answer_s: float
 ) -> None:
-    """If a decision's answer is missing, the referee is told so, and it is done at most once."""
+    """A decision whose answer is missing is made at most once, and the referee gets an error."""
     hall.bot("left")
     hall.bot("right")
     hall.play()
@@ -180,9 +180,9 @@ def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
 
 @pytest.mark.long
 def test_a_real_cable(tmp_path: Path) -> None:
-    """When the kernel's own link goes down and up, the robot stands and walks again.
+    """When a virtual cable goes down and up, the robot stands and walks again.
 
-    It runs in another process, because a new network interrupts the page loads of a browser.
+    The match runs in another process: a new network would interrupt a browser's page loads.
     """
     with ProcessPoolExecutor(1, get_context("spawn")) as apart:
         if not apart.submit(pull_a_real_cable, tmp_path).result():

@@ -1,4 +1,4 @@
-"""Seats in play: [x], silence, refused keys, the order of a beat, and frames (rules 3 and 4)."""
+"""Tests of seats in play: [x], silence, refused keys, the order of inputs, frames (rules 3, 4)."""
 
 import math
 import random
@@ -104,7 +104,7 @@ def test_x_locks_for_5_s_of_clock() -> None:
 
 
 def test_the_lock_is_a_setting() -> None:
-    """The 5 s after [x] are a setting; it is 0 in practice, where a digit works at once."""
+    """The lock of 5 s after [x] is a setting; in the arena practice it is 0."""
     stage = playing(match={"restart_freeze_s": 0.1, "countdown_s": 0.02})
     stage.beat(key(LEFT, X))
     stage.run(4)
@@ -185,7 +185,7 @@ def test_a_wide_robot_needs_more_room() -> None:
 
 
 def test_both_restart_at_once() -> None:
-    """If both robots go back in one tick, each gets its first place, whichever [x] came first."""
+    """If both seats press [x] in one tick, each robot gets its first place, in either order."""
     for order in ((LEFT, RIGHT), (RIGHT, LEFT)):
         swapped = {LEFT: (0.6, 0.0), RIGHT: (-0.6, 0.0)}
         stage = playing("flag-strike", Script(poses={1: swapped}), ticks=2)
@@ -216,7 +216,7 @@ def test_being_put_back_claims_nothing() -> None:
 
 
 def test_being_put_back_is_no_walk() -> None:
-    """Rules 5: [x] onto a disc of the other colour flips nothing, even from a disc of one's own."""
+    """Rules 5: a robot that [x] puts on a disc of the other colour flips nothing."""
     script = Script(poses={1: {LEFT: (-0.45, -0.15)}})
     stage = playing(script=script, ticks=3)
     stage.beat(decide(d.Set("c0r2", "right")))
@@ -414,7 +414,7 @@ def test_a_frame_has_at_most_320_bytes(arena: str) -> None:
 
 
 def test_scores_and_board_are_in_every_frame() -> None:
-    """Rules 5: after a flip, a frame has the new board, and each score is a number of discs."""
+    """Rules 5: after a flip, a frame has the new board and the new scores, which count discs."""
     script = Script(poses={1: {LEFT: (-0.15, -0.15)}, 3: {LEFT: (0.15, -0.15)}})
     stage = playing(script=script, ticks=3)
     assert stage.scores == (19, 17)

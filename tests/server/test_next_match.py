@@ -1,4 +1,4 @@
-"""From one match of a court to the next: seats, files, and silent seats."""
+"""Tests of what a court's next match takes from the last one: seats, files and silences."""
 
 import errno
 import os
@@ -100,7 +100,7 @@ def phase_is(controller: Controller, phase: Phase) -> bool:
 
 
 def playing(room: Room) -> list[Controller]:
-    """Return the controllers of both seats, once the match is in PLAYING."""
+    """Bring a match into PLAYING, and return the controllers of both seats."""
     players = [room.controller(seat) for seat in range(2)]
     for player in players:
         player.join()

@@ -1,4 +1,4 @@
-"""The pace of a court: when beats are due, how it catches up, and which beats are slow."""
+"""Tests of a court's pace: when beats are due, how it catches up, and which beats are slow."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The phases of a match, and how one leads to the next (rules 4)."""
+"""Tests of the phases of a match, and of how one leads to the next (rules 4)."""
 
 import pytest
 from stage import FORWARD, LEFT, RIGHT, B, Script, Stage, X, decide, join, key, seen
@@ -158,7 +158,7 @@ def test_a_new_robot_in_ready_is_built_even_if_ready_is_said_in_the_same_beat(
 
 
 def test_files_with_mistakes_are_refused_and_the_seat_stays_as_it_was() -> None:
-    """Rules 2: files with mistakes are refused with every mistake, and the seat does not change."""
+    """Rules 2: a join with mistakes in its files gets a list of them; the seat stays as it is."""
     stage, twin = Stage().to(P.LOBBY), Stage().to(P.LOBBY)
     bad = join(LEFT, robot_file=b"name = 3")
     outcome = stage.send(bad)
@@ -305,7 +305,7 @@ def test_a_fault_in_ready_goes_back_to_lobby() -> None:
 @pytest.mark.parametrize("phase", [p for p in P if p not in (P.CREATED, P.PLAYING)])
 @pytest.mark.parametrize("digit", [FORWARD, X])
 def test_keys_work_only_in_playing(phase: Phase, digit: int) -> None:
-    """Rules 4: in every phase but PLAYING, keys are refused with the reason."""
+    """Rules 4: in every phase but PLAYING, keys are refused, and the answer says why."""
     stage, twin = Stage().to(phase), Stage().to(phase)
     outcome = stage.send(key(LEFT, digit, seq=7))
     twin.beat()
@@ -396,7 +396,7 @@ READY = {"match": {"start": "ready", "countdown_s": 0.1, "unattended_s": 3.0}}
 
 @pytest.mark.parametrize("others", [[], [LeaveSeat(RIGHT)]])
 def test_who_leaves_in_the_countdown_has_left(others: list[LeaveSeat]) -> None:
-    """Rules 7: a team that leaves in the countdown counts as gone; when all are, the match ends."""
+    """Rules 7: a team may leave in the countdown; when all teams have left, the match ends."""
     stage = Stage(overrides=READY).to(P.READY)
     stage.beat()
     assert stage.phase is P.COUNTDOWN
@@ -473,7 +473,7 @@ def test_a_match_with_a_referee_goes_on_though_everybody_has_left() -> None:
 
 
 def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
-    """An illegal decision is refused, and the match goes on as if it had not been sent."""
+    """An illegal decision is refused, and the match goes on as if nobody had sent it."""
     stage, twin = Stage().to(P.READY), Stage().to(P.READY)
     assert isinstance(stage.decide(d.Resume()), Refusal)
     twin.beat()
@@ -485,7 +485,7 @@ def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
 
 
 def test_silence_and_hearing_are_only_told_once() -> None:
-    """If a seat is reported as silent or as heard twice in a row, each is logged once."""
+    """A silence that is reported twice is logged once, and so is its end."""
     stage = Stage().to(P.PLAYING)
     for item in (SilentSeat(LEFT), SilentSeat(LEFT), HeardSeat(LEFT), HeardSeat(LEFT)):
         stage.beat(item)

@@ -1,4 +1,4 @@
-"""What verification proves, with the same arithmetic and with another (docs/reliability.md)."""
+"""Tests of what `verify` proves, with the same and another arithmetic (docs/reliability.md)."""
 
 import json
 import struct
@@ -82,7 +82,7 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
 def test_bits_may_differ_only_where_another_arithmetic_recorded(
     made_by: Mapping[str, str], finding: Finding, kind: Kind
 ) -> None:
-    """If a record claims this arithmetic, every bit must match; otherwise rounding may differ."""
+    """A record of this machine's arithmetic must match bit for bit; another only within a bound."""
     found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
     assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
     assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
@@ -126,7 +126,7 @@ def test_a_fingerprint_names_the_machine() -> None:
 
 @pytest.mark.slow
 def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
-    """An honest record verifies as the same, with two processes, and also without a fingerprint."""
+    """An honest record verifies as the same, and so does one without a fingerprint."""
     for path in paths:
         assert verdict(Record.read(path)).kind is Kind.SAME
     older = with_arithmetic(Record.read(paths[0]), {})
@@ -138,7 +138,7 @@ def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> None:
-    """With another arithmetic an honest record is the same match, and no forgery passes."""
+    """With another arithmetic an honest record verifies as the same match; no forgery passes."""
     lines = elsewhere("benchmarks.proof", ["verdicts", *map(str, paths)]).splitlines()
     found = [json.loads(line) for line in lines]
     assert [one["kind"] for one in found] == [Kind.OTHER_ARITHMETIC] * len(paths), found
@@ -149,7 +149,7 @@ def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> N
 
 @pytest.mark.slow
 def test_no_forgery_passes(paths: Sequence[Path]) -> None:
-    """No forgery of a record passes, also if it lies about the arithmetic."""
+    """No forgery of a record passes, even if it names another arithmetic."""
     found = forge(paths, FORGERIES, seed=1)
     assert found.passed == []
     assert len(found.kinds) > 15
@@ -160,7 +160,7 @@ def test_no_forgery_passes(paths: Sequence[Path]) -> None:
 def test_a_pose_is_told_beyond_the_bound_only(
     made_by: Mapping[str, str], paths: Sequence[Path]
 ) -> None:
-    """A changed pose is found if it exceeds the bound, and with the same arithmetic always."""
+    """Verify finds each changed pose; with another arithmetic, only a change beyond the bound."""
     record = with_arithmetic(Record.read(paths[0]), made_by)
     at = len(record.frames) // 2
     beat, encoded = record.frames[at]
@@ -187,7 +187,7 @@ def test_a_pose_is_told_beyond_the_bound_only(
 def test_a_model_may_have_other_last_bits(
     nudge_m: float, made_by: Mapping[str, str], kind: Kind, paths: Sequence[Path]
 ) -> None:
-    """The drawn model may differ in last bits only if the other arithmetic builds other models."""
+    """A scene may differ in its last bits only if the record's arithmetic builds another model."""
     record = with_arithmetic(Record.read(paths[0]), made_by)
     for at, (beat, scene) in enumerate(record.scenes):
         old = message_hash(encode(scene))
@@ -219,7 +219,7 @@ def test_a_model_may_have_other_last_bits(
 
 @pytest.mark.slow
 def test_the_command_tells_the_verdict(paths: Sequence[Path]) -> None:
-    """`lacoc replay verify --json` prints the verdict, and its exit code is 0."""
+    """`lacoc replay verify --json` prints the verdict; for an honest record it exits with 0."""
     done = CliRunner().invoke(verify_app, [str(paths[0]), "--json"])
     told = json.loads(done.stdout)
     assert done.exit_code == 0

@@ -1,4 +1,4 @@
-"""A court that is killed and started again goes on with its match (docs/architecture.md)."""
+"""Tests that a killed court goes on with its match when it is started again."""
 
 import os
 import signal
@@ -129,7 +129,7 @@ def test_settings_that_were_changed_count_from_the_next_match(contest: Path, fol
 
 
 def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> None:
-    """The health verdict includes the time before the kill, and a restart may advise a replay."""
+    """The health verdict includes the time before a kill; too many restarts advise a replay."""
     lasts(contest, 4)
     contest.write_text("health.resumptions = 0\n" + contest.read_text())
     with ExitStack() as stack:
@@ -190,7 +190,7 @@ def played(controller: Controller) -> int:
 
 
 def test_a_court_that_just_came_back_can_be_asked(contest: Path, folder: Path) -> None:
-    """A request right after a restarted court's first frame succeeds, as the client asks again."""
+    """A request right after a restarted court's first frame succeeds: the client repeats it."""
     name, court = load(contest).court()
     with ExitStack() as stack:
         process = stack.enter_context(served(contest, folder))
@@ -208,7 +208,7 @@ def test_a_court_that_just_came_back_can_be_asked(contest: Path, folder: Path) -
 
 
 def test_a_running_court_is_not_taken_over(contest: Path, folder: Path) -> None:
-    """The match of a running court is not resumed by another; after a kill it is."""
+    """Another court can't resume the match of a running court; after a kill it can."""
     with served(contest, folder) as process:
         assert unfinished(folder, "main", arenas.load("othello")) is None
         process.kill()

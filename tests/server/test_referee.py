@@ -1,6 +1,6 @@
-"""The referee's decisions: when each is legal, why it is not, and what it does (rules 4.1).
+"""Tests of the referee's decisions: when each is legal, why not, and what it does (rules 4.1).
 
-Workshop 5-1 rule 8 and 5-2 rule 9.
+In the workshop's text these are 5-1 rule 8 and 5-2 rule 9.
 """
 
 import math
@@ -98,7 +98,7 @@ def test_what_is_legal_is_published(phase: Phase) -> None:
 @pytest.mark.parametrize("name", LEGAL)
 @pytest.mark.parametrize("phase", PHASES, ids=lambda phase: phase.name)
 def test_an_illegal_decision_is_refused_and_changes_nothing(phase: Phase, name: str) -> None:
-    """An illegal decision is refused with the reason, and nothing visible changes."""
+    """An illegal decision is refused, the reply says why, and nothing visible changes."""
     decision, phases = LEGAL[name]
     stage, twin = stage_in(phase), stage_in(phase)
     if phase in phases:
@@ -130,7 +130,7 @@ def test_why_a_match_cannot_start_names_all_that_is_missing() -> None:
 
 @pytest.mark.parametrize("name", sorted(LEGAL))
 def test_which_need_a_reason(name: str) -> None:
-    """A decision that needs a reason is refused with a blank one; the others are done."""
+    """If the reason is blank, a decision that needs one is refused; the others are made."""
     decision, phases = LEGAL[name]
     if name in ("take-back", "unfreeze"):
         return
@@ -174,7 +174,7 @@ BAD_ARGUMENTS: list[tuple[d.Decision, Phase, str]] = [
 
 @pytest.mark.parametrize(("decision", "phase", "code"), BAD_ARGUMENTS)
 def test_wrong_arguments(decision: d.Decision, phase: Phase, code: str) -> None:
-    """A decision with a wrong argument is refused with its reason, and nothing changes."""
+    """A decision with a wrong argument is refused, the reply says why, and nothing changes."""
     stage, twin = stage_in(phase), stage_in(phase)
     assert refused(stage, decision).code == code
     twin.beat()
@@ -349,7 +349,7 @@ def test_clock_moves_the_end() -> None:
 
 
 def test_clock_in_old_records() -> None:
-    """An old record's `clock` with `seconds` takes time, with the same words in the log as then."""
+    """An old record's `clock` with positive `seconds` takes time; its log entry stays the same."""
     old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks

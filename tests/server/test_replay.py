@@ -1,4 +1,4 @@
-"""Replay: a record is verified, or resumed from where it ends (docs/architecture.md)."""
+"""Tests of replay: a record is verified, or a match is resumed from where the record ends."""
 
 import struct
 from collections.abc import Iterator
@@ -170,7 +170,7 @@ def test_nothing_of_a_record_can_be_changed_unseen(
 
 
 def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
-    """Write a record again in the form of protocol 1."""
+    """Write a record again as software of protocol 1 did; return the new record's path."""
     header = record.header
     versions = {**header.versions, "protocol": "1"}
     writer = RecordWriter(folder, msgspec.structs.replace(header, versions=versions))
@@ -191,7 +191,7 @@ def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
 def test_a_record_of_protocol_1_is_read_and_verified(
     live: tuple[Path, list[Beat]], tmp_path: Path
 ) -> None:
-    """Events of protocol 1 have English sentences; the rest of their fields is verified."""
+    """Events of protocol 1 have English sentences instead of phrases; other fields are verified."""
     path = as_protocol_1(Record.read(live[0]), live[0], tmp_path)
     record = Record.read(path)
     first = Record.read(live[0]).events[0]

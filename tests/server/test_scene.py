@@ -1,4 +1,4 @@
-"""The scene: everything that a page needs to draw the model, and nothing else."""
+"""Tests of the scene: everything that a page needs to draw the model, and nothing else."""
 
 import math
 
@@ -91,7 +91,7 @@ def test_the_hash_is_of_what_is_drawn() -> None:
 
 @pytest.mark.parametrize("kind", ["slide", "offset", "mesh"])
 def test_what_pages_cannot_draw_is_said(kind: str) -> None:
-    """A field with a joint or shape that pages can't draw is refused with a message."""
+    """A field with a joint or shape that pages can't draw is refused, and the error says so."""
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body(name="gate")
     if kind == "mesh":

@@ -1,4 +1,4 @@
-"""Headless matches: bots and ghosts play in the seats, as fast as the machine can."""
+"""Tests of headless matches: bots and ghosts play them as fast as the machine can."""
 
 import os
 from pathlib import Path
@@ -91,7 +91,7 @@ def test_practice_with_an_end() -> None:
 
 
 def test_files_with_mistakes_are_refused() -> None:
-    """A player's file with mistakes is refused with every mistake."""
+    """A player's file with mistakes is refused, and the error lists all mistakes."""
     good = player(OTHELLO, 0, "straight")
     bad = Player(join(1, robot_file=b"legs = 3"), good.bot)
     with pytest.raises(FileRefused) as refused:
@@ -100,7 +100,7 @@ def test_files_with_mistakes_are_refused() -> None:
 
 
 def test_a_match_knows_nothing_of_how_it_is_run() -> None:
-    """`Match` takes the setup of a headless match, as it takes that of a live one."""
+    """The length of a match follows from its setup; `Match` does not know that it is headless."""
     match = Match(setup("othello", SHORT), World)
     assert match.duration_ticks == 200
 
@@ -131,7 +131,7 @@ def sample() -> bytes:
 
 
 def test_a_bot_steers_what_lies_in_a_folder(tmp_path: Path) -> None:
-    """`BOT@FOLDER` lets a bot steer the gait, and the robot if there is one, in a folder."""
+    """`BOT@FOLDER` lets a bot play with a folder's gait, and with its robot if there is one."""
     anna = handed_in(tmp_path / "anna", sample().replace(b"45", b"40"))
     one = player(OTHELLO, 0, f"straight@{anna}")
     assert (one.join.team, one.join.robot.name) == ("anna", "anna/robot.toml")
@@ -145,7 +145,7 @@ def test_a_bot_steers_what_lies_in_a_folder(tmp_path: Path) -> None:
 
 
 def test_where_a_gait_is_looked_for_is_said(tmp_path: Path) -> None:
-    """If no gait is found, the message says where it was looked for and how to make it."""
+    """If no gait is found, the message names the folder and the command that makes a gait."""
     empty = handed_in(tmp_path / "empty", None)
     (empty / "mine.toml").write_bytes(find_robot("hexapod")[1])
     for word, robot in ((f"straight@{empty}", "hexapod"), ("straight", str(empty / "mine.toml"))):
@@ -167,7 +167,7 @@ def test_everybody_s_mistakes_are_listed_before_anything_begins(tmp_path: Path) 
 
 
 def test_a_folder_whose_name_is_no_text(tmp_path: Path) -> None:
-    """If a folder's name is not valid text, the team's name has its bytes as numbers."""
+    """Bytes of a folder's name that are no text stand in the team's name as hexadecimal numbers."""
     folder = tmp_path / os.fsdecode(b"team\x98\x8b")
     handed_in(folder, sample())
     players = [player(OTHELLO, 0, f"straight@{folder}"), player(OTHELLO, 1, "straight")]

@@ -1,4 +1,4 @@
-"""Before play, a robot stays at its start place or is put back there (rules 4)."""
+"""Tests that before play a robot stays at its start place or is put back there (rules 4)."""
 
 import math
 
@@ -13,7 +13,7 @@ from lacoc_shared.words import render
 
 
 def straying(*ticks: int, by_m: float = 0.06, seat: int = LEFT) -> Stage:
-    """Make a match whose robot is `by_m` away from its start in some ticks after it is built."""
+    """Make a match whose script puts a robot `by_m` from its start in some ticks of physics."""
     x_m, y_m = start(Stage("flag-strike"), seat)
     poses = {tick: {seat: (x_m, y_m + by_m)} for tick in ticks}
     return Stage("flag-strike", QUICK, script=Script(poses=poses))
@@ -74,7 +74,7 @@ def test_who_leaves_again_and_again_is_not_ready() -> None:
 
 
 def test_a_start_in_that_beat_finds_it_at_its_place() -> None:
-    """If the referee starts while a robot has to go back, play begins with it at its start."""
+    """If the referee starts while a robot has to go back, the robot begins at its start place."""
     stage = straying(3).to_ready()
     stage.run(2)
     assert len(strayed(stage)) == 1

@@ -1,4 +1,4 @@
-"""Fairness: a match that is turned by 180 degrees, with its seats swapped, is the same match."""
+"""Tests of fairness: a match turned by 180 degrees, with its seats swapped, is the same match."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from lacoc_shared.inputs import Input
 from lacoc_shared.seat import Phase
 
 Keys = dict[int, tuple[int, int]]
-"""Tick -> (seat, digit)."""
+"""The keys of a match: tick -> (seat, digit)."""
 
 
 def swapped(keys: Keys) -> Keys:
@@ -85,7 +85,7 @@ their turned path by more than the bound of the test.
     ],
 )
 def test_the_physics_gives_the_turned_path(arena: str, ticks: int, least_contacts: int) -> None:
-    """The turned match keeps within 1e-6 m of the turned path, also when robots push each other."""
+    """Paths in the turned match differ by less than 1e-6 m, also when robots push each other."""
     one, other = (Stage.real(arena, QUICK).to_playing() for _ in range(2))
     mirrored = swapped(COLLIDING)
     worst, contacts = 0.0, 0
@@ -111,7 +111,7 @@ def _touching(stage: Stage) -> int:
 
 
 def claims(stage: Stage) -> list[tuple[int, str, str, tuple[str, ...], int]]:
-    """Return the game's claims (seat, kind, marker, also, tick), sorted."""
+    """Return the game's claims (seat, kind, marker, further markers, tick), sorted."""
     return sorted(
         (e.seat, e.kind, e.data["marker"], tuple(sorted(e.data["also"])), e.clock_ticks)
         for e in stage.events
@@ -174,7 +174,7 @@ def turned_script(stage: Stage, script: Script) -> Script:
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 @pytest.mark.parametrize("seed", range(6))
 def test_the_rules_give_exactly_the_turned_match(arena: str, seed: int) -> None:
-    """Rules 4: the rules give exactly the turned match if both seats are exchanged."""
+    """Rules 4: if both seats are exchanged, the rules give exactly the turned match."""
     script = wander(arena, seed)
     half_minute = {"match": {"duration_s": 30.0, "countdown_s": 0.02}}
     one = Stage(arena, half_minute, script=script)

@@ -1,4 +1,4 @@
-"""Take-back: one event is taken back, and the match is judged without it (rules 4.1)."""
+"""Tests of the take-back: the match is judged as if an event had not happened (rules 4.1)."""
 
 import tracemalloc
 from itertools import permutations
@@ -109,7 +109,7 @@ def test_an_event_may_appear() -> None:
 
 
 def test_a_capture() -> None:
-    """If a capture is taken back, the robot can capture that corner when it comes in again."""
+    """If a capture is taken back, the robot's next entry into that corner becomes a capture."""
     stage = flag_strike({10: {LEFT: CORNERS[0]}, 20: {LEFT: AWAY}, 30: {LEFT: CORNERS[0]}})
     first = event(stage, "capture", "corner0")
     assert stage.numbers("capture") == [first.number]
@@ -230,7 +230,7 @@ def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
 
 
 def test_a_match_may_turn_out_to_have_been_over() -> None:
-    """If a match would have ended without an event, its take-back ends it; later events vanish."""
+    """A take-back finishes a match that would have ended without the event; later events vanish."""
     walks = dict(ALL_FOUR)
     walks[35] = {RIGHT: CORNERS[0]}
     stage = flag_strike(walks, {60: {RIGHT: (22,)}})
@@ -348,7 +348,7 @@ def view(x_m: float, y_m: float, touched: tuple[int, ...] = (), placed: bool = F
 
 @st.composite
 def observations(draw: st.DrawFn, arena: str) -> list[Observation]:
-    """Draw two robots that hop between places of the field, touch flags and are put back."""
+    """Draw observations of two robots that hop about the field, touch flags and are put back."""
     size = 6 if arena == "othello" else 3
     pitch = 0.3 if arena == "othello" else 0.8
     half = (size - 1) / 2
@@ -386,7 +386,7 @@ def kept_bytes(stage: Stage, ticks: int) -> float:
 def test_ticks_that_nothing_can_be_taken_back_from_are_not_kept(arena: str) -> None:
     """Ticks before the first event of a match are not kept in memory.
 
-    Practice has no end: at 440 bytes a tick it would fill 1.9 GB a day.
+    In the arena practice, which has no end, 440 bytes a tick would fill 1.9 GB a day.
     """
     stage = Stage(arena).to_playing()
     assert kept_bytes(stage, 2000) < 10

@@ -1,4 +1,4 @@
-"""Which tokens open a seat after a court was killed and started again."""
+"""Tests of which tokens open a seat after a court was killed and started again."""
 
 import json
 import subprocess
@@ -73,7 +73,7 @@ def test_the_printed_token_opens_the_seat_of_a_match_that_goes_on(tmp_path: Path
 
 
 def test_another_arenas_match_is_not_gone_on_with(tmp_path: Path) -> None:
-    """A court of another arena does not start: the unfinished match has other seats."""
+    """A court does not start with an arena other than that of its unfinished match."""
     with opened(tmp_path, "othello") as first:
         pass
     done = run_lacoc(*serving(tmp_path, "practice"))

@@ -1,4 +1,4 @@
-"""A match without a referee (start = "ready") goes on by itself (rules 7)."""
+"""Tests of matches without a referee (start = "ready"), which go on by themselves (rules 7)."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Weighing in at a court's door: the files, and whether the robot can stand (rules 1)."""
+"""Tests of weighing in at a court's door: the files, and whether the robot can stand (rules 1)."""
 
 import time
 
@@ -52,7 +52,7 @@ def changed(old: bytes, new: bytes) -> Join:
 
 
 def test_a_robot_is_tried_once() -> None:
-    """The first join with a robot waits for its stand test, a later one with the same does not."""
+    """The first join with a robot waits for its stand test; later joins with it do not."""
     with Weighing(admission()) as weighing:
         assert weighing(WHOLE) is None
         assert known(weighing, WHOLE) == WHOLE

@@ -1,4 +1,4 @@
-"""The world: equal bits, touch without force, and no silent reset."""
+"""Tests of the world: equal bits, touch without force, and no silent reset."""
 
 import math
 import subprocess

@@ -55,7 +55,7 @@ function reachable() {
   while (waiting.length) {
     const claim = waiting.pop();
     const key = JSON.stringify(claim);
-    // The number of tries has no end; beyond this bound no new state comes.
+    // Tries are counted without end; claims with up to nine of them reach every state.
     if (found.has(key) || claim.tries > 9) continue;
     found.set(key, claim);
     for (const event of EVENTS) {
@@ -93,7 +93,7 @@ function checkStep({ claim, event, next, effects }) {
   }
   if (event.is === "failed" || event.is === "granted") assert.notEqual(next.request, "sent");
   if (event.is === "rested") assert.equal(next.request, "none");
-  // A join that a person asks for is begun in every state.
+  // In every state, a person's request to join begins a join.
   if (event.is === "join") assert.deepEqual([next.state, next.wish], ["joining", event.wish]);
 }
 
@@ -201,7 +201,7 @@ test("a lost seat is told, and nothing fights for it", () => {
   const lost = after(seated, taken);
   assert.deepEqual([lost.state, lost.why, lost.lastWish], ["lost", taken.why, wish]);
   assert.deepEqual(after(lost, open).effects, []);
-  // The loss may be told twice.
+  // The news of the loss may come twice.
   assert.equal(after(lost, taken).lastWish, wish);
   assert.deepEqual([after(lost, forget).state, after(lost, forget).why], ["none", null]);
   assert.deepEqual(after(lost, join, open).effects, ["ask"]);

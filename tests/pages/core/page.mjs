@@ -1,4 +1,4 @@
-// Lets Node load modules of the pages as a browser does: "./words" is words.ts, at an address.
+// Lets Node load the pages' modules like a browser: "./words" is words.ts, and `location` is set.
 
 import { registerHooks } from "node:module";
 

@@ -1,5 +1,5 @@
-// However badly frames arrive, the moments that a timeline shows move evenly and are never old
-// (client/web/src/core/timeline.ts). Each case returns a list of what was wrong.
+// Tests of the timeline (client/web/src/core/timeline.ts): however irregularly frames arrive, the
+// moments that it shows move evenly and are never old. Each case returns a list of its mistakes.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -7,7 +7,7 @@ import { Timeline } from "../../../client/web/src/core/timeline.ts";
 
 const frame = (beat, match = 1) => ({ match, beat });
 
-/** Plays frames of a court; `arrival` gives each frame's arrival time [ms], Infinity: never. */
+/** Plays frames of a court; `arrival` gives the time [ms] when a frame arrives, Infinity: never. */
 function play({ ms, beatsPerMs = 0.05, arrival = (at) => at, timeline, quietMs = 3000 }) {
   const line = timeline ?? new Timeline();
   const trouble = [];
