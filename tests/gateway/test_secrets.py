@@ -171,7 +171,7 @@ def test_no_secret_leaves_its_place(keyed: KeyedVenue) -> None:
     said = {where: what for where, what in seen.items() if where not in ("court.log", "web.log")}
     assert all(said.values()), [where for where, what in said.items() if not what]
     assert b"Right" in seen["record"]
-    assert b"not take this token" in seen["refused"]
+    assert b"does not accept this token" in seen["refused"]
     leaks = [(w, s) for w, what in seen.items() for s, word in secrets.items() if word in what]
     assert leaks == []
     control = keyed.contest.read_bytes() + (keyed.folder / "keys/ca.key").read_bytes()
