@@ -1,0 +1,157 @@
+"""The coach: which numbers of a table matter, and better tables with few changes."""
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from benchmarks.trials import entry_of
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_robots.library import find_robot
+from lacoc_robots.robot_file import read_robot
+from lacoc_server.coach.goal import Goal, score
+from lacoc_server.coach.improve import Improved, Size, improve
+from lacoc_server.coach.matter import CONFIRMED, STEP_DEG, what_matters
+from lacoc_server.coach.table import Angles, KeyTable
+from lacoc_server.coach.trials import Task, try_table
+from lacoc_server.trial.figures import Figures
+from lacoc_shared.command import cli
+from lacoc_shared.gait.tables import LocomotionTable
+from lacoc_shared.gait.text import read_gait
+
+SAMPLE = Path(__file__).parents[2] / "robots/lacoc_robots/samples/hexapod/Loco-data.txt"
+BEST = (12, -7, 30, 5, 0, 21)
+"""The best table of the made-up score below."""
+RANGES = [(-60.0, 60.0)] * len(BEST)
+WEIGHTS = (5.0, 4.0, 3.0, 2.0, 1.0, 0.5)
+
+
+def made_up(tables: Sequence[Angles]) -> list[float]:
+    """Score tables by their distance from `BEST`; some numbers matter more than others."""
+    return [
+        1000 - sum(w * (a - b) ** 2 for w, a, b in zip(WEIGHTS, table, BEST, strict=True))
+        for table in tables
+    ]
+
+
+def searched(size: Size, rounds: int = 40) -> Improved:
+    """Search from a table of zeros, for a number of rounds."""
+    left = iter(range(rounds))
+    own = (0,) * len(BEST)
+    matters = what_matters(own, RANGES, made_up, made_up)
+    found = improve(own, RANGES, size, matters, made_up, lambda: next(left, None) is None, seed=1)
+    *_, last = found
+    return last
+
+
+def changes(found: Improved) -> int:
+    """Count the numbers that differ from zero."""
+    return sum(angle != 0 for angle in found.angles_deg)
+
+
+def test_a_size_limits_the_changes() -> None:
+    """One number, three numbers, or all: each size is better than the one before."""
+    cell, three, table = (searched(size) for size in Size)
+    assert (changes(cell), changes(three)) == (1, 3)
+    assert made_up([(0,) * 6])[0] < cell.score < three.score < table.score
+    assert table.score > 990
+
+
+def test_the_same_seed_finds_the_same() -> None:
+    """A search is repeated exactly, as long as it lasts as long."""
+    assert searched(Size.TABLE, 20) == searched(Size.TABLE, 20)
+
+
+def test_a_change_that_hardly_helps_is_undone() -> None:
+    """The last number is worth less than the part that is given back, so it stays as it was."""
+
+    def dull(tables: Sequence[Angles]) -> list[float]:
+        return [100 - abs(table[0] - 20) - 0.01 * abs(table[1] - 20) for table in tables]
+
+    left = iter(range(60))
+    matters = what_matters((0, 0), RANGES[:2], dull, dull)
+    over = lambda: next(left, None) is None  # noqa: E731
+    *_, last = improve((0, 0), RANGES[:2], Size.TABLE, matters, dull, over, seed=3)
+    assert last.angles_deg[1] == 0
+    assert abs(last.angles_deg[0] - 20) <= 2
+
+
+def test_what_matters_is_ranked() -> None:
+    """The order is that of the larger change; the top is confirmed with the exact score."""
+    asked: list[int] = []
+
+    def exact(tables: Sequence[Angles]) -> list[float]:
+        asked.append(len(tables))
+        return made_up(tables)
+
+    found = what_matters((0,) * 6, RANGES, made_up, exact)
+    assert [one.size for one in found] == sorted((one.size for one in found), reverse=True)
+    assert {one.number for one in found} == set(range(6))
+    assert asked == [1 + 2 * min(CONFIRMED, 6)]
+    first = next(one for one in found if one.number == 0)
+    up, down = made_up([(STEP_DEG, *(0,) * 5), (-STEP_DEG, *(0,) * 5)])
+    now = made_up([(0,) * 6])[0]
+    assert (first.up, first.down) == (up - now, down - now)
+
+
+@given(st.data())
+def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
+    """Equal postures are one row; angles that did not change keep all their digits."""
+    posture = st.tuples(*[st.floats(-1, 1)] * 3)
+    rows = data.draw(st.lists(posture, min_size=1, max_size=4))
+    order = data.draw(st.lists(st.integers(0, len(rows) - 1), min_size=1, max_size=8))
+    sequence = tuple(rows[index] for index in order)
+    table = KeyTable.of(sequence)
+    assert table.sequence(table.angles_deg) == sequence
+    number = data.draw(st.integers(0, len(table.angles_deg) - 1))
+    turned = list(table.angles_deg)
+    turned[number] += 7
+    row, joint = table.cell(number)
+    for posture_now, index in zip(table.sequence(tuple(turned)), table.order, strict=True):
+        wanted = list(table.rows[index])
+        if index == row:
+            wanted[joint] = math.radians(turned[number])
+        assert posture_now == tuple(wanted)
+
+
+def test_goals() -> None:
+    """Forward counts speed, left and right count turning; who lies on the floor gets nothing."""
+    task = sample_task(2)
+    forward = try_table(task, task.table.angles_deg)
+    left = try_table(sample_task(1), sample_task(1).table.angles_deg)
+    assert score(forward, Goal.FORWARD) == pytest.approx(forward.speed_mm_s, abs=5)
+    assert score(left, Goal.LEFT) > 40 > 0 > score(left, Goal.RIGHT)
+    lies = Figures(**{**vars(forward), "belly_share": 0.5})
+    assert score(lies, Goal.FORWARD) < 0
+
+
+def sample_task(key: int) -> Task:
+    """Make the task of improving a key of the workshop's robot."""
+    entry = entry_of("hexapod")
+    assert entry.gait.locomotion is not None
+    sequences = entry.gait.locomotion.sequences
+    return Task(entry.robot, sequences[0], KeyTable.of(sequences[key]), Goal.FORWARD)
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """`lacoc coach` changes at most three numbers, writes the gait, and it walks faster."""
+    out = tmp_path / "better.txt"
+    words = ["coach", str(SAMPLE), "--size", "three", "--seconds", "2", "--out", str(out), "--json"]
+    try:
+        code = cli.main(words)
+    except SystemExit as ended:
+        code = int(ended.code or 0)
+    assert code == 0
+    found = json.loads(capsys.readouterr().out)
+    assert len(found["matters"]) == 72
+    assert 1 <= len(found["changes"]) <= 3
+    assert found["after"]["speed_mm_s"] > found["before"]["speed_mm_s"]
+    robot = read_robot(find_robot("hexapod")[1], "robot.toml")
+    table = read_gait(out.read_bytes(), out.name, legs=robot.labels, range_deg=robot.ranges_deg)
+    assert isinstance(table, LocomotionTable)
+    assert len(table.sequences) == 4
