@@ -32,7 +32,8 @@ class Terminal:
             timeout=TIMEOUT_S,
             dimensions=(30, 110),
             encoding="utf-8",
-            env=environment(TERM="xterm-256color"),
+            # A test runner may name another size, and that would count.
+            env=environment(TERM="xterm-256color", LINES="30", COLUMNS="110"),
         )
         self.usual = self.modes()
 

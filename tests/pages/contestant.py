@@ -80,6 +80,15 @@ class Contestant:
         for key in keys:
             self.page.keyboard.press(key)
 
+    def steer(self, digit: int) -> None:
+        """Press a key until it is in effect: the first press may still go to the last match."""
+        standing = self.find(f'.key[data-key="{digit}"][aria-pressed=true]')
+        end_s = time.monotonic() + TIMEOUT_MS / 1000
+        while not standing.count():
+            assert time.monotonic() < end_s, f"key {digit} has no effect"
+            self.press(str(digit))
+            self.page.wait_for_timeout(300)
+
     def key_stands(self, digit: int) -> None:
         """Wait until the pad on the page shows that this key is in effect."""
         self.sees(f'.key[data-key="{digit}"][aria-pressed=true]')

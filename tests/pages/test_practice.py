@@ -150,8 +150,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
     page.sees(".key.none[data-key='1']")
     page.stands("seated")
     page.phase(Phase.PLAYING)
-    page.press("4")
-    page.key_stands(4)
+    page.steer(4)
 
     # Two postures are too few for the sample's sequences, so the test types its own on the page.
     page.page.click("text=Change files")
@@ -164,8 +163,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
     page.sees(".key[data-key='1'] small", "2 postures")
     page.sees(".stands", "No key yet")  # in the match that begins now
     page.phase(Phase.PLAYING)
-    page.press("1")
-    page.key_stands(1)
+    page.steer(1)
     page.sees(".stands", "B 1: posture")
 
 
