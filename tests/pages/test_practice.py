@@ -159,10 +159,10 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
         page.find(f"[aria-label='Postures of key {key}']").fill(postures)
         page.press("Tab")
     page.page.click("text=Use these files")
+    page.sees(".stands", "No key yet")  # of the match that begins now, at level A
+    page.phase(Phase.PLAYING)
     page.press("Tab")
     page.sees(".key[data-key='1'] small", "2 postures")
-    page.sees(".stands", "No key yet")  # in the match that begins now
-    page.phase(Phase.PLAYING)
     page.steer(1)
     page.sees(".stands", "B 1: posture")
 

@@ -1,6 +1,6 @@
 /** The robot and gait files: dropped or picked, sorted by what is in them. */
 
-import { signal, useComputed } from "@preact/signals";
+import { signal, useComputed, useSignal } from "@preact/signals";
 import { useId } from "preact/hooks";
 import type { Court } from "../../core/court";
 import {
@@ -155,23 +155,13 @@ function Sequences() {
       <p class="muted">{t("files.sequencesHint")}</p>
       <div>
         {shown.map((digits, digit) => (
-          <label key={digit}>
-            <span>
-              {digit} {ARROW_OF.get(digit) ?? ""}
-            </span>
-            <input
-              value={[...digits].join(" ")}
-              inputMode="numeric"
-              autocomplete="off"
-              aria-label={t("files.sequence", { digit })}
-              placeholder={digit === keys.length ? t("files.newKey") : ""}
-              onChange={(event) => {
-                const typed = digitsOf(event.currentTarget.value);
-                event.currentTarget.value = [...typed].join(" ");
-                change(digit, typed);
-              }}
-            />
-          </label>
+          <Sequence
+            key={digit}
+            digit={digit}
+            digits={digits}
+            isNew={digit === keys.length}
+            onChange={(typed) => change(digit, typed)}
+          />
         ))}
       </div>
       {keys.join() !== SAMPLE_SEQUENCES.join() && (
@@ -187,6 +177,39 @@ function Sequences() {
       )}
     </fieldset>
   );
+}
+
+/** One key's postures. What is being typed stays, also when the page is drawn again meanwhile. */
+function Sequence({ digit, digits, isNew, onChange }: SequenceProps) {
+  const draft = useSignal<string | null>(null);
+  return (
+    <label>
+      <span>
+        {digit} {ARROW_OF.get(digit) ?? ""}
+      </span>
+      <input
+        value={draft.value ?? [...digits].join(" ")}
+        inputMode="numeric"
+        autocomplete="off"
+        aria-label={t("files.sequence", { digit })}
+        placeholder={isNew ? t("files.newKey") : ""}
+        onInput={(event) => {
+          draft.value = event.currentTarget.value;
+        }}
+        onChange={(event) => {
+          draft.value = null;
+          onChange(digitsOf(event.currentTarget.value));
+        }}
+      />
+    </label>
+  );
+}
+
+interface SequenceProps {
+  digit: number;
+  digits: string;
+  isNew: boolean;
+  onChange: (digits: string) => void;
 }
 
 /** Files on this machine that were saved again while the seat is held: offered, with what is wrong. */
