@@ -6,8 +6,8 @@ BIN := .venv/bin
 RUN := $(BIN)/python -m
 PIP := $(RUN) pip --disable-pip-version-check --quiet
 ARGS ?=
-# Processes that share the tests: twice the two cores, because tests wait more than they compute.
-WORKERS ?= 4
+# Processes that share the tests: more than the two cores, because a test often waits.
+WORKERS ?= 5
 PYTEST := $(RUN) pytest --numprocesses $(WORKERS) --dist worksteal
 
 # The C library computes as on an older processor, so sines and cosines have other last bits.

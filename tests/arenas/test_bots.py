@@ -187,7 +187,10 @@ def test_ladder(name: str, weak: str, strong: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
-@pytest.mark.parametrize(("weak", "strong"), [("straight", "nearest"), ("nearest", "planner")])
+@pytest.mark.parametrize(
+    ("weak", "strong"),
+    [("straight", "nearest"), pytest.param("nearest", "planner", marks=pytest.mark.long)],
+)
 def test_ladder_with_physics(name: str, weak: str, strong: str) -> None:
     """The stronger bot also wins with physics, where walking hexapods hinder each other."""
     simulate = pytest.importorskip("lacoc_server.simulate")

@@ -31,7 +31,7 @@ SLOW_SCREEN = """(() => {
   const next = window.requestAnimationFrame.bind(window);
   const cancelled = new Set();
   window.requestAnimationFrame = (draw) => {
-    const id = setTimeout(() => next((ms) => cancelled.delete(id) || draw(ms)), 80);
+    const id = setTimeout(() => next((ms) => cancelled.delete(id) || draw(ms)), 180);
     return id;
   };
   window.cancelAnimationFrame = (id) => {
@@ -39,7 +39,7 @@ SLOW_SCREEN = """(() => {
     cancelled.add(id);
   };
 })()"""
-"""Limits pages to about ten pictures a second: drawing sixty would be most of a test's work."""
+"""Limits pages to about five pictures a second: drawing sixty would be most of a test's work."""
 
 
 @pytest.fixture(scope="session")
@@ -99,7 +99,7 @@ def console() -> Iterator[Console]:
 
 @pytest.fixture
 def slow_screen() -> bool:
-    """Give True: pages draw about ten pictures a second. Tests of the drawing override it."""
+    """Give True: pages draw about five pictures a second. Tests of the drawing override it."""
     return True
 
 

@@ -79,7 +79,10 @@ def entry(robot: str) -> Entry:
 
 
 @pytest.mark.parametrize("arena", ["flag-strike", pytest.param("othello", marks=pytest.mark.long)])
-@pytest.mark.parametrize("robots", [("hexapod", "quadruped"), ("octopod", "long-legs")])
+@pytest.mark.parametrize(
+    "robots",
+    [("hexapod", "quadruped"), pytest.param(("octopod", "long-legs"), marks=pytest.mark.long)],
+)
 def test_the_page_has_every_body_where_mujoco_has_it(
     stand: Stand, site: Path, arena: str, robots: tuple[str, str]
 ) -> None:

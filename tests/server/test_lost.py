@@ -125,7 +125,7 @@ def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
     assert SilentSeat(0) in record.inputs[silence.beat]
 
 
-@pytest.mark.parametrize("answer_s", [1.0, 10.0])
+@pytest.mark.parametrize("answer_s", [1.0, pytest.param(10.0, marks=pytest.mark.long)])
 def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
     hall: Hall, answer_s: float
 ) -> None:
