@@ -1,4 +1,4 @@
-"""Puts one fault into each of many tables: does the first sentence name it, and its leg?
+"""Puts one fault into each of many tables: does the first sentence name the fault, and its leg?
 
 python -m benchmarks.explained --tables 200
 """
@@ -42,7 +42,7 @@ class Told(NamedTuple):
 
 
 def main() -> None:
-    """Put in faults, print what was named, and exit with 1 below the aim."""
+    """Put in faults, print how many were named, and exit with 1 if they are too few."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.explained", description=__doc__)
     parser.add_argument("--tables", type=int, default=200)
     parser.add_argument("--verbose", action="store_true", help="print each that was not named")
@@ -107,7 +107,7 @@ def _swings(table: Table, leg: int) -> bool:
 
 
 def _dragged(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """The foot is never lifted: 1st and 2nd joint stay as they stand."""
+    """Never lift the foot of a leg: its 1st and 2nd joints stay near their start angles."""
     legs = len(robot.legs)
     for posture in table:
         for joint in (leg + legs, leg + 2 * legs):
@@ -115,14 +115,14 @@ def _dragged(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> No
 
 
 def _swapped(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """The leg has the angles of a leg on the other side: its root turns the wrong way."""
+    """Turn the root of a leg the wrong way, as if the leg were on the other side."""
     roots = [posture[leg] for posture in table]
     for posture in table:
         posture[leg] = max(roots) + min(roots) - posture[leg]
 
 
 def _late(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """The leg does everything one posture late."""
+    """Let a leg do everything one posture late."""
     legs = len(robot.legs)
     for joint in range(leg, len(table[0]), legs):
         angles = [posture[joint] for posture in table]
@@ -131,7 +131,7 @@ def _late(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
 
 
 def _seam(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """A joint goes on turning from posture to posture, and back in one go."""
+    """Turn a joint by equal steps from posture to posture, so that it jumps back at the end."""
     joint = leg + len(robot.legs) * rng.choice((0, 2))
     step = rng.choice((-1, 1)) * rng.randint(13, 18)
     middle = table[0][joint]
@@ -140,13 +140,13 @@ def _seam(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
 
 
 def _limit(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """An angle is at the end of the joint's range."""
+    """Set one angle to the end of the joint's range."""
     joint = leg + len(robot.legs) * rng.randrange(2)
     rng.choice(table)[joint] = rng.choice(robot.ranges_deg[joint])
 
 
 def _belly(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """All legs bend up in a posture: the body comes down on the floor."""
+    """Lift all legs in one posture, so that the body comes down on the floor."""
     legs = len(robot.legs)
     posture = rng.choice(table)
     for joint in range(legs, 2 * legs):

@@ -1,4 +1,4 @@
-"""Forges a record: changes one thing in it that has a meaning."""
+"""Forges a record: makes one change that alters its meaning."""
 
 import hashlib
 import random

@@ -45,7 +45,7 @@ _FORGED_S = 12.0
 
 
 class Prover:
-    """Verifies many copies of a record, and simulates sections that are equal only once."""
+    """Verifies many copies of a record; equal sections of the copies are simulated only once."""
 
     def __init__(self) -> None:
         self._worlds = Worlds()

@@ -42,7 +42,7 @@ class Patience:
     """How long a command waits for its court; the time starts again after each success.
 
     Args:
-        wait_s: how long; None: not at all, which suits a person.
+        wait_s: how long; None: do not wait, because a person can try again.
         stopping: returns whether somebody asked the command to end.
     """
 

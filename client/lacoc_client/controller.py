@@ -51,7 +51,7 @@ class Hold(Enum):
 
     @property
     def phrase(self) -> Phrase:
-        """The sentence for this state, if there is no other reason."""
+        """The sentence that describes this state; it is used where no more exact reason is known."""
         return _HOLDS[self]
 
 

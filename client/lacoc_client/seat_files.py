@@ -118,7 +118,7 @@ def gaits_in(folder: Path) -> list[Path]:
 
 
 def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
-    """Return warnings: a LocoTra workbook is not read, or the sequences are the older file."""
+    """Warn of LocoTra workbooks, which are not read, and of sequences older than the postures."""
     said = [
         say("play.no-workbook", file=path.name) for path in sorted(folder.glob("LocoTra*.xlsx"))
     ]

@@ -26,7 +26,7 @@ _ANSWER_S = 2.0
 
 
 class Spectator:
-    """Everything public about a court; complete at once, also for a late comer.
+    """Everything public about a court; complete at once, even for a latecomer.
 
     One thread uses it. Only `poll` and `wait_frame` change the attributes. Messages that did not
     arrive are requested and come later: neither frames nor the commands of a controller wait for
@@ -122,7 +122,7 @@ class Spectator:
         self._frames.wait(timeout_s)
 
     def take_events(self) -> list[Event]:
-        """Return the events of this match and the one before that came since the last call."""
+        """Return the events since the last call, of this match and of the match before it."""
         events, self._new_events = self._new_events, []
         return events
 
@@ -214,7 +214,7 @@ class Spectator:
             self._read_sheet(sheet)
 
     def _take_events(self) -> None:
-        """Take in new events; they wait while a requested list, which is older, is under way."""
+        """Take in new events, but not while a requested list is under way: the list is older."""
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
             if event is not None and self._view.add_event(event, mail.payload):

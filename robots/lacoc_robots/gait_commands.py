@@ -234,7 +234,7 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 
 
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
-    """Name the feet lifted in each posture of a sequence, without repeats; at most six steps."""
+    """Name the feet lifted in each posture; equal neighbours are joined, and six steps shown."""
     steps = [step for step, _ in itertools.groupby(_lifted(p, labels) for p in sequence)]
     none, then = render(say("gait-command.no-feet")), render(say("gait-command.then"))
     shown = then.join(" ".join(step) or none for step in steps[:6])
@@ -242,7 +242,10 @@ def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
 
 
 def _lifted(posture: Posture, labels: Sequence[str]) -> tuple[str, ...]:
-    """Return the legs whose feet are above the lowest, on a level body with links of one length."""
+    """Return the labels of the legs whose feet are above the lowest foot.
+
+    The body is taken to be level, and all links to have one length.
+    """
     legs = len(labels)
     # A positive 1st joint lifts the leg, and a positive 2nd joint swings the shank up (rules 1).
     # With both at 0 the shank hangs straight down.

@@ -89,7 +89,7 @@ def _of_robot(arena: arenas.Arena, robot: str) -> _Files:
 
 
 def _of_folder(arena: arenas.Arena, folder: Path, robot: str) -> _Files:
-    """Read the files that a team handed in; each file name gets the folder's name for mistakes."""
+    """Read the files that a team handed in; mistakes name each file with its folder."""
     folder = folder.expanduser().resolve()
     if not folder.is_dir():
         raise UserError(say("simulate.no-folder", folder=str(folder)))

@@ -82,7 +82,7 @@ class Keys:
 
     @property
     def enter(self) -> str:
-        """Key expression of the question whether a token is a referee's."""
+        """Key expression on which a client asks whether its token is a referee's."""
         return f"{self.root}/referee/{ENTER}"
 
     def decision(self, name: str) -> str:

@@ -153,7 +153,7 @@ class Refusal(msgspec.Struct, frozen=True):
 
 
 class Enter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Show a referee's token, without a decision."""
+    """A request that only shows a referee's token, and decides nothing."""
 
     token: str
 

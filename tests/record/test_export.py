@@ -268,7 +268,7 @@ def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
     path.write_bytes(path.read_bytes()[:-2500])
     words = CliRunner().invoke(app, ["info", str(path)])
     assert "none: the match was never finished" in words.stdout
-    assert "has no end there" in words.stderr
+    assert "has no end:" in words.stderr
     found = json.loads(CliRunner().invoke(app, ["info", str(path), "--json"]).stdout)
     assert (found["complete"], found["result"]) == (False, None)
 

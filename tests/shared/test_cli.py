@@ -191,7 +191,7 @@ def test_a_word_that_is_no_text_is_one_line_and_code_2(lacoc: Lacoc) -> None:
     code, out, err = lacoc("fails", os.fsdecode(b"Ants\x98"))
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert r"Ants\x98" in err
-    assert "holds bytes that are not text in UTF-8" in err
+    assert "is not valid UTF-8 text" in err
 
 
 def test_a_refused_file_is_a_table_and_code_2(lacoc: Lacoc) -> None:

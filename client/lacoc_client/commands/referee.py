@@ -60,7 +60,9 @@ _TYPES = {int: "A whole number.", float: "A number.", bool: "Yes or no."}
 
 _TokenUnused = Annotated[
     str | None,
-    typer.Option("--token", envvar="LACOC_TOKEN", metavar="TOKEN", help="Not needed to look."),
+    typer.Option(
+        "--token", envvar="LACOC_TOKEN", metavar="TOKEN", help="Not needed for this command."
+    ),
 ]
 
 
@@ -94,7 +96,7 @@ _COMMON: dict[str, tuple[Any, Any]] = {
             typer.Option(
                 metavar="SECONDS",
                 min=0,
-                help="Wait so long for the court, and until the decision is legal.",
+                help="How long to wait for the court, and until the decision is legal.",
             ),
         ],
         None,

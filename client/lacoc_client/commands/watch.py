@@ -47,7 +47,9 @@ def watch_command(
     ] = False,
     hz: Annotated[
         float,
-        typer.Option(min=0, max=50, help="With --json: so many frames a second; 0: none."),
+        typer.Option(
+            min=0, max=50, help="With --json: how many frames to print a second; 0: none."
+        ),
     ] = 2.0,
     forever: Annotated[
         bool,

@@ -65,7 +65,7 @@ def web_command(
     viewers: Annotated[
         int,
         typer.Option(
-            min=1, max=2000, help="More pages than this at once that only watch are sent away."
+            min=1, max=2000, help="How many pages may only watch at once; more are sent away."
         ),
     ] = VIEWERS_MOST,
     browser: Annotated[

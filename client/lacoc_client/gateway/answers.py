@@ -65,7 +65,7 @@ class Answers:
             raise
 
     def from_thread(self, to: int) -> Callable[[Any, UserError | FileRefused | None], None]:
-        """Make a function that takes the answer on any thread."""
+        """Make a function that sends the answer; any thread may call it."""
         loop = asyncio.get_running_loop()
 
         def answer(value: Any, error: UserError | FileRefused | None) -> None:

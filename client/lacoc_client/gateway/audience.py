@@ -47,7 +47,7 @@ class Audience:
                 viewer.send(framed)
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Send a message that another will soon replace."""
+        """Send a message to the pages that keep up; a slow page misses it and gets a later one."""
         for viewer in self._viewers:
             viewer.send_if_fast(framed)
 

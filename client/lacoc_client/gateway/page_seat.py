@@ -91,7 +91,7 @@ class PageSeat:
                 do(lambda controller: {"seq": controller.press(level, key)}, answer)
 
     def leave(self) -> None:
-        """Stop repeating when the page goes; the contestant keeps the seat."""
+        """Stop repeating the command when the page goes; the contestant keeps the seat."""
         self._end()
         if self._hold[0]:
             self._log(f"The page of seat {self._hold[0]} has gone.", "seat", seat=self._hold[0])

@@ -26,8 +26,8 @@ class _Frame(msgspec.Struct, array_like=True):
 class CourtPicture:
     """A court as a page that comes now sees it.
 
-    Each `take_...` returns the bytes for pages, or None if they have them. It raises `BadMessage`
-    if the court's bytes can't be decoded; then the picture does not change.
+    Each `take_...` returns the bytes for pages, or None if there is nothing new for them. It
+    raises `BadMessage` if the court's bytes can't be decoded; then the picture does not change.
     """
 
     def __init__(self) -> None:

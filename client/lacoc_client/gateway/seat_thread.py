@@ -75,7 +75,7 @@ class SeatThread:
             self._refuse_rest()
 
     def end(self) -> None:
-        """Stop repeating now; the contestant keeps the seat."""
+        """Stop repeating the command now; the contestant keeps the seat."""
         self._ended = True
         self._jobs.put(None)
 
@@ -136,7 +136,7 @@ class SeatThread:
             job.answer(value, None)
 
     def _report(self, controller: Controller) -> None:
-        """Report the seat: at once when it changed, twice a second at most for the round trip."""
+        """Report a change of the seat at once, and a new round trip at most twice a second."""
         now_s = time.monotonic()
         trip_ms = controller.round_trip_ms
         told: dict[str, Any] = {

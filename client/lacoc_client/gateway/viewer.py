@@ -70,7 +70,7 @@ class Viewer:
         self._socket.write(framed)
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Send a message that another will soon replace."""
+        """Send a message if the page keeps up; a slow page misses it and gets a later one."""
         if self._socket.keeps_up:
             self._socket.write(framed)
 

@@ -195,7 +195,7 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
 
     Args:
         own: the files.
-        used: their version with which the page's seat was joined just now.
+        used: version of the files with which the page has just joined a seat; None: it has not.
     """
     names = {name: file.name if file else "" for name, file in own.files._asdict().items()}
     refused = own.refused

@@ -24,8 +24,8 @@ def score(figures: Figures, goal: Goal) -> float:
     """Say how good a walk is [mm/s]; a robot that rests on its body or tips over gets below 0.
 
     Args:
-        figures: of the walk.
-        goal: what it is for.
+        figures: figures of the walk.
+        goal: what the gait is for.
     """
     fallen = max(0.0, _UPRIGHT - figures.upright) + max(0.0, figures.belly_share - _BELLY)
     if fallen:

@@ -53,16 +53,16 @@ def improve(
     is_over: IsOver,
     seed: int,
 ) -> Iterator[Improved]:
-    """Search for a better table; gives the best one again and again, until the search ends.
+    """Search for a better table; yield the best one so far, again and again.
 
     Args:
         table: the student's own angles [deg].
         ranges_deg: lowest and highest angle of each number.
         size: how many numbers may change.
-        matters: what matters in the table, the most first.
-        score: tries tables.
+        matters: the numbers of the table, those that matter most first.
+        score: tries tables and returns their scores.
         is_over: asked after each round of trials.
-        seed: seed of everything that is drawn.
+        seed: seed of all random numbers.
     """
     search = _Search(table, ranges_deg, score)
     yield search.best

@@ -55,11 +55,11 @@ class Trials:
         self._pool.shutdown(cancel_futures=True)
 
     def exact(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables as the contest would have them walk."""
+        """Score tables with the physics of the contest."""
         return self._score(tables, SUBSTEPS, _CYCLES)
 
     def quick(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables with longer steps of physics and fewer cycles: good for an order."""
+        """Score tables with longer physics steps and fewer cycles: good enough to rank them."""
         return self._score(tables, _QUICK_STEPS, _QUICK_CYCLES)
 
     def _score(self, tables: Sequence[Angles], steps: int, cycles: int) -> list[float]:

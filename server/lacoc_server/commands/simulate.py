@@ -68,7 +68,10 @@ def simulate_command(
         bool, typer.Option("--both-sides", help="Play every pair a second time with seats swapped.")
     ] = False,
     repeat: Annotated[
-        int, typer.Option(help="Play every pair so often; each time begins a moment later.", min=1)
+        int,
+        typer.Option(
+            help="How often each pair plays; each of its matches begins a moment later.", min=1
+        ),
     ] = 1,
     jobs: Annotated[
         int | None, typer.Option(help="Processes at a time; by default one for each core.", min=1)

@@ -30,7 +30,7 @@ class Archive:
         self._packing: list[subprocess.Popen[bytes]] = []
 
     def pack(self, match_id: str) -> None:
-        """Pack the records that an earlier court left; `match_id` names the match now open."""
+        """Pack the records that an earlier court left; the log names `match_id`, the open match."""
         self._aside.submit(self._pack, match_id)
 
     def take(self, match_id: str, writer: RecordWriter | None) -> None:

@@ -57,7 +57,7 @@ class RecordedPhysics:
 
     @property
     def digest(self) -> bytes:
-        """Digest in the frame."""
+        """Digest in the recorded frame; without a frame, that of `world`."""
         frame = self._record.frame
         return frame.digest if frame else self.world.digest
 

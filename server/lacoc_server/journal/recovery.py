@@ -49,7 +49,7 @@ class Unfinished:
 
     @property
     def inputs(self) -> list[Input]:
-        """The first inputs of the court: a match in play is halted until people are back."""
+        """Inputs of the first beat after the restart: a match in play is halted."""
         if self.match.phase in IN_PLAY:
             why = say("reason.court-restarted")
             if self.other_arithmetic:

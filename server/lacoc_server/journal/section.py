@@ -132,7 +132,7 @@ class Finding:
 
 
 class Worlds:
-    """Keeps the newest world that was built: sections of the same build follow each other."""
+    """Keeps the newest world that was built, because the next section often needs the same."""
 
     def __init__(self) -> None:
         self._number = -1
@@ -161,7 +161,7 @@ def simulate(section: Section, worlds: Worlds, bound: float = BOUND) -> Finding:
 
     Args:
         section: what to simulate.
-        worlds: source of its world, which is in the state of the section's end afterwards.
+        worlds: gives the section's world, which afterwards is in the state of the section's end.
         bound: largest distance that another arithmetic may reach [m, rad].
     """
     found = Finding(section.first_beat, section.last_beat)
@@ -242,7 +242,7 @@ def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> 
 
 
 def _joined(known: Difference | None, beat: int, what: str) -> Difference:
-    """Add a difference in a beat to the first known difference."""
+    """Return the first known difference, with `what` added if it is in the same beat."""
     if known is None:
         return Difference(beat, (what,))
     return known if known.beat != beat else Difference(beat, (*known.what, what))

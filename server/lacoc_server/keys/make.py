@@ -90,7 +90,7 @@ def make_keys(file: Path, hosts: Sequence[str], renew: bool) -> Made:
 
 
 def _with_entry(file: Path) -> tuple[bytes, Contest]:
-    """Return the contest file with the entry that names its folder of keys, and the contest."""
+    """Return the contest file's bytes with an entry for the key folder, and the contest in them."""
     try:
         data = file.read_bytes()
         table = read_toml(data).get("contest", {})

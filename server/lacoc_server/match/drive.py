@@ -34,7 +34,7 @@ class Drive:
 
     Args:
         gait: gait of the seat's robot.
-        start: (joints,) start posture [rad]; key 0 means it at a level whose file has no key 0.
+        start: (joints,) start posture [rad]; key 0 commands it at a level whose file has no key 0.
         ang_min_rad_s: AngMin, the speed of every commanded angle [rad/s].
         advance: when a sequence goes on: when its posture is "reached", or by "time".
         hold_us: how long a reached posture is held, or the time of each posture [us].

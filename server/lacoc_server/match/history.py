@@ -145,7 +145,7 @@ class History:
         return Fold(steps, state, over, tuple(vanished), tuple(appeared))
 
     def accept(self, fold: Fold, next_number: int) -> None:
-        """Make a fold the history; number its new events from `next_number` on."""
+        """Replace the history by a fold; number its new events from `next_number` on."""
         self._steps = list(fold.steps)
         for number, (index, place, _) in enumerate(fold.appeared, next_number):
             step = self._steps[index]

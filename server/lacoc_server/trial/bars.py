@@ -11,7 +11,7 @@ _DOWN, _UP, _MARK = "█", "·", "│"
 def foot_bars(
     legs: Sequence[str], down: Bools, starts: Sequence[int], first: int, columns: int
 ) -> list[str]:
-    """Draw a row for each leg, with as many ticks in each column as make the walk fit.
+    """Draw a row for each leg, with enough ticks in each column that the whole walk fits.
 
     Args:
         legs: labels of the legs.

@@ -104,7 +104,7 @@ def explain(
 
 
 def _limits(seen: Seen) -> Iterator[Finding]:
-    """Angles at the end of a joint's range."""
+    """Find an angle at the end of its joint's range."""
     cells = [
         (posture, leg, level)
         for posture in range(len(seen.sequence))
@@ -122,7 +122,7 @@ def _at_limit(angle_deg: float, range_deg: tuple[float, float]) -> bool:
 
 
 def _seam(seen: Seen) -> Iterator[Finding]:
-    """A jump from the last posture to the first."""
+    """Find a jump of a joint from the last posture to the first."""
     postures = len(seen.sequence)
     if postures < 3:
         return
@@ -197,7 +197,7 @@ def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
 
 
 def _legs(seen: Seen) -> Iterator[Finding]:
-    """One leg that does not do what the others do: it drags, pushes backward, or is out of step."""
+    """Find a leg that differs from the others: it drags, pushes backward, or is out of step."""
     if len(seen.sequence) < 2 or not seen.figures.cycles:
         return
     labels, legs = seen.walk.legs, range(len(seen.walk.legs))
@@ -229,7 +229,7 @@ def _legs(seen: Seen) -> Iterator[Finding]:
 
 
 def _out_of_step(seen: Seen, steps: Steps, legs: Sequence[int]) -> Iterator[Finding]:
-    """One leg that is lifted when no other leg is, while all others have partners."""
+    """Find the one leg that is lifted alone, while each other leg is lifted with another."""
     if len(seen.sequence) < 3 or len(legs) < 4:
         return
     phases = steps.phase
@@ -262,7 +262,7 @@ def _turn(one: float, other: float) -> float:
 
 
 def _ended(seen: Seen) -> Iterator[Finding]:
-    """Physics stopped, or the robot tipped over."""
+    """Say that physics stopped, or that the robot tipped over."""
     if seen.walk.fault is not None:
         yield Finding(100, say("explain.fault", why=seen.walk.fault))
     elif seen.figures.upright < _TIPPED:
@@ -271,7 +271,7 @@ def _ended(seen: Seen) -> Iterator[Finding]:
 
 
 def _balance(seen: Seen) -> Iterator[Finding]:
-    """The body on the floor, or the centre of mass outside the support polygon."""
+    """Say that the body rests on the floor, or the centre of mass is outside the feet."""
     figures = seen.figures
     if figures.belly_share > _BELLY:
         yield Finding(78, say("explain.belly", percent=100 * figures.belly_share))
@@ -282,7 +282,7 @@ def _balance(seen: Seen) -> Iterator[Finding]:
 
 
 def _way(seen: Seen) -> Iterator[Finding]:
-    """Where the robot goes: round, hardly at all, or well."""
+    """Say how the robot moves: it turns, its feet slide, or it goes forward."""
     figures = seen.figures
     if not figures.cycles:
         return

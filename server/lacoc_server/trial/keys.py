@@ -18,9 +18,10 @@ _LONGEST_S = 60.0
 
 
 def forward_key(gait: Gait) -> tuple[Level, int]:
-    """Return the key to try where nobody names one.
+    """Return the key to try if the person names none.
 
-    It is `FORWARD`; without it the first key whose sequence moves, else the last key of all.
+    At level B it is `FORWARD`, else the first key whose sequence moves, else the last key. A gait
+    without level B gives its last key of level A.
     """
     if gait.locomotion is None:
         return Level.POSTURE, gait.keys(Level.POSTURE)[-1]
@@ -35,9 +36,9 @@ def parse_keys(text: str, gait: Gait, first_tick: int) -> list[Press]:
     """Read keys that a person typed.
 
     Args:
-        text: keys in order, parted by commas. Each is a digit, with its level before it where both
-            have the digit ("A4"), and how long it stands after it ("1:3" for 3 s). The last one
-            stands to the end.
+        text: keys in order, separated by commas. Each is a digit. A letter before it names its
+            level ("A4"); each but the last has its time after it ("1:3" is key 1 for 3 s). The
+            last key stands to the end.
         gait: the gait whose keys they are.
         first_tick: when the first key is pressed.
 
@@ -61,7 +62,7 @@ def parse_keys(text: str, gait: Gait, first_tick: int) -> list[Press]:
 
 
 def _seconds(text: str | None) -> float | None:
-    """Read a time [s]; 0 where there is none. None: it is no time, or too long."""
+    """Read a time [s]: 0 if `text` is None; None if it is not a time, or too long."""
     try:
         seconds = float(text or 0)
     except ValueError:
@@ -70,7 +71,7 @@ def _seconds(text: str | None) -> float | None:
 
 
 def _level(letter: str, digit: int, gait: Gait) -> Level:
-    """Find the level at which a gait has a key; B where both have it."""
+    """Find the level of a key: the one that its letter names, else B if it has the key, else A."""
     wanted = {"": (Level.LOCOMOTION, Level.POSTURE), "A": (Level.POSTURE,)}
     for level in wanted.get(letter.upper(), (Level.LOCOMOTION,)):
         if gait.sequence(level, digit) is not None:

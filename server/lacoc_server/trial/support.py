@@ -34,8 +34,8 @@ def margin_m(feet: Sequence[Point], centre: Point) -> float | None:
         centre: centre of mass in the plane of the floor [m].
 
     Returns:
-        Positive inside the polygon, negative outside it. With two feet or one there is no inside.
-        None without feet.
+        Positive inside the polygon, negative outside it. One or two feet have no inside, so
+        the margin is never positive. None without feet.
     """
     corners = hull(feet)
     if not corners:

@@ -91,7 +91,7 @@ def _seat(name: str, seats: Sequence[str]) -> int:
 
 
 def _team_colour(model: Any, geom: int, seats: Sequence[str]) -> int:
-    """Return the seat whose colour a geom takes, if it has its robot body's colour; else -1."""
+    """Return the seat of a geom that has the colour of its robot's body; -1 for any other geom."""
     body = model.geom_bodyid[geom]
     root = model.body_rootid[body]
     plain = model.geom_rgba[model.body_geomadr[root]]

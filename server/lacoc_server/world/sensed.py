@@ -115,7 +115,7 @@ class SensedWorld(World):
         self._feel(spec, mujoco.mjtObj.mjOBJ_XBODY, "body", _FORCE)
 
     def _feel(self, spec: mujoco.MjSpec, kind: mujoco.mjtObj, name: str, fields: int) -> None:
-        """Measure the contact of a body with the floor; XBODY: with all bodies that hang on it."""
+        """Measure the contact of a body with the floor; XBODY adds the bodies that hang on it."""
         spec.add_sensor(
             name=f"floor:{name}",
             type=mujoco.mjtSensor.mjSENS_CONTACT,

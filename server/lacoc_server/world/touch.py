@@ -1,7 +1,8 @@
 """Which markers the robots touch: tested once a tick, without any force.
 
-MuJoCo's own distance of two geoms decides. It is asked only about pairs that may touch. A top view
-finds these pairs: there an upright probe is a circle, and no distance is larger than in space.
+MuJoCo's own distance of two geoms decides. It is asked only about pairs that may touch. These pairs
+are found in the plan view: there an upright probe is a circle, and two points are never farther
+apart than in space.
 Probes far from a whole robot, or from a whole leg, are skipped at once.
 """
 

@@ -112,7 +112,7 @@ def _load(entry: EntryPoint) -> Any:
 
 
 def _prepare_help(command: Any) -> None:
-    """Let the terminal's width break the lines of help, not the source; and translate it."""
+    """Translate a command's help, and let the terminal's width break its lines."""
     if command.help:
         paragraphs = command.help.split("\n\n")
         command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)

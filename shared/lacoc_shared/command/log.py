@@ -99,7 +99,7 @@ def _json(_: Any, __: str, line: structlog.typing.EventDict) -> str:
 
 
 def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
-    """Write wall time, match, match clock and event; the other values are for programs."""
+    """Format a line for a person: wall time, match or court, match clock and sentence."""
     at = datetime.fromisoformat(line["timestamp"]).astimezone().strftime(_CLOCK)
     head = " ".join(filter(None, (at, line.get("match_id") or line.get("court"))))
     ticks = line.get("left_ticks", line.get("clock_ticks"))

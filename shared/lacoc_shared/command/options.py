@@ -69,7 +69,7 @@ WaitForCourt = Annotated[
         envvar="LACOC_WAIT",
         metavar="SECONDS",
         min=0,
-        help="Wait so long for a court that is not there, as a service does.",
+        help="How long to wait for a court that is not there, as a service does.",
     ),
 ]
 Metrics = Annotated[

@@ -85,7 +85,7 @@ def gateway_access(contest: Contest | None, court: str | None, connect: str | No
 
 
 def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict[str, Access]:
-    """Return everybody's access to a court with keys: the seats, the referee, others.
+    """Return everybody's access to a court with keys: seats, referee, gateway, spectators.
 
     Args:
         contest: a contest with keys.

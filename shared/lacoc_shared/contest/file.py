@@ -131,7 +131,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def protocol(self) -> str:
-        """Protocol of an address that names none."""
+        """Protocol of addresses that name none: TLS in a contest with keys, else TCP."""
         return "tls" if self.keys else "tcp"
 
     @property

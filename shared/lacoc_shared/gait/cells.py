@@ -82,7 +82,10 @@ def locomotion_cells(table: LocomotionTable, legs: Sequence[str]) -> list[list[s
 
 
 def leg_labels(legs: int) -> tuple[str, ...]:
-    """Return a robot's leg labels, clockwise from the right front, if no robot file gives them."""
+    """Return the usual labels of legs, clockwise from the right front.
+
+    They are used where no robot file gives labels.
+    """
     return LEG_LABELS.get(legs) or tuple(map(str, range(legs)))
 
 

@@ -45,7 +45,8 @@ def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
         labels: labels of the robot's legs, in order.
 
     Returns:
-        The first such place and label, because one mix-up gives dozens. None if all fit.
+        A remark on the first such label only, because one mix-up of columns causes dozens;
+        None if all labels fit.
     """
     known = {_plain(label): label for label in labels}
     levels = {_plain(name): name for name in LEVEL_NAMES}

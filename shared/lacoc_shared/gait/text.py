@@ -127,7 +127,10 @@ def _cells(line: str) -> list[str]:
 
 
 def _is_csv(lines: Iterable[str]) -> bool:
-    """Say whether commas or semicolons separate cells: a cell has at most one decimal comma."""
+    """Return whether commas or semicolons separate the cells, and not tabs.
+
+    One comma in a cell may be a decimal comma, so only more of them show that it is a CSV file.
+    """
     lines = list(lines)
     return not any("\t" in line for line in lines) and any(
         line.count(",") + line.count(";") > len(_cells(line)) for line in lines

@@ -46,7 +46,8 @@ def access_control(protection: Protection | None) -> dict[str, Any]:
     Only the court sends frames, events, sheets and health, and answers requests.
 
     Args:
-        protection: the court's users; None: anybody may act; tokens and seals alone identify them.
+        protection: the court's users; None: anybody may send commands and requests, and only
+            tokens and seals show whose they are.
     """
     if protection is None:
         anyone = _acting(["lacoc/*/seat/*/key"], ["lacoc/*/seat/*/*", "lacoc/*/referee/*"])

@@ -52,7 +52,7 @@ def host(one: str) -> str:
 
 
 def collisions(these: Sequence[str], others: Sequence[str]) -> list[str]:
-    """Return those of these addresses that a machine can't listen on together with the others."""
+    """Return each of `these` that a machine can't listen on together with one of `others`."""
     return [one for one in these if any(_collide(_split(one), _split(other)) for other in others)]
 
 

@@ -48,7 +48,10 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Touch(msgspec.Struct, frozen=True, array_like=True):
-    """What the rules saw in a tick besides the poses of its frame; omitted if there was nothing."""
+    """The touches and put-back robots of a tick, which its frame does not show.
+
+    It is not recorded if there were none.
+    """
 
     touched: tuple[tuple[int, ...], ...]
     """For each seat, the markers that it touched."""

@@ -156,7 +156,10 @@ class RecordWriter:
         self.leave()
 
     def leave(self) -> None:
-        """Wait until the disk has everything. A match without an end continues in a new segment."""
+        """Close the file as it is, once the disk has everything.
+
+        A match without an end can continue in a new segment.
+        """
         if self._closing.is_set():
             return
         self._closing.set()
