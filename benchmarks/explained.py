@@ -24,7 +24,7 @@ from lacoc_shared.words import Phrase, render
 
 KEY = 2
 _NOISE_DEG = 3
-"""Each angle of a table differs by at most so much from the sample's, so that no two are equal."""
+"""Each angle of a table differs by at most this much from the sample's, so no two are equal."""
 _AIM = 0.9
 
 Table = list[list[float]]

@@ -33,9 +33,9 @@ from lacoc_shared.seat import Phase
 
 ROBOTS = ("hexapod", "quadruped", "octopod")
 _TURN_DEG = 60
-"""Drawn angles are at most so far from the start posture."""
+"""Drawn angles are at most this far from the start posture."""
 _WALKS_MM_S = 10.0
-"""A table walks if the robot goes forward at least so fast, on its feet."""
+"""A table walks if the robot goes forward at least this fast, on its feet."""
 _LOW_M = 0.001
 
 

@@ -51,7 +51,7 @@ class Hold(Enum):
 
     @property
     def phrase(self) -> Phrase:
-        """The sentence that describes this state; it is used where no more exact reason is known."""
+        """The sentence that describes this state; used where no more exact reason is known."""
         return _HOLDS[self]
 
 

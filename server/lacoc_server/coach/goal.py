@@ -5,7 +5,8 @@ from enum import StrEnum
 from lacoc_server.trial.figures import Figures
 
 _BELLY, _UPRIGHT = 0.02, 0.9
-"""A walk counts if other parts than feet rest on the floor less, and the body is more upright."""
+"""A walk counts as fallen if parts other than feet are on the floor for more than the first share
+of its ticks, or if `upright` is below the second."""
 _TURN_MM_S_PER_DEG_S = 3.0
 """A turn of 20 deg/s is worth as much as a walk of 60 mm/s."""
 _DRIFT_FREE_DEG_S = 3.0

@@ -15,7 +15,7 @@ _STEPS_DEG = (5, 10, 15, 20, 30)
 _SIGMA_DEG = 12.0
 _POPULATION = 16
 _GIVE_BACK = 0.02
-"""A change goes back if the walk is at most this part worse without it."""
+"""A change is undone if the score is at most this share lower without it."""
 _FEW = 16
 """How many of the numbers that matter most are combined for the size "three"."""
 

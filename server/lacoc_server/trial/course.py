@@ -16,9 +16,9 @@ from lacoc_shared.seat import BEATS_PER_S
 SETTLE_TICKS = BEATS_PER_S // 2
 """Ticks for which the robot stands before a key is pressed."""
 CYCLES = 5
-"""Whole cycles that are measured, after one that is not: in it the robot gets going."""
+"""Whole cycles that are measured. One before them is not, because the robot gets going in it."""
 NO_CYCLE_S = 6.0
-"""How long a key is measured whose sequence has one posture, and so never repeats [s]."""
+"""How long a key is measured if its sequence has one posture, and so never repeats [s]."""
 _MOST_S = 60.0
 
 

@@ -32,9 +32,11 @@ _LIFT_M = 0.008
 _DRAGGED = 0.35
 """A leg drags if it is lifted less than this part of what is usual."""
 _SWING_M2, _AGAINST = 1e-4, 0.3
-"""A leg pushes backward if it swings backward in the air, by this part of what others swing."""
+"""A leg pushes backward if it swings backward in the air by more than the second share of the usual
+swing, and the usual swing is larger than the first."""
 _APART = 0.12
-"""A leg is out of step if it is lifted by this part of the sequence before or after all others."""
+"""A leg is out of step if it is lifted more than this part of the sequence before or after every
+other leg."""
 _BELLY, _FALLS, _TURNS_DEG_S, _SLIDES_MM_S, _SLOW_MM_S = 0.05, 0.9, 3.0, 20.0, 15.0
 
 

@@ -1,7 +1,7 @@
 """Which markers the robots touch: tested once a tick, without any force.
 
 MuJoCo's own distance of two geoms decides. It is asked only about pairs that may touch. These pairs
-are found in the plan view: there an upright probe is a circle, and two points are never farther
+are found in a top view: there an upright probe is a circle, and two points are never farther
 apart than in space.
 Probes far from a whole robot, or from a whole leg, are skipped at once.
 """
