@@ -65,7 +65,7 @@ def web_command(
     viewers: Annotated[
         int,
         typer.Option(
-            min=1, max=2000, help="How many pages may only watch at once; more are sent away."
+            min=1, max=2000, help="How many watching pages may be open at once; more are sent away."
         ),
     ] = VIEWERS_MOST,
     browser: Annotated[

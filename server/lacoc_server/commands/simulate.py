@@ -70,7 +70,7 @@ def simulate_command(
     repeat: Annotated[
         int,
         typer.Option(
-            help="How often each pair plays; each of its matches begins a moment later.", min=1
+            help="How often each pair plays; the bots start a little later each time.", min=1
         ),
     ] = 1,
     jobs: Annotated[

@@ -48,7 +48,7 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Touch(msgspec.Struct, frozen=True, array_like=True):
-    """The touches and put-back robots of a tick, which its frame does not show.
+    """The touches of a tick, and the robots put back in it, which its frame does not show.
 
     It is not recorded if there were none.
     """
