@@ -130,7 +130,7 @@ changes = st.lists(
 
 
 def changed(data: bytes, edits: list[tuple[int, int, bytes]]) -> bytes:
-    """Return the data with bytes put in, taken out or replaced."""
+    """Return the data with some bytes inserted, removed or replaced."""
     for place, kind, new in edits:
         end = place + (0, len(new), len(new))[kind]
         data = data[:place] + (b"" if kind == 1 else new) + data[end:]

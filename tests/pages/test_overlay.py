@@ -35,7 +35,7 @@ PIXELS = """async (png) => {
 
 
 def alphas(page: Page, blank: Page) -> dict[str, float]:
-    """Return the page's alpha at its edge and middle (0 to 255), and the share of opaque pixels."""
+    """Return the page's opacity at its edge and middle (0-255), and the share of opaque pixels."""
     png = base64.b64encode(page.screenshot(omit_background=True)).decode()
     found: dict[str, float] = blank.evaluate(PIXELS, png)
     return found

@@ -222,7 +222,7 @@ def setup_of(arena: str) -> Setup:
 
 
 def other_model(data: bytes) -> tuple[bytes, bytes]:
-    """Return the model's hash from the event of READY, and another hash to replace it."""
+    """Return the model's hash in the event of READY, and a false hash of the same length."""
     at = data.rindex(b"\xa5model\xb0") + 7
     return data[at : at + 16], b"0" * 16
 

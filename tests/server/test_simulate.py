@@ -100,7 +100,7 @@ def test_files_with_mistakes_are_refused() -> None:
 
 
 def test_a_match_knows_nothing_of_how_it_is_run() -> None:
-    """The length of a match follows from its setup; `Match` does not know that it is headless."""
+    """`Match` computes its length from its setup, without knowing that the match is headless."""
     match = Match(setup("othello", SHORT), World)
     assert match.duration_ticks == 200
 

@@ -196,7 +196,7 @@ def test_leaving_a_halted_match_ends_it() -> None:
 def test_after_a_fault_the_robot_is_put_back_and_play_goes_on(
     monkeypatch: pytest.MonkeyPatch, seat: int
 ) -> None:
-    """Rules 7: a robot that made physics stop is put back at its start, and play goes on."""
+    """Rules 7: after a fault of physics, the robot is put back at its start and play goes on."""
     script = Script(faults={10: Fault(seat, say("fault.velocity"))})
     monkeypatch.setattr(
         court_module, "World", lambda arena, entries: ScriptedPhysics(arena, entries, script)
