@@ -24,7 +24,7 @@ from lacoc_shared.words import render, say
 
 @pytest.fixture
 def taken() -> Iterator[int]:
-    """Give a port at which something listens that is neither a court nor a gateway."""
+    """Give a port that is taken by a program that is neither a court nor a gateway."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         listener.listen()

@@ -91,7 +91,7 @@ def test_a_short_number_stays_as_it_was(thousandths):
     st.sampled_from(["\t", "   "]),
 )
 def test_a_written_text_reads_back(table, encoding, line_end, gap):
-    """Any table reads back, in any encoding, with any line ends, with tabs or spaces."""
+    """Any table that is written as text reads back, in any encoding, with tabs or spaces."""
     labels = leg_labels(table.joints // 3)
     text = write_gait(table, labels).decode().replace("\n", line_end).replace("\t", gap)
     assert read_gait(text.encode(encoding), "x", legs=labels) == table

@@ -91,7 +91,7 @@ def test_a_reason_is_a_text_or_one_of_the_pages(reason: Phrase | str, taken: boo
 
 
 def test_a_wrong_token_learns_nothing() -> None:
-    """A request with a wrong token learns nothing about the decision from the refusal."""
+    """The refusal of a wrong token reveals nothing about the decision."""
     refusal = DecisionDesk(HASHES).decision("x", encode({"token": "guess", "decision": 3}))
     assert refusal == Refusal(say("refused.no-referee-token"))
 

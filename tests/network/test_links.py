@@ -110,7 +110,7 @@ def test_p95_is_the_longest_but_one_of_twenty() -> None:
 
 
 def test_the_same_frame_again_is_no_new_round_trip() -> None:
-    """A command that names a frame again, or an older one, gives no new round trip."""
+    """A command that names the same frame again, or an older one, gives no new round trip."""
     clock = warm(2, 2)
     for ago in range(1, 200):
         clock.begin()

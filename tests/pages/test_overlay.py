@@ -42,7 +42,7 @@ def alphas(page: Page, blank: Page) -> dict[str, float]:
 
 
 def test_flags_of_the_address(venue: Venue, open_page: OpenPage) -> None:
-    """The overlay follows the flags of its address, and shows no scroll bars and no pointer."""
+    """The overlay obeys the flags in its address, and shows no scroll bars and no pointer."""
     venue.court()
     venue.web()
     playing(venue)

@@ -116,7 +116,7 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
 
 
 def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder: Path) -> None:
-    """With a flipped bit, verify and a court's start end with a message, not with a crash.
+    """If a bit is flipped, verify and a court's start end with a message, not with a crash.
 
     The record stays as it is, and `verify` finds most flips.
     """

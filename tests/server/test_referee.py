@@ -236,7 +236,7 @@ def test_restart(phase: Phase) -> None:
 
 
 def test_freeze_and_its_end() -> None:
-    """`freeze` lets the robot stand and refuses its keys, for some seconds of the clock."""
+    """`freeze` makes the robot stand and refuses its keys, for some seconds of the clock."""
     stage = stage_in(P.PLAYING)
     stage.beat(key(LEFT, FORWARD))
     done(stage, d.Freeze("left", 1.0))

@@ -117,7 +117,7 @@ def test_a_record_is_never_overwritten(tmp_path: Path) -> None:
 
 
 def handed_in(folder: Path, locomotion: bytes | None) -> Path:
-    """Make the folder of a student's files; return it."""
+    """Make a folder with a student's files, and return it."""
     folder.mkdir()
     if locomotion is not None:
         (folder / "LocoTra-data.txt").write_bytes(locomotion)

@@ -183,7 +183,7 @@ def test_two_have_time_to_read_who_has_won() -> None:
 
 
 def test_leaving_a_halted_match_ends_it() -> None:
-    """Rules 7: if everybody leaves a halted match, it ends and the next one opens, empty."""
+    """Rules 7: if everybody leaves a halted match, it ends and the next opens with empty seats."""
     held = Held("practice")
     held.begin()
     held.beat(decide(d.Halt()))
