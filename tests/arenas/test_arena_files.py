@@ -21,7 +21,7 @@ INSTALLED = ["othello", "flag-strike", "practice"]
 
 
 def look(name: str, overrides: dict[str, Any] | None = None) -> bytes:
-    """Return as bytes the facts of a game and its field that settings can change."""
+    """Return, as bytes, everything in a game and its field that a setting can change."""
     ground = arena.load(name, overrides)
     game = ground.game
     spec = mujoco.MjSpec()
@@ -94,7 +94,7 @@ def test_every_setting_is_tested() -> None:
 
 
 def test_layout_in_the_file_is_the_layout() -> None:
-    """Places, points and colours of the flags are those of the settings."""
+    """The flags have the places, points and colours that the settings give."""
     colours = copy.deepcopy(arena.load("flag-strike").settings["game"]["colour"])
     colours[0]["flags"][0:2] = [[-0.1, 0.5], [0.1, -0.5]]
     colours[1]["points"] = 4
@@ -127,7 +127,7 @@ def test_practice_match() -> None:
 
 @pytest.mark.parametrize("name", ["othello", "flag-strike"])
 def test_seats_of_the_games(name: str) -> None:
-    """The left seat is blue and plain; the right seat is orange and striped."""
+    """The left seat is blue without a pattern; the right seat is orange with stripes."""
     seats = arena.load(name).seats
     assert [(seat.id, seat.colour, seat.pattern) for seat in seats] == [
         ("left", "#0072b2", "plain"),
@@ -252,7 +252,7 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
     ],
 )
 def test_a_field_of_other_measures(game: dict[str, Any]) -> None:
-    """A field of other measures is accepted if its parts are within the walls and don't overlap."""
+    """A field of another size is accepted if its parts are within the walls and don't overlap."""
     assert arena.load("flag-strike", {"game": game}).game.markers
 
 
@@ -280,7 +280,7 @@ def test_wrong_game_setting(name: str, game: dict[str, Any], says: str) -> None:
     ],
 )
 def test_wrong_common_setting(overrides: dict[str, Any], says: str) -> None:
-    """A wrong setting that all games have is refused, and the message names it."""
+    """A setting of all games that has a wrong value is refused, and the message names it."""
     with pytest.raises(UserError) as refused:
         arena.load("othello", overrides)
     assert 'The file of arena "othello" is wrong: ' in str(refused.value)
@@ -303,7 +303,7 @@ def test_unreadable_file(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_no_whole_arena(tmp_path: Path) -> None:
-    """One sentence tells which files a folder lacks, and where only numbers can be changed."""
+    """An error names the files that a folder lacks, and the place for a change of numbers only."""
     with pytest.raises(UserError, match=r"lacks arena\.toml, rules\.py, field\.py and bots\.py\. "):
         arena.load(str(tmp_path))
     (tmp_path / "arena.toml").write_text("title = ''")
@@ -336,7 +336,7 @@ def test_state_survives_the_record(name: str) -> None:
 
 
 def test_merge_replaces_single_entries() -> None:
-    """Merging settings merges nested tables and replaces whole lists."""
+    """Merging settings keeps a table's other entries, but replaces a list as a whole."""
     merged = arena.merge({"a": {"b": 1, "c": [1, 2]}, "d": 3}, {"a": {"c": [4]}, "e": 5})
     assert merged == {"a": {"b": 1, "c": [4]}, "d": 3, "e": 5}
 

@@ -108,7 +108,7 @@ def make_frame(
 
 
 def glide(ground: arena.Arena, names: tuple[str, str], seed: int) -> tuple[int, ...]:
-    """Play a match of gliding robots, which pass through one another; return the scores."""
+    """Play a match of robots that glide and pass through one another; return the scores."""
     game, sheet = ground.game, make_sheet(ground)
     chance = random.Random(seed)
     brains: list[Brain] = [ground.bots[name](sheet, seat) for seat, name in enumerate(names)]
@@ -226,7 +226,7 @@ def key_for(
 
 @pytest.mark.parametrize("heading", [-3.0, -1.0, 0.0, 0.5, 2.0, 3.1])
 def test_eyes_read_poses(heading: float) -> None:
-    """Eyes read the poses from a frame's bytes; a robot's forward is its body's +y."""
+    """`Eyes` reads the robots' poses from a frame; a robot's heading is that of its body's +y."""
     frame = make_frame([(0.1, -0.2, heading), AWAY], [STAND, STAND])
     pose, other = Eyes(SHEET).poses(frame)
     assert (pose.x_m, pose.y_m, pose.up) == pytest.approx((0.1, -0.2, 1.0))
@@ -247,7 +247,7 @@ def test_eyes_read_poses(heading: float) -> None:
     ],
 )
 def test_turn_to_a_point_then_walk(target_m: tuple[float, float] | None, key: Key | None) -> None:
-    """A pilot turns the shorter way until the point is ahead; without a point it stands."""
+    """A pilot turns to its target the shorter way and then walks; without a target it stands."""
     assert key_for(target_m) == key
 
 
@@ -263,7 +263,7 @@ def test_turn_to_a_point_then_walk(target_m: tuple[float, float] | None, key: Ke
 def test_pass_the_other_robot(
     other: tuple[float, float, float], here: tuple[float, float, float], key: Key
 ) -> None:
-    """A pilot passes the other robot on the right, or on the left where a wall is on the right."""
+    """A pilot passes the other robot on the right, or on the left if a wall is on the right."""
     assert key_for((0.9, here[1]), here, other) == key
 
 
@@ -299,7 +299,7 @@ def test_restart_when_it_lies_on_its_back() -> None:
 
 
 def test_restart_when_tangled() -> None:
-    """A pilot presses [x] when its robot has been tangled with the other for eight seconds."""
+    """A pilot presses [x] when its robot has been caught on the other one for eight seconds."""
     keys = fly(pilot(), frames(8 * BEATS_PER_S + 1, FORWARD, other=(0.3, 0.0, math.pi)))
     assert keys.index(RESTART) == 8 * BEATS_PER_S
 

@@ -143,7 +143,7 @@ def colour_of(geom: Any, swap: bool) -> tuple[float, ...]:
 
 
 def looks(name: str, turn: bool) -> Any:
-    """Return each geom as numbers of its look; with `turn`, of the field after a half turn."""
+    """Return place, shape and colour of each geom as numbers; `turn` turns the field by half."""
     model = build(name).compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -176,7 +176,7 @@ def test_field_turned_is_the_same_field(name: str) -> None:
 
 
 def test_start_places_look_like_no_target() -> None:
-    """On the field of Flag-Strike only what is worth points is round; start places are square."""
+    """On Flag-Strike's field only markers that give points are round; start places are square."""
     model = build("flag-strike").compile()
     pads = [geom for geom in geoms(model) if geom.name.startswith("pad:")]
     assert len(pads) == 2 * len(arena.load("flag-strike").game.starts[0])

@@ -135,7 +135,7 @@ def test_corner_edge(x_m: float, inside: bool) -> None:
 
 
 def test_corner_is_nowhere_for_no_number() -> None:
-    """A position that is not a number is in no corner."""
+    """A position of NaN lies in no corner."""
     assert GAME.corner_at(math.nan, 0.8) == NO_CORNER
 
 
@@ -164,7 +164,7 @@ def test_own_corner_is_no_event() -> None:
 
 
 def test_both_come_in_one_tick() -> None:
-    """If both robots come into a corner in the same tick, it stays as it was (rules 6)."""
+    """If both robots come into a corner in the same tick, its owner does not change (rules 6)."""
     for owner in (NEUTRAL, LEFT, RIGHT):
         before = GAME.set(START, 1, owner)
         after, events = tick(before, view(CORNERS[1]), view(CORNERS[1]))
@@ -180,7 +180,7 @@ def test_both_take_other_corners_in_one_tick() -> None:
 
 
 def test_put_down_outside_and_in_again_in_one_tick() -> None:
-    """After [x], a robot captures a corner only if its start place is outside this corner."""
+    """After [x], a robot in a corner captures it only if its start place is outside this corner."""
     held, _ = tick(START, view(CORNERS[0]), view())
     lost = GAME.set(held, 0, RIGHT)
     _, events = tick(lost, view(CORNERS[0], placed=(-0.6, 0.0)))
@@ -217,7 +217,7 @@ def all_corners_for_left(game: FlagStrike = GAME) -> State:
 
 
 def test_all_four_end_the_match() -> None:
-    """The match ends when one robot holds all four corners, and points decide who wins."""
+    """The match ends when one robot holds all four corners; the team with more points wins."""
     state = all_corners_for_left()
     assert GAME.over(state) == say("over.all-corners", seat="left")
     assert GAME.winner(state, (20, 22)) == 1
@@ -249,7 +249,7 @@ def test_all_corners_win() -> None:
 
 @pytest.mark.parametrize(("flag", "points"), [("flag0", 1), ("flag8", 2), ("flag19", 5)])
 def test_strike(flag: str, points: int) -> None:
-    """A flag that one robot touches falls, and its points stay (workshop 5-2 rule 5)."""
+    """A flag that one robot touches falls, and the robot keeps its points (workshop 5-2 rule 5)."""
     after, events = tick(START, view(touched=(flag,)))
     assert claims(events) == [(0, flag)]
     assert events[0].kind == "strike"
@@ -279,7 +279,7 @@ def test_several_flags_in_one_tick() -> None:
 
 
 def test_capture_and_strike_in_one_tick() -> None:
-    """The score is the sum of corners and flags (workshop 5-2 rule 7)."""
+    """A score is the sum of the points of corners and flags (workshop 5-2 rule 7)."""
     after, events = tick(START, view(CORNERS[0], touched=("flag19",)))
     assert claims(events) == [(0, "corner0"), (0, "flag19")]
     assert GAME.score(after) == (10, 0)
@@ -290,7 +290,7 @@ def test_capture_and_strike_in_one_tick() -> None:
 
 @pytest.mark.parametrize(("scores", "winner"), [((9, 8), 0), ((8, 9), 1), ((8, 8), None)])
 def test_winner_has_more_points(scores: tuple[int, int], winner: int | None) -> None:
-    """The team with more points wins, and equal points are a draw (workshop 5-2 rule 8)."""
+    """The team with more points wins; equal points make a draw (workshop 5-2 rule 8)."""
     assert GAME.winner(START, scores) == winner
 
 
@@ -298,7 +298,7 @@ def test_winner_has_more_points(scores: tuple[int, int], winner: int | None) -> 
 
 
 def test_referee_sets_corners_and_flags() -> None:
-    """A marker that the referee sets changes the score; only a flag can be down."""
+    """When the referee sets a marker, the score changes; only a flag can be set to "down"."""
     state = GAME.set(GAME.set(START, 0, LEFT), INDEX["flag19"], RIGHT)
     assert GAME.score(state) == (5, 5)
     down = GAME.set(state, INDEX["flag19"], DOWN)

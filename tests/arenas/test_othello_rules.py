@@ -29,7 +29,7 @@ def with_settings(**settings: object) -> Othello:
 
 
 def view(where: str, placed: str | None = None, game: Othello = GAME) -> RobotView:
-    """Return a robot on the middle of a disc, or in the gap at the middle of the field."""
+    """Return the view of a robot at the middle of a disc, or in the gap at the field's middle."""
     x_m, y_m = (0.0, 0.0) if where == GAP else middle(where, game)
     start = None if placed is None else Place(*middle(placed, game), 0.0)
     return RobotView(x_m, y_m, 0.07, 1.0, 0.0, 0.0, 0.0, start)
@@ -123,7 +123,7 @@ def test_start_cells_are_owned_where_they_are_set() -> None:
 
 
 def test_starts() -> None:
-    """The left robot starts on column 0 and faces +x; the right one on column 5, -x (rules 5)."""
+    """The left robot starts on column 0 and faces +x; the right one faces -x on column 5."""
     left, right = GAME.starts
     assert [GAME.markers[GAME.cell_at(p.x_m, p.y_m)].name for p in left] == [
         "c0r2",
@@ -211,7 +211,7 @@ def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
     ],
 )
 def test_between_and_outside_the_discs(x_m: float, y_m: float) -> None:
-    """A place that is between discs, outside the board or not a number is no cell."""
+    """A place between discs, outside the board, or of NaN belongs to no cell."""
     assert GAME.cell_at(x_m, y_m) == NO_CELL
 
 
@@ -286,7 +286,7 @@ def test_never_diagonally(cell: str) -> None:
 
 
 def test_colour_of_the_last_cell_counts_now() -> None:
-    """The last cell must have the robot's colour at the moment of the step (rules 5)."""
+    """A robot flips a disc only if its last cell still has its colour when it enters (rules 5)."""
     before = state(board("LR...."), "c0r5")
     lost = GAME.set(before, INDEX["c0r5"], RIGHT)
     assert tick(lost, "c1r5")[1] == ()
@@ -379,7 +379,7 @@ def test_both_enter_the_same_neutral_disc() -> None:
 
 
 def test_second_robot_may_claim_a_disc_the_first_stands_on() -> None:
-    """A robot may take a neutral disc on which the other robot already stands."""
+    """A robot may take a neutral disc on which the other robot stands already."""
     before = state(board("..R..."), "c1r5", "c2r5")
     _, events = tick(before, "c1r5", "c1r5")
     assert [event.seat for event in events] == [1]
@@ -434,7 +434,7 @@ def test_score_is_the_number_of_discs() -> None:
     ("scores", "winner"), [((19, 17), 0), ((17, 19), 1), ((18, 18), None), ((0, 0), None)]
 )
 def test_winner_has_more_discs(scores: tuple[int, int], winner: int | None) -> None:
-    """The team with more discs wins, and equal numbers are a draw (workshop 5-1 rule 7)."""
+    """The team with more discs wins; equal numbers make a draw (workshop 5-1 rule 7)."""
     assert GAME.winner(GAME.start(), scores) == winner
 
 
@@ -459,7 +459,7 @@ def test_over_when_a_team_has_no_disc_left() -> None:
 
 
 def test_referee_sets_a_disc() -> None:
-    """A disc that the referee sets changes the score; a disc can't be down."""
+    """When the referee sets a disc, the score changes; a disc can't be set to "down"."""
     before = GAME.start()
     after = GAME.set(before, INDEX["c5r5"], LEFT)
     assert GAME.score(after) == (19, 17)
@@ -482,7 +482,7 @@ def test_struck_flip_has_no_effect_but_the_step() -> None:
 
 
 def test_struck_is_one_claim_only() -> None:
-    """Taking back one seat's flip leaves the other seat's flip in the same tick."""
+    """If one seat's flip is taken back, the other seat's flip in the same tick stays."""
     before = state(board("LR....", "....LR"), "c0r5", "c5r4")
     _, events = tick(before, "c1r5", "c4r4", struck=frozenset({(0, "c1r5"), (0, "c4r4")}))
     assert [(event.seat, event.marker) for event in events] == [(1, "c4r4")]

@@ -129,7 +129,7 @@ def test_the_key_of_the_guide_s_bot_is_one(race: Path) -> None:
 
 
 def use(folder: Path) -> None:
-    """Use every part of an arena that a court uses before a match."""
+    """Call every part of an arena that a court uses before a match."""
     ground = arena.load(str(folder))
     assert ground.bots
     spec = mujoco.MjSpec()
@@ -206,7 +206,7 @@ def test_a_wrong_arena_is_told_in_one_sentence(race: Path, case: str) -> None:
     ],
 )
 def test_a_wrong_answer_in_a_match_is_told(race: Path, was: str, now: str, says: str) -> None:
-    """A wrong answer that a rule gives during a match is reported in that tick."""
+    """If a rule returns a wrong value during a match, the error is raised in that tick."""
     text = (race / "rules.py").read_text()
     assert text.count(was) == 1
     (race / "rules.py").write_text(text.replace(was, now))

@@ -21,7 +21,7 @@ SWAPPED = {NEUTRAL: NEUTRAL, LEFT: RIGHT, RIGHT: LEFT, 3: 3}
 
 
 def opposites(game: AnyGame) -> list[int]:
-    """Return for each marker the index of the one at its place after the field is turned."""
+    """Return, for each marker, the index of the marker at its place in the turned field."""
     at = {(marker.x_m, marker.y_m): index for index, marker in enumerate(game.markers)}
     return [at[-marker.x_m, -marker.y_m] for marker in game.markers]
 
@@ -50,7 +50,7 @@ def turn_claim(claim: Claim, game: AnyGame, opposite: list[int]) -> Claim:
 
 
 def said(events: tuple[GameEvent, ...]) -> set[tuple[Any, ...]]:
-    """Return events as a set, because their order within a tick does not matter."""
+    """Return events as a set, so that their order within a tick does not matter."""
     return {(e.kind, e.seat, e.marker, frozenset(e.also), e.points) for e in events}
 
 
@@ -81,7 +81,7 @@ def observations(draw: st.DrawFn, game: AnyGame) -> list[tuple[tuple[RobotView, 
 @pytest.mark.parametrize("name", GAMES)
 @given(data=st.data())
 def test_turned_match(name: str, data: st.DataObject) -> None:
-    """The rules give exactly the turned match for turned robots with swapped seats (rules 4)."""
+    """If paths are turned and seats swapped, the rules give exactly the turned match (rules 4)."""
     game = GAMES[name]
     opposite = opposites(game)
     state = mirror = game.start()
@@ -116,7 +116,7 @@ def test_turned_match(name: str, data: st.DataObject) -> None:
 @pytest.mark.parametrize("name", GAMES)
 @given(data=st.data())
 def test_score_is_the_board(name: str, data: st.DataObject) -> None:
-    """Only markers named by events change, and the score is the sum of a team's markers."""
+    """A tick changes only the markers in its events; a score is the sum of a team's markers."""
     game = GAMES[name]
     state = game.start()
     for views, _ in data.draw(observations(game)):

@@ -44,7 +44,7 @@ class CourtProcess:
         return ["--connect", self.address, "--seat", seat, "--token", self.tokens[seat]]
 
     def start(self, *words: str, **options: Any) -> Lacoc:
-        """Start a command, which `close` ends with the court."""
+        """Start a command; `close` ends it together with the court."""
         settings: dict[str, Any] = {
             "stdin": subprocess.DEVNULL,
             "stdout": subprocess.PIPE,

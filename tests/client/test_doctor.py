@@ -24,7 +24,7 @@ from lacoc_shared.words import render, say
 
 @pytest.fixture
 def taken() -> Iterator[int]:
-    """Give a port at which something listens that is neither a court nor a gateway."""
+    """Give a port that is taken by a program that is neither a court nor a gateway."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         listener.listen()
@@ -81,7 +81,7 @@ def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
 
 
 def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
-    """Return doctor's findings on packages when `metadata` hides that of the installed packages."""
+    """Return doctor's findings if `metadata` replaces that of the installed packages."""
     for name, text in metadata.items():
         (folder / f"{name}.dist-info").mkdir()
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
@@ -130,7 +130,7 @@ def test_packages_that_are_not_there(tmp_path: Path) -> None:
 def test_ports_that_are_taken(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, taken: int
 ) -> None:
-    """A taken port that the user named is a problem; a taken default port is only a note."""
+    """A port that the user named and that is taken is a problem; a taken default port is a note."""
     file = contest(tmp_path, taken)
     found = look(capsys, tmp_path, "--contest", file, "--web", f"127.0.0.1:{taken}")
     assert found[f"port {taken}"]["status"] == "problem"
@@ -189,7 +189,7 @@ def test_a_court_that_stands_still() -> None:
 
 
 def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Doctor checks the links to all courts of a contest, even if one is down, or to one court."""
+    """Doctor checks the links to all courts of a contest; with --court, it checks only one."""
     with CourtStub() as court:
         text = Path(contest(tmp_path, int(court.address.rpartition(":")[2]))).read_text()
         port = free()

@@ -124,7 +124,7 @@ def test_a_dry_run_lists_what_would_change(capsys: pytest.CaptureFixture[str]) -
     ("account", "named"), [("kim", "kim"), ("root", "referee"), ("admin", "referee")]
 )
 def test_a_referee_has_a_name(account: str, named: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without --by a decision has the account's name; "referee" replaces a name such as "root"."""
+    """Without --by, a decision has the account's name; "root" and the like become "referee"."""
     monkeypatch.setenv("LOGNAME", account)
     assert _default_name() == named
 
@@ -132,7 +132,7 @@ def test_a_referee_has_a_name(account: str, named: str, monkeypatch: pytest.Monk
 def test_ready_for_a_contestant_who_cannot(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The referee says ready for a contestant; `status` shows what is legal, `log` the events."""
+    """The referee can say ready for a contestant; `status` lists legal decisions, `log` events."""
     court = open_court("--arena", "othello")
     referee = Referee(court, capsys)
     person = court.start(
@@ -163,7 +163,7 @@ def test_ready_for_a_contestant_who_cannot(
 def test_a_waiting_referee_does_nothing_twice(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`lacoc referee` does not repeat a decision whose answer was lost: it may have been made."""
+    """`lacoc referee` does not repeat a decision whose answer was lost: it may be made already."""
     court = open_court("--arena", "othello")
     decide, asked = RefereeClient.decide, []
 

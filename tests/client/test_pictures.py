@@ -84,7 +84,7 @@ def make_frame(sheet: Sheet, states: tuple[int, ...] = (), **changes: Any) -> Fr
 
 @pytest.mark.parametrize("heading_deg", [0.0, 90.0, 179.0, -45.0])
 def test_a_frame_in_words(heading_deg: float) -> None:
-    """A frame in words has names of seats, markers and phases, and metres, seconds and degrees."""
+    """A frame in words names seats, markers and phases, and is in metres, seconds and degrees."""
     sheet = make_sheet("othello")
     seats = (seat_frame(score=19, flags=BOTH | SeatFlag.FROZEN, locked_ticks=25), seat_frame())
     poses = pose(0.5, -0.25, heading_deg) + pose(0.0, 0.0, 180.0)
@@ -142,7 +142,7 @@ def test_the_clock_counts_down(ticks: int, expected: str) -> None:
 
 
 def test_the_lobby_says_who_is_missing() -> None:
-    """In the lobby the hint names the empty seats and the teams that are not ready."""
+    """In the lobby, a hint names the empty seats and the teams that have not said ready."""
     sheet = make_sheet("othello")
     seats = (seat_frame(flags=0), seat_frame(flags=int(SeatFlag.JOINED)))
     frame = make_frame(sheet, phase=int(Phase.LOBBY), seats=seats)
@@ -189,7 +189,7 @@ def test_robots_are_arrows_with_their_letters() -> None:
 
 
 def test_flags_show_their_points_and_then_who_struck_them() -> None:
-    """A flag shows its points while it stands, and then the letter of the robot that struck it."""
+    """A standing flag shows its points, and a struck one the letter of the robot that struck it."""
     sheet = make_sheet("flag-strike")
     field = Field(0.0, 0.0, 1.0, 1.0)
     standing = "\n".join(draw(make_frame(sheet), sheet, field, 24))

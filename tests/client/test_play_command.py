@@ -114,7 +114,7 @@ def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Pa
 def test_the_terminal_is_as_before_however_one_leaves(
     open_court: OpenCourt, tmp_path: Path, way: str | signal.Signals
 ) -> None:
-    """After q, Ctrl-C, a kill or a closed window the terminal echoes keys and shows its cursor."""
+    """After q, Ctrl-C, a kill or a closed window, the terminal's echo and cursor are on again."""
     court = open_court("--arena", "othello")
     terminal = Terminal(tmp_path, "play", "--terminal", *court.where("left"))
     terminal.sees("press r when you are ready")
@@ -134,7 +134,7 @@ def test_the_terminal_is_as_before_however_one_leaves(
 def test_a_court_that_is_gone_is_said_and_comes_back(
     started: tuple[CourtProcess, Terminal],
 ) -> None:
-    """The player sees a banner while the court sends nothing; then the match goes on."""
+    """While the court sends nothing, the player sees a banner; afterwards the match goes on."""
     court, terminal = started
     watch = court.start("watch", "--json", "--hz", "0", *court.where())
     assert watch.stdout is not None
@@ -205,7 +205,7 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
 
 
 def test_practice_begins_anew(tmp_path: Path) -> None:
-    """Practice begins a new match even if a killed court left an unfinished one in the folder."""
+    """Practice begins a new match even if a killed court left an unfinished match in the folder."""
     kept = ("--recordings", str(tmp_path / "kept"))
     left = CourtProcess(tmp_path, "--arena", "othello", *kept)
     left.process.kill()

@@ -86,7 +86,7 @@ def test_a_workbook_of_sequences_is_named(tmp_path: Path) -> None:
 
 
 def test_nothing_named_leaves_all_to_the_contest() -> None:
-    """A contestant who names neither robot nor gait sends no file: the court's own are used."""
+    """A contestant who names no robot and no gait sends no file, and plays with the court's own."""
     assert gather(None, []) == SeatFiles()
 
 
@@ -126,7 +126,7 @@ def test_two_files_for_one_level_are_refused(tmp_path: Path) -> None:
 
 
 def test_the_mistakes_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
-    """All mistakes of all files are listed at once (rules 2)."""
+    """All mistakes of all files are listed together, not only the first one (rules 2)."""
     paths = [
         write(tmp_path / "a.txt", POSTURES.replace(b"45", b"451")),
         write(tmp_path / "b.txt", b"1\n1\n5\n"),
@@ -170,7 +170,7 @@ def test_level_b_is_made_of_postures_that_come_alone() -> None:
 
 
 def test_level_b_is_never_made_against_what_there_is() -> None:
-    """Level B is not made beside a locomotion file, or from missing, too few or wrong postures."""
+    """Level B is not made if a locomotion file is there, or if the postures don't suffice."""
     both = SeatFiles(postures=SAMPLE.postures, locomotion=SAMPLE.locomotion)
     few = PostureTable({0: (0.0,) * 18, 1: (0.1,) * 18})
     short = SeatFiles(postures=SentFile("few.txt", write_gait(few, leg_labels(6))))

@@ -28,7 +28,7 @@ def test_bytes_become_keys(data: bytes, expected: list[str]) -> None:
 
 @given(st.lists(st.sampled_from([b"2", b"\x1b[A", b"\x1bOD", "２".encode(), b"\t"])), st.data())
 def test_a_sequence_may_come_in_pieces(keys: list[bytes], data: st.DataObject) -> None:
-    """The bytes of keys give the same keys whether they arrive together or in pieces."""
+    """The bytes of a key give the same key whether they arrive together or in pieces."""
     whole = b"".join(keys)
     cuts = sorted(data.draw(st.lists(st.integers(0, len(whole)))))
     pieces = [whole[a:b] for a, b in zip([0, *cuts], [*cuts, len(whole)], strict=True)]

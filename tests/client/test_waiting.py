@@ -26,7 +26,7 @@ def coming(*errors: UserError) -> Callable[[], str]:
 
 
 def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
-    """A waiting service prints why it waits, each reason once."""
+    """A waiting service prints the reason for waiting, and prints each reason only once."""
     errors = (NotConnected("No link."), NotConnected("No link."), NoCourt("None."), NotNow("Soon."))
     assert Patience(60.0).until(coming(*errors)) == "there"
     assert capsys.readouterr().err.splitlines() == [
@@ -40,13 +40,13 @@ def test_it_waits_and_says_why_once(capsys: pytest.CaptureFixture[str]) -> None:
     ids=["a person", "the time is over", "for good"],
 )
 def test_it_does_not_wait_in_vain(wait_s: float | None, error: UserError) -> None:
-    """A service does not wait without --wait, after the time of --wait, or with a wrong token."""
+    """A service does not wait without --wait, beyond its time, or if the token is wrong."""
     with pytest.raises(type(error), match=str(error)):
         Patience(wait_s).until(coming(error))
 
 
 def test_who_asks_it_to_end_is_heard() -> None:
-    """A service that is asked to end stops waiting."""
+    """A waiting service stops as soon as it is asked to end."""
     with pytest.raises(KeyboardInterrupt):
         Patience(60.0, stopping=lambda: True).until(coming(NotConnected("No link.")))
 
@@ -84,7 +84,7 @@ def test_a_court_that_is_opened_later_is_found() -> None:
 def test_services_take_the_option(
     words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """`bot` and `referee` try for the time of --wait, and then fail as they do without it."""
+    """`bot` and `referee` try until the time of --wait is over, and then fail as without it."""
     begin_s = time.monotonic()
     where = ("--connect", f"tcp/127.0.0.1:{free_port()}", "--wait", "2.5")
     assert cli.main([*words, *where]) == 2

@@ -76,7 +76,7 @@ class Lacoc(subprocess.Popen[Any]):
 
 
 def started(*words: str, before: Sequence[str] = (), **options: Any) -> subprocess.Popen[Any]:
-    """Start a `lacoc` command; `before` holds the words of another command that runs it."""
+    """Start a `lacoc` command; `before` is another command line that runs it."""
     if before:
         return subprocess.Popen([*before, *COMMAND, *words], **options)
     return Lacoc(*words, **options)

@@ -21,7 +21,7 @@ class Hang(BaseException):
 
 @dataclass
 class Figures:
-    """How many inputs a target got, and how many had each outcome."""
+    """The number of inputs that a target got, and the number with each outcome."""
 
     name: str
     inputs: int = 0

@@ -1,4 +1,4 @@
-"""Makes the modules of this folder and the builders of tests/server importable."""
+"""Makes the modules of this folder and the helper modules of tests/server importable."""
 
 import sys
 from pathlib import Path

@@ -68,7 +68,7 @@ class _Request:
 
 
 class _Queue:
-    """Stands for a ring or a desk: a queue of packets that wait."""
+    """A test's substitute for a ring or a desk: a queue of packets that have arrived."""
 
     def __init__(self, depth: int) -> None:
         self.waiting: deque[Any] = deque(maxlen=depth)
@@ -223,7 +223,7 @@ class Doors:
             self._open()
 
     def _own_keys(self) -> set[KeySeat]:
-        """Queue the commands of the seats' own controllers; return the new keys among them."""
+        """Queue commands of the seats' own controllers; return those that press a new key."""
         new: set[KeySeat] = set()
         for seat in (0, 1):
             key = KEYS.command(SEATS[seat])
@@ -329,7 +329,7 @@ def seat_key(what: str) -> Callable[[bytes], str]:
 
 
 def request_key(payload: bytes) -> str:
-    """Return a request's key expression, found by its sequence number; otherwise that of ready."""
+    """Return the key expression for a request with a known sequence number, else that of ready."""
     at = payload.find(b"seq") + 3
     asked = next((what for what, _, seq in _REQUESTS if payload[at : at + 1] == bytes((seq,))), "")
     return KEYS.request("left", asked or "ready")

@@ -264,7 +264,7 @@ def _with_part(name: str, content: bytes) -> bytes:
 
 
 def _chunk(inside: bytes, told: int | None) -> bytes:
-    """Return an MCAP chunk; `told` is the size [bytes] that it claims, None for the true size."""
+    """Return an MCAP chunk that claims to unpack to `told` bytes (None: to its true size)."""
     data = zstandard.ZstdCompressor(19).compress(inside)
     told = len(inside) if told is None else told
     body = struct.pack("<QQQII", 0, 0, told, 0, 4) + b"zstd" + struct.pack("<Q", len(data)) + data

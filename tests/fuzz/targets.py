@@ -1,4 +1,4 @@
-"""A function for each reader of foreign bytes; it raises only errors that are not documented."""
+"""A function for each reader of foreign bytes: it lets only undocumented errors through."""
 
 import os
 import tempfile
@@ -53,7 +53,7 @@ class Target:
 
     @property
     def seeds(self) -> list[bytes]:
-        """The committed inputs: good ones, and former findings."""
+        """Return the committed inputs: good ones, and inputs that once caused an error."""
         return [path.read_bytes() for path in sorted((CORPUS / self.corpus).iterdir())]
 
 
@@ -180,7 +180,7 @@ def _keys(data: bytes) -> None:
 
 
 class _file:
-    """A context manager that writes the bytes to a file, in memory where possible."""
+    """A temporary file with the given bytes, in memory where possible; it is removed on exit."""
 
     def __init__(self, data: bytes, suffix: str) -> None:
         self._data, self._suffix = data, suffix

@@ -47,7 +47,7 @@ def test_the_same_seed_makes_the_same_inputs(target: Target) -> None:
 
 
 def test_good_packets_get_in() -> None:
-    """The committed seeds are the court's present messages, and the court accepts some of them."""
+    """The committed seeds are messages as today's code sends them, and the court accepts some."""
     for folder, seeds in (("requests", request_seeds()), ("commands", command_seeds())):
         kept = [path.read_bytes() for path in sorted((CORPUS / folder).iterdir())]
         assert kept == seeds, "run tests/fuzz/make_corpus.py"

@@ -64,7 +64,7 @@ def test_the_workbook_that_ships_with_the_hexapod(workshop, legs):
 @needs_calc
 @pytest.mark.slow
 def test_calc_shows_the_values_of_our_workbook(tmp_path, workshop, legs):
-    """Calc shows the values of both our sheets, and its formulas follow an edited cell."""
+    """Calc shows the values of both our sheets; after an edit, the formulas show the new value."""
     data = write_workbook(workshop, legs)
     (tmp_path / "ours.xlsx").write_bytes(data)
     book = openpyxl.load_workbook(io.BytesIO(data))

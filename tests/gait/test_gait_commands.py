@@ -143,7 +143,7 @@ def test_check_json(lacoc, folder):
 
 
 def test_check_goes_on_after_a_file_that_is_not_there(lacoc, folder, monkeypatch):
-    """A name that fits no file is reported, and the other files are still checked."""
+    """A file that does not exist is reported, and the other files are still checked."""
     monkeypatch.chdir(folder)
     code, out, _ = lacoc("gait", "check", "*.ods", "Loco-data.txt")
     assert code == 2
@@ -160,7 +160,7 @@ KINDS = ("Loco-data.txt", "LocoTra-data.txt", "Loco-data.xlsx")
 @pytest.mark.parametrize("source", KINDS)
 @pytest.mark.parametrize("target", KINDS)
 def test_any_of_the_three_becomes_any_other(lacoc, folder, workshop, source, target):
-    """`convert A B` takes B's kind from its name; the default keys are the sample gait's."""
+    """`convert A B` finds B's format by its name; without --keys it uses the sample gait's keys."""
     (folder / "out").mkdir()
     written = folder / "out" / target
     code, out, err = lacoc("gait", "convert", folder / source, written)

@@ -84,7 +84,7 @@ def test_nothing_is_clamped(cell):
     "cell", ["abc", "4 5", "1.2.3", "1,234.5", "--4", "45°", "4²", "½", "0x10", "1_0", "٤٥", "–45"]
 )
 def test_what_is_no_number(cell):
-    """A cell that is not a number in one of the forms of rules 2 is a mistake."""
+    """A cell that is not a number in a form that rules 2 allow is a mistake."""
     (mistake,) = refused(loco([posture(j0=cell)]))
     assert (mistake.row, mistake.column, mistake.joint, mistake.leg) == (2, 2, 0, "R,F")
     assert mistake.found == f'"{cell}"'
@@ -315,7 +315,7 @@ def test_mistakes_of_locotra_data(text, expected):
 
 @pytest.mark.parametrize("legs", [6, ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")])
 def test_a_gait_for_another_robot_is_called_so(legs):
-    """All rows with 12 angles instead of 18 make one mistake; other mistakes are still listed."""
+    """If all rows have 12 angles instead of 18, this is one mistake; others are still listed."""
     text = loco([posture(angles=12), posture("1 Key", angles=12, j7="x")])
     assert places(refused(text, legs=legs)) == [
         (

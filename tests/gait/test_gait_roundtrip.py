@@ -91,7 +91,7 @@ def test_a_short_number_stays_as_it_was(thousandths):
     st.sampled_from(["\t", "   "]),
 )
 def test_a_written_text_reads_back(table, encoding, line_end, gap):
-    """Any table reads back, in any encoding, with any line ends, with tabs or spaces."""
+    """Any table that is written as text reads back, in any encoding, with tabs or spaces."""
     labels = leg_labels(table.joints // 3)
     text = write_gait(table, labels).decode().replace("\n", line_end).replace("\t", gap)
     assert read_gait(text.encode(encoding), "x", legs=labels) == table
@@ -130,7 +130,7 @@ changes = st.lists(
 
 
 def changed(data: bytes, edits: list[tuple[int, int, bytes]]) -> bytes:
-    """Return the data with bytes put in, taken out or replaced."""
+    """Return the data with some bytes inserted, removed or replaced."""
     for place, kind, new in edits:
         end = place + (0, len(new), len(new))[kind]
         data = data[:place] + (b"" if kind == 1 else new) + data[end:]

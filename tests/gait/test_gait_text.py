@@ -109,7 +109,7 @@ def test_numbers_may_be_written_in_many_ways(cell, degrees):
 
 
 def test_zero_has_one_sign():
-    """A written -0.0 reads as +0.0, so that equal files give equal bits."""
+    """An angle written as -0.0 reads as +0.0, so that files with equal angles give equal bits."""
     assert math.copysign(1, read_gait(_row("-0.0"), "x").postures[0][0]) == 1
 
 
@@ -180,7 +180,7 @@ def test_encodings(text, encode):
 
 
 def test_a_row_without_a_tab_is_split_by_spaces_on_its_own():
-    """Each row is split by tabs or by spaces on its own."""
+    """A row with tabs is split by tabs, and a row without tabs is split by spaces."""
     lines = FIGURE_4_1.splitlines()
     lines[3] = lines[3].replace("\t", "  ")
     assert read_gait("\n".join(lines).encode(), "x") == read_gait(FIGURE_4_1.encode(), "x")
@@ -246,7 +246,7 @@ def test_a_range_for_each_joint():
     ids=["lines", "mistakes", "tabs"],
 )
 def test_garbage_is_refused_soon(data: bytes, count: int) -> None:
-    """Garbage is refused quickly: reading stops where no gait could follow."""
+    """Garbage is refused quickly: reading stops as soon as the rest can't be a gait."""
     with pytest.raises(FileRefused) as refusal:
         read_gait(data, "Loco-data.txt")
     assert len(refusal.value.mistakes) == count

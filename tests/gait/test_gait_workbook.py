@@ -97,7 +97,7 @@ def test_the_edited_sheet_is_what_counts(sample, workshop):
 
 
 def test_loco_data_alone_is_read(sample, workshop):
-    """A workbook that has only the sheet "Loco-data" is read."""
+    """A workbook whose only sheet is "Loco-data" is read."""
     book = openpyxl.load_workbook(io.BytesIO(sample), data_only=True)
     del book[INPUT_SHEET]
     assert read_workbook(saved(book), "x") == workshop

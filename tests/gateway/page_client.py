@@ -41,7 +41,7 @@ class Refused(Exception):
 
 
 def refusal(code: str) -> pytest.RaisesExc[Refused]:
-    """Expect that a block of code raises `Refused` with this code of its reason."""
+    """Expect the block to raise `Refused`, whose reason is the phrase with this code."""
     return pytest.raises(Refused, check=lambda error: error.why.code == code)
 
 
@@ -81,7 +81,7 @@ class PageClient:
 
     @property
     def waits_why(self) -> str:
-        """Return the code of the reason why the gateway has no court; "" while it has one."""
+        """Return the phrase code of why the gateway has no court; "" while it has one."""
         return (self.link.get("why") or {"code": ""})["code"]
 
     def ask(self, do: str, **fields: Any) -> Any:
@@ -103,7 +103,7 @@ class PageClient:
         return reply["value"]
 
     def waits_for(self, number: int) -> bool:
-        """Return whether the reply to a request is missing; ask only before `reply` takes it."""
+        """Return whether the reply to a request has not arrived; call this only before `reply`."""
         return number not in self._replies
 
     def wait(self, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:

@@ -142,7 +142,7 @@ def test_the_key_stands_in_no_command_line(tmp_path: Path) -> None:
 
 
 def test_without_a_home_the_page_opens_all_the_same(tmp_path: Path) -> None:
-    """If the file with the page key can't be written, the browser gets the address with the key."""
+    """If the file with the page key can't be written, the browser gets an address with the key."""
     play, key, opened = browse(tmp_path, tmp_path / "nowhere")
     play.send_signal(signal.SIGINT)
     play.communicate(timeout=30)

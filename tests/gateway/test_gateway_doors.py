@@ -128,7 +128,7 @@ def test_without_the_key_a_page_only_watches(
 
 @pytest.mark.parametrize(("do", "fields"), ACTS, ids=[do for do, _ in ACTS])
 def test_watch_comes_first(open_venue: Venue, do: str, fields: dict[str, Any]) -> None:
-    """A page can't act before it has asked to watch a court."""
+    """A page must ask to watch a court before it can act."""
     with (
         PageClient(open_venue.url, watch=False) as page,
         refusal("gateway.which-court"),
@@ -137,7 +137,7 @@ def test_watch_comes_first(open_venue: Venue, do: str, fields: dict[str, Any]) -
 
 
 def test_wrong_tokens_are_refused_and_can_not_be_guessed(open_venue: Venue) -> None:
-    """Each wrong token, seat or name has its own refusal, and only a few tries are allowed."""
+    """Wrong tokens, seats and names are refused with different reasons; tries are limited."""
     with PageClient(open_venue.url, open_venue.key) as page:
         with refusal("refused.wrong-token"):
             page.ask("join", seat="left", token=TOKENS["right"], name="Ants")
@@ -221,7 +221,7 @@ def test_garbage_ends_a_connection_and_nothing_else(
 
 
 def test_a_message_without_end_is_cut_off(open_venue: Venue) -> None:
-    """A message longer than any join ends its connection; a join with too large a file does not."""
+    """A message longer than any join ends its connection; a join with a large file is refused."""
     with PageClient(open_venue.url, open_venue.key) as page:
         page.socket.send(bytes(wire.JOIN_BYTES + 1))
         page.wait(page.closed.is_set)
@@ -325,7 +325,7 @@ def test_pages_beyond_the_most_are_sent_away(venue: Venue) -> None:
 
 
 def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
-    """When all viewers' places are taken, pages with the page key still get in."""
+    """When all spectators' places are taken, pages with the page key can still connect."""
     venue.court()
     venue.web("--viewers", "1")
     venue.page()
@@ -339,7 +339,7 @@ def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
 
 
 def test_pages_with_the_key_have_a_bound_too(venue: Venue) -> None:
-    """Pages with the page key have their own limit, and take no spectator's place."""
+    """Pages with the page key have a limit of their own, and take no spectator's place."""
     venue.web()
     for _ in range(ACTING_MOST):
         venue.page(venue.key, hz=1)
@@ -361,7 +361,7 @@ def why_not(page: PageClient, number: int) -> str:
 
 
 def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
-    """A page that asks a hundred times to watch is sent the whole match only a few times.
+    """A page that asks to watch a hundred times gets the whole match only a few times.
 
     The page then goes on watching, and may ask again a second later.
     """
@@ -379,7 +379,7 @@ def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
 
 @pytest.mark.long
 def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
-    """A contestant's keys take effect, mostly in 8 beats, while other pages flood the gateway."""
+    """While other pages flood the gateway, most of a contestant's keys take effect in 8 beats."""
     venue.court()
     venue.web()
     left, right = venue.contestant("left"), venue.contestant("right")

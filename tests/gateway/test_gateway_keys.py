@@ -31,7 +31,7 @@ def refused(page: PageClient, number: int) -> Refused:
 
 
 def test_a_wrong_token_is_said_in_a_field(keyed: Venue) -> None:
-    """A refusal has a field that is true only for a wrong token, so the page does not ask again."""
+    """Only the refusal of a wrong token has the field that keeps a page from asking again."""
     page = keyed.page(keyed.key)
     wrong = refused(page, page.send("enter", token=WRONG, by="Kim"))
     assert wrong.is_the_token
@@ -41,7 +41,7 @@ def test_a_wrong_token_is_said_in_a_field(keyed: Venue) -> None:
 
 
 def test_wrong_tokens_delay_no_decision(keyed: Venue) -> None:
-    """Pages with wrong tokens wait for each other, and the referee does not wait for them."""
+    """Checks of wrong tokens take seconds, but they delay no decision of the referee."""
     referee = keyed.referee()
     wrong = [keyed.page(keyed.key) for _ in range(12)]
     tried = {page: [page.send("enter", token=WRONG, by="x") for _ in range(8)] for page in wrong}

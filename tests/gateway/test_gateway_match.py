@@ -92,7 +92,7 @@ def test_a_page_that_has_gone_lets_its_robot_stand(venue: Venue) -> None:
     gone = referee.frame.beat
 
     def silences() -> list[Event]:
-        """Return the left seat's silences after its key; a busy machine may cause earlier ones."""
+        """Return silences of the left seat after its key; a busy machine may cause earlier ones."""
         return [
             event
             for event in referee.events
@@ -214,7 +214,7 @@ def test_a_killed_court_comes_back(venue: Venue) -> None:
 
 
 def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
-    """When a court starts afresh, no page keeps an event of the old match."""
+    """When a court begins a new match instead of the old one, pages keep no old event."""
     court = venue.court()
     venue.web()
     watcher = venue.page()
@@ -234,7 +234,7 @@ def test_a_fresh_court_has_a_fresh_log(venue: Venue) -> None:
 
 
 def test_a_stopped_court_is_not_shown_as_live(venue: Venue) -> None:
-    """A page that connects while its court stands still gets no old frame."""
+    """A page that connects while its court stands still is sent no old frame."""
     court = venue.court()
     venue.web()
     watcher = venue.page()
@@ -282,7 +282,7 @@ def test_a_restarted_gateway_knows_its_pages_again(venue: Venue) -> None:
 
 
 def test_a_gateway_ends_cleanly(venue: Venue) -> None:
-    """On Ctrl-C a gateway closes the connections of its pages and exits with 0."""
+    """On Ctrl-C a gateway closes its pages' connections and exits with 0."""
     venue.court()
     web = venue.web()
     page = venue.contestant("left")
@@ -306,7 +306,7 @@ def test_a_page_gets_as_many_frames_as_it_asks_for(
 
 
 def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
-    """A page that reads nothing for 8 s then gets less than 4 s of old frames, and new ones."""
+    """A page that reads nothing for 8 s then gets new frames, after less than 4 s of old ones."""
     with PageClient(open_venue.url, hz=50) as quick, SleepyPage(open_venue.url) as sleepy:
         sleepy.watch(hz=50)
         quick.wait(lambda: quick.frame is not None)
@@ -322,7 +322,7 @@ def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
 
 
 def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
-    """An unreadable frame disturbs no page; a sheet shows that the court's version differs."""
+    """An unreadable frame disturbs no page; from the sheet, a page learns of a wrong version."""
     with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
         venue.web()
         page = venue.page()

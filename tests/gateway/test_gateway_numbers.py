@@ -22,7 +22,7 @@ def scrape(url: str) -> dict[str, float]:
 
 
 def test_a_scrape_and_the_log_of_a_gateway(venue: Venue) -> None:
-    """The metrics count viewers and frames; the log has joins, refusals and leaves but no token."""
+    """Metrics count viewers and frames; the log has joins, refusals and leaves, but no token."""
     court = venue.court()
     web = venue.web("--metrics", "127.0.0.1:0", "--viewers", "1")
     url = web.opened["metrics"]

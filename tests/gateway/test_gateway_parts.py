@@ -69,7 +69,7 @@ def test_the_document_has_every_request_with_its_fields() -> None:
 
 
 def test_the_document_has_every_path_and_hold() -> None:
-    """docs/gateway.md has each path of a page, and each state in which a page holds a seat."""
+    """docs/gateway.md names each path of a page, and each state of a page's hold on its seat."""
     assert re.findall(r"`([^`]+)`", rows("Paths")[0][0]) == list(PATHS)
     for hold in set(Hold) - {Hold.NOT_JOINED}:
         assert f"`{hold.value}`" in PAGE
@@ -131,7 +131,7 @@ def test_a_message_is_a_websocket_frame(size: int) -> None:
 
 
 class Wire:
-    """A page's socket that keeps what is written; `keeps_up` is False if the page is too slow."""
+    """A page's socket that keeps what is written; if `keeps_up` is False, it is too slow."""
 
     def __init__(self) -> None:
         self.written: list[bytes] = []
@@ -146,7 +146,7 @@ class Wire:
 
 
 def test_a_viewer_has_one_slot() -> None:
-    """While a page is too slow, each new frame replaces the frame that waits."""
+    """While a page is too slow, only the newest frame waits for it."""
     socket = Wire()
     viewer = Viewer(socket)  # type: ignore[arg-type]
     viewer.rate(50)
@@ -168,7 +168,7 @@ def test_a_viewer_has_one_slot() -> None:
     [(50, 500), (25, 250), (10, 100), (1, 10), (0, 10), (-3, 10), (1e9, 500), (float("nan"), 500)],
 )
 def test_a_viewer_gets_its_rate(hz: float, expected: int) -> None:
-    """A page gets its rate of frames in spite of jitter; a valid rate replaces an invalid one."""
+    """A page gets its rate of frames in spite of jitter; an invalid rate is made a valid one."""
     socket = Wire()
     viewer = Viewer(socket)  # type: ignore[arg-type]
     viewer.rate(hz)
@@ -218,7 +218,7 @@ def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:
 
 
 def test_a_log_that_begins_again() -> None:
-    """A repeated event changes nothing; a different event replaces those from its number on."""
+    """A repeated event changes nothing; a different event replaces all from its number on."""
     log: EventLog[str] = EventLog()
     assert [log.add(event(n, "old"), f"old {n}") for n in (1, 2, 3)] == [True] * 3
     assert [log.add(event(n, "old"), "again") for n in (1, 2, 3)] == [False] * 3
@@ -232,7 +232,7 @@ def test_a_log_that_begins_again() -> None:
 
 
 def test_a_log_is_held_against_what_the_court_says() -> None:
-    """A log differs from a court's report if it lacks events, or has extra ones from before it."""
+    """A log differs if it lacks events of a court's report, or has older events beyond it."""
     log: EventLog[str] = EventLog()
     assert not log.differs(1, 0, 0)
     assert log.differs(1, 500, 3)
@@ -259,7 +259,7 @@ def test_the_courts_list_stands_for_the_log() -> None:
 
 
 def test_the_newest_of_a_very_long_log_are_kept() -> None:
-    """A log keeps as many of the newest events as a court lists, and still counts as complete."""
+    """A log keeps only as many newest events as a court lists, and still counts as complete."""
     log: EventLog[int] = EventLog()
     for number in range(1, 3 * EVENTS_LISTED):
         log.add(event(number, "a"), number)
@@ -285,13 +285,13 @@ def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
     "where", ["", "here", "127.0.0.1", ":80", "127.0.0.1:99999", "no.such.name.example:0", "[::1"]
 )
 def test_a_wrong_place_to_listen_is_said(where: str) -> None:
-    """A wrong address to listen at is refused, and the error says so."""
+    """A gateway refuses a wrong address to listen at, and the error says so."""
     with pytest.raises(UserError, match=r"not a place to listen|not possible to listen"):
         server.listen(where)
 
 
 def test_a_port_that_is_in_use_is_said() -> None:
-    """A gateway whose port is in use says that one should choose another port."""
+    """If a gateway's port is in use, the error asks for another port."""
     with server.listen("127.0.0.1:0") as opened:
         address = server.url(opened)
         with pytest.raises(UserError, match="Choose another port"):
@@ -299,7 +299,7 @@ def test_a_port_that_is_in_use_is_said() -> None:
 
 
 def test_small_messages_do_not_wait_for_the_one_before() -> None:
-    """Nagle's algorithm, which made a key's frame 40 ms late, is off in a gateway's connections."""
+    """Nagle's algorithm, which once delayed frames by 40 ms, is off in a gateway's connections."""
 
     async def asked() -> bool:
         found: asyncio.Future[int] = asyncio.get_running_loop().create_future()

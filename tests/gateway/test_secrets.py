@@ -27,7 +27,7 @@ SETTINGS = "settings.match.countdown_s = 0.1\n"
 
 
 class HearingPage(PageClient):
-    """A page that keeps every byte that it receives."""
+    """A page that keeps all bytes of the messages that it receives."""
 
     heard: bytes = b""
 

@@ -25,7 +25,7 @@ CAUGHT = frozenset({"killed", "timeout", "segfault"})
 
 @dataclass(frozen=True)
 class Area:
-    """Modules that belong together, and the fast tests that check them."""
+    """Modules that belong together, and the fast tests that check these modules."""
 
     name: str
     modules: tuple[str, ...]

@@ -29,7 +29,7 @@ _CALLED = pytest.StashKey[frozenset[str]]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Run examples that are the same each time, without shrinking a failure or storing it."""
+    """Make Hypothesis use the same examples each time, and not shrink or store failing ones."""
     phases = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
     hypothesis.settings.register_profile(
         "mutants", deadline=None, database=None, derandomize=True, phases=phases

@@ -1,4 +1,4 @@
-"""A court for tests, and network sessions that are connected to it."""
+"""Gives tests a stub of a court, and network sessions that are connected to it."""
 
 from collections.abc import Iterator
 

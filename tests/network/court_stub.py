@@ -48,7 +48,7 @@ SLOW = SentFile("slow.txt", b"20 20")
 
 
 class Scales:
-    """Weighs files in without reading them: it refuses only `WRONG`, and takes long for `SLOW`."""
+    """Weighs files in without reading them: `WRONG` is refused, `SLOW` takes twenty beats."""
 
     def __init__(self) -> None:
         self.asked = 0

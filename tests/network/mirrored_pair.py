@@ -1,4 +1,4 @@
-"""Two controllers press the same key in response to the same frame; one has a slow link."""
+"""Two controllers answer the same frame with a key; one of them has a slow link."""
 
 import json
 import subprocess
@@ -46,7 +46,7 @@ referee.token = "the token of the referee"
 
 
 class Pair(NamedTuple):
-    """The two keys that answer one frame."""
+    """A frame that both controllers answered, and when their keys took effect."""
 
     seen: int
     beats: tuple[int, int]
@@ -66,7 +66,7 @@ class Played(NamedTuple):
 
 
 class _Player(threading.Thread):
-    """Presses a key in response to each frame whose beat is a multiple of `EVERY_BEATS`."""
+    """A controller that answers each frame whose beat is a multiple of `EVERY_BEATS` with a key."""
 
     def __init__(self, seat: str, address: str, stopping: threading.Event) -> None:
         super().__init__(name=seat)

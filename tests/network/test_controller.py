@@ -123,7 +123,7 @@ def test_a_key_is_applied_once_and_its_round_trip_is_known(
 
 
 def test_a_refused_key_is_said_in_a_sentence(court: CourtStub, session: Session) -> None:
-    """The controller gives each refused key once, with the reason."""
+    """A controller reports each refused key once, with the reason."""
     one = held(session)
     one.press(1, 9)
     until(lambda: one.poll(time.monotonic()) and court.keys())
@@ -265,7 +265,7 @@ def test_a_controller_that_stops_is_silent_and_heard_again(
 def test_no_seat_is_lost_for_what_its_program_did_not_hear(
     court: CourtStub, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A controller repeats its command while it asks for missed events and sheets.
+    """A controller repeats its command while it waits for missed events and sheets.
 
     An answer takes nearly a second here, and a seat that is not heard for a second is silent.
     """

@@ -91,13 +91,13 @@ def test_a_reason_is_a_text_or_one_of_the_pages(reason: Phrase | str, taken: boo
 
 
 def test_a_wrong_token_learns_nothing() -> None:
-    """With a wrong token, a refusal tells nothing about the decision."""
+    """The refusal of a wrong token reveals nothing about the decision."""
     refusal = DecisionDesk(HASHES).decision("x", encode({"token": "guess", "decision": 3}))
     assert refusal == Refusal(say("refused.no-referee-token"))
 
 
 def test_a_token_can_be_shown_without_deciding() -> None:
-    """`enter` says whether a token is a referee's, without a decision."""
+    """The request `enter` tells whether a token is a referee's, without making a decision."""
     desk = DecisionDesk(HASHES)
     assert desk.enter(encode(Enter(token="whistle"))) == Done()
     refusal = Refusal(say("refused.no-referee-token"))

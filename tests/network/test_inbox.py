@@ -189,13 +189,13 @@ def test_a_join_is_refused_with_its_reason(payload: bytes, code: str, why: str) 
 
 
 def test_a_seat_without_a_token_is_closed() -> None:
-    """A seat for which no token was made can't be joined."""
+    """A seat that has no token in the contest can't be joined."""
     inbox = Inbox(KEYS, SEATS, {}, check_files, secrets.token_bytes)
     assert isinstance(inbox.join(LEFT, join_bytes(token="")), Refusal)
 
 
 def test_joins_can_not_flood_the_reading_of_files() -> None:
-    """A seat takes five joins at once and then one a second, even with the right token."""
+    """A seat may join five times at once and then once a second, even with the right token."""
     inbox = make()
     inbox.beat(10.0, [[], []])
     answers = [inbox.join(LEFT, join_bytes()) for _ in range(50)]
@@ -345,7 +345,7 @@ def test_held_keys_obey_the_rules_of_the_beat_in_which_they_take_effect() -> Non
 
 
 def test_a_command_for_a_seat_one_does_not_hold_is_refused() -> None:
-    """A command for a seat that its session does not hold is refused; the holder's takes effect."""
+    """A command for a seat that its session does not hold is refused; the holder plays on."""
     inbox = make()
     left, right = take_seat(inbox, LEFT), take_seat(inbox, RIGHT)
     forged = command(left, 1, seat=RIGHT)
@@ -427,7 +427,7 @@ def test_an_overheard_command_does_not_keep_a_seat_alive() -> None:
 
 
 def test_a_controller_that_gets_no_frames_is_not_believed_for_long() -> None:
-    """A controller that always names the same frame is silent three seconds after that frame."""
+    """A controller that always names the same frame counts as silent three seconds after it."""
     inbox = make()
     joined = take_seat(inbox)
     for beat in range(1, 1001):

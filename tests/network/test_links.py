@@ -29,7 +29,7 @@ class Effect(NamedTuple):
 
 
 class Clock:
-    """A match with beats of 20 ms, and commands that name the frame of some beats ago."""
+    """`Links` that the test runs beat by beat (20 ms), with commands that name earlier frames."""
 
     def __init__(self, most_ms: int = MOST_MS) -> None:
         self.links = Links(2, most_ms)
@@ -98,7 +98,7 @@ def test_a_slow_court_counts_the_time_that_passed() -> None:
 
 
 def test_p95_is_the_longest_but_one_of_twenty() -> None:
-    """If one round trip in twenty is longer, the 95th percentile does not include it."""
+    """If one round trip in twenty is longer, the 95th percentile stays the same."""
     clock = Clock()
     for number in range(WINDOW_BEATS):
         clock.begin()
@@ -110,7 +110,7 @@ def test_p95_is_the_longest_but_one_of_twenty() -> None:
 
 
 def test_the_same_frame_again_is_no_new_round_trip() -> None:
-    """A command that names a frame again, or an older one, gives no new round trip."""
+    """A command that names the same frame again, or an older one, gives no new round trip."""
     clock = warm(2, 2)
     for ago in range(1, 200):
         clock.begin()
@@ -130,7 +130,7 @@ def test_a_link_that_is_not_heard_is_not_known() -> None:
 
 
 def test_a_frame_that_was_not_there_can_not_have_been_seen() -> None:
-    """A command can't name a frame that was not sent yet, in this match or a later one."""
+    """A frame of the current beat, or of a later match, counts as one that was not sent yet."""
     links = Links(1)
     links.begin(1.0, 2, 10)
 
@@ -198,7 +198,7 @@ def test_the_delay_follows_seldom_and_falls_only_by_much() -> None:
 
 
 def test_an_old_frame_gains_no_more_than_two_beats() -> None:
-    """A key that names an older frame is at most two beats earlier, and counts as late."""
+    """A key that names an older frame takes effect at most two beats earlier and counts as late."""
     clock = warm(2, 12)
     for claim in (2, 5, 12, 200):
         clock.begin()
@@ -211,7 +211,7 @@ def test_an_old_frame_gains_no_more_than_two_beats() -> None:
 
 
 def test_a_link_that_was_never_measured_is_not_believed() -> None:
-    """Without a known round trip, naming an old frame makes a key at most two beats earlier."""
+    """Without a known round trip, a key that names an old frame gains at most two beats."""
     clock = warm(1, 12)
     for _ in range(WINDOW_BEATS + MEASURE_BEATS):
         clock.begin()
@@ -224,7 +224,7 @@ def test_a_link_that_was_never_measured_is_not_believed() -> None:
 
 
 def test_a_key_of_the_match_before_is_held_as_a_new_one() -> None:
-    """A key that names a frame of the match before is held for the whole delay."""
+    """A key that names a frame of the last match is held for the whole delay."""
     clock = warm(1, 12)
     clock.beat = -1
     clock.begin(2)

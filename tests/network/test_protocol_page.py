@@ -23,7 +23,7 @@ JOIN = Keys("main").request("left", "join")
 
 
 def of_page(court: str, user: str = "", password: str = "", ca: str = "") -> zenoh.Config:
-    """Return the page's configuration for this court; its part for keys only if a user is given."""
+    """Return docs/protocol.md's configuration for this court; its part for keys needs a user."""
     (text,) = re.findall(r"```json5\n(.*?)```", PAGE, re.DOTALL)
     for there, here in (
         ("tls/court.example.org:7447", court),
@@ -58,7 +58,7 @@ def ask(stranger: zenoh.Session, payload: bytes, timeout_s: float = 10.0) -> lis
 
 @pytest.mark.slow
 def test_a_stranger_enters_a_court_with_keys(tmp_path: Path) -> None:
-    """The page's configuration and password open a court with keys."""
+    """The configuration and password of docs/protocol.md open a court with keys."""
     with KeyedCourt(keyed_file(tmp_path)) as court:
         credentials = court.people["left"].credentials
         assert credentials is not None
@@ -82,7 +82,7 @@ def is_not_answered(stranger: zenoh.Session, payload: bytes) -> None:
 
 
 def test_what_comes_back(court: Session, stranger: zenoh.Session) -> None:
-    """A request gets a refusal, the text "Timeout" or no reply, as the page's table says."""
+    """Requests get a refusal, "Timeout" or no reply, as the table in docs/protocol.md says."""
     assert ask(stranger, b"") == []
     desk = court.desk(JOIN, 4)
     is_not_answered(stranger, b"x")

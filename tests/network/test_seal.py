@@ -19,7 +19,7 @@ def test_tokens_are_random_and_safe_to_type() -> None:
 
 
 def test_a_hash_knows_its_token_only() -> None:
-    """Two hashes of a token differ by their salt, and only that token fits both."""
+    """Two hashes of a token differ, because each has its own salt; only that token fits both."""
     one, two = hash_token("secret"), hash_token("secret")
     assert one != two
     assert seal.verify_token("secret", one)

@@ -88,12 +88,12 @@ def test_an_unknown_name_is_said_at_once() -> None:
 
 
 def test_requests_are_answered_refused_or_in_vain(router: Session) -> None:
-    """A request raises NoReply if no desk gets it, and TooLate if no answer comes in time."""
+    """A request raises NoReply if no desk gets it, and TooLate if the answer takes too long."""
     desk = router.desk("lacoc/main/sheet", 1)
     with open_client(router.locators()) as client:
 
         def is_late() -> bool:
-            """Ask once; return whether the desk got it, which needs some tries at first."""
+            """Send a request that gets no answer; return whether it reached a desk."""
             try:
                 client.ask("lacoc/main/sheet", timeout_s=0.05)
             except NoReply as error:
@@ -116,7 +116,7 @@ def test_a_request_whose_asker_is_gone_can_be_answered(router: Session) -> None:
     with open_client(router.locators()) as client:
 
         def arrives() -> bool:
-            """Ask once; return whether the desk got it, which needs some tries at first."""
+            """Send a request and give up soon; return whether the desk has received any request."""
             with pytest.raises(NoReply):
                 client.ask("lacoc/main/sheet", timeout_s=0.02)
             arrived.extend(filter(None, [desk.take()]))

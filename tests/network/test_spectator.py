@@ -23,7 +23,7 @@ def seen(spectator: Spectator, numbers: list[int]) -> None:
 
 
 def test_a_late_comer_is_complete_at_once(court: CourtStub, session: Session) -> None:
-    """A spectator that connects late gets the sheet, the scene and all events of the match."""
+    """A spectator that connects late gets the sheet, the scene and all events so far."""
     for number in range(1, 301):
         court.network.publish_event(make_event(number))
     spectator = Spectator(session, "main")
@@ -87,7 +87,7 @@ def test_what_a_restarted_court_sends_again_is_not_new() -> None:
 
 
 def test_a_changed_scene_is_followed(court: CourtStub, session: Session) -> None:
-    """When the scene changes, the spectator has the sheet and the scene of its frame."""
+    """When the scene changes, a spectator has the sheet and the scene that its frame names."""
     spectator = Spectator(session, "main")
     for name in ("one", "two", "three"):
         scene = make_scene(name)
@@ -101,7 +101,7 @@ def test_a_changed_scene_is_followed(court: CourtStub, session: Session) -> None
 def test_a_court_whose_frames_do_not_fit_its_sheet_is_told_of(
     court: CourtStub, session: Session
 ) -> None:
-    """If frames keep naming another scene than the sheet does, an error says so."""
+    """If frames always name another scene than the sheet does, an error says so."""
     spectator = Spectator(session, "main")
     court.scene = make_scene("a scene that no sheet describes")
     with pytest.raises(UserError, match="does not fit its own description"):

@@ -43,7 +43,7 @@ def refused(access: Access) -> str:
 
 
 def test_the_right_invitation_gets_in(keyed: KeyedCourt) -> None:
-    """An invitation opens the court at its IP address and at its name; the certificate has both."""
+    """An invitation opens the court at its IP address and at its name: its certificate has both."""
     port = keyed.address.rpartition(":")[2]
     for host in ("127.0.0.1", "localhost"):
         access = msgspec.structs.replace(keyed.people["left"], connect=f"tls/{host}:{port}")
@@ -104,7 +104,7 @@ def test_a_certificate_out_of_its_time(tmp_path: Path, made: timedelta, said: st
 
 
 def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
-    """If only one of court and client uses keys, the message says which one."""
+    """A message says which of court and client uses keys if the other one does not."""
     left = keyed.people["left"]
     with CourtStub() as plain:
         there = plain.address.replace("tcp/", "tls/")

@@ -1,4 +1,4 @@
-"""Finds a browser for the tests of the pages, and builds the pages with npm."""
+"""Finds a browser for the tests of pages, and builds the pages with npm."""
 
 import contextlib
 import os

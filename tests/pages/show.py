@@ -34,7 +34,7 @@ class Show:
             self.until(lambda: self.view("drawnFrames") or 0, "no picture was drawn")
 
     def view(self, what: str, index: int = 0) -> Any:
-        """Return a value of the picture's test hook; None before there is a picture."""
+        """Return a value that the picture's test hook gives; None before there is a picture."""
         return self.page.evaluate(f"window.__lacoc?.views?.[{index}]?.{what}")
 
     def until(self, condition: Callable[[], Any], otherwise: str) -> None:

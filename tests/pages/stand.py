@@ -1,4 +1,4 @@
-"""Serves and reads the stand, a test page with nothing but the scene of a match."""
+"""Serves and reads the stand, a test page that shows only the scene of a match."""
 
 import base64
 import functools

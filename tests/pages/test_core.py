@@ -35,7 +35,7 @@ def test_the_pure_parts_of_the_pages() -> None:
 
 
 def test_a_broken_layer_and_a_circle_are_found(tmp_path: Path) -> None:
-    """The linter refuses imports from a higher layer and circles of imports, also of types."""
+    """The linter refuses an import from a higher layer, and a circle of imports (also of types)."""
     shutil.copytree(WEB / "src", tmp_path / "src")
     shutil.copy(WEB / "biome.json", tmp_path)
     wrong = {

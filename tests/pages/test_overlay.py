@@ -35,14 +35,14 @@ PIXELS = """async (png) => {
 
 
 def alphas(page: Page, blank: Page) -> dict[str, float]:
-    """Return the page's alpha at its edge and middle (0 to 255), and the share of opaque pixels."""
+    """Return the page's opacity at its edge and middle (0-255), and the share of opaque pixels."""
     png = base64.b64encode(page.screenshot(omit_background=True)).decode()
     found: dict[str, float] = blank.evaluate(PIXELS, png)
     return found
 
 
 def test_flags_of_the_address(venue: Venue, open_page: OpenPage) -> None:
-    """The overlay follows the flags of its address, and shows no scroll bars and no pointer."""
+    """The overlay obeys the flags in its address, and shows no scroll bars and no pointer."""
     venue.court()
     venue.web()
     playing(venue)

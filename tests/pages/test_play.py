@@ -38,7 +38,7 @@ def opened(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
 
 
 def seated(venue: Venue, sit: Sit, *words: str, **options: Any) -> Contestant:
-    """Start a court and its gateway, and open a page that takes the left seat."""
+    """Start a court and its gateway, and open a page that has taken the left seat."""
     page = opened(venue, sit, *words, **options)
     page.join(TOKENS["left"])
     page.stands("seated")
@@ -166,7 +166,7 @@ def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path
 
 @pytest.mark.long
 def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """A file dropped on the page can be used before a match, but not during the match."""
+    """A file that is dropped on the page can be used before a match, but not during it."""
     page = seated(venue, sit, "--seconds", "120")
     mine = tmp_path / "mine.toml"
     mine.write_text("name = 'My robot'")
@@ -280,7 +280,7 @@ def own(venue: Venue, tmp_path: Path) -> Iterator[tuple[str, str]]:
 
 @pytest.mark.long
 def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
-    """With equal links (rules 3) the page shows its own round trip and the delay of both seats."""
+    """With equal links (rules 3), the page shows its own round trip and both seats' delay."""
     equal = 'arena = "othello"\ninput_delay = "equal"'
     venue.contest.write_text(venue.contest.read_text().replace('arena = "othello"', equal))
     page = seated(venue, sit)
@@ -747,7 +747,7 @@ def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
 
 
 def test_no_message_stands_in_two_catalogues() -> None:
-    """Each message name is in only one part of the catalogue: a second would replace it."""
+    """Each message name is in only one part of the catalogue, because a second would replace it."""
     folder = Path(__file__).parents[2] / "client" / "web" / "src" / "i18n"
     names = [
         name

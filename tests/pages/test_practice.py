@@ -168,7 +168,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
 
 
 def test_a_folder_s_workbook_is_all_that_it_takes(practise_in: Practise, tmp_path: Path) -> None:
-    """The form shows the folder's files; the page offers a file that changed (workshop 4-1)."""
+    """The form shows the folder's files, and the page offers to load a changed file."""
     book = tmp_path / "Loco-data.xlsx"
     sample = sample_gait_files("hexapod")
     assert sample.postures is not None

@@ -70,7 +70,7 @@ def big(page: Page) -> Locator:
 
 
 def step(page: Page, key: str = "") -> None:
-    """Press the big button, or the given key for it, when its text is no longer new."""
+    """Wait until the big button accepts a press, then click it or press the given key."""
     expect(page.locator(".big.fresh")).to_have_count(0)
     if key:
         page.keyboard.press(key)
@@ -98,7 +98,7 @@ def log_has(page: Page, text: str) -> None:
 
 
 def confirm(page: Page, chip: str | None = None, words: str = "") -> None:
-    """Give the reason in the open dialog and confirm; wait until the dialog closes."""
+    """Type the reason into the open dialog and confirm; wait until the dialog closes."""
     dialog = page.get_by_role("dialog")
     if chip:
         expect(dialog.locator("[type=submit]")).to_be_disabled()
@@ -287,7 +287,7 @@ def test_a_wrong_token_is_said_beside_the_field(court: Venue, referee: Referee) 
 def test_a_token_that_was_replaced_is_not_shown_for_ever(
     venue: Venue, referee: Referee, keys: bool
 ) -> None:
-    """After one refusal a tab forgets its old token, at a court with keys and at one without."""
+    """A tab forgets its old token after one refusal, whether or not the court has keys."""
     if keys:
         venue.contest.write_text(venue.contest.read_text().replace("tcp/", ""))
         make_keys(venue.contest, (), renew=False)
@@ -335,7 +335,7 @@ def test_the_file_that_a_browser_is_given_leads_to_the_page(
 
 
 def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
-    """The button of a decision that is not legal now can't be pressed, and says why."""
+    """If a decision is not legal now, its button can't be pressed and says why."""
     page = at_the_desk(referee())
     expect(big(page)).to_have_attribute("aria-disabled", "true")
     assert why(big(page)) == (
@@ -444,7 +444,7 @@ def test_a_decision_whose_answer_was_lost(court: Venue, referee: Referee) -> Non
 
 
 def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
-    """The second click of a double click neither repeats the decision nor makes the next one."""
+    """The second click of a double click does not repeat the decision or make the next one."""
     page = at_the_desk(referee())
     court.contestant("left", "Ants")
     court.contestant("right", "Bees")
@@ -476,7 +476,7 @@ def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
 
 
 def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
-    """When a popover closes, the reason shown for a choice in it disappears."""
+    """The reason why a choice in a popover can't be made disappears when the popover closes."""
     page = at_the_desk(referee())
     disc(page, "c2r2").click()
     page.locator(".pick .states .act").first.hover()
@@ -510,7 +510,7 @@ def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
 
 @pytest.mark.long
 def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) -> None:
-    """The open dialog shows the score and winner to be made official, and follows changes."""
+    """The open dialog shows the score and winner to be made official, also if they change."""
     venue.court("--seconds", "1")
     venue.web()
     page = at_the_desk(referee())

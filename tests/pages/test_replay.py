@@ -61,13 +61,13 @@ def library(built_pages: Path, tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 @pytest.fixture(scope="module")
 def flags(library: Venue) -> Path:
-    """Give the path of the recording of a Flag-Strike match."""
+    """Give the path of a recorded Flag-Strike match."""
     return library.folder / "recordings" / "b-flags.mcap"
 
 
 @pytest.fixture(scope="module")
 def record(flags: Path) -> Record:
-    """Give the Flag-Strike recording as Python reads it."""
+    """Give the Flag-Strike recording, read by Python."""
     return Record.read(flags)
 
 
@@ -82,7 +82,7 @@ class Player(Show):
     Args:
         page: a new page.
         venue: the gateway.
-        query: such as "?file=b-flags.mcap&t=0"; at a time `t` [s] the recording begins paused.
+        query: such as "?file=b-flags.mcap&t=0"; with `t` [s] it opens paused at that time.
     """
 
     def __init__(self, page: Page, venue: Venue, query: str = "", **options: Any) -> None:
@@ -298,7 +298,7 @@ def test_the_servers_list_and_the_address(
 def test_a_recording_that_was_given_up_says_nothing_more(
     library: Venue, open_page: OpenPage
 ) -> None:
-    """While two recordings load, only the progress of the one opened last is shown."""
+    """While two recordings load, only the progress of the one chosen last is shown."""
     page = open_page(viewport=LAPTOP)
     page.add_init_script(
         """const get = window.fetch;

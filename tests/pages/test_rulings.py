@@ -48,7 +48,7 @@ def shown(stage: Stage) -> dict[str, Any]:
 
 
 def test_corrections_that_stand_and_how_long_was_played() -> None:
-    """A correction that was taken back is not listed; moving the clock adds no time of play."""
+    """A correction that was taken back is not listed; changing the clock adds no time of play."""
     stage = Stage().to(P.PLAYING)
     stage.run(100)
     stage.decide(d.Clock(90.0), "a pause")

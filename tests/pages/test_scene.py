@@ -65,7 +65,7 @@ class Recorded:
         return unpack_states(frame.markers, len(self.sheet.markers))
 
     def change(self) -> tuple[Frame, Frame, int]:
-        """Return the frames before and after a marker first becomes a seat's, and which marker."""
+        """Return the frames before and after a seat first takes a marker, and its index."""
         for before, after in zip(self.frames, self.frames[1:], strict=False):
             was, now = self.states(before), self.states(after)
             for marker, (one, other) in enumerate(zip(was, now, strict=True)):
@@ -384,7 +384,7 @@ def test_two_views_side_by_side(stand: Stand) -> None:
 
 
 def test_cameras_glide(stand: Stand) -> None:
-    """When another camera is chosen, the eye of the view moves to another place."""
+    """When another camera is chosen, the picture's viewpoint moves to another place."""
     stand.open("othello.bin", speed=0, q="low", beat=500)
     for name in ("top", "chase", "arena"):
         before = np.array(stand.view("eye"))

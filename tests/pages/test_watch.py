@@ -136,7 +136,7 @@ def test_the_winner_is_whom_the_referee_says(venue: Venue, open_page: OpenPage) 
 
 @pytest.mark.long
 def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) -> None:
-    """The shown result follows when the referee changes the score or undoes this (rules 4.1)."""
+    """The shown result follows if the referee changes a score or takes the change back."""
     venue.court()
     venue.web()
     referee = playing(venue)
@@ -204,7 +204,7 @@ def test_court_and_gateway_may_die(venue: Venue, open_page: OpenPage, console: A
 
 
 def test_cameras_panel_and_keys(venue: Venue, open_page: OpenPage) -> None:
-    """Keys choose the camera and open panel and settings; while a dialog is open they do not."""
+    """Keys choose the camera and open the panel and settings, but not while a dialog is open."""
     venue.court()
     venue.web()
     playing(venue)
@@ -309,7 +309,7 @@ def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: i
 
 
 def apart(left: Any, right: Any) -> bool:
-    """Return whether the left box ends before the right one begins."""
+    """Return whether the right edge of one box is left of the other box."""
     return bool(left["x"] + left["width"] <= right["x"])
 
 

@@ -54,13 +54,13 @@ def section(title: str) -> str:
 
 
 def test_every_message_has_its_table_and_no_other() -> None:
-    """The page has a section for each message of the code, and for no other."""
+    """docs/protocol.md has a section for each message of the code, and for no other."""
     assert set(SECTIONS) - {"Decisions"} == set(MESSAGES)
 
 
 @pytest.mark.parametrize("name", MESSAGES)
 def test_every_field_is_described_in_its_order(name: str) -> None:
-    """A message's table lists all its fields in order, each with a unit or range."""
+    """The table of a message lists all its fields in order, each with a unit or range."""
     table = rows(SECTIONS[name])
 
     assert [row[0].strip("`") for row in table] == fields(MESSAGES[name])
@@ -69,7 +69,7 @@ def test_every_field_is_described_in_its_order(name: str) -> None:
 
 @pytest.mark.parametrize("name", MESSAGES)
 def test_what_travels_as_an_array_says_so(name: str) -> None:
-    """The page says for each message whether it travels as an array."""
+    """docs/protocol.md says for each message whether it travels as an array."""
     assert SECTIONS[name].lstrip().startswith("Array.") == bool(
         MESSAGES[name].__struct_config__.array_like
     )
@@ -99,14 +99,14 @@ def test_every_topic_of_a_record_and_its_message() -> None:
 
 
 def test_a_scene_is_named_by_the_hash_that_the_page_says() -> None:
-    """The page describes the hash that the code uses to name a scene."""
+    """docs/protocol.md describes the hash that the code uses to name a scene."""
     assert "BLAKE2b of that digest size over the encoded [Scene]" in SECTIONS["Frame"]
     encoded = encode(messages.Scene(bodies=(), geoms=()))
     assert message_hash(encoded) == hashlib.blake2b(encoded, digest_size=8).digest()
 
 
 def test_every_key_expression() -> None:
-    """The key expressions on the page are those of `lacoc_shared.keyspace`."""
+    """The key expressions in docs/protocol.md are those of `lacoc_shared.keyspace`."""
     keys = keyspace.Keys("main")
     expected = {
         keys.frame,
@@ -129,7 +129,7 @@ def test_every_key_expression() -> None:
 
 
 def test_sizes_and_numbers() -> None:
-    """The limits, phases, flags and reasons on the page are the code's."""
+    """The limits, phases, flags and reasons in docs/protocol.md are those of the code."""
     table = section("Key expressions")
     assert f"at most {keyspace.COMMAND_MAX_BYTES // 1024} KiB" in table
     assert f"at most {keyspace.DECISION_MAX_BYTES // 1024} KiB" in table

@@ -1,4 +1,4 @@
-"""docs/rules.md, which contestants read, has the numbers that the software uses."""
+"""docs/rules.md, which contestants read, states the numbers that the software uses."""
 
 import math
 import re
@@ -20,7 +20,7 @@ def settings(name: str) -> dict[str, object]:
 
 
 def test_limits_for_robots() -> None:
-    """The page has the default limits for robots."""
+    """docs/rules.md states the default limits for robots."""
     limits = Limits()
     text = SECTIONS["Your robot"]
     for phrase in (
@@ -38,7 +38,7 @@ def test_limits_for_robots() -> None:
 
 
 def test_a_match() -> None:
-    """The page has the length, the countdown and the freeze after [x] of both games."""
+    """docs/rules.md states the length of a match, its countdown and the freeze after [x]."""
     for name in ("othello", "flag-strike"):
         match = arenas.load(name).match
         assert f"lasts {match.duration_s / 60:g} minutes" in SECTIONS["A match"]
@@ -48,7 +48,7 @@ def test_a_match() -> None:
 
 
 def test_othello() -> None:
-    """The page has Robot-Othello's numbers."""
+    """docs/rules.md states Robot-Othello's numbers."""
     game, text = settings("othello"), SECTIONS["Robot-Othello"]
     assert f"{game['pitch_m']:.2f} m from middle to middle" in text
     assert f"{game['disc_radius_m']} m in radius" in text
@@ -64,7 +64,7 @@ def test_othello() -> None:
 
 
 def test_flag_strike() -> None:
-    """The page has Flag-Strike's numbers."""
+    """docs/rules.md states Flag-Strike's numbers."""
     game, text = settings("flag-strike"), SECTIONS["Flag-Strike"]
     assert "{} x {} m".format(*game["size_m"]) in text  # type: ignore[misc]
     assert f"radius {game['corner_radius_m']} m" in text
@@ -85,7 +85,7 @@ def test_flag_strike() -> None:
 
 
 def test_practice() -> None:
-    """The page has the size of the practice field and how long practice waits for a contestant."""
+    """docs/rules.md states practice's size of the field and its limit for silence in minutes."""
     size = settings("practice")["size_m"]
     text = SECTIONS["Practice"]
     assert "{} x {} m".format(*size) in text  # type: ignore[misc]
@@ -94,7 +94,7 @@ def test_practice() -> None:
 
 
 def test_the_workshops_robot() -> None:
-    """The page has the numbers of the workshop's robot."""
+    """docs/rules.md states the numbers of the workshop's robot."""
     file, data = find_robot("hexapod")
     robot = read_robot(data, file)
     text = SECTIONS["Your robot"]

@@ -202,7 +202,7 @@ def test_foxglove_draws_the_match(record: Record) -> None:
 
 
 def test_foxglove_has_every_shape(record: Record) -> None:
-    """A Foxglove file has each shape of the scene, and a robot's shapes in its team's colour."""
+    """A Foxglove file has every shape of the scene; a robot's shapes have its team's colour."""
     [(_, update)] = _foxglove(record)["/scene foxglove.SceneUpdate"]
     entities = {entity["id"]: entity for entity in update["entities"]}
     assert set(entities) == {"world", "left/body", "left/leg", "right/body", "right/leg"}
@@ -218,7 +218,7 @@ def test_foxglove_has_every_shape(record: Record) -> None:
 
 
 def test_foxglove_shows_the_board_as_it_changes(record: Record) -> None:
-    """Each change of the board writes the whole board, so that a viewer can jump to any time."""
+    """Each change of the board writes the whole board, so a viewer can start at any time."""
     boards = _foxglove(record)["/board foxglove.SceneUpdate"]
     assert [(time - boards[0][0]) // 20_000_000 for time, _ in boards] == [0, 20]
     for _, update in boards:
@@ -305,7 +305,7 @@ def test_export_writes_what_is_asked(tmp_path: Path, write_match: WriteMatch) ->
 def test_export_of_a_match_that_never_began(
     tmp_path: Path, header: MakeHeader, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """For a match that never began, export writes what it can, and says why the rest is missing."""
+    """For a match that never began, export writes what it can and says why files are missing."""
     RecordWriter(tmp_path, header()).close()
     path, out = tmp_path / "m.000.live.mcap", tmp_path / "out"
     done = CliRunner().invoke(app, ["export", str(path), "--out", str(out)])

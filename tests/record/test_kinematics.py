@@ -128,7 +128,7 @@ def test_frames_of_a_court_show_its_robots(arena: str) -> None:
 
 
 def test_which_bodies_move(model: mujoco.MjModel, scene: Scene) -> None:
-    """Only the robots' bodies move; all others keep their place."""
+    """Only the robots' bodies can move; every other body keeps its place."""
     kinematics = ForwardKinematics(scene, JOINTS)
     assert [scene.bodies[index].name for index in kinematics.moving] == [
         f"{seat}/{part}" for seat in ("left", "right") for part in ("body", "a", "b", "c", "d")
@@ -139,7 +139,7 @@ def test_which_bodies_move(model: mujoco.MjModel, scene: Scene) -> None:
 
 
 def test_a_scene_without_robots_needs_no_poses(scene: Scene) -> None:
-    """A scene without robots is computed from empty poses, as frames have them before READY."""
+    """Without robots, bodies get their places although frames have no poses, as before READY."""
     still = Scene(bodies=scene.bodies[:2], geoms=())
     pos_w, _ = ForwardKinematics(still, ()).poses(b"")
     assert pos_w.tolist() == [[0, 0, 0], [1, 2, 0]]

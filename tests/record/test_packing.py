@@ -54,7 +54,7 @@ def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) 
 def test_packing_that_was_interrupted_is_repeated(
     tmp_path: Path, write_segments: WriteSegments
 ) -> None:
-    """Interrupted packing can be repeated, beside a half-written file or an old segment."""
+    """Packing works again after a kill that left a half-written file or a packed segment."""
     first, second = write_segments(tmp_path)
     record, data = Record.read(first), second.read_bytes()
     (tmp_path / "m.mcap.part").write_bytes(b"half")

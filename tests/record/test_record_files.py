@@ -55,7 +55,7 @@ def packed(tmp_path_factory: pytest.TempPathFactory, write_match: WriteMatch) ->
 
 
 def test_a_key_of_an_older_record_was_not_held() -> None:
-    """A key input of an older record, without the newer fields, gets their defaults."""
+    """A key input of an older record that lacks the newer fields gets their default values."""
     older = codec.encode(["key", 0, 14, 1, 2])
     assert codec.decode(older, Input) == KeySeat(0, 14, 1, 2, seen=0, held=0, late=0)  # type: ignore[arg-type]
 
@@ -283,7 +283,7 @@ def test_kill_9_loses_nothing_that_was_answered(
 def test_a_restarted_court_goes_on_in_a_new_segment(
     tmp_path: Path, write_match: WriteMatch, header: MakeHeader, frame: MakeFrame
 ) -> None:
-    """Messages from a new segment's first beat on replace those of the segment before it."""
+    """From a new segment's first beat on, its messages replace those of the older segment."""
     write_match(tmp_path, close=False)
     second = RecordWriter(tmp_path, header(segment=1, first_beat=33))
     second.input(33, KeySeat(1, 99, 1, 0))
@@ -391,7 +391,7 @@ def test_a_disk_that_reports_errors_later_is_heard(
 
 
 def test_closing_twice_is_once(tmp_path: Path, header: MakeHeader) -> None:
-    """Closing a record twice has the effect of closing it once."""
+    """A record that is closed a second time does not change."""
     writer = RecordWriter(tmp_path, header())
     writer.close()
     data = writer.path.read_bytes()

@@ -23,7 +23,7 @@ def test_no_robot_that_is_let_in_leaps() -> None:
 
 @pytest.mark.long
 def test_no_search_finds_a_leap() -> None:
-    """Of 2,000 random robots and 2,000 changes of the farthest, none leaves its start place."""
+    """None of 2,000 random robots and 2,000 variants of the farthest leaves its start place."""
     found = list(search(2000, 2000, os.cpu_count() or 1, seed=0))
     leaps_m = [one.leap_m for one in found if one.leap_m is not None]
     assert len(leaps_m) > 500

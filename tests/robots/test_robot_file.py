@@ -28,7 +28,7 @@ def changed(old: str, new: str, count: int = 1) -> str:
 
 
 def test_workshop_robot(hexapod: RobotSpec) -> None:
-    """The workshop's robot has six legs of three joints, 1.115 kg, and turns 120 degrees/s."""
+    """The workshop's robot has six legs of three joints, 1.115 kg, and joints of 120 degrees/s."""
     assert hexapod.labels == ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")
     assert hexapod.joints == 18
     assert hexapod.size_m == (0.10, 0.12, 0.05)
@@ -186,7 +186,7 @@ def test_footprint(axis: str, limit: str, extent_m: float) -> None:
 
 
 def test_a_leg_of_its_own(hexapod: RobotSpec) -> None:
-    """A leg may have its own links and ranges; the other legs keep those of [link]."""
+    """A leg may have its own links and ranges; all other legs have those of [link]."""
     own = "lengths_m = [0.02, 0.06, 0.07]\nmasses_kg = [0.1, 0.05, 0.05]\nrange_deg = [-90, 90]\n"
     text = HEXAPOD.replace('label = "R,C"\n', f'label = "R,C"\nradius_m = 0.014\n{own}')
     robot = read_robot(text, "mine.toml")
@@ -231,7 +231,7 @@ def test_on_the_edge_of_a_range() -> None:
 
 
 def test_no_mistake_of_a_mistake() -> None:
-    """An unreadable number gives one mistake, without others that follow from it."""
+    """A number that can't be read gives one mistake, and no further ones that follow from it."""
     text = re.sub(r"(?s)posture_deg = \[.*?\n\]", f"posture_deg = {['nan'] * 18}", HEXAPOD)
     text = text.replace("height_m = 0.055", "height_m = 0.5").replace("'nan'", "nan", 17)
     assert {mistake.field for mistake in mistakes_of(text)} == {"start.posture_deg"}

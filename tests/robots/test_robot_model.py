@@ -52,7 +52,7 @@ def test_official_options(hexapod: RobotSpec, compile_world: Compile) -> None:
 
 @pytest.mark.parametrize("degree", [True, False])
 def test_joints_and_servos(hexapod: RobotSpec, compile_world: Compile, degree: bool) -> None:
-    """Joints and servos have the file's values, whether the world is in degrees or radians."""
+    """Joints and servos have the file's values, in a world of degrees and in one of radians."""
     model = compile_world(hexapod, degree=degree)
     assert (model.njnt, model.nu) == (19, 18)
     for joint in range(18):
@@ -126,7 +126,7 @@ def test_collisions(hexapod: RobotSpec) -> None:
 
 
 def test_two_robots_in_a_world(hexapod: RobotSpec, compile_world: Compile) -> None:
-    """Two robots in a world have different names; servos are ordered by seat, then by joint."""
+    """Two robots in a world have different names; servos are sorted by seat, then by joint."""
     model = compile_world(hexapod, sample("octopod"))
     names = [model.actuator(i).name for i in range(model.nu)]
     assert names == [f"r0_a{j}" for j in range(18)] + [f"r1_a{j}" for j in range(24)]

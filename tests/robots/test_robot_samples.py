@@ -98,7 +98,7 @@ def test_folder(folder: Path) -> None:
 
 @samples
 def test_keys_mean_the_same(folder: Path) -> None:
-    """In each sample [0] stands, [1] turns left, [2] walks, [3] turns right (workshop Fig. 4-2)."""
+    """In each sample, [0] is stand, [1] turn left, [2] walk, [3] turn right (workshop Fig. 4-2)."""
     robot, postures, locomotion = load(folder)
     assert locomotion == to_locomotion(postures, SAMPLE_KEYS)
     assert postures.postures[0] == pytest.approx(robot.start_posture)

@@ -121,7 +121,7 @@ def test_what_is_told(stood: Stood, words: list[str]) -> None:
 
 
 def test_the_posture_of_key_0() -> None:
-    """A level's key 0 gives its first posture; a level without key 0 gives the start posture."""
+    """Key 0 gives the first posture of a level; without key 0, it is the start posture."""
     first, other, start = (0.1,) * 12, (0.2,) * 12, (0.3,) * 12
     gait = Gait(PostureTable({0: first, 1: other}), LocomotionTable(((first, other), (other,))))
     assert standing_postures(gait, (B, A), start) == {first: [A, B]}

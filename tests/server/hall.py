@@ -55,7 +55,7 @@ class Hall:
     def bot(
         self, seat: str, connect: str = "", before: tuple[str, ...] = ()
     ) -> subprocess.Popen[bytes]:
-        """Start a bot in a seat; it presses another key every half second of the clock."""
+        """Start a bot in a seat; every half second of the clock it presses another key."""
         (self.folder / "walker.py").write_text(
             "from lacoc_arenas.bot import Key\nfrom lacoc_shared.gait.tables import Level\n"
             "def bot(sheet, seat):\n"

@@ -102,7 +102,7 @@ class ScriptedPhysics:
         self._angles: list[Posture] = [entry.robot.start_posture for entry in entries]
 
     def begin(self) -> None:
-        """Count ticks from 1 again: the next tick is the first of PLAYING."""
+        """Restart the count of ticks: the next tick is 1, the first of PLAYING."""
         self.ticks = 0
 
     def place(self, seat: int, place: Place) -> None:
@@ -134,7 +134,7 @@ class ScriptedPhysics:
 
 
 class Stage:
-    """A match, and all beats that it has made."""
+    """A match, and all beats that it has had."""
 
     def __init__(
         self,

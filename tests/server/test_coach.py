@@ -1,4 +1,4 @@
-"""The coach: which numbers of a table matter, and better tables with few changes."""
+"""Tests of the coach: it finds the angles that matter, and improves a gait by few changes."""
 
 import json
 import math
@@ -30,7 +30,7 @@ WEIGHTS = (5.0, 4.0, 3.0, 2.0, 1.0, 0.5)
 
 
 def made_up(tables: Sequence[Angles]) -> list[float]:
-    """Score tables by their distance from `BEST`; some numbers matter more than others."""
+    """Score each table by its distance from `BEST`, with a different weight for each number."""
     return [
         1000 - sum(w * (a - b) ** 2 for w, a, b in zip(WEIGHTS, table, BEST, strict=True))
         for table in tables
@@ -38,7 +38,7 @@ def made_up(tables: Sequence[Angles]) -> list[float]:
 
 
 def searched(size: Size, rounds: int = 40) -> Improved:
-    """Search from a table of zeros, for a number of rounds."""
+    """Return the best table of a search that starts at zeros and lasts this many rounds."""
     left = iter(range(rounds))
     own = (0,) * len(BEST)
     matters = what_matters(own, RANGES, made_up, made_up)
@@ -53,7 +53,7 @@ def changes(found: Improved) -> int:
 
 
 def test_a_size_limits_the_changes() -> None:
-    """One number, three numbers, or all: each size is better than the one before."""
+    """A search changes one number, three, or any; with more numbers it finds a better table."""
     cell, three, table = (searched(size) for size in Size)
     assert (changes(cell), changes(three)) == (1, 3)
     assert made_up([(0,) * 6])[0] < cell.score < three.score < table.score
@@ -61,12 +61,12 @@ def test_a_size_limits_the_changes() -> None:
 
 
 def test_the_same_seed_finds_the_same() -> None:
-    """A search is repeated exactly, as long as it lasts as long."""
+    """Two searches with the same seed and the same number of rounds give the same result."""
     assert searched(Size.TABLE, 20) == searched(Size.TABLE, 20)
 
 
 def test_a_change_that_hardly_helps_is_undone() -> None:
-    """The last number is worth less than the part that is given back, so it stays as it was."""
+    """The coach undoes a change that improves the score by very little."""
 
     def dull(tables: Sequence[Angles]) -> list[float]:
         return [100 - abs(table[0] - 20) - 0.01 * abs(table[1] - 20) for table in tables]
@@ -80,7 +80,7 @@ def test_a_change_that_hardly_helps_is_undone() -> None:
 
 
 def test_what_matters_is_ranked() -> None:
-    """The order is that of the larger change; the top is confirmed with the exact score."""
+    """Changes are ranked by their effect, and the top ones are confirmed by the exact score."""
     asked: list[int] = []
 
     def exact(tables: Sequence[Angles]) -> list[float]:
@@ -99,7 +99,7 @@ def test_what_matters_is_ranked() -> None:
 
 @given(st.data())
 def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
-    """Equal postures are one row; angles that did not change keep all their digits."""
+    """A table has one row for equal postures; unchanged angles keep all their digits."""
     posture = st.tuples(*[st.floats(-1, 1)] * 3)
     rows = data.draw(st.lists(posture, min_size=1, max_size=4))
     order = data.draw(st.lists(st.integers(0, len(rows) - 1), min_size=1, max_size=8))
@@ -118,7 +118,7 @@ def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
 
 
 def test_goals() -> None:
-    """Forward counts speed, left and right count turning; who lies on the floor gets nothing."""
+    """Goals score speed, or turning left or right; a robot on its belly scores below zero."""
     task = sample_task(2)
     forward = try_table(task, task.table.angles_deg)
     left = try_table(sample_task(1), sample_task(1).table.angles_deg)
@@ -129,7 +129,7 @@ def test_goals() -> None:
 
 
 def sample_task(key: int) -> Task:
-    """Make the task of improving a key of the workshop's robot."""
+    """Make the task to improve one key of the workshop's robot."""
     entry = entry_of("hexapod")
     assert entry.gait.locomotion is not None
     sequences = entry.gait.locomotion.sequences

@@ -41,7 +41,7 @@ def test_a_new_file_is_right_for_every_arena(tmp_path: Path, arena: str, seats: 
 
 
 def test_a_new_file_is_its_owners_alone_and_keeps_the_older(tmp_path: Path) -> None:
-    """The new file has mode 0600, because it holds tokens; an older file is kept with a number."""
+    """A new file has mode 0600, because it holds tokens; an older file is renamed and kept."""
     file = tmp_path / "contest.toml"
     run("init", str(file))
     first = file.read_text()

@@ -116,7 +116,7 @@ def test_a_cut_record_is_had_to_the_cut(share: float, left_behind: bytes, folder
 
 
 def test_a_flipped_byte_anywhere_is_told_or_harmless(left_behind: bytes, folder: Path) -> None:
-    """With a flipped bit, verify and a court's start end with a message, not with a crash.
+    """If a bit is flipped, verify and a court's start end with a message, not with a crash.
 
     The record stays as it is, and `verify` finds most flips.
     """
@@ -222,7 +222,7 @@ def setup_of(arena: str) -> Setup:
 
 
 def other_model(data: bytes) -> tuple[bytes, bytes]:
-    """Return the model's hash from the event of READY, and another hash to replace it."""
+    """Return the model's hash in the event of READY, and a false hash of the same length."""
     at = data.rindex(b"\xa5model\xb0") + 7
     return data[at : at + 16], b"0" * 16
 

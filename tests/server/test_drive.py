@@ -68,7 +68,7 @@ def test_a_move_takes_whole_ticks(degrees: float, needed: int) -> None:
 
 
 def test_no_remainder_is_carried() -> None:
-    """The part of a tick that remains after arrival is not used for the next posture."""
+    """When a posture is reached within a tick, the next one begins only in the next tick."""
     it = drive((0.0,), (3.0, 6.0))
     angles = [s.angles[0] for s in ticks(it, it.press(it.begin(B), B, 1), 4)]
     assert angles == pytest.approx([math.radians(a) for a in (2.4, 3.0, 5.4, 6.0)])
@@ -107,7 +107,7 @@ def test_reached(hold_s: float, expected: list[int]) -> None:
 
 
 def test_at_most_one_posture_a_tick() -> None:
-    """Rules 3: the target changes at most once a tick, also if all postures are equal."""
+    """Rules 3: the target changes at most once a tick, even if all postures are equal."""
     it = drive((0.0,), (0.0, 0.0, 0.0))
     assert targets(it, it.press(it.begin(B), B, 1), 7) == [0, 1, 2, 0, 1, 2, 0]
 
@@ -220,7 +220,7 @@ def test_key_0_of_who_stands_begins_its_sequence(repeat: bool) -> None:
 
 
 def test_which_keys_do_something() -> None:
-    """Rules 3: level A has the keys of Loco-data, and level B has those of LocoTra-data."""
+    """Rules 3: the keys of level A come from Loco-data, and those of level B from LocoTra-data."""
     it = drive((0.0,), (45.0,), postures={0: 0.0, 9: 45.0})
     assert [digit for digit in range(-1, 12) if it.has(A, digit)] == [0, 9]
     assert [digit for digit in range(-1, 12) if it.has(B, digit)] == [0, 1]

@@ -40,7 +40,7 @@ def test_every_sample_is_let_in(robot: str) -> None:
 
 
 def test_one_gait_file_is_enough() -> None:
-    """One table, for either level, is enough; a robot without any table is refused."""
+    """A robot with a table for only one level is accepted; one without any table is refused."""
     assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, None).gait.locomotion is None
     assert weigh_in(HEXAPOD.robot, None, HEXAPOD.locomotion).gait.postures is None
     (mistake,) = mistakes_of()

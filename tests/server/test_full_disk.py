@@ -88,7 +88,7 @@ def read(folder: Path) -> Record:
 
 
 def is_given(those: Party, reason: str) -> bool:
-    """Return whether a received event gives this reason; events come after their beat's frame."""
+    """Return whether an event with this reason was received (it may follow its beat's frame)."""
     given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
@@ -185,7 +185,7 @@ def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -
 
 
 def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
-    """If no file can be made for the next match, the old match stays; the court says why."""
+    """While no file can be made for the next match, the last match stays and health says why."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     with served(contest, folder), party(contest) as those:
         those.decide(Abort())
@@ -201,7 +201,7 @@ def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
 
 
 def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
-    """While the last record goes to a slow disk, frames come less than a second apart."""
+    """While the last record is written to a slow disk, frames come less than 1 s apart."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     slow = tmp_path / "slow"
     slow.touch()

@@ -92,7 +92,7 @@ def lost(verdict: HealthVerdict) -> list[object]:
 
 
 def test_a_match_that_is_held_well() -> None:
-    """With 50 beats a second, none late, and all repeats heard, no replay is advised."""
+    """At 50 beats a second without a late beat or a lost repeat, no replay is advised."""
     held = Held()
     held.seconds(4)
     verdict = held.verdict
@@ -104,7 +104,7 @@ def test_a_match_that_is_held_well() -> None:
 
 
 def test_only_the_time_that_is_played_counts() -> None:
-    """Slow beats before the start and in HALTED do not change the verdict."""
+    """Slow beats count for the verdict only in PLAYING, not before the start or in HALTED."""
     held = Held(Stage("othello", QUICK))
     held.beat(took_s=3.0, late_s=2.98)
     held.stage.to_playing()
@@ -160,7 +160,7 @@ def test_repeats_that_come_a_little_early_or_late() -> None:
 
 
 def test_repeats_of_a_match_that_is_often_halted() -> None:
-    """If a match is often halted, no repeat counts as lost: only whole seconds are measured."""
+    """Halts make no repeat count as lost, because only whole seconds of play are measured."""
     held = Held()
     for _ in range(6):
         for beat in range(60):
@@ -172,7 +172,7 @@ def test_repeats_of_a_match_that_is_often_halted() -> None:
 
 
 def test_who_left_is_missed_by_nobody() -> None:
-    """The link of a team that has left the match is not counted as lossy."""
+    """A team that has left the match does not count as having a lossy link."""
     held = Held()
     held.seconds(2)
     expected = held.left.expected
@@ -184,7 +184,7 @@ def test_who_left_is_missed_by_nobody() -> None:
 
 
 def test_silences() -> None:
-    """The verdict has how often and how long each seat was silent in PLAYING."""
+    """The verdict says how often, and for how long, each seat was silent in PLAYING."""
     held = Held()
     for _ in range(2):
         held.beat(SilentSeat(LEFT))
@@ -197,7 +197,7 @@ def test_silences() -> None:
 
 
 def test_refusals_of_this_match() -> None:
-    """The verdict counts refusals by the court's doors and by the rules since the match began."""
+    """The verdict counts what the court's doors and the rules have refused during the match."""
     held = Held()
     held.beat()
     held.refused.update({"flood": 3, "bad-seal": 1})
@@ -206,7 +206,7 @@ def test_refusals_of_this_match() -> None:
 
 
 def test_faults_of_physics() -> None:
-    """A fault of physics is counted, and a single one is enough for advice."""
+    """A single fault of physics is counted, and is enough to advise a replay."""
     script = Script(faults={3: Fault(LEFT, say("fault.velocity"))})
     held = Held(Stage("othello", QUICK, script=script).to_playing())
     held.seconds(1)

@@ -125,7 +125,7 @@ def test_a_match_of_other_seats_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_match_that_its_court_ended_is_over(tmp_path: Path) -> None:
-    """A match that its court ended is over, even while its segments are not packed yet."""
+    """A match that its court ended is over, even if its segments are not packed yet."""
     journal = held(tmp_path)
     journal.close()
     assert unfinished(tmp_path, "main", OTHELLO) is None
@@ -138,7 +138,7 @@ def test_a_match_that_its_court_ended_is_over(tmp_path: Path) -> None:
 
 
 def test_a_match_that_went_on_loses_nothing_to_a_packer(tmp_path: Path) -> None:
-    """A resumed match can't be packed while it is on; when it is over, all segments are packed."""
+    """A resumed match can't be packed until it is over; then all its segments are packed."""
     first = held(tmp_path)
     first.leave()
     match_id = first.match.setup.match_id

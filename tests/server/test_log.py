@@ -308,7 +308,7 @@ def test_what_a_take_back_leaves_in_the_log() -> None:
 
 
 def test_a_sheet_of_a_robot_that_does_not_walk() -> None:
-    """In the arena practice a robot needs no LocoTra-data file; then it has no keys of level B."""
+    """In practice, a robot needs no LocoTra-data file; without one it has no keys of level B."""
     whole = join(LEFT)
     stage = Stage("practice")
     stage.beat(msgspec.structs.replace(whole, locomotion=None))

@@ -49,7 +49,7 @@ def hall(tmp_path: Path) -> Iterator[Hall]:
 
 
 def test_a_killed_controller_is_taken_back_in_any_phase(hall: Hall) -> None:
-    """In any phase, the seat of a killed controller can be taken back with its own token only."""
+    """In every phase, only its own token takes back the seat of a killed controller."""
     with open_client([hall.court.address()]) as session:
 
         def lose_and_guess(bot: subprocess.Popen[bytes]) -> None:
@@ -129,7 +129,7 @@ def test_a_frozen_controller_stands_and_goes_on(hall: Hall) -> None:
 def test_a_decision_is_not_done_twice_when_its_answer_is_missing(
     hall: Hall, answer_s: float
 ) -> None:
-    """A decision whose answer is missing is made at most once, and the referee gets an error."""
+    """A decision whose answer is lost is made at most once, and the client gets an error."""
     hall.bot("left")
     hall.bot("right")
     hall.play()

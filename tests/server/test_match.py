@@ -77,7 +77,7 @@ def test_x_puts_the_robot_back_as_it_started() -> None:
 
 
 def test_x_keeps_the_level() -> None:
-    """[x] keeps the level of the seat, also if the command names the other level."""
+    """[x] keeps the level of the seat, even if the command names the other level."""
     stage = playing(**BOTH_LEVELS)
     for seat, level in ((LEFT, B), (RIGHT, A)):
         stage.beat(key(seat, 3, level=level))
@@ -185,7 +185,7 @@ def test_a_wide_robot_needs_more_room() -> None:
 
 
 def test_both_restart_at_once() -> None:
-    """If both seats press [x] in one tick, each robot gets its first place, in either order."""
+    """If both seats press [x] in one tick, each gets its first place, whichever came first."""
     for order in ((LEFT, RIGHT), (RIGHT, LEFT)):
         swapped = {LEFT: (0.6, 0.0), RIGHT: (-0.6, 0.0)}
         stage = playing("flag-strike", Script(poses={1: swapped}), ticks=2)
@@ -271,7 +271,7 @@ def test_a_silent_seat_stands_until_a_new_command() -> None:
 
 
 def test_leaving_a_match_is_standing_and_the_seat_stays_ones_own() -> None:
-    """When a team leaves in play its robot stands, and the team can come back to its seat."""
+    """A team that leaves during play can come back to its seat; meanwhile its robot stands."""
     stage = playing(ticks=1)
     stage.beat(key(LEFT, FORWARD))
     stage.beat(LeaveSeat(LEFT))
@@ -305,7 +305,7 @@ def test_refused_keys(item: KeySeat, why: No) -> None:
 
 
 def test_each_level_has_its_own_keys() -> None:
-    """Rules 3: level A has the keys of Loco-data, and level B has those of LocoTra-data."""
+    """Rules 3: the keys of level A come from Loco-data, and those of level B from LocoTra-data."""
     stage = playing(**BOTH_LEVELS)
     entry = stage.match.seats[LEFT].entry
     assert entry is not None
@@ -378,7 +378,7 @@ def test_the_order_of_a_beat_is_that_of_its_kinds() -> None:
 
 
 def test_decisions_come_before_keys() -> None:
-    """A key that arrives in the beat of a halt is refused."""
+    """If a key arrives in the beat of a halt, the key is refused."""
     stage = playing(ticks=2)
     beat = stage.beat(key(LEFT, FORWARD), decide(d.Halt()))
     assert isinstance(beat.outcomes[0], Refusal)
@@ -422,7 +422,7 @@ def test_scores_and_board_are_in_every_frame() -> None:
 
 
 def test_a_touch_is_recorded_only_where_there_is_one() -> None:
-    """A beat has a touch only if a robot touches a marker or was put on a start place."""
+    """A beat records a touch only if a robot touches a marker or is put on a start place."""
     script = Script(touches={3: {RIGHT: (4, 9)}})
     stage = playing("flag-strike", script, ticks=4)
     stage.beat(key(LEFT, X))

@@ -158,7 +158,7 @@ def test_who_left_in_play_and_came_back_is_heard(room: Room) -> None:
 
 
 def test_the_disk_fills_in_the_beat_of_next(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
-    """If the disk is full in the beat of *next*, the next match opens when there is room."""
+    """If the disk is full in the beat of `next`, the next match opens when there is room."""
     players = [room.controller(seat) for seat in range(2)]
     for player in players:
         player.join()

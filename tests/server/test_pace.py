@@ -37,7 +37,7 @@ def test_offset_shifts_the_phase_by_less_than_a_beat() -> None:
 
 
 def test_after_a_stall_at_most_five_beats_come_without_a_pause() -> None:
-    """After a stall, five beats come without a pause; the time beyond them is not made up."""
+    """After a stall, five beats come without a pause; beats beyond these are not made up."""
     pace = Pace(0.0)
     pace.begin(0.0)
     now_s = 1.0  # stalled: 49 beats are overdue

@@ -123,7 +123,7 @@ def test_back_to_lobby(phase: Phase, item: LeaveSeat | ReadySeat) -> None:
 
 
 def test_an_empty_seat_is_nothing_but_empty() -> None:
-    """When a team leaves in LOBBY, its name and its marks of ready and silent are removed."""
+    """A team that leaves in LOBBY leaves an empty seat: no name, not ready, not silent."""
     stage = Stage().to(P.LOBBY)
     stage.beat(ReadySeat(LEFT, True), SilentSeat(LEFT))
     assert stage.frame.seats[LEFT].flags == SeatFlag.JOINED | SeatFlag.READY | SeatFlag.SILENT
@@ -268,7 +268,7 @@ def test_all_corners_win_whatever_the_points_where_the_arena_says_so() -> None:
 
 
 def test_the_shortest_match_is_one_tick() -> None:
-    """A match of 0.02 s has one tick; only a duration of 0 means that it has no end."""
+    """A match of 0.02 s has one tick, but a match of 0 s has no end."""
     stage = Stage(overrides={"match": {"duration_s": 0.02}}).to_playing()
     stage.until(P.FINISHED, at_most=5)
     assert (stage.match.ticks, stage.match.ended) == (1, say("over.time"))
@@ -336,7 +336,7 @@ def test_on_resume_each_drive_goes_on_where_it_stopped() -> None:
 
 
 def test_a_match_that_is_on_cannot_be_joined_by_others() -> None:
-    """A team that joins again in play with another robot gets that robot in the next match."""
+    """A joined team that sends another robot during play gets it only in the next match."""
     stage = Stage().to(P.PLAYING)
     assert stage.send(join(LEFT)) == Done()
     changed = stage.send(join(LEFT, robot="quadruped"))
@@ -364,7 +364,7 @@ def test_who_joins_after_the_end_plays_in_the_next_match() -> None:
 
 @pytest.mark.parametrize("change", [LeaveSeat(RIGHT), ReadySeat(RIGHT, False)])
 def test_who_changes_their_mind_in_the_beat_of_start_is_not_begun_without(change: Input) -> None:
-    """If a team leaves or takes ready back in the beat of *start*, the start is refused."""
+    """`start` is refused if a team leaves or takes ready back in the same beat."""
     stage = Stage().to(P.READY)
     *_, started = stage.beat(change, decide(d.Start())).outcomes
     assert isinstance(started, Refusal)
@@ -461,7 +461,7 @@ def test_a_practice_outlives_a_coffee_break() -> None:
 
 
 def test_a_match_with_a_referee_goes_on_though_everybody_has_left() -> None:
-    """If both teams leave a match with a referee, it goes on and they keep their seats."""
+    """A match with a referee goes on even if both teams leave, and they keep their seats."""
     stage = Stage().to(P.PLAYING)
     stage.beat(LeaveSeat(LEFT), LeaveSeat(RIGHT))
     assert stage.phase is P.PLAYING
@@ -473,7 +473,7 @@ def test_a_match_with_a_referee_goes_on_though_everybody_has_left() -> None:
 
 
 def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
-    """An illegal decision is refused, and the match goes on as if nobody had sent it."""
+    """An illegal decision is refused and does not change how the match goes on."""
     stage, twin = Stage().to(P.READY), Stage().to(P.READY)
     assert isinstance(stage.decide(d.Resume()), Refusal)
     twin.beat()
@@ -485,7 +485,7 @@ def test_an_illegal_decision_is_answered_and_changes_nothing_later() -> None:
 
 
 def test_silence_and_hearing_are_only_told_once() -> None:
-    """A silence that is reported twice is logged once, and so is its end."""
+    """A silence that is reported again is logged only once, and so is its end."""
     stage = Stage().to(P.PLAYING)
     for item in (SilentSeat(LEFT), SilentSeat(LEFT), HeardSeat(LEFT), HeardSeat(LEFT)):
         stage.beat(item)

@@ -82,7 +82,7 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
 def test_bits_may_differ_only_where_another_arithmetic_recorded(
     made_by: Mapping[str, str], finding: Finding, kind: Kind
 ) -> None:
-    """A record of this machine's arithmetic must match bit for bit; another only within a bound."""
+    """A record of the same arithmetic must have equal bits; with another, a bound is enough."""
     found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
     assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
     assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
@@ -92,7 +92,7 @@ def test_bits_may_differ_only_where_another_arithmetic_recorded(
 
 
 def test_each_segment_says_what_made_it() -> None:
-    """A section may differ in bits only if another arithmetic recorded a part of it."""
+    """The bits of ticks may differ only if another arithmetic recorded some of these ticks."""
     headers = [header(), header(100, THERE)]
     bits = Difference(50, ("poses",))
     for first, last, kind in ((1, 99, Kind.DIFFERS), (90, 110, Kind.OTHER_ARITHMETIC)):
@@ -112,7 +112,7 @@ def test_the_first_difference_is_told_with_all_of_its_beat() -> None:
 
 
 def test_a_fingerprint_names_the_machine() -> None:
-    """Two arithmetics are the same if their hashes are equal; other fields name the machine."""
+    """Arithmetics with equal hashes are the same; a fingerprint's other fields name the machine."""
     assert arithmetic.same(HERE, {**HERE, "python": "4"})
     assert not arithmetic.same(HERE, THERE)
     assert not arithmetic.same({}, {})
@@ -138,7 +138,7 @@ def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> None:
-    """With another arithmetic an honest record verifies as the same match; no forgery passes."""
+    """With another arithmetic an honest record still verifies as the same, and no forgery does."""
     lines = elsewhere("benchmarks.proof", ["verdicts", *map(str, paths)]).splitlines()
     found = [json.loads(line) for line in lines]
     assert [one["kind"] for one in found] == [Kind.OTHER_ARITHMETIC] * len(paths), found

@@ -104,7 +104,7 @@ def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: P
 
 
 def test_settings_that_were_changed_count_from_the_next_match(contest: Path, folder: Path) -> None:
-    """A resumed match keeps its settings; changes of the contest file apply to the next match."""
+    """A resumed match keeps its settings; a changed contest file applies to the next match."""
     with ExitStack() as stack:
         first = stack.enter_context(served(contest, folder))
         those = stack.enter_context(party(contest))
@@ -190,7 +190,7 @@ def played(controller: Controller) -> int:
 
 
 def test_a_court_that_just_came_back_can_be_asked(contest: Path, folder: Path) -> None:
-    """A request right after a restarted court's first frame succeeds: the client repeats it."""
+    """A request right after a restarted court's first frame succeeds, because clients repeat it."""
     name, court = load(contest).court()
     with ExitStack() as stack:
         process = stack.enter_context(served(contest, folder))

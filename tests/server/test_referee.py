@@ -130,7 +130,7 @@ def test_why_a_match_cannot_start_names_all_that_is_missing() -> None:
 
 @pytest.mark.parametrize("name", sorted(LEGAL))
 def test_which_need_a_reason(name: str) -> None:
-    """If the reason is blank, a decision that needs one is refused; the others are made."""
+    """A decision that needs a reason is refused if the reason is blank; others need none."""
     decision, phases = LEGAL[name]
     if name in ("take-back", "unfreeze"):
         return
@@ -236,7 +236,7 @@ def test_restart(phase: Phase) -> None:
 
 
 def test_freeze_and_its_end() -> None:
-    """`freeze` lets the robot stand and refuses its keys, for some seconds of the clock."""
+    """`freeze` makes the robot stand and refuses its keys, for some seconds of the clock."""
     stage = stage_in(P.PLAYING)
     stage.beat(key(LEFT, FORWARD))
     done(stage, d.Freeze("left", 1.0))
@@ -270,7 +270,7 @@ def test_unfreeze() -> None:
 
 
 def test_unfreeze_where_nothing_is_frozen_any_more() -> None:
-    """`unfreeze` is refused after a freeze has ended; before the first tick it works."""
+    """`unfreeze` is refused after a freeze has ended, but can end a freeze set before play."""
     stage = stage_in(P.PLAYING)
     done(stage, d.Freeze("left", 0.04))
     assert stage.frame.seats[LEFT].locked_ticks == 1
@@ -336,7 +336,7 @@ def test_set_in_a_game_without_a_board() -> None:
 
 
 def test_clock_moves_the_end() -> None:
-    """`clock` with a positive number gives time, and with a negative number takes time."""
+    """`clock` with a positive number lengthens the match, and with a negative one shortens it."""
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
     done(stage, d.Clock(10.0))
@@ -349,7 +349,7 @@ def test_clock_moves_the_end() -> None:
 
 
 def test_clock_in_old_records() -> None:
-    """An old record's `clock` with positive `seconds` takes time; its log entry stays the same."""
+    """An old record's `clock` with positive `seconds` shortens the match; its log is the same."""
     old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
@@ -360,7 +360,7 @@ def test_clock_in_old_records() -> None:
 
 
 def test_clock_past_the_end() -> None:
-    """If `clock` takes all the time, play ends at once, or after the resume if it is halted."""
+    """If `clock` leaves no time, play ends at once, or a halted match ends after its resume."""
     stage = stage_in(P.HALTED)
     ticks = stage.match.ticks
     done(stage, d.Clock(-3600.0))
@@ -458,7 +458,7 @@ def test_a_halt_in_the_countdown() -> None:
 
 
 def test_two_decisions_of_one_beat_are_taken_in_the_order_they_came() -> None:
-    """Two decisions of one beat are taken one after the other, so a repeated `halt` is refused."""
+    """Decisions of one beat are taken one after another, so a second `halt` is refused."""
     stage = stage_in(P.PLAYING)
     beat = stage.beat(decide(d.Halt()), decide(d.Halt()), decide(d.Adjust("left", 1)))
     assert [type(outcome) for outcome in beat.outcomes] == [DecisionReply, Refusal, DecisionReply]
@@ -478,7 +478,7 @@ def test_ready_can_be_taken_back_after_the_referee_gave_it() -> None:
 
 @pytest.mark.parametrize("decision", [d.Freeze("left", 0.004), d.Clock(-0.009)])
 def test_less_than_a_tick_is_no_decision(decision: d.Decision) -> None:
-    """A freeze or a change of the clock that rounds to no tick is refused."""
+    """A freeze or a change of the clock that rounds to 0 ticks is refused."""
     assert refused(stage_in(P.HALTED), decision).code == "why.less-than-tick"
 
 

@@ -100,7 +100,7 @@ def test_files_with_mistakes_are_refused() -> None:
 
 
 def test_a_match_knows_nothing_of_how_it_is_run() -> None:
-    """The length of a match follows from its setup; `Match` does not know that it is headless."""
+    """`Match` computes its length from its setup, without knowing that the match is headless."""
     match = Match(setup("othello", SHORT), World)
     assert match.duration_ticks == 200
 
@@ -117,7 +117,7 @@ def test_a_record_is_never_overwritten(tmp_path: Path) -> None:
 
 
 def handed_in(folder: Path, locomotion: bytes | None) -> Path:
-    """Make the folder of a student's files; return it."""
+    """Make a folder with a student's files, and return it."""
     folder.mkdir()
     if locomotion is not None:
         (folder / "LocoTra-data.txt").write_bytes(locomotion)

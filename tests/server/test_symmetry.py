@@ -174,7 +174,7 @@ def turned_script(stage: Stage, script: Script) -> Script:
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
 @pytest.mark.parametrize("seed", range(6))
 def test_the_rules_give_exactly_the_turned_match(arena: str, seed: int) -> None:
-    """Rules 4: if both seats are exchanged, the rules give exactly the turned match."""
+    """Rules 4: if the seats are exchanged, the rules give exactly the turned match."""
     script = wander(arena, seed)
     half_minute = {"match": {"duration_s": 30.0, "countdown_s": 0.02}}
     one = Stage(arena, half_minute, script=script)

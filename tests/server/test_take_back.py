@@ -42,7 +42,7 @@ def flag_strike(
 
 
 def play(stage: Stage, ticks: int) -> Stage:
-    """Play up to a tick or to the end, then halt."""
+    """Play to a tick, or to the end of the match if that comes first; then halt."""
     if not stage.beats:
         stage.to_playing()
     while stage.match.ticks < ticks and stage.phase is not P.FINISHED:
@@ -87,7 +87,7 @@ def test_a_flip_and_what_came_of_it() -> None:
 
 
 def test_an_event_may_appear() -> None:
-    """Rules 4.1: if a flip is taken back, a later flip may appear, as an event of its own."""
+    """Rules 4.1: taking back a flip may make a later flip appear, which is a new event."""
     stage = othello(
         {
             5: {RIGHT: "c3r2", LEFT: "c2r1"},
@@ -123,7 +123,7 @@ def test_a_capture() -> None:
 
 
 def test_a_strike() -> None:
-    """If a strike is taken back, the flag stands, even if the robot touched it in later ticks."""
+    """If a strike is taken back, the flag stands, even if the robot keeps touching it."""
     on = {tick: {RIGHT: (22,)} for tick in range(10, 20)}  # flag18 has 5 points
     stage = flag_strike({}, on)
     assert stage.scores == (0, 5)
@@ -230,7 +230,7 @@ def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
 
 
 def test_a_match_may_turn_out_to_have_been_over() -> None:
-    """A take-back finishes a match that would have ended without the event; later events vanish."""
+    """If the match would have ended without the event, a take-back ends it there."""
     walks = dict(ALL_FOUR)
     walks[35] = {RIGHT: CORNERS[0]}
     stage = flag_strike(walks, {60: {RIGHT: (22,)}})
@@ -259,7 +259,7 @@ def test_what_turned_out_to_be_over_stays_over() -> None:
 
 
 def test_time_is_up_stays_up() -> None:
-    """If the time is up, a take-back changes the winner, but not the clock."""
+    """If the time is up, a take-back can change the winner, but does not change the clock."""
     short = {"match": {"duration_s": 1.0, "countdown_s": 0.02}}
     poses = {10: {LEFT: cell("c2r2")}, 20: {LEFT: cell("c3r2")}}
     stage = play(Stage("othello", short, script=Script(poses=poses)), 50)
@@ -272,7 +272,7 @@ def test_time_is_up_stays_up() -> None:
 
 
 def test_over_in_the_tick_in_which_time_is_up() -> None:
-    """If the capture that ended the match in its last tick is taken back, "time is up" ends it."""
+    """If time is up anyway, taking back the capture that ended the match leaves it finished."""
     short = {"match": {"duration_s": 0.8, "countdown_s": 0.02}}
     stage = play(Stage("flag-strike", short, script=Script(poses=dict(ALL_FOUR))), 40)
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
@@ -394,7 +394,7 @@ def test_ticks_that_nothing_can_be_taken_back_from_are_not_kept(arena: str) -> N
 
 
 def test_the_first_event_of_a_match_is_taken_back_as_exactly_as_any() -> None:
-    """The first event can be taken back, though no tick before it is kept."""
+    """The first event can be taken back exactly, although no tick before it is kept."""
     late = {tick + 3000: step for tick, step in CHAIN.items()}
     stage, twin = othello(late, ticks=3100), othello({3030: CHAIN[30]}, ticks=3100)
     reply = take_back(stage, event(stage, "flip", "c3r2").number)

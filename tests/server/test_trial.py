@@ -56,7 +56,7 @@ def sample(courses: dict[str, Course]) -> Walk:
 
 
 def match_digests(robot: str, gait: Gait, presses: list[Press], ticks: int) -> list[bytes]:
-    """Play the keys in a match of the arena of practice; return its state hash after each tick."""
+    """Play the keys in a match of practice; return the hash of the state after each tick."""
     arena = practice_field()
     setup = Setup(
         match_id="trial",
@@ -157,20 +157,20 @@ def test_the_figures_of_the_sample(sample: Walk) -> None:
 
 
 def test_feet_that_are_down_are_low(sample: Walk) -> None:
-    """Load and height (below 1 mm) agree in over 95 % of cases on whether a foot is down."""
+    """Load and height (below 1 mm) agree in over 95 % of ticks on whether a foot is down."""
     part = slice(sample.span.first, sample.span.end)
     down = feet_down(sample.load_n, sample.weight_n)[part]
     assert ((sample.tip_m[part] < 0.001) == down).mean() > 0.95
 
 
 def test_contact_has_two_bounds() -> None:
-    """A foot that is down stays down at a load that would not put it down."""
+    """A standing foot counts as down until its load falls below a second, lower bound."""
     load_n = np.array([[0.015], [0.03], [0.015], [0.005], [0.015]])
     assert feet_down(load_n, 1.0)[:, 0].tolist() == [False, True, True, False, False]
 
 
 def test_phases_are_means_on_a_circle() -> None:
-    """Touchdowns just before and just after the beginning of a cycle have their mean there."""
+    """The mean of touchdowns just before and after the start of a cycle is the cycle's start."""
     down = np.zeros((40, 1), bool)
     down[[9, 10, 21, 22]] = True
     (found,) = phases(down, 0, [(0, 10), (20, 30)])
@@ -184,7 +184,7 @@ def test_phases_are_means_on_a_circle() -> None:
     st.tuples(st.integers(-9, 9), st.integers(-9, 9)),
 )
 def test_margin(feet: list[tuple[int, int]], centre: tuple[int, int]) -> None:
-    """The margin is the distance to the nearest edge; it is positive inside the feet's hull."""
+    """The margin is the distance to the nearest edge of the feet's hull, and positive inside it."""
     corners = hull(feet)
     found = margin_m(feet, centre)
     assert found is not None
@@ -201,7 +201,7 @@ def test_margin(feet: list[tuple[int, int]], centre: tuple[int, int]) -> None:
 
 
 def test_margin_of_few_feet() -> None:
-    """One or two feet have no inside, so the margin is negative; without feet there is none."""
+    """One or two feet enclose no area, so the margin is negative; without feet there is none."""
     assert margin_m([], (0, 0)) is None
     assert margin_m([(3, 4)], (0, 0)) == -5
     assert margin_m([(-1, 2), (1, 2)], (0, 0)) == -2
@@ -209,7 +209,7 @@ def test_margin_of_few_feet() -> None:
 
 
 def test_keys_as_people_type_them() -> None:
-    """A key lasts for its seconds, the last one to the end; its level is B if B has that key."""
+    """A key typed without a level is one of level B if B has it; the last key lasts to the end."""
     gait = read_trial_gait(SAMPLE, entry("hexapod").robot)
     assert forward_key(gait) == (Level.LOCOMOTION, 2)
     assert parse_keys("1:3, A4:0.5,2", gait, 25) == [
@@ -249,7 +249,7 @@ def test_a_walk_that_fell_is_explained(courses: dict[str, Course]) -> None:
 
 
 def test_foot_bars() -> None:
-    """A full block means that the foot is mostly down; the last row marks the cycles."""
+    """In a foot's bar, a full block means "mostly down"; the last row marks the cycles."""
     down = np.array([[True, False]] * 4 + [[False, True]] * 4)
     rows = foot_bars(["R,F", "L"], down, [0, 4], 0, 4)
     assert rows == ["R,F ██··", "  L ··██", "    │ │"]

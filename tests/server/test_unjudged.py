@@ -183,7 +183,7 @@ def test_two_have_time_to_read_who_has_won() -> None:
 
 
 def test_leaving_a_halted_match_ends_it() -> None:
-    """Rules 7: if everybody leaves a halted match, it ends and the next one opens, empty."""
+    """Rules 7: if everybody leaves a halted match, it ends and the next opens with empty seats."""
     held = Held("practice")
     held.begin()
     held.beat(decide(d.Halt()))
@@ -196,7 +196,7 @@ def test_leaving_a_halted_match_ends_it() -> None:
 def test_after_a_fault_the_robot_is_put_back_and_play_goes_on(
     monkeypatch: pytest.MonkeyPatch, seat: int
 ) -> None:
-    """Rules 7: a robot that made physics stop is put back at its start, and play goes on."""
+    """Rules 7: after a fault of physics, the robot is put back at its start and play goes on."""
     script = Script(faults={10: Fault(seat, say("fault.velocity"))})
     monkeypatch.setattr(
         court_module, "World", lambda arena, entries: ScriptedPhysics(arena, entries, script)

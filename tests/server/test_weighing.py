@@ -52,7 +52,7 @@ def changed(old: bytes, new: bytes) -> Join:
 
 
 def test_a_robot_is_tried_once() -> None:
-    """The first join with a robot waits for its stand test; later joins with it do not."""
+    """Only the first join with a robot waits for a stand test; later joins use its outcome."""
     with Weighing(admission()) as weighing:
         assert weighing(WHOLE) is None
         assert known(weighing, WHOLE) == WHOLE

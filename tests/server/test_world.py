@@ -60,7 +60,7 @@ def run(it: World, ticks: int) -> bytes:
 
 
 def test_the_same_bits_in_the_same_and_in_a_new_process() -> None:
-    """The same angles give the same digest, also in a new process (docs/facts.md 1)."""
+    """The same commanded angles give the same digest, also in a new process (docs/facts.md 1)."""
     digest = run(world(), 100)
     assert run(world(), 100) == digest
     code = "import sys; sys.path.append(sys.argv[1]); import test_world as t; "
@@ -75,7 +75,7 @@ def test_the_same_bits_in_the_same_and_in_a_new_process() -> None:
 
 
 def test_the_digest_tells_every_difference_and_never_forgets_it() -> None:
-    """If one angle differs in its last bit, the digests differ from that tick on."""
+    """If one angle differs in its last bit, the digests differ from that tick to the end."""
     one, other = world(), world()
     for tick, angles in enumerate(commands(20)):
         one.step(angles)
@@ -175,7 +175,7 @@ def test_place(seat: int) -> None:
 
 
 def test_a_place_is_a_part_of_the_state() -> None:
-    """A robot's new place is in the saved state, and a fault does not undo it."""
+    """A robot's new place belongs to the saved state and is kept when a fault is undone."""
     it, other = world(), world()
     it.place(LEFT, Place(0.3, 0.3, 0.0))
     other.load(it.save())

@@ -7,7 +7,7 @@ from lacoc_shared.network.allowance import Allowance
 
 
 def test_a_burst_then_the_rate() -> None:
-    """A burst is granted at once, then units at the rate; unused units never exceed the burst."""
+    """A burst is granted at once, then units at the rate; at most one burst can be saved up."""
     allowance = Allowance(2.0, 5)
     assert allowance.take(7, 1000.0) == 5
     assert allowance.take(1, 1000.4) == 0

@@ -74,7 +74,7 @@ def test_what_a_terminal_can_not_show_ends_no_log() -> None:
 
 
 def test_what_a_pipe_can_not_encode_is_read_as_it_was() -> None:
-    """With JSON, characters that the encoding lacks are escaped; a program reads them unchanged."""
+    """With JSON, characters that the encoding lacks are escaped, so a program reads them all."""
     lines = said(NAMES.format(json=True), "cp1252").splitlines()
     assert [json.loads(line)["text"] for line in lines] == [
         "Équipe",

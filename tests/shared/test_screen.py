@@ -73,7 +73,7 @@ NOT_UTF_8 = os.fsdecode(b"Bad\x98\x8b.txt")
 
 
 def test_a_name_that_is_no_text_becomes_text() -> None:
-    """In a name, bytes that are not UTF-8 are shown as numbers; any other name stays as it is."""
+    """Bytes of a name that are not UTF-8 are shown as numbers; any other name stays as it is."""
     assert text_of(NOT_UTF_8) == r"Bad\x98\x8b.txt"
     assert text_of(Path("六足.txt")) == "六足.txt"
 

@@ -39,7 +39,7 @@ PLAIN = st.sampled_from([c for c in CODES if not table()[c].values]).map(say)
 
 
 def values_of(kind: str) -> st.SearchStrategy[Any]:
-    """Draw a value of a kind, such as "text" or "number?"."""
+    """Draw a random value of a kind, such as "text" or "number?"."""
     if kind.endswith("?"):
         return st.none() | values_of(kind[:-1])
     return {
@@ -61,7 +61,7 @@ def phrases(codes: list[str]) -> st.SearchStrategy[Phrase]:
 
 
 def test_each_code_uses_its_values_in_both_languages() -> None:
-    """For each phrase code, the texts in both languages use exactly the values of the table."""
+    """For each phrase code, the texts in both languages use exactly the values that it has."""
     for code in CODES:
         _check_entry(code)
 

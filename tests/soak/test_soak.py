@@ -47,7 +47,7 @@ def _figures(looks: list[Look]) -> Figures:
 
 
 def test_a_leak_would_be_seen() -> None:
-    """A growth of 0.5 % at each look counts as a leak, and a single high look does not."""
+    """Memory that grows by 0.5 % at each measurement is a leak; one high measurement is none."""
     steady = [Look(at_s, 100_000_000, 9, 20, 3, 0) for at_s in range(20)]
     growing = [look._replace(memory_bytes=round(1e8 * 1.005**look.at_s)) for look in steady]
     off = [*steady[:9], steady[9]._replace(memory_bytes=150_000_000), *steady[10:]]
