@@ -1,6 +1,7 @@
 """Tests of the drawing core of the pages (client/web/src/core, scene) in a real browser."""
 
 import math
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ import msgspec
 import mujoco
 import numpy as np
 import pytest
-from chromium import OpenPage, build_stand
+from chromium import OpenPage, build_stand, locked
 from match_file import match_file
 from playwright.sync_api import Page
 from stand import Stand, served, share_of
@@ -29,10 +30,16 @@ BLUE, ORANGE = "#0072b2", "#e69f00"
 
 @pytest.fixture(scope="session")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("stand")
-    build_stand(folder)
-    for arena in ("othello", "flag-strike"):
-        (folder / f"{arena}.bin").write_bytes(match_file(arena, 24.0))
+    """Build the stand and two matches, once for all processes that share this run."""
+    own = tmp_path_factory.getbasetemp()
+    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "stand"
+    with locked("stand"):
+        if not folder.exists():
+            making = tmp_path_factory.mktemp("making")
+            build_stand(making)
+            for arena in ("othello", "flag-strike"):
+                (making / f"{arena}.bin").write_bytes(match_file(arena, 24.0))
+            making.rename(folder)
     return folder
 
 
