@@ -73,7 +73,7 @@ class Page(asyncio.Protocol):
 
 
 async def main() -> None:
-    """Open the pages, then count until the input ends."""
+    """Open the pages. At each line of the input, print what each has received since the last."""
     parser = argparse.ArgumentParser()
     parser.add_argument("url")
     parser.add_argument("pages", type=int)

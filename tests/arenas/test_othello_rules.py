@@ -326,7 +326,7 @@ def test_flip_in_a_row(what: str) -> None:
 
 
 def test_flip_in_row_and_column_at_once() -> None:
-    """Runs flip along the row and the column of the new disc, never diagonally (rules 5)."""
+    """A new disc flips runs along its row and its column, never diagonally (rules 5)."""
     before = state(
         board(
             "..L..L",

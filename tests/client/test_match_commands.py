@@ -132,7 +132,7 @@ def test_a_referee_has_a_name(account: str, named: str, monkeypatch: pytest.Monk
 def test_ready_for_a_contestant_who_cannot(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The referee can say ready for a contestant; `status` lists legal decisions, `log` events."""
+    """The referee says ready for a contestant; `status` lists legal decisions, `log` the events."""
     court = open_court("--arena", "othello")
     referee = Referee(court, capsys)
     person = court.start(

@@ -196,7 +196,7 @@ def test_practice_takes_the_files_of_the_folder(tmp_path: Path) -> None:
     assert sample.postures is not None
     (tmp_path / "Loco-data.txt").write_bytes(sample.postures.data)
     words = ("practice", "--terminal", "--recordings", "kept")
-    code, said = piped(tmp_path, "0.1 1\n0.3 tab 2\n8 q\n", *words)
+    code, said = piped(tmp_path, "0.1 1\n0.3 tab 2\n3.0 q\n", *words)
 
     assert code == 0, said
     assert "Files used from this folder: Loco-data.txt." in said

@@ -81,7 +81,7 @@ class PageClient:
 
     @property
     def waits_why(self) -> str:
-        """Return the phrase code of why the gateway has no court; "" while it has one."""
+        """Return the code of the phrase that says why the gateway has no court, or ""."""
         return (self.link.get("why") or {"code": ""})["code"]
 
     def ask(self, do: str, **fields: Any) -> Any:

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +16,13 @@ from lacoc_server.commands.trial import read_trial_gait
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_server.match.match import Match
 from lacoc_server.trial.bars import foot_bars
-from lacoc_server.trial.course import CYCLES, SETTLE_TICKS, Course
+from lacoc_server.trial.course import CYCLES, NO_CYCLE_S, SETTLE_TICKS, Course
 from lacoc_server.trial.explain import explain
 from lacoc_server.trial.feet import feet_down, phases
 from lacoc_server.trial.figures import measure
 from lacoc_server.trial.keys import forward_key, parse_keys
 from lacoc_server.trial.support import hull, margin_m
-from lacoc_server.trial.walk import Press, Walk
+from lacoc_server.trial.walk import Press, Span, Walk
 from lacoc_server.world.sensed import make_course, practice_field
 from lacoc_server.world.world import World
 from lacoc_shared.command import cli
@@ -133,6 +134,25 @@ def test_a_trial_can_be_repeated(courses: dict[str, Course], sample: Walk) -> No
     courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 1)], 1.0)
     again = courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
     assert again.digests == sample.digests
+
+
+def test_a_long_sequence_is_measured_in_whole_cycles(courses: dict[str, Course]) -> None:
+    """A cycle may take longer than a key that never repeats is measured."""
+    start = entry("hexapod").robot.start_posture
+    sway = tuple(angle + 0.3 for angle in start[:6]) + start[6:]
+    gait = Gait(None, LocomotionTable((((start, sway) * 10),)))
+    walk = courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 0)], cycles=1)
+    assert walk.span.cycles == 1
+    assert walk.span.seconds > NO_CYCLE_S / 2
+
+
+def test_a_trial_that_ends_at_once_has_figures(sample: Walk) -> None:
+    """Physics that stop in the first tick leave figures of nothing, and no error."""
+    nothing = {
+        name: value[:0] for name, value in vars(sample).items() if isinstance(value, np.ndarray)
+    }
+    found = measure(replace(sample, **nothing, span=Span(0, 0, 0), starts=(), digests=()))
+    assert (found.cycles, found.speed_mm_s, found.margin_mm) == (0, 0.0, None)
 
 
 def test_the_figures_of_the_sample(sample: Walk) -> None:

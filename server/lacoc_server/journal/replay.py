@@ -128,7 +128,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
 
 
 def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[Finding]:
-    """Simulate the sections of a match while it is being judged."""
+    """Simulate each section of a record as soon as `judge` has reached it; keep their order."""
     if processes <= 1:
         worlds = Worlds()
         for section in judge.sections():

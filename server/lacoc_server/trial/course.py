@@ -153,14 +153,16 @@ def plan(
     state = drive.begin(level)
     states: list[DriveState] = []
     starts: list[int] = []
+    repeats = False
     for tick in range(most + 1):
         press = due.get(tick)
         before = state if press is None else drive.press(state, press.level, press.digit)
         state = drive.tick(before)
         if tick == last.tick or (tick > last.tick and state.posture == 0 != before.posture):
             starts.append(tick)
+        repeats = repeats or (tick >= last.tick and state.posture != 0)
         waited_s = (tick - last.tick) / BEATS_PER_S
-        is_enough = len(starts) == cycles + 2 or (len(starts) == 1 and waited_s >= NO_CYCLE_S)
+        is_enough = len(starts) == cycles + 2 or (not repeats and waited_s >= NO_CYCLE_S)
         if tick == most or (seconds is None and is_enough):
             break
         states.append(state)

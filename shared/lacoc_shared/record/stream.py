@@ -163,7 +163,7 @@ def _records(file: BytesIO, size: int) -> Iterator[McapRecord]:
     """Yield the MCAP records of a file, also those in its chunks, up to the limit for a match.
 
     Raises:
-        McapError: if a chunk is too large, or compressed in a way that records are not. Other
+        McapError: if a chunk is too large, or its compression is none that LACOC uses. Other
             errors of `DAMAGE` if the file is damaged.
     """
     left = _UNPACKED_BYTES + _UNPACKED_RATIO * size
