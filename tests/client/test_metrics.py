@@ -91,4 +91,4 @@ def test_a_port_that_is_taken(capsys: pytest.CaptureFixture[str]) -> None:
         assert cli.main(["serve", "--listen", "tcp/127.0.0.1:0", "--metrics", where]) == 2
     assert f"Metrics can't be served at {where}" in capsys.readouterr().err
     assert cli.main(["serve", "--metrics", "here"]) == 2
-    assert "looks like 127.0.0.1:9100" in capsys.readouterr().err
+    assert "Write it like 127.0.0.1:9100" in capsys.readouterr().err
