@@ -10,6 +10,7 @@ import statistics
 import sys
 import time
 from collections import Counter
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from multiprocessing import get_context
@@ -19,7 +20,6 @@ from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_server.match.match import Match
 from lacoc_server.trial.course import SETTLE_TICKS, Course
-from lacoc_server.trial.feet import feet_down
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.walk import Press, Walk
 from lacoc_server.world.sensed import make_course, practice_field
@@ -88,7 +88,7 @@ def compared(seed: int) -> Compared:
     gait, locomotion = _drawn(rng, robot)
     press = Press(SETTLE_TICKS, Level.LOCOMOTION, rng.randrange(len(gait.keys(Level.LOCOMOTION))))
     walk = course_of(robot).walk(gait, [press])
-    played = _match_digests(robot, locomotion, press, len(walk.digests))
+    played = match_digests(robot, locomotion, [press], len(walk.digests))
     ends = [*walk.starts[1:], len(walk.digests)]
     differs = next(
         (i for i, end in enumerate(ends) if walk.digests[end - 1] != played[end - 1]), None
@@ -119,7 +119,7 @@ def _walks(figures: Figures) -> bool:
 def _agrees(walk: Walk) -> float:
     """Return the share of ticks and feet in which a foot is down and low, or neither."""
     part = slice(walk.span.first, walk.span.end)
-    down = feet_down(walk.load_n, walk.weight_n)[part]
+    down = walk.down[part]
     return float(((walk.tip_m[part] < _LOW_M) == down).mean()) if len(down) else 1.0
 
 
@@ -163,15 +163,17 @@ def _drawn(rng: random.Random, robot: str) -> tuple[Gait, SentFile]:
     return weigh_in(SentFile(*find_robot(robot)), None, file).gait, file
 
 
-def _match_digests(robot: str, locomotion: SentFile, press: Press, ticks: int) -> list[bytes]:
-    """Play a key in a match of the arena of practice; return its state hash after each tick."""
-    arena = practice_field()
-    settings = arena.settings
+def match_digests(
+    robot: str, locomotion: SentFile, presses: Sequence[Press], ticks: int
+) -> list[bytes]:
+    """Play a trial's keys in a match of practice; return the state hash after each tick."""
+    settings = practice_field().settings
     setup = Setup(
         match_id="trial", court="trial", match=1, arena="practice", settings=settings, limits={}
     )
     match = Match(setup, World)
     match.beat([JoinSeat(0, "Team", SentFile(*find_robot(robot)), None, locomotion, token_hash="")])
+    due = {press.tick: press for press in presses}
     inputs: list[Input] = [ReadySeat(0, True)]
     found: list[bytes] = []
     while len(found) < ticks:
@@ -179,9 +181,8 @@ def _match_digests(robot: str, locomotion: SentFile, press: Press, ticks: int) -
             found.append(match.physics.digest)
         elif match.fault is not None:
             break
-        inputs = []
-        if match.phase is Phase.PLAYING and len(found) == press.tick:
-            inputs = [KeySeat(0, 1, int(press.level), press.digit)]
+        press = due.get(len(found)) if match.phase is Phase.PLAYING else None
+        inputs = [KeySeat(0, len(found), int(press.level), press.digit)] if press else []
     return found
 
 

@@ -24,7 +24,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.session import Session
-from lacoc_shared.seat import REPEATS_HZ, SILENT_AFTER_S, WHY_NO
+from lacoc_shared.seat import REPEATS_HZ, RESTART_KEY, SILENT_AFTER_S, WHY_NO
 from lacoc_shared.words import Phrase, say
 
 REPEAT_S = 1 / REPEATS_HZ
@@ -71,6 +71,11 @@ class RefusedKey(NamedTuple):
     level: int
     key: int
     why: Phrase
+
+    @property
+    def name(self) -> str:
+        """The key as people press it: a digit, or x."""
+        return "x" if self.key == RESTART_KEY else str(self.key)
 
 
 class _Press(NamedTuple):

@@ -60,6 +60,18 @@ def test_a_size_limits_the_changes() -> None:
     assert table.score > 990
 
 
+def test_a_number_is_turned_to_its_best_degree() -> None:
+    """A search for three numbers that finds only one worth changing still finds its best degree."""
+
+    def one_number(tables: Sequence[Angles]) -> list[float]:
+        return [100.0 - (table[0] - 12) ** 2 for table in tables]
+
+    own = (0,) * len(BEST)
+    matters = what_matters(own, RANGES, one_number, one_number)
+    *_, last = improve(own, RANGES, Size.THREE, matters, one_number, lambda: False, seed=1)
+    assert last.angles_deg == (12, *own[1:])
+
+
 def test_the_same_seed_finds_the_same() -> None:
     """Two searches with the same seed and the same number of rounds give the same result."""
     assert searched(Size.TABLE, 20) == searched(Size.TABLE, 20)

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.explained import FAULTS, tell
+from benchmarks.trials import ROBOTS, entry_of, match_digests
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.library import find_robot
 from lacoc_server.commands.trial import read_trial_gait
-from lacoc_server.match.entry import Entry, weigh_in
-from lacoc_server.match.match import Match
+from lacoc_server.match.entry import weigh_in
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import CYCLES, NO_CYCLE_S, SETTLE_TICKS, Course
 from lacoc_server.trial.explain import explain
@@ -23,75 +23,34 @@ from lacoc_server.trial.figures import measure
 from lacoc_server.trial.keys import forward_key, parse_keys
 from lacoc_server.trial.support import hull, margin_m
 from lacoc_server.trial.walk import Press, Span, Walk
-from lacoc_server.world.sensed import make_course, practice_field
-from lacoc_server.world.world import World
+from lacoc_server.world.sensed import make_course
 from lacoc_shared.command import cli
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
 from lacoc_shared.gait.text import write_gait
-from lacoc_shared.inputs import JoinSeat, KeySeat, ReadySeat
-from lacoc_shared.messages import Refusal, SentFile
+from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record.schema import Setup
-from lacoc_shared.seat import Phase
 
-ROBOTS = ("hexapod", "quadruped", "octopod")
 SAMPLE = Path(__file__).parents[2] / "robots/lacoc_robots/samples/hexapod/Loco-data.txt"
-
-
-def entry(robot: str) -> Entry:
-    """Weigh in a sample robot with its sample gait."""
-    return weigh_in(SentFile(*find_robot(robot)), *sample_gait_files(robot))
 
 
 @pytest.fixture(scope="module")
 def courses() -> dict[str, Course]:
     """Give a floor for the trials of each sample robot."""
-    return {name: make_course(entry(name).robot) for name in ROBOTS}
+    return {name: make_course(entry_of(name).robot) for name in ROBOTS}
 
 
 @pytest.fixture(scope="module")
 def sample(courses: dict[str, Course]) -> Walk:
     """Give the walk of the workshop's robot with its sample gait, key 2 (forward)."""
-    gait = read_trial_gait(SAMPLE, entry("hexapod").robot)
+    gait = read_trial_gait(SAMPLE, entry_of("hexapod").robot)
     return courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
-
-
-def match_digests(robot: str, gait: Gait, presses: list[Press], ticks: int) -> list[bytes]:
-    """Play the keys in a match of practice; return the hash of the state after each tick."""
-    arena = practice_field()
-    setup = Setup(
-        match_id="trial",
-        court="trial",
-        match=1,
-        arena="practice",
-        settings=arena.settings,
-        limits={},
-    )
-    match = Match(setup, World)
-    assert gait.locomotion is not None
-    locomotion = SentFile(
-        "LocoTra-data.txt", write_gait(gait.locomotion, entry(robot).robot.labels)
-    )
-    join = JoinSeat(0, "Team", SentFile(*find_robot(robot)), None, locomotion, token_hash="")
-    outcome = match.beat([join]).outcomes[0]
-    assert not isinstance(outcome, Refusal), outcome
-    due = {press.tick: press for press in presses}
-    found: list[bytes] = []
-    inputs: list[ReadySeat | KeySeat] = [ReadySeat(0, True)]
-    while len(found) < ticks:
-        beat = match.beat(inputs)
-        if beat.ticked:
-            found.append(match.physics.digest)
-        press = due.get(len(found)) if match.phase is Phase.PLAYING else None
-        inputs = [KeySeat(0, len(found), int(press.level), press.digit)] if press else []
-    return found
 
 
 @st.composite
 def tables(draw: st.DrawFn, robot: str) -> Gait:
     """Draw a gait of one to four keys: angles in whole degrees, within 60 of the start posture."""
-    start = entry(robot).robot.start_posture
-    ranges = entry(robot).robot.ranges_rad
+    start = entry_of(robot).robot.start_posture
+    ranges = entry_of(robot).robot.ranges_rad
     turn = st.integers(-60, 60)
     posture = st.lists(turn, min_size=len(start), max_size=len(start)).map(
         lambda turns: tuple(
@@ -114,7 +73,7 @@ def test_a_trial_is_what_a_court_would_do(
     gait = data.draw(tables(robot))
     assert gait.locomotion is not None
     # A match reads its gait from a file, which has whole degrees; the trial gets the same angles.
-    sent = SentFile("LocoTra-data.txt", write_gait(gait.locomotion, entry(robot).robot.labels))
+    sent = SentFile("LocoTra-data.txt", write_gait(gait.locomotion, entry_of(robot).robot.labels))
     gait = weigh_in(SentFile(*find_robot(robot)), None, sent).gait
     keys = data.draw(st.lists(st.integers(0, len(gait.keys(Level.LOCOMOTION)) - 1), min_size=1))
     gap = data.draw(st.integers(1, 40))
@@ -125,12 +84,12 @@ def test_a_trial_is_what_a_court_would_do(
     walk = courses[robot].walk(gait, presses, 1.0)
     assert len(walk.digests) == presses[-1].tick + 50 or walk.fault is not None
     ticks = len(walk.digests)
-    assert list(walk.digests) == match_digests(robot, gait, presses, ticks)
+    assert list(walk.digests) == match_digests(robot, sent, presses, ticks)
 
 
 def test_a_trial_can_be_repeated(courses: dict[str, Course], sample: Walk) -> None:
     """A trial gives the same states again, even after another trial on the same floor."""
-    gait = read_trial_gait(SAMPLE, entry("hexapod").robot)
+    gait = read_trial_gait(SAMPLE, entry_of("hexapod").robot)
     courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 1)], 1.0)
     again = courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
     assert again.digests == sample.digests
@@ -138,7 +97,7 @@ def test_a_trial_can_be_repeated(courses: dict[str, Course], sample: Walk) -> No
 
 def test_a_long_sequence_is_measured_in_whole_cycles(courses: dict[str, Course]) -> None:
     """A cycle may take longer than a key that never repeats is measured."""
-    start = entry("hexapod").robot.start_posture
+    start = entry_of("hexapod").robot.start_posture
     sway = tuple(angle + 0.3 for angle in start[:6]) + start[6:]
     gait = Gait(None, LocomotionTable((((start, sway) * 10),)))
     walk = courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 0)], cycles=1)
@@ -179,7 +138,7 @@ def test_the_figures_of_the_sample(sample: Walk) -> None:
 def test_feet_that_are_down_are_low(sample: Walk) -> None:
     """Load and height (below 1 mm) agree in over 95 % of ticks on whether a foot is down."""
     part = slice(sample.span.first, sample.span.end)
-    down = feet_down(sample.load_n, sample.weight_n)[part]
+    down = sample.down[part]
     assert ((sample.tip_m[part] < 0.001) == down).mean() > 0.95
 
 
@@ -230,7 +189,7 @@ def test_margin_of_few_feet() -> None:
 
 def test_keys_as_people_type_them() -> None:
     """A key typed without a level is one of level B if B has it; the last key lasts to the end."""
-    gait = read_trial_gait(SAMPLE, entry("hexapod").robot)
+    gait = read_trial_gait(SAMPLE, entry_of("hexapod").robot)
     assert forward_key(gait) == (Level.LOCOMOTION, 2)
     assert parse_keys("1:3, A4:0.5,2", gait, 25) == [
         Press(25, Level.LOCOMOTION, 1),
@@ -252,7 +211,7 @@ def test_the_first_sentence_names_the_fault(seed: int) -> None:
 
 def test_a_walk_that_fell_is_explained(courses: dict[str, Course]) -> None:
     """A robot's fall is explained even if no cycle of its key was completed."""
-    robot = entry("quadruped").robot
+    robot = entry_of("quadruped").robot
     start, legs = robot.start_posture, len(robot.legs)
     fallen = tuple(
         math.radians(80) if joint in (legs, legs + 1) else angle
@@ -266,6 +225,21 @@ def test_a_walk_that_fell_is_explained(courses: dict[str, Course]) -> None:
     assert figures.margin_mm is not None
     said = explain(robot, walk, figures, press, (fallen,))
     assert said[0].code in ("explain.belly", "explain.tipped", "explain.limit")
+
+
+def test_a_robot_that_goes_backward_is_not_said_to_go_forward(sample: Walk) -> None:
+    """The sentence about speed is left out where it would be wrong."""
+    robot, gait = entry_of("hexapod").robot, entry_of("hexapod").gait
+    press = Press(SETTLE_TICKS, Level.LOCOMOTION, 2)
+    sequence = gait.sequence(Level.LOCOMOTION, 2)
+    assert sequence is not None
+
+    def codes(speed_mm_s: float) -> list[str]:
+        figures = replace(measure(sample), speed_mm_s=speed_mm_s)
+        return [said.code for said in explain(robot, sample, figures, press, sequence)]
+
+    assert "explain.walks" in codes(60.0)
+    assert "explain.walks" not in codes(-60.0)
 
 
 def test_foot_bars() -> None:

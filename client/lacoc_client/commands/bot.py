@@ -19,7 +19,6 @@ from lacoc_client.stopping import stop_signals
 from lacoc_shared.command import options, screen
 from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.network.session import open_client
-from lacoc_shared.seat import RESTART_KEY
 from lacoc_shared.words import Phrase, say
 
 app = typer.Typer()
@@ -132,8 +131,7 @@ def _play(
         if frame is not None:
             player.see(frame)
         for refused in controller.take_refused():
-            key = "x" if refused.key == RESTART_KEY else str(refused.key)
-            screen.show(say("bot.refused", key=key, why=refused.why))
+            screen.show(say("bot.refused", key=refused.name, why=refused.why))
         for event in controller.view.take_events():
             if event.kind in ("phase", "result"):
                 screen.show(event.said)

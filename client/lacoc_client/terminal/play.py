@@ -94,8 +94,7 @@ class TerminalPlay:
         if frame is not None:
             self._see(frame)
         for refused in controller.take_refused():
-            key = "x" if refused.key == RESTART_KEY else str(refused.key)
-            self._say(say("terminal.refused", key=key, why=refused.why))
+            self._say(say("terminal.refused", key=refused.name, why=refused.why))
         for text in self._keys.take_said():
             self._say(text)
         lines = [

@@ -1,5 +1,6 @@
 """Search for a better table, with as few changes as a size allows."""
 
+import math
 import random
 from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
@@ -36,8 +37,6 @@ class Improved(NamedTuple):
 
     angles_deg: Angles
     score: float
-    trials: int
-    """Tables that were tried."""
 
 
 IsOver = Callable[[], bool]
@@ -83,15 +82,16 @@ class _Search:
         self.ranges_deg = ranges_deg
         self._score = score
         self._known: dict[Angles, float] = {}
-        self.best = Improved(table, self.tried([table])[0], 1)
+        self.best = Improved(table, -math.inf)
+        self.tried([table])
 
     def tried(self, tables: Sequence[Angles]) -> list[float]:
         """Try tables; one that was tried before is not tried again."""
         new = list(dict.fromkeys(one for one in tables if one not in self._known))
         self._known.update(zip(new, self._score(new), strict=True))
         for one in new:
-            if hasattr(self, "best") and self._known[one] > self.best.score:
-                self.best = Improved(one, self._known[one], len(self._known))
+            if self._known[one] > self.best.score:
+                self.best = Improved(one, self._known[one])
         return [self._known[one] for one in tables]
 
     def turned(self, table: Angles, index: int, to_deg: float) -> Angles:
@@ -123,7 +123,7 @@ def _few(
             if is_over():
                 break
         if search.best.angles_deg == before.angles_deg:
-            return
+            break
         changed.append(_first_change(before.angles_deg, search.best.angles_deg))
         if is_over():
             return
@@ -170,5 +170,5 @@ def _give_back(search: _Search) -> Iterator[Improved]:
         without = search.turned(best.angles_deg, index, own_deg)
         score = search.tried([without])[0]
         if score >= best.score - _GIVE_BACK * abs(best.score):
-            best = Improved(without, score, best.trials)
+            best = Improved(without, score)
             yield best

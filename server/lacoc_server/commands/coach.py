@@ -15,7 +15,7 @@ from lacoc_server.coach.improve import Improved, Size, improve
 from lacoc_server.coach.matter import STEP_DEG, Matter, what_matters
 from lacoc_server.coach.table import Angles, KeyTable
 from lacoc_server.coach.trials import Task, Trials, try_table
-from lacoc_server.commands.trial import read_robot_file, read_trial_gait
+from lacoc_server.commands.trial import GaitFile, RobotName, read_robot_file, read_trial_gait
 from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.keys import forward_key
 from lacoc_shared.command import options, screen
@@ -35,19 +35,8 @@ _TURNS = {Goal.LEFT: 1, Goal.RIGHT: 3}
 
 @app.command(name="coach")
 def coach_command(
-    file: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FILE", help="A gait file: Loco-data.xlsx, Loco-data.txt or LocoTra-data.txt."
-        ),
-    ],
-    robot: Annotated[
-        str,
-        typer.Option(
-            metavar="ROBOT",
-            help="The robot: an installed one, a robot's folder, or a robot file (.toml).",
-        ),
-    ] = "hexapod",
+    file: GaitFile,
+    robot: RobotName = "hexapod",
     size: Annotated[
         Size | None,
         typer.Option(

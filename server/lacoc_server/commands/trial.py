@@ -14,7 +14,6 @@ from lacoc_robots.robot_file import read_robot
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.explain import explain
-from lacoc_server.trial.feet import feet_down
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.keys import forward_key, parse_keys
 from lacoc_server.trial.walk import Press, Walk
@@ -28,24 +27,28 @@ from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer()
 
+GaitFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="FILE", help="A gait file: Loco-data.xlsx, Loco-data.txt or LocoTra-data.txt."
+    ),
+]
+RobotName = Annotated[
+    str,
+    typer.Option(
+        "--robot",
+        metavar="ROBOT",
+        help="The robot: an installed one, a robot's folder, or a robot file (.toml).",
+    ),
+]
+
 _MOST_COLUMNS = 100
 
 
 @app.command(name="trial")
 def trial_command(
-    file: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FILE", help="A gait file: Loco-data.xlsx, Loco-data.txt or LocoTra-data.txt."
-        ),
-    ],
-    robot: Annotated[
-        str,
-        typer.Option(
-            metavar="ROBOT",
-            help="The robot: an installed one, a robot's folder, or a robot file (.toml).",
-        ),
-    ] = "hexapod",
+    file: GaitFile,
+    robot: RobotName = "hexapod",
     keys: Annotated[
         str,
         typer.Option(
@@ -161,8 +164,7 @@ def _number(value: float | None, unit: str, digits: int = 1) -> str:
 
 
 def _bars(walk: Walk) -> list[str]:
-    down = feet_down(walk.load_n, walk.weight_n)
-    return foot_bars(walk.legs, down, walk.starts, SETTLE_TICKS, _MOST_COLUMNS)
+    return foot_bars(walk.legs, walk.down, walk.starts, SETTLE_TICKS, _MOST_COLUMNS)
 
 
 def _notes(walk: Walk, figures: Figures) -> list[Phrase]:

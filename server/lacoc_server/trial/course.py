@@ -5,12 +5,12 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from lacoc_arenas.game import Place
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.match.drive import Drive, DriveState
-from lacoc_server.match.physics import Fault
+from lacoc_server.match.physics import Physics
+from lacoc_server.trial.feet import feet_down
 from lacoc_server.trial.walk import Floats, Press, Sensed, Span, Walk
-from lacoc_shared.gait.tables import Gait, Level, Posture
+from lacoc_shared.gait.tables import Gait, Level
 from lacoc_shared.seat import BEATS_PER_S
 
 SETTLE_TICKS = BEATS_PER_S // 2
@@ -22,25 +22,12 @@ NO_CYCLE_S = 6.0
 _MOST_S = 60.0
 
 
-class SensedPhysics(Protocol):
+class SensedPhysics(Physics, Protocol):
     """One robot on a floor that it feels; `world.sensed.SensedWorld` implements it."""
 
     @property
     def weight_n(self) -> float:
         """Weight of the robot [N]."""
-
-    @property
-    def digest(self) -> bytes:
-        """Hash chain over the whole state: 8 bytes."""
-
-    def place(self, seat: int, place: Place) -> None:
-        """Put the robot at a start place: start posture, all velocities zero."""
-
-    def step(self, angles: Sequence[Posture]) -> Fault | None:
-        """Let one tick pass, with commanded angles [rad]."""
-
-    def save(self) -> bytes:
-        """Return the whole state."""
 
     def load(self, saved: bytes) -> None:
         """Continue from a saved state."""
@@ -110,6 +97,7 @@ class Course:
             digests.append(world.digest)
         done, legs = len(seen), len(robot.legs)
         pose = _stack(poses, 7 + robot.joints)
+        load_n = _stack([one.load_n for one in seen], legs)
         return Walk(
             legs=robot.labels,
             weight_n=world.weight_n,
@@ -119,7 +107,8 @@ class Course:
             body_w=pose[:, :7],
             angles_rad=pose[:, 7:],
             commanded_rad=_stack([np.array(state.angles) for state in states[:done]], robot.joints),
-            load_n=_stack([one.load_n for one in seen], legs),
+            load_n=load_n,
+            down=feet_down(load_n, world.weight_n),
             other_load_n=np.array([one.other_load_n for one in seen]),
             power_w=np.array([one.power_w for one in seen]),
             contact_w_m=_stack([one.contact_w_m for one in seen], legs, 2),

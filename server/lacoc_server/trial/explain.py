@@ -13,9 +13,9 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.trial.feet import feet_down
 from lacoc_server.trial.figures import Figures
-from lacoc_server.trial.walk import Bools, Press, Walk
+from lacoc_server.trial.steps import Steps, steps_of
+from lacoc_server.trial.walk import Press, Walk
 from lacoc_shared.gait.tables import LEVEL_NAMES, Posture
 from lacoc_shared.words import Phrase, say
 
@@ -59,8 +59,6 @@ class Seen:
     """The key that was measured."""
     sequence: tuple[Posture, ...]
     """Its postures [rad]."""
-    down: Bools
-    """(ticks, legs) whether each foot is down, in the ticks measured."""
 
     def cell(self, posture: int, leg: int, level: int) -> Phrase:
         """Name a cell of the table."""
@@ -76,7 +74,7 @@ class Seen:
     def degrees(self, posture: int, leg: int, level: int) -> float:
         """Return the angle in a cell [deg]."""
         joint = leg + len(self.walk.legs) * level
-        return math.degrees(self.sequence[posture % len(self.sequence)][joint])
+        return math.degrees(self.sequence[posture][joint])
 
 
 def explain(
@@ -94,9 +92,7 @@ def explain(
     Returns:
         At most `MOST_SENTENCES` phrases (`explain.*`), the most useful first.
     """
-    part = slice(walk.span.first, walk.span.end)
-    down = feet_down(walk.load_n, walk.weight_n)[part]
-    seen = Seen(robot, walk, figures, press, tuple(sequence), down)
+    seen = Seen(robot, walk, figures, press, tuple(sequence))
     found = [finding for rule in _RULES for finding in rule(seen)]
     found.sort(key=lambda finding: -finding.rank)
     return [finding.said for finding in found[:MOST_SENTENCES]]
@@ -143,59 +139,6 @@ def _seam(seen: Seen) -> Iterator[Finding]:
 
 
 # Causes in the way a leg moves, as the table commands it.
-
-
-@dataclass(frozen=True)
-class Steps:
-    """What each leg's foot does from posture to posture, in the body frame."""
-
-    ahead_m: list[list[float]]
-    """For each leg and posture, how far its foot is forward."""
-    lift_m: list[list[float]]
-    """For each leg and posture, how far its foot is above the lowest foot of that posture."""
-
-    @property
-    def highest_m(self) -> list[float]:
-        """For each leg, its highest lift."""
-        return [max(lift) for lift in self.lift_m]
-
-    @property
-    def swing_m2(self) -> list[float]:
-        """For each leg, its way forward weighted by its lift; negative: it swings backward."""
-        return [
-            sum(
-                (ahead[index] - ahead[index - 1]) * (lift[index] + lift[index - 1]) / 2
-                for index in range(len(ahead))
-            )
-            for ahead, lift in zip(self.ahead_m, self.lift_m, strict=True)
-        ]
-
-    @property
-    def phase(self) -> list[float]:
-        """For each leg, the part of the sequence around which it is lifted, from 0 to 1."""
-        phases = []
-        for lift in self.lift_m:
-            turns = [2 * math.pi * index / len(lift) for index in range(len(lift))]
-            up = sum(height * math.sin(turn) for height, turn in zip(lift, turns, strict=True))
-            along = sum(height * math.cos(turn) for height, turn in zip(lift, turns, strict=True))
-            phases.append(math.atan2(up, along) / (2 * math.pi) % 1.0)
-        return phases
-
-    def swings_to(self, leg: int) -> int:
-        """Return the posture to which a leg swings forward: there its foot should be in the air."""
-        ahead = self.ahead_m[leg]
-        return max(range(len(ahead)), key=lambda index: ahead[index] - ahead[index - 1])
-
-
-def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
-    """Compute where a sequence puts the feet."""
-    tips = [[leg[3] for leg in robot.points(posture)] for posture in sequence]
-    lowest_m = [min(tip.z for tip in feet) for feet in tips]
-    legs = range(len(robot.legs))
-    return Steps(
-        [[feet[leg].y for feet in tips] for leg in legs],
-        [[feet[leg].z - low for feet, low in zip(tips, lowest_m, strict=True)] for leg in legs],
-    )
 
 
 def _legs(seen: Seen) -> Iterator[Finding]:
@@ -306,7 +249,7 @@ def _way(seen: Seen) -> Iterator[Finding]:
                 leg_mm_s=legs[leg],
             ),
         )
-    if speed_mm_s > _SLOW_MM_S:
+    if figures.speed_mm_s > _SLOW_MM_S:
         yield Finding(20, say("explain.walks", speed_mm_s=figures.speed_mm_s))
 
 

@@ -54,18 +54,22 @@ def phases(down: Bools, first: int, cycles: Sequence[tuple[int, int]]) -> list[f
     """
     found: list[float | None] = []
     for leg in range(down.shape[1]):
-        turns = [
-            (tick - begin) / (end - begin) * 2 * math.pi
+        touchdowns = [
+            (tick - begin) / (end - begin)
             for begin, end in cycles
             for tick in range(max(begin, first, 1), end)
             if down[tick, leg] and not down[tick - 1, leg]
         ]
-        if not turns:
-            found.append(None)
-            continue
-        mean = math.atan2(sum(map(math.sin, turns)), sum(map(math.cos, turns)))
-        found.append(mean / (2 * math.pi) % 1.0)
+        found.append(mean_phase(touchdowns, [1.0] * len(touchdowns)) if touchdowns else None)
     return found
+
+
+def mean_phase(phases: Sequence[float], weights: Sequence[float]) -> float:
+    """Return the weighted mean of phases from 0 to 1, on a circle."""
+    turns = [2 * math.pi * phase for phase in phases]
+    up = sum(weight * math.sin(turn) for turn, weight in zip(turns, weights, strict=True))
+    along = sum(weight * math.cos(turn) for turn, weight in zip(turns, weights, strict=True))
+    return math.atan2(up, along) / (2 * math.pi) % 1.0
 
 
 def changes_hz(down: Bools, seconds: float) -> list[float]:

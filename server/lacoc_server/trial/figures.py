@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lacoc_server.trial.feet import DOWN_SHARE, changes_hz, duty, feet_down, phases
+from lacoc_server.trial.feet import DOWN_SHARE, changes_hz, duty, phases
 from lacoc_server.trial.support import margins_m
 from lacoc_server.trial.walk import Floats, Walk
 from lacoc_shared.seat import BEAT_S
@@ -77,7 +77,7 @@ def measure(walk: Walk) -> Figures:
     span = walk.span
     part = slice(span.first, span.end)
     seconds = max(span.seconds, BEAT_S)
-    down = feet_down(walk.load_n, walk.weight_n)
+    down = walk.down
     cycles = [
         (begin, end)
         for begin, end in zip(walk.starts[1:], [*walk.starts[2:], span.end], strict=False)

@@ -87,6 +87,8 @@ class Walk:
     """(ticks, joints) commanded joint angles, by joint id."""
     load_n: Floats
     """(ticks, legs) normal force between each shank and the floor, mean over a tick's steps."""
+    down: Bools
+    """(ticks, legs) whether each foot is down (`feet.feet_down`)."""
     other_load_n: Floats
     """(ticks,) normal force between all other parts and the floor, mean over a tick's steps."""
     power_w: Floats

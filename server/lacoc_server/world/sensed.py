@@ -16,8 +16,6 @@ from lacoc_server.trial.walk import Floats, Sensed
 from lacoc_server.world.world import SUBSTEPS, World
 from lacoc_shared.gait.tables import Gait
 
-GRAVITY_M_S2 = 9.81
-
 _FLOOR = "floor"
 _FORCE, _POSITION = (
     1 << int(field)
@@ -76,7 +74,7 @@ class SensedWorld(World):
     @property
     def weight_n(self) -> float:
         """Weight of the robot [N]."""
-        return float(self.model.body_subtreemass[self._root]) * GRAVITY_M_S2
+        return float(-self.model.body_subtreemass[self._root] * self.model.opt.gravity[2])
 
     def pose(self) -> Floats:
         """Return position [m], quaternion and joint angles [rad] of the robot: (7 + joints,)."""

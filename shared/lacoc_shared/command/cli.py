@@ -42,7 +42,7 @@ _PANELS: Panels = {
     "Study and develop": ("replay", "simulate", "bot"),
 }
 _OTHERS = "Commands of other packages"
-_EXTRAS = {"mujoco": "server", "cryptography": "server"}
+_EXTRAS = {"cmaes": "server", "cryptography": "server", "mujoco": "server"}
 """Packages that the base install leaves out -> the extra that contains each."""
 _COMPLETION = {"install_completion", "show_completion"}  # options of the outermost command only
 

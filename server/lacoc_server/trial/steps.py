@@ -1,0 +1,58 @@
+"""What a sequence of postures does with the feet, from the table alone: no physics."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from lacoc_robots.robot import RobotSpec
+from lacoc_server.trial.feet import mean_phase
+from lacoc_shared.gait.tables import Posture
+
+
+@dataclass(frozen=True)
+class Steps:
+    """What each leg's foot does from posture to posture, in the body frame."""
+
+    ahead_m: list[list[float]]
+    """For each leg and posture, how far its foot is forward."""
+    lift_m: list[list[float]]
+    """For each leg and posture, how far its foot is above the lowest foot of that posture."""
+
+    @property
+    def highest_m(self) -> list[float]:
+        """For each leg, its highest lift."""
+        return [max(lift) for lift in self.lift_m]
+
+    @property
+    def swing_m2(self) -> list[float]:
+        """For each leg, its way forward weighted by its lift; negative: it swings backward."""
+        return [
+            sum(
+                (ahead[index] - ahead[index - 1]) * (lift[index] + lift[index - 1]) / 2
+                for index in range(len(ahead))
+            )
+            for ahead, lift in zip(self.ahead_m, self.lift_m, strict=True)
+        ]
+
+    @property
+    def phase(self) -> list[float]:
+        """For each leg, the part of the sequence around which it is lifted, from 0 to 1."""
+        return [
+            mean_phase([index / len(lift) for index in range(len(lift))], lift)
+            for lift in self.lift_m
+        ]
+
+    def swings_to(self, leg: int) -> int:
+        """Return the posture to which a leg swings forward: there its foot should be in the air."""
+        ahead = self.ahead_m[leg]
+        return max(range(len(ahead)), key=lambda index: ahead[index] - ahead[index - 1])
+
+
+def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
+    """Compute where a sequence puts the feet."""
+    tips = [[leg[3] for leg in robot.points(posture)] for posture in sequence]
+    lowest_m = [min(tip.z for tip in feet) for feet in tips]
+    legs = range(len(robot.legs))
+    return Steps(
+        [[feet[leg].y for feet in tips] for leg in legs],
+        [[feet[leg].z - low for feet, low in zip(tips, lowest_m, strict=True)] for leg in legs],
+    )
