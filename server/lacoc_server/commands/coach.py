@@ -51,7 +51,13 @@ def coach_command(
         int | None, typer.Option(help="The key of level B to change.", min=0, max=9)
     ] = None,
     seconds: Annotated[
-        float, typer.Option(metavar="S", help="How long the coach searches.", min=1.0, max=3600.0)
+        float,
+        typer.Option(
+            metavar="S",
+            help="How long the coach searches; then it undoes what hardly helps.",
+            min=1.0,
+            max=3600.0,
+        ),
     ] = 30.0,
     seed: Annotated[int, typer.Option(help="Another number searches in another order.", min=0)] = 0,
     out: Annotated[
