@@ -17,27 +17,35 @@ from show import Show
 pytestmark = [pytest.mark.slow, pytest.mark.long]
 
 
-@pytest.fixture
-def demo(tmp_path: Path, built_pages: Path) -> Iterator[str]:
+@pytest.fixture(params=["a browser", "no browser"])
+def demo(tmp_path: Path, built_pages: Path, request: pytest.FixtureRequest) -> Iterator[str]:
     """Give the address of the pages of a `lacoc demo`, which Ctrl-C ends after the test."""
     browser = tmp_path / "browser"
-    browser.write_text("#!/bin/sh\n")
+    browser.write_text(f"#!/bin/sh\nexit {int(request.param == 'no browser')}\n")
     browser.chmod(0o755)
+    no_screen = {"DISPLAY": "", "WAYLAND_DISPLAY": "", "TERM": ""}  # so no other browser is tried
     screen, terminal = pty.openpty()
     process = subprocess.Popen(  # a forked process has no terminal of its own
         [*COMMAND, "demo", "--seconds", "2"],
         stdout=terminal,
+        stderr=terminal,
         cwd=tmp_path,
-        env={**environment(), "BROWSER": f"{browser} %s"},
+        env={**environment(), **no_screen, "BROWSER": f"{browser} %s"},
     )
     os.close(terminal)
-    said = ""
-    while (found := re.search(r"Watch at (http://\S+)/watch", said)) is None:
-        said += os.read(screen, 4096).decode()
-    yield found[1]
+    yield _read(screen, r"Watch at (http://\S+)/watch")
+    _read(screen, "(Ctrl-C)")  # before it the demo still proves its record
     process.send_signal(signal.SIGINT)
     assert process.wait(30) == 0
     os.close(screen)
+
+
+def _read(screen: int, pattern: str) -> str:
+    """Read a terminal until it shows a pattern; return the pattern's group."""
+    said = ""
+    while (found := re.search(pattern, said)) is None:
+        said += os.read(screen, 4096).decode(errors="replace")
+    return found[1]
 
 
 def test_it_ends_on_the_result_with_the_replay(demo: str, open_page: OpenPage) -> None:

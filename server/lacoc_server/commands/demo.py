@@ -55,14 +55,14 @@ def demo_command(
 
     Every part is a process of its own, as in a contest. The match is shown on a page in your
     browser, or in the terminal if there is no browser. At the end the record is simulated again and
-    must give the same match, bit for bit. The page and its replay stay until Ctrl-C.
+    must give the same match, bit for bit. In a terminal the page and its replay stay until Ctrl-C.
     """
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that all started processes end too
     with ExitStack() as page:
         with ExitStack() as processes:
             court = processes.enter_context(_court(arena, seconds, speed, recordings))
             where = ("--court", court.name, "--connect", court.address)
-            in_browser = not headless and _open_page(page, where, recordings)
+            served, in_browser = (False, False) if headless else _open_page(page, where, recordings)
             show_live = not headless and not in_browser and sys.stdout.isatty()
             needed = []
             for seat, bot in (("left", left), ("right", right)):
@@ -81,14 +81,15 @@ def demo_command(
         screen.show(say("demo.record", file=str(record)))
         if _lacoc("replay", "verify", str(record)).wait() != 0:
             raise UserError(say("demo.not-same"))
-        if in_browser and sys.stdout.isatty():
+        # Without a browser here, somebody may have opened the address elsewhere.
+        if served and sys.stdout.isatty():
             screen.note(say("demo.page"))
             with suppress(KeyboardInterrupt):
                 threading.Event().wait()
 
 
-def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> bool:
-    """Start a gateway and open its page; False if there is no browser to open it in."""
+def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> tuple[bool, bool]:
+    """Start a gateway and open its page; say whether there is a page, and whether a browser is."""
     words = ("web", "--json", "--recordings", str(recordings), "--open", *where)
     gateway = processes.enter_context(_process(*words, output=subprocess.PIPE))
     assert gateway.stdout is not None
@@ -98,7 +99,7 @@ def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> 
     opened = json.loads(line)
     if opened["built"]:
         screen.show(say("demo.watch", url=f"{opened['url']}/watch"))
-    return bool(opened["shown"])
+    return bool(opened["built"]), bool(opened["shown"])
 
 
 class _Court:
