@@ -13,9 +13,8 @@ from msgspec import structs
 
 from lacoc_server.journal.judge import Judge
 from lacoc_shared import decisions as d
-from lacoc_shared.codec import decode, encode
+from lacoc_shared.codec import decode, encode, pack_states, unpack_states
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, LeaveSeat, ReadySeat
-from lacoc_shared.marker_states import pack_states, unpack_states
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record

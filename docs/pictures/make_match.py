@@ -19,7 +19,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_robots.model import add_robot, set_options
 from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate import Player, player, simulate
-from lacoc_shared.marker_states import unpack_states
+from lacoc_shared.codec import unpack_states
 from lacoc_shared.messages import MARKER_STATES, Frame
 from lacoc_shared.record.schema import Setup
 

@@ -1,4 +1,4 @@
-"""Encode messages and decode bytes: msgpack with checks of types and size, and one error class.
+"""Encode messages and decode bytes: msgpack with checks of types and size, one error class.
 
 `msgspec` reads and writes the same bytes as `msgpack`. It also checks every type, so nothing that
 arrives is used before its type is known.
@@ -56,3 +56,16 @@ def _new_decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
 def message_hash(message: bytes) -> bytes:
     """Return the 8 bytes by which frames, sheets and health name an encoded `Scene` or `Sheet`."""
     return hashlib.blake2b(message, digest_size=8).digest()
+
+
+def pack_states(states: tuple[int, ...]) -> bytes:
+    """Pack marker states, two bits each, the first in the lowest bits of the first byte."""
+    packed = bytearray((len(states) + 3) // 4)
+    for index, state in enumerate(states):
+        packed[index >> 2] |= state << (index & 3) * 2
+    return bytes(packed)
+
+
+def unpack_states(packed: bytes, count: int) -> tuple[int, ...]:
+    """Unpack the states of `count` markers from bytes that `pack_states` made."""
+    return tuple(packed[index >> 2] >> (index & 3) * 2 & 3 for index in range(count))

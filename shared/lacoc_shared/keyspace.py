@@ -23,6 +23,16 @@ JOIN_MAX_BYTES = 65_536
 _NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}")
 
 
+def check_name(name: str) -> None:
+    """Check the name of a court or studio.
+
+    Raises:
+        UserError: if it is not made of a-z, 0-9 and hyphens.
+    """
+    if not _NAME.fullmatch(name):
+        raise UserError(say("address.court-name", name=name))
+
+
 @dataclass(frozen=True)
 class Keys:
     """The key expressions of one court.
@@ -34,8 +44,7 @@ class Keys:
     court: str
 
     def __post_init__(self) -> None:
-        if not _NAME.fullmatch(self.court):
-            raise UserError(say("address.court-name", name=self.court))
+        check_name(self.court)
 
     @property
     def root(self) -> str:

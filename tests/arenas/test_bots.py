@@ -19,7 +19,7 @@ from lacoc_arenas.steering import (
     Eyes,
     Pilot,
 )
-from lacoc_shared.marker_states import pack_states
+from lacoc_shared.codec import pack_states
 from lacoc_shared.messages import Frame, SeatFrame, Sheet, SheetSeat
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import BEATS_PER_S, RESTART_KEY, Phase

@@ -12,7 +12,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_client.terminal import words
 from lacoc_client.terminal.board_picture import BoardPicture, Field, Grid, seat_letters
 from lacoc_client.terminal.plain import event_dict, frame_dict
-from lacoc_shared.marker_states import pack_states
+from lacoc_shared.codec import pack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, SeatFrame, Sheet, SheetSeat
 from lacoc_shared.seat import Phase, SeatFlag
 from lacoc_shared.words import say

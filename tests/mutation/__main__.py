@@ -54,7 +54,7 @@ AREAS = (
     Area("drive", ("lacoc_server/match/drive.py",), ("tests/server/test_drive.py",)),
     Area(
         "codec",
-        ("lacoc_shared/codec.py", "lacoc_shared/marker_states.py", "lacoc_shared/seal.py"),
+        ("lacoc_shared/codec.py", "lacoc_shared/seal.py"),
         ("tests/shared/test_codec.py", "tests/network/test_seal.py"),
     ),
     Area(

@@ -19,8 +19,7 @@ from venue import Venue
 
 from lacoc_arenas import arena as arenas
 from lacoc_server.simulate import player, simulate
-from lacoc_shared.codec import decode, encode
-from lacoc_shared.marker_states import unpack_states
+from lacoc_shared.codec import decode, encode, unpack_states
 from lacoc_shared.messages import Frame
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Setup

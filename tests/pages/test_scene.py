@@ -19,8 +19,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_server.world.world import World
-from lacoc_shared.codec import decode, encode
-from lacoc_shared.marker_states import unpack_states
+from lacoc_shared.codec import decode, encode, unpack_states
 from lacoc_shared.messages import Frame, SentFile, Sheet
 
 pytestmark = pytest.mark.slow

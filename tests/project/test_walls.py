@@ -84,7 +84,7 @@ CLIENT = "A client needs nothing of a court's"
         ("server/lacoc_server/court/health.py", "import time", {PURE}),
         ("shared/lacoc_shared/messages.py", "import lacoc_shared.gait.tables", {CONTRACT}),
         ("shared/lacoc_shared/gait/tables.py", "import time", {PURE}),  # the rules depend on it
-        ("shared/lacoc_shared/marker_states.py", "import zenoh", {ZENOH, PURE}),
+        ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),
         ("server/lacoc_server/journal/replay.py", "from mujoco import mj_step", {MUJOCO}),
         ("server/lacoc_server/journal/replay.py", "import zenoh.ext", {ZENOH}),
         ("client/lacoc_client/__init__.py", "import lacoc_robots.model", {CLIENT}),

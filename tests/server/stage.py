@@ -16,10 +16,9 @@ from lacoc_server.match.match import Beat, Match
 from lacoc_server.match.physics import Fault, MakePhysics
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
-from lacoc_shared.codec import encode
+from lacoc_shared.codec import encode, unpack_states
 from lacoc_shared.gait.tables import Level, Posture
 from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
-from lacoc_shared.marker_states import unpack_states
 from lacoc_shared.messages import MARKER_STATES, Event, Frame, Outcome, Scene, SentFile
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import RESTART_KEY, Phase

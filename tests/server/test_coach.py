@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot
-from lacoc_server.coach.goal import Goal, score
-from lacoc_server.coach.improve import Improved, Size, improve
-from lacoc_server.coach.matter import CONFIRMED, STEP_DEG, what_matters
-from lacoc_server.coach.table import Angles, KeyTable
-from lacoc_server.coach.trials import Task, try_table
+from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.improve import Improved, Size, improve
+from lacoc_server.studio.coach.matter import CONFIRMED, STEP_DEG, what_matters
+from lacoc_server.studio.coach.table import Angles, KeyTable
+from lacoc_server.studio.coach.trials import Task, try_table
 from lacoc_server.trial.figures import Figures
 from lacoc_shared.command import cli
 from lacoc_shared.gait.tables import LocomotionTable

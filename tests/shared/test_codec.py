@@ -14,8 +14,9 @@ from lacoc_shared.codec import (
     decode,
     encode,
     message_hash,
+    pack_states,
+    unpack_states,
 )
-from lacoc_shared.marker_states import pack_states, unpack_states
 from lacoc_shared.messages import Command, Refusal
 from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import say

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lacoc_arenas.bot import BotFactory, Brain, Key
 from lacoc_arenas.game import NEUTRAL
 from lacoc_arenas.steering import Eyes, Pilot, Pose, straight
-from lacoc_shared.marker_states import unpack_states
+from lacoc_shared.codec import unpack_states
 from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.seat import BEATS_PER_S
 

@@ -18,7 +18,7 @@ from rich.segment import Segment
 from rich.style import Style
 
 from lacoc_client.terminal.plain import poses
-from lacoc_shared.marker_states import unpack_states
+from lacoc_shared.codec import unpack_states
 from lacoc_shared.messages import MARKER_STATES, Frame, MarkerInfo, Scene, Sheet
 
 _Rgb = tuple[int, int, int]

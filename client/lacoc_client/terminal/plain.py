@@ -5,8 +5,8 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from lacoc_shared.codec import unpack_states
 from lacoc_shared.gait.tables import Level
-from lacoc_shared.marker_states import unpack_states
 from lacoc_shared.messages import (
     MARKER_STATES,
     ROOT_FLOATS,

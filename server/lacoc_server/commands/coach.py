@@ -10,12 +10,12 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.coach.goal import Goal, score
-from lacoc_server.coach.improve import Improved, Size, improve
-from lacoc_server.coach.matter import STEP_DEG, Matter, what_matters
-from lacoc_server.coach.table import Angles, KeyTable
-from lacoc_server.coach.trials import Task, Trials, try_table
 from lacoc_server.commands.trial import GaitFile, RobotName, read_robot_file, read_trial_gait
+from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.improve import Improved, Size, improve
+from lacoc_server.studio.coach.matter import STEP_DEG, Matter, what_matters
+from lacoc_server.studio.coach.table import Angles, KeyTable
+from lacoc_server.studio.coach.trials import Task, Trials, try_table
 from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.keys import forward_key
 from lacoc_shared.command import options, screen

@@ -18,6 +18,7 @@ from lacoc_robots.standing import FARTHEST_M
 from lacoc_server.match import contestant, referee
 from lacoc_server.match.physics import Fault, MakePhysics
 from lacoc_server.match.state import MatchState
+from lacoc_shared.codec import pack_states
 from lacoc_shared.inputs import (
     Advice,
     Decide,
@@ -29,7 +30,6 @@ from lacoc_shared.inputs import (
     ReadySeat,
     SilentSeat,
 )
-from lacoc_shared.marker_states import pack_states
 from lacoc_shared.messages import Done, Event, Frame, Outcome
 from lacoc_shared.record.schema import Result, Setup, Touch
 from lacoc_shared.seat import RESTART_KEY, Phase

@@ -32,7 +32,7 @@ from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
 from lacoc_shared import __version__, codec
-from lacoc_shared.marker_states import unpack_states
+from lacoc_shared.codec import unpack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export.kinematics import (

@@ -8,8 +8,8 @@ from multiprocessing import get_context
 from typing import NamedTuple, Self
 
 from lacoc_robots.robot import RobotSpec
-from lacoc_server.coach.goal import Goal, score
-from lacoc_server.coach.table import Angles, KeyTable
+from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.trial.course import SETTLE_TICKS, Course
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.walk import Press

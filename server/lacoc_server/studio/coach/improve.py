@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from cmaes import CMAwM  # type: ignore[import-untyped]
 
-from lacoc_server.coach.matter import Matter, Score
-from lacoc_server.coach.table import Angles
+from lacoc_server.studio.coach.matter import Matter, Score
+from lacoc_server.studio.coach.table import Angles
 
 _STEPS_DEG = (5, 10, 15, 20, 30)
 _SIGMA_DEG = 12.0

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from lacoc_server.coach.table import Angles
+from lacoc_server.studio.coach.table import Angles
 
 STEP_DEG = 10
 """How far each number is changed [deg]."""

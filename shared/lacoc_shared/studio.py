@@ -1,0 +1,231 @@
+"""The messages of a studio on the wire (docs/protocol.md has them as tables).
+
+A studio lets robots walk and searches for better gaits, for whoever asks it. It holds no state
+that an answer depends on: each request has the files that it is about.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from lacoc_shared.keyspace import check_name
+from lacoc_shared.messages import Scene, SentFile, Sheet
+from lacoc_shared.words import Phrase
+
+STUDIO_MAX_BYTES = 131_072
+"""Largest request that a studio reads."""
+EVERY_STUDIO = "lacoc/*/live/studio"
+"""Key expression for the announcements of all studios that can be reached (Zenoh's liveliness)."""
+
+
+@dataclass(frozen=True)
+class StudioKeys:
+    """The key expressions of one studio.
+
+    Raises:
+        UserError: if the studio's name is not made of a-z, 0-9 and hyphens.
+    """
+
+    studio: str
+
+    def __post_init__(self) -> None:
+        check_name(self.studio)
+
+    @property
+    def root(self) -> str:
+        """Prefix of all key expressions of the studio."""
+        return f"lacoc/{self.studio}/studio"
+
+    @property
+    def alive(self) -> str:
+        """Key expression that is announced while the studio is connected (Zenoh's liveliness)."""
+        return f"lacoc/{self.studio}/live/studio"
+
+    def request(self, what: str) -> str:
+        """Return the key expression of a request; `what`: robot, trial, coach, cancel, or `*`."""
+        return f"{self.root}/ask/{what}"
+
+    def progress(self, job: str) -> str:
+        """Return the key expression on which the studio tells how far a search is."""
+        return f"{self.root}/progress/{job}"
+
+
+class GaitFiles(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The files that a request is about, as text or workbooks; as those of a join."""
+
+    robot: SentFile | None = None
+    """None: the workshop's hexapod."""
+    postures: SentFile | None = None
+    locomotion: SentFile | None = None
+    """With neither file: the sample gait of the robot."""
+    sequences: tuple[tuple[int, ...], ...] | None = None
+    """Digits of the postures of each key of level B, if there is no locomotion file; None: as in
+    the sample's keys."""
+
+
+class RobotRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask what a robot file describes."""
+
+    protocol: int
+    robot: SentFile | None = None
+
+
+class RobotReply(msgspec.Struct, frozen=True, kw_only=True):
+    """A robot, as pages draw it and tables have their columns."""
+
+    name: str
+    legs: tuple[str, ...]
+    """Leg labels in leg order; joints are 3 * legs."""
+    ranges_deg: tuple[tuple[float, float], ...]
+    """Lowest and highest angle of each joint, by joint id."""
+    start_deg: tuple[float, ...]
+    """Angles in which the robot is put on the floor, by joint id."""
+    start_z_m: float
+    """Height of the body's origin above the floor in that posture."""
+    facts: dict[str, Any]
+    """Sizes, masses and speeds by name, with units in the names."""
+    limits: dict[str, Any]
+    """Limits of the rules by name, for the same numbers."""
+    sheet: Sheet
+    """A sheet with the robot in its only seat, for drawing."""
+    scene: Scene
+
+
+class TrialRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask for a trial."""
+
+    protocol: int
+    files: GaitFiles
+    keys: str = ""
+    """Keys as `lacoc trial --keys` has them; "": the key for forward."""
+    seconds: float | None = None
+    """How long the last key is pressed; None: whole cycles."""
+
+
+class CellPlace(msgspec.Struct, frozen=True, kw_only=True):
+    """A place in a key's sequence."""
+
+    posture: int
+    """Index in the sequence."""
+    joint: int
+    """Joint id."""
+
+
+class Sentence(msgspec.Struct, frozen=True, kw_only=True):
+    """One sentence that explains a walk."""
+
+    said: Phrase
+    """`explain.*`"""
+    cell: CellPlace | None = None
+    leg: int = -1
+    """Index of the leg that it is about; -1: the whole robot."""
+
+
+class TrialReply(msgspec.Struct, frozen=True, kw_only=True):
+    """What was seen of a trial of `ticks` ticks; arrays are little-endian, tick by tick."""
+
+    level: int
+    key: int
+    """Level and digit of the key that was measured."""
+    figures: dict[str, Any]
+    """By the names of docs/studio.md 2."""
+    explained: tuple[Sentence, ...]
+    notes: tuple[Phrase, ...] = ()
+    """What a reader of the figures must know."""
+    fault: Phrase | None = None
+    """Why physics stopped before the end; None: it did not."""
+    ticks: int
+    first: int
+    end: int
+    """The figures are of the ticks from `first` to before `end`."""
+    starts: tuple[int, ...]
+    """Ticks in which a cycle of the key's sequence begins."""
+    posture: bytes
+    """uint8 (ticks,): index of the target posture in the key's sequence."""
+    down: bytes
+    """uint8 (ticks,): bit i is set while the foot of leg i is down."""
+    poses: bytes
+    """float32 (ticks, 7 + joints): as `Frame.poses`."""
+    commanded_rad: bytes
+    """float32 (ticks, joints)."""
+    contact_w_m: bytes
+    """float32 (ticks, legs, 2): where each shank touches the floor; 0 without contact."""
+    centre_w_m: bytes
+    """float32 (ticks, 2): centre of mass in the plane of the floor."""
+    margin_m: bytes
+    """float32 (ticks,): support margin; NaN while no foot is down."""
+    slip_m_s: bytes
+    """float32 (ticks, legs): speed of each shank along the floor where it touches."""
+    tip_m: bytes
+    """float32 (ticks, legs): height of each foot's lowest point above the floor."""
+    digest: bytes
+    """State hash after the last tick, as in a match's frames."""
+
+
+class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask which numbers of a key matter, and for better ones."""
+
+    protocol: int
+    job: str
+    """Name that the asker chooses, for progress and for a cancel: a-z, 0-9 and hyphens."""
+    files: GaitFiles
+    key: int | None = None
+    """Key of level B; None: the one for the goal."""
+    goal: str = "forward"
+    """forward, right or left."""
+    size: str | None = None
+    """How much may change: cell, three or table; None: only say which numbers matter."""
+    seconds: float = 30.0
+    seed: int = 0
+
+
+class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """End a search early; its reply has the best so far."""
+
+    protocol: int
+    job: str
+
+
+class Progress(msgspec.Struct, frozen=True, kw_only=True):
+    """How far a search is; several times a second."""
+
+    stage: str
+    """matters, search or undo."""
+    done: float
+    """Share of the stage, from 0 to 1."""
+    trials: int
+    score: float | None = None
+    """Score of the best table so far."""
+
+
+class Weight(msgspec.Struct, frozen=True, kw_only=True):
+    """What a change of one number does to the score."""
+
+    cell: CellPlace
+    up: float
+    down: float
+
+
+class Change(msgspec.Struct, frozen=True, kw_only=True):
+    """A number that the coach changed."""
+
+    cell: CellPlace
+    from_deg: float
+    to_deg: float
+
+
+class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
+    """What the coach found."""
+
+    key: int
+    matters: tuple[Weight, ...]
+    """All numbers of the key, those that matter most first."""
+    changes: tuple[Change, ...]
+    before: dict[str, Any]
+    after: dict[str, Any]
+    """Figures of the own gait and of the best one."""
+    score_before: float
+    score_after: float
+    trials: int
+    cancelled: bool = False
