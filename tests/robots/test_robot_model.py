@@ -182,7 +182,7 @@ def test_export_opens_and_stands(name: str) -> None:
 def test_no_warnings_at_the_limits(
     ang_min_deg_s: str, kp: str, kv: str, hexapod_text: str, compile_world: Compile
 ) -> None:
-    """The lightest robot without joint damping stays finite under random commands."""
+    """Random commands cause no MuJoCo warning, even at the limits of mass, AngMin, kp and kv."""
     text = hexapod_text.replace("kp = 20.0", f"kp = {kp}").replace("kv = 0.5", f"kv = {kv}")
     text = text.replace("damping = 0.02", "damping = 0.0").replace("= 0.125", "= 0.210")
     text = text.replace("ang_min_deg_s = 120", f"ang_min_deg_s = {ang_min_deg_s}")

@@ -139,7 +139,7 @@ class Party:
 
 @contextmanager
 def party(contest: Path) -> Iterator[Party]:
-    """Join all contestants at a contest's running court, and say ready for each."""
+    """Join all contestants at a contest's running court, say ready for each, and give the party."""
     _, court = load(contest).court()
     with open_client([court.address()]) as session:
         yield Party(session, contest)

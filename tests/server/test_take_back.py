@@ -22,7 +22,7 @@ AWAY = (0.0, 0.0)
 
 
 def cell(name: str) -> tuple[float, float]:
-    """Return the centre of a disc [m]."""
+    """Return the centre of a disc, such as "c2r1" (column 2, row 1) [m]."""
     return (int(name[1]) - 2.5) * 0.3, (int(name[3]) - 2.5) * 0.3
 
 
@@ -93,7 +93,7 @@ def test_an_event_may_appear() -> None:
             5: {RIGHT: "c3r2", LEFT: "c2r1"},
             10: {LEFT: "c2r2"},
             15: {LEFT: "c3r2"},  # takes the disc that the right robot stands on
-            20: {RIGHT: "c2r2"},  # from a disc that is not its own any more: nothing
+            20: {RIGHT: "c2r2"},  # flips nothing: it comes from a disc that it has lost
         }
     )
     assert stage.scores == (19, 17)
@@ -318,7 +318,7 @@ def test_paths_restarts_clock_and_other_decisions_stay() -> None:
 
 
 def test_both_orders_give_the_same() -> None:
-    """If three independent events are taken back, their order does not matter."""
+    """If three independent events are taken back, the order of the take-backs does not matter."""
     walks = {
         10: {LEFT: "c2r2", RIGHT: "c3r4"},
         20: {LEFT: "c3r2", RIGHT: "c2r4"},
