@@ -274,7 +274,7 @@ def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
 
 
 def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay export` without options writes all outputs; older files get a number."""
+    """`lacoc replay export` without options writes all outputs; older files stay, numbered."""
     path, out = write_match(tmp_path), tmp_path / "out"
     for _ in range(2):
         done = CliRunner().invoke(app, ["export", str(path), "--out", str(out)])

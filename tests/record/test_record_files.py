@@ -459,7 +459,7 @@ def test_a_damaged_time_ends_what_is_read(
 
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.8])
 def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: Path) -> None:
-    """A damaged packed file is read up to the damaged chunk; the message says where it begins."""
+    """A damaged packed file is read up to the damaged chunk; the message says where this begins."""
     data = bytearray(packed.read_bytes())
     chunks = [at for at, opcode in _records_of(data) if opcode == Opcode.CHUNK]
     at = chunks[int(part * len(chunks))]

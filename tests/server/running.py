@@ -113,7 +113,7 @@ class Party:
 
     @property
     def trouble(self) -> str:
-        """Return what the court reports about the disk of its record."""
+        """Return what the court reports about its record's disk; empty if nothing is wrong."""
         trouble = None if self.view.health is None else self.view.health.record_trouble
         return render(trouble) if trouble else ""
 

@@ -48,7 +48,7 @@ def searched(size: Size, rounds: int = 40) -> Improved:
 
 
 def changes(found: Improved) -> int:
-    """Count the numbers that differ from zero."""
+    """Count the angles of the found table that differ from zero."""
     return sum(angle != 0 for angle in found.angles_deg)
 
 

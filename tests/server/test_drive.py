@@ -182,7 +182,7 @@ def test_level_a_holds_its_posture() -> None:
 
 @pytest.mark.parametrize("level", [A, B])
 def test_key_0_is_the_start_posture_where_the_file_lacks_it(level: Level) -> None:
-    """If a gait has no key 0, key 0 moves the robot to its start posture."""
+    """If a gait has no key 0, pressing 0 moves the robot to its start posture."""
     it = drive(postures={3: 24.0}, start=12.0)
     state = ticks(it, it.press(it.begin(A), A, 3), 10)[-1]
     assert state.angles == posture(24.0)

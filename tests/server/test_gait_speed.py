@@ -69,7 +69,7 @@ def by_hand(digits: tuple[int, ...], heading_deg: float = 90.0) -> Walk:
 
 
 def by_sequence(joins: JoinSeat | None = None) -> Walk:
-    """Press the key for forward of level B once, and return the measured speeds."""
+    """Press key 2 of level B (forward) once, and return the measured speeds."""
     stage = practice(90.0, joins)
     frames = [pose(stage)]
     stage.beat(key(0, FORWARD, level=B))

@@ -165,7 +165,7 @@ def test_the_first_free_start_place_is_used(arena: str, taken: int) -> None:
 
 
 def test_a_wide_robot_needs_more_room() -> None:
-    """[x] skips a start place if the other robot is nearer to it than both radii together."""
+    """[x] skips a start place nearer to the other robot than the radii of both robots together."""
     stage = Stage("flag-strike", QUICK)
     radii = {}
     for robot in ("hexapod", "long-legs"):

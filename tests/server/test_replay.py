@@ -228,7 +228,7 @@ def test_another_mujoco_is_refused(live: tuple[Path, list[Beat]]) -> None:
 
 
 def go_on(match: Match, beats: list[Beat]) -> None:
-    """Play a resumed match on, and check that each beat has the same bits as in the whole match."""
+    """Continue a resumed match; check that each beat has the same bits as in the whole match."""
     for number in range(match.beats + 1, len(beats)):
         beat = match.beat(INPUTS.get(number, ()))
         assert encode(beat.frame) == encode(beats[number].frame), number

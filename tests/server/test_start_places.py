@@ -57,7 +57,7 @@ def test_a_step_within_the_place_is_none() -> None:
 
 
 def test_who_leaves_again_and_again_is_not_ready() -> None:
-    """If a robot leaves its place three times, its team is not ready; counting starts anew."""
+    """If a robot leaves its place three times, its team is no longer ready; the count restarts."""
     assert MOST_STRAYS == 3
     stage = straying(3, 6, 9).to_ready()
     stage.run(9)

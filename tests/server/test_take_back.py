@@ -136,7 +136,7 @@ def test_a_strike() -> None:
 
 
 def test_adjust_and_set() -> None:
-    """The decisions `adjust` and `set` can be taken back too."""
+    """The decisions `adjust` and `set` can be taken back."""
     stage = othello(CHAIN)
     adjust, put = stage.decide(d.Adjust("right", 7)), stage.decide(d.Set("c0r0", "right"))
     assert stage.scores == (19, 24)
@@ -230,7 +230,7 @@ def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
 
 
 def test_a_match_may_turn_out_to_have_been_over() -> None:
-    """If the match would have ended without the event, a take-back ends it there."""
+    """If a match would have ended without an event, taking this event back ends it."""
     walks = dict(ALL_FOUR)
     walks[35] = {RIGHT: CORNERS[0]}
     stage = flag_strike(walks, {60: {RIGHT: (22,)}})
@@ -394,7 +394,7 @@ def test_ticks_that_nothing_can_be_taken_back_from_are_not_kept(arena: str) -> N
 
 
 def test_the_first_event_of_a_match_is_taken_back_as_exactly_as_any() -> None:
-    """The first event can be taken back exactly, although no tick before it is kept."""
+    """A match's first event can be taken back exactly, although no tick before it is kept."""
     late = {tick + 3000: step for tick, step in CHAIN.items()}
     stage, twin = othello(late, ticks=3100), othello({3030: CHAIN[30]}, ticks=3100)
     reply = take_back(stage, event(stage, "flip", "c3r2").number)

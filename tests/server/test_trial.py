@@ -204,7 +204,7 @@ def test_keys_as_people_type_them() -> None:
 
 @pytest.mark.parametrize("seed", range(len(FAULTS)), ids=FAULTS)
 def test_the_first_sentence_names_the_fault(seed: int) -> None:
-    """An explanation first names the gait's only fault and its leg, or no fault if there is none."""
+    """An explanation first names the gait's only fault and leg, or no fault if there is none."""
     told = tell(seed)
     assert told.named, told
 
