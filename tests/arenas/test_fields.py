@@ -143,7 +143,7 @@ def colour_of(geom: Any, swap: bool) -> tuple[float, ...]:
 
 
 def looks(name: str, turn: bool) -> Any:
-    """Return place, shape and colour of each geom as numbers; `turn` turns the field by half."""
+    """Return place, shape and colour of each geom; `turn` turns by 180° and swaps the seats."""
     model = build(name).compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)

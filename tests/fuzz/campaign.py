@@ -1,4 +1,4 @@
-"""Feeds inputs to a target, counts the outcomes, and stops each input after a second."""
+"""Feeds inputs to a target, counts the outcomes, and stops each input after 1 s of CPU time."""
 
 import signal
 import time

@@ -221,7 +221,7 @@ def test_at_most_32_kib():
 
 
 def test_a_range_for_each_joint():
-    """A robot file may allow each joint its own range, within the limits of rules 1."""
+    """Each joint may have its own range of angles, and an angle outside its range is a mistake."""
     data = FIGURE_4_2.encode()
     limits = [(-45.0, 45.0)] * 6 + [(0.0, 20.0)] * 6 + [(0.0, 40.0)] * 6
     assert isinstance(read_gait(data, "x", legs=6, range_deg=limits), LocomotionTable)

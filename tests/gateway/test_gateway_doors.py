@@ -379,7 +379,7 @@ def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
 
 @pytest.mark.long
 def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
-    """While other pages flood the gateway, most of a contestant's keys take effect in 8 beats."""
+    """While other pages flood the gateway, most keys of a contestant take effect within 8 beats."""
     venue.court()
     venue.web()
     left, right = venue.contestant("left"), venue.contestant("right")

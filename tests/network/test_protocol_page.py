@@ -23,7 +23,7 @@ JOIN = Keys("main").request("left", "join")
 
 
 def of_page(court: str, user: str = "", password: str = "", ca: str = "") -> zenoh.Config:
-    """Return docs/protocol.md's configuration for this court; its part for keys needs a user."""
+    """Return docs/protocol.md's configuration for a court; its part for keys needs a user."""
     (text,) = re.findall(r"```json5\n(.*?)```", PAGE, re.DOTALL)
     for there, here in (
         ("tls/court.example.org:7447", court),

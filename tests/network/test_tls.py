@@ -184,7 +184,7 @@ def test_no_password_in_zenohs_own_log(keyed: KeyedCourt, tmp_path: Path) -> Non
 
 @contextmanager
 def _tunnel(host: str, to_port: int) -> Iterator[int]:
-    """Give a port of another address that forwards connections to the same court."""
+    """Give a port at the address `host` that forwards connections to `to_port` of 127.0.0.1."""
     with ExitStack() as stack:
         door = stack.enter_context(socket.create_server((host, 0)))
         open_sockets: list[socket.socket] = []

@@ -105,7 +105,7 @@ def slow_screen() -> bool:
 
 @pytest.fixture
 def open_page(browser: Browser, console: Console, slow_screen: bool) -> Iterator[OpenPage]:
-    """Give a function that opens pages, each in a fresh browser context, as different people do."""
+    """Give a function that opens pages, each in a fresh browser context, like another person's."""
     contexts: list[BrowserContext] = []
 
     def opened(**options: Any) -> Page:

@@ -311,7 +311,7 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
 
 
 def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
-    """Without the page key the page shows everything, and says how to get a link with it."""
+    """Without the page key the page shows everything, and says how to get a link with the key."""
     page = referee(key=False)
     expect(page.locator(".enter")).to_contain_text("#key=")
     expect(page.locator("input[name=token]")).to_have_count(0)

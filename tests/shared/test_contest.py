@@ -1,4 +1,4 @@
-"""The contest file, and which source of an option wins over which."""
+"""The contest file, and which source of an option's value comes before which."""
 
 from pathlib import Path
 from typing import Annotated
