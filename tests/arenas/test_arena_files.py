@@ -47,7 +47,7 @@ def _all_left(game: Any) -> Any:
 
 
 def _flanked(game: Any) -> Any:
-    """Return the Robot-Othello board after the left robot flips a run; None for other games."""
+    """Return the Robot-Othello board after the left robot flips discs; None for other games."""
     if not game.markers or game.markers[0].kind != "disc":
         return None
     state = game.start()

@@ -249,7 +249,7 @@ def test_all_corners_win() -> None:
 
 @pytest.mark.parametrize(("flag", "points"), [("flag0", 1), ("flag8", 2), ("flag19", 5)])
 def test_strike(flag: str, points: int) -> None:
-    """A flag that one robot touches falls, and the robot keeps its points (workshop 5-2 rule 5)."""
+    """A flag that one robot touches falls; its points stay with the robot (workshop 5-2 rule 5)."""
     after, events = tick(START, view(touched=(flag,)))
     assert claims(events) == [(0, flag)]
     assert events[0].kind == "strike"

@@ -351,7 +351,7 @@ def test_flip_in_row_and_column_at_once() -> None:
 
 
 def test_no_run_without_a_flip_by_walking() -> None:
-    """Without a flip by walking, no run flips (rules 5)."""
+    """A run of discs flips only together with a disc that a robot flips by walking (rules 5)."""
     before = state(board("......", "RRRL.."), "c0r3")
     after, events = tick(before, "c0r4")
     assert events == ()
@@ -359,7 +359,7 @@ def test_no_run_without_a_flip_by_walking() -> None:
 
 
 def test_flank_off() -> None:
-    """With `flank = false`, no runs flip."""
+    """With `flank = false`, no run of discs flips."""
     game = with_settings(flank=False)
     after, events = tick(state(board("LRRL.."), "c0r5"), "c1r5", game=game)
     assert picture(after.cells)[0] == "LLRL.."

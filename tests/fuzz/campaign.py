@@ -35,7 +35,7 @@ class Figures:
 
     @property
     def refused(self) -> int:
-        """Number of inputs that were refused with a documented error."""
+        """Return the number of inputs that were refused with a documented error."""
         return self.inputs - self.accepted - self.crashes - self.hangs - self.state_changes
 
 

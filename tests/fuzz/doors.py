@@ -170,7 +170,7 @@ class Doors:
         """Let the court handle the waiting packets.
 
         Raises:
-            StateChanged: if anything happened without a right to it.
+            StateChanged: if a packet changed what its sender had no right to change.
         """
         batch, self._batch = self._batch, []
         desks: dict[str, int] = {}

@@ -195,7 +195,7 @@ def test_the_order_and_the_choice_of_keys_is_free():
 
 @pytest.mark.parametrize("legs", [4, 6, 8])
 def test_three_columns_a_leg(legs):
-    """A robot with 4, 6 or 8 legs has 12, 18 or 24 columns."""
+    """The gait of a robot with 4, 6 or 8 legs has 12, 18 or 24 columns."""
     row = "\t".join(["10"] * (3 * legs))
     data = f"1\n1\n{row}\n".encode()
     for known in (None, legs, [str(leg) for leg in range(legs)]):

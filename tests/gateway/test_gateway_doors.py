@@ -213,7 +213,7 @@ def test_what_is_not_understood_is_refused(
 def test_garbage_ends_a_connection_and_nothing_else(
     open_venue: Venue, garbage: bytes | str
 ) -> None:
-    """Bytes that no page sends end their own connection and no other."""
+    """Bytes that no page sends end the connection on which they came, and no other."""
     with PageClient(open_venue.url) as page, PageClient(open_venue.url) as other:
         page.socket.send(garbage)
         page.wait(page.closed.is_set)

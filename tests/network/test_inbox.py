@@ -177,7 +177,7 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
     ],
 )
 def test_a_join_is_refused_with_its_reason(payload: bytes, code: str, why: str) -> None:
-    """A wrong join is refused with its reason and counted, and the seat's holder plays on."""
+    """A wrong join is refused with a reason and counted, and the seat's holder plays on."""
     inbox = make()
     holder = take_seat(inbox)
     refusal = inbox.join(LEFT, payload)

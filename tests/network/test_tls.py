@@ -104,7 +104,7 @@ def test_a_certificate_out_of_its_time(tmp_path: Path, made: timedelta, said: st
 
 
 def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
-    """A message says which of court and client uses keys if the other one does not."""
+    """If only the court or only the client uses keys, the message says which one."""
     left = keyed.people["left"]
     with CourtStub() as plain:
         there = plain.address.replace("tcp/", "tls/")

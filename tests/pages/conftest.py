@@ -99,7 +99,7 @@ def console() -> Iterator[Console]:
 
 @pytest.fixture
 def slow_screen() -> bool:
-    """Give True: pages draw about five pictures a second. Tests of the drawing override it."""
+    """Give True: pages draw about five pictures a second. Tests of the drawing override this."""
     return True
 
 
