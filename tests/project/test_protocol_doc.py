@@ -76,7 +76,7 @@ def test_what_travels_as_an_array_says_so(name: str) -> None:
 
 
 def test_every_decision_and_its_fields() -> None:
-    """The table of decisions has those of `lacoc_shared.decisions`, in the same order."""
+    """docs/protocol.md lists each decision of `lacoc_shared.decisions` with its fields in order."""
     expected = {name: fields(kind) for name, kind in DECISIONS.items()}
     assert list(by_name(SECTIONS["Decisions"]).items()) == list(expected.items())
 

@@ -251,7 +251,7 @@ def test_access_from_a_file(file: Path) -> None:
 
 
 def test_join_lines_name_the_host(file: Path) -> None:
-    """The command lines for users have the court's public address, or HOST if it has none."""
+    """Command lines for users have the court's `connect` address, or HOST instead of 0.0.0.0."""
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 
