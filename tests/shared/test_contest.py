@@ -1,4 +1,4 @@
-"""The contest file, and which source of an option wins over which."""
+"""Tests of the contest file, and of which source gives an option its value."""
 
 from pathlib import Path
 from typing import Annotated
@@ -217,7 +217,7 @@ def test_the_only_court_needs_no_name(file: Path) -> None:
 
 
 def test_access_without_a_file(file: Path) -> None:
-    """Without a contest file, the access comes from options; an error names a missing option."""
+    """Without a contest file, address and token come from options; errors name a missing option."""
     access = entrances.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
 
     assert access == Access(
@@ -251,7 +251,7 @@ def test_access_from_a_file(file: Path) -> None:
 
 
 def test_join_lines_name_the_host(file: Path) -> None:
-    """The command lines to hand out have the court's public address, or HOST in its place."""
+    """Command lines for users have the court's `connect` address, or HOST instead of 0.0.0.0."""
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 
