@@ -4,8 +4,9 @@ import type { Match } from "../core/match";
 import type { Quality } from "../core/settings";
 import { type Aim, type CameraName, type Frame2d, Rig, type ViewAxes, viewOf } from "./cameras";
 import { type Action, Director } from "./director";
-import { Model } from "./model";
-import { type Hit, pick, pickFlat, project } from "./picking";
+import type { FloorMarks } from "./marks";
+import { type Field, Model } from "./model";
+import { type Hit, pick, pickFlat, pickPart, project } from "./picking";
 import { type Fineness, FrameTimes, firstFineness, rememberSlow, tooSlow } from "./quality";
 import type { Ring, Stage } from "./stage";
 import { Tags } from "./tags";
@@ -32,6 +33,14 @@ export interface Options {
   labels: boolean;
   inset: Inset;
   onPick: ((hit: Hit) => void) | null;
+  /** Called when the pointer comes to another part of a robot; null: it left them all. */
+  onPart: ((body: number | null) => void) | null;
+  /** Bodies of robots that glow. */
+  lit: ReadonlySet<number>;
+  /** The same robots in another trial, drawn translucent. */
+  ghost: Source["sample"] | null;
+  /** Marks on the floor, now. */
+  marks: (() => FloorMarks | null) | null;
 }
 
 /** Data for tests: `window.__lacoc.view`. */
@@ -49,6 +58,10 @@ export interface ViewHook {
   /** True while a disc turns over or a flag falls. */
   readonly moving: boolean;
   bodyPos(name: string): [number, number, number] | null;
+  /** Of the robot of another trial. */
+  ghostPos(name: string): [number, number, number] | null;
+  /** Names of the bodies that glow. */
+  readonly lit: string[];
   marker(index: number): number;
   /** Where on the page a point of the world is [px]. */
   screen(x: number, y: number, z: number): [number, number] | null;
@@ -76,6 +89,8 @@ export class Viewer {
   private readonly tags: Tags;
   private readonly observer: ResizeObserver;
   private model: Model | null = null;
+  private ghost: Model | null = null;
+  private part: number | null = null;
   private axes: ViewAxes | null = null;
   private plan: Plan | null = null;
   private pointer: { x: number; y: number } | null = null;
@@ -157,7 +172,12 @@ export class Viewer {
       get moving() {
         return viewer.stage?.moving ?? false;
       },
+      get lit() {
+        const { bodies } = viewer.model?.scene ?? { bodies: [] };
+        return [...viewer.options.lit].map((body) => bodies[body]?.name ?? "");
+      },
       bodyPos: (name) => viewer.model?.bodyPos(name) ?? null,
+      ghostPos: (name) => (viewer.options.ghost && viewer.ghost?.bodyPos(name)) || null,
       marker: (index) => viewer.model?.states[index] ?? -1,
       screen: (x, y, z) => {
         const box = viewer.host.getBoundingClientRect();
@@ -307,11 +327,14 @@ export class Viewer {
     this.drawn.frames++;
     const ring = this.point(model);
     if (this.map) {
-      this.plan = planOf(model.field, this.free());
+      this.plan = planOf(this.shownField(model), this.free());
       this.map.draw(model, this.plan, ring);
     } else if (this.stage) {
       this.axes = viewOf(this.shot(model, nowMs));
-      const changed = this.stage.draw(this.axes, nowMs, animate, ring);
+      const { lit, marks } = this.options;
+      const ghost = this.ghostAt(model, nowMs);
+      const extras = { lit, ghost, marks: marks?.() ?? null };
+      const changed = this.stage.draw(this.axes, nowMs, animate, ring, extras);
       this.actions = animate
         ? changed.flatMap((marker) => {
             const seat = (model.states[marker] ?? 0) - 1;
@@ -320,6 +343,23 @@ export class Viewer {
         : [];
     }
     this.tags.draw(this.options.labels ? model : null, (x, y, z) => this.place(x, y, z));
+  }
+
+  /** The robots of the other trial now; null without one, and where it belongs to another scene. */
+  private ghostAt(model: Model, nowMs: number): Model | null {
+    const moment = this.options.ghost?.(nowMs);
+    if (!moment) return null;
+    if (this.ghost?.sheet !== model.sheet || this.ghost.scene !== model.scene) {
+      this.ghost = new Model(model.scene, model.sheet);
+    }
+    return this.ghost.apply(moment) ? this.ghost : null;
+  }
+
+  /** The part of the field that the drawing from above has. */
+  private shownField(model: Model): Field {
+    const robot = model.robots[this.options.seat];
+    if (this.options.camera !== "robot" || !robot) return model.field;
+    return { x: robot.x, y: robot.y, halfX: 0.25, halfY: 0.2, height: 0 };
   }
 
   private shot(model: Model, nowMs: number) {
@@ -414,6 +454,10 @@ export class Viewer {
 
   /** The ring round what the pointer is on. */
   private point(model: Model): Ring | null {
+    if (this.options.onPart) {
+      this.pointPart(model, this.options.onPart);
+      return null;
+    }
     const pickable = this.options.onPick !== null && this.pointer !== null;
     this.hovered = pickable ? this.hitAt(this.pointer!.x, this.pointer!.y) : null;
     const { marker, seat } = this.hovered ?? {};
@@ -425,6 +469,21 @@ export class Viewer {
     }
     const info = marker === undefined ? null : model.sheet.markers[marker];
     return info ? { x: info.x_m, y: info.y_m, radius: Math.max(0.05, 1.06 * info.radius_m) } : null;
+  }
+
+  private pointPart(model: Model, tell: (body: number | null) => void): void {
+    const part = this.pointer && this.partAt(model, this.pointer.x, this.pointer.y);
+    this.host.style.cursor = part === null ? "" : "pointer";
+    if (part === this.part) return;
+    this.part = part;
+    tell(part);
+  }
+
+  private partAt(model: Model, x: number, y: number): number | null {
+    const { axes, size } = this;
+    if (!axes || this.map) return null;
+    const [u, v] = [(2 * x) / size.width - 1, 1 - (2 * y) / size.height];
+    return pickPart(model, axes, size.width / size.height, u, v);
   }
 
   private listen(): void {
@@ -474,7 +533,9 @@ export class Viewer {
       if (!onPick || moved >= DRAG_PX) return;
       const { x, y } = at(event);
       const hit = this.hitAt(x, y);
-      if (hit) onPick(hit);
+      const body = this.options.onPart && this.model ? this.partAt(this.model, x, y) : null;
+      if (body !== null) onPick({ x_m: 0, y_m: 0, ...hit, body });
+      else if (hit) onPick(hit);
     });
     host.addEventListener("dblclick", () => this.options.orbit && this.rig.release());
     host.addEventListener(
