@@ -33,8 +33,8 @@ interface Props {
   inset?: Inset;
   /** A click on the field; with it, what can be clicked is marked under the pointer. */
   onPick?: (hit: Hit) => void;
-  /** The pointer came to another part of a robot, or left them all. With it, `onPick` tells parts. */
-  onPart?: (body: number | null) => void;
+  /** The pointer came to the link of a joint, or left them all. With it, `onPick` tells joints. */
+  onJoint?: (joint: number | null) => void;
   /** Bodies of robots that glow. */
   lit?: ReadonlySet<number>;
   /** The same robots in another trial, drawn translucent. */
@@ -98,7 +98,7 @@ function optionsOf(props: Props): Options {
     labels: props.labels ?? false,
     inset: props.inset ?? {},
     onPick: props.onPick ?? null,
-    onPart: props.onPart ?? null,
+    onJoint: props.onJoint ?? null,
     lit: props.lit ?? NONE,
     ghost: props.ghost ?? null,
     marks: props.marks ?? null,

@@ -9,8 +9,8 @@ export interface Hit {
   marker?: number;
   /** Index of the seat whose robot it is. */
   seat?: number;
-  /** Index of the robot's body, where parts of robots are looked for. */
-  body?: number;
+  /** The joint of the robot's link, where links are looked for. */
+  joint?: number;
   x_m: number;
   y_m: number;
 }
@@ -19,8 +19,6 @@ const ROBOT_REACH_M = 0.13;
 const ROBOT_HEIGHT_M = 0.05;
 /** A pole is thin: so near in the picture is near enough [parts of its height]. */
 const NEAR = 0.035;
-/** So near beside a robot's part is on it. */
-const PART_NEAR = 0.012;
 
 /** Where in the picture a point is, -1 to 1 from left to right and from bottom to top. */
 export function project(
@@ -43,10 +41,7 @@ export function pick(
   u: number,
   v: number,
 ): Hit | null {
-  const tan = Math.tan(FOV_RAD / 2);
-  const ray = [0, 1, 2].map(
-    (axis) => view.forward[axis]! + view.right[axis]! * u * tan * aspect + view.up[axis]! * v * tan,
-  ) as [number, number, number];
+  const ray = rayAt(view, aspect, u, v);
   const seat = nearestRobot(model, view.eye, ray);
   if (ray[2] >= 0) return null;
   const far = -view.eye[2] / ray[2];
@@ -66,61 +61,17 @@ export function pickFlat(model: Model, x_m: number, y_m: number): Hit {
   return marker === null ? at : { ...at, marker };
 }
 
-/** Find the part of a robot at a place in the picture; null if none is near. */
-export function pickPart(
-  model: Model,
+/** The direction from the camera to a place in the picture [m, world]; of no certain length. */
+export function rayAt(
   view: ViewAxes,
   aspect: number,
   u: number,
   v: number,
-): number | null {
-  if (!model.robots.length) return null;
-  const { pos, quat, seats } = model.fk;
-  let found: number | null = null;
-  let nearest = Number.POSITIVE_INFINITY;
-  for (const { body, type, size, pos: local, quat: turn } of model.scene.geoms) {
-    if (seats[body]! < 0 || type === "plane") continue;
-    const half = type === "capsule" || type === "cylinder" ? size[1] : 0;
-    const radius = type === "box" ? Math.min(size[0], size[1]) : size[0];
-    const along = rotated(turn, [0, 0, half]);
-    const [one, other] = [-1, 1].map((side) => {
-      const at = local.map((part, axis) => part + side * along[axis]!) as Triple;
-      const bodyTurn = [...quat.subarray(4 * body, 4 * body + 4)] as Quadruple;
-      const [x, y, z] = rotated(bodyTurn, at);
-      const [bx, by, bz] = pos.subarray(3 * body, 3 * body + 3);
-      return project(view, aspect, x + bx!, y + by!, z + bz!);
-    });
-    if (one!.depth < 0.05 || other!.depth < 0.05) continue;
-    const off = offSegment(u * aspect, v, one!.u * aspect, one!.v, other!.u * aspect, other!.v);
-    const wide = radius / (one!.depth * Math.tan(FOV_RAD / 2)) + PART_NEAR;
-    if (off > wide) continue;
-    // Limbs lie over the body: of what is hit the thinnest counts, then the one that is in front.
-    const rank = (type === "box" ? 10 : 0) + one!.depth + off;
-    if (rank < nearest) {
-      nearest = rank;
-      found = body;
-    }
-  }
-  return found;
-}
-
-type Triple = [number, number, number];
-type Quadruple = [number, number, number, number];
-
-/** Turn a vector by a quaternion w, x, y, z. */
-function rotated([w, x, y, z]: Readonly<Quadruple>, [a, b, c]: Triple): Triple {
-  const tx = 2 * (y * c - z * b);
-  const ty = 2 * (z * a - x * c);
-  const tz = 2 * (x * b - y * a);
-  return [a + w * tx + y * tz - z * ty, b + w * ty + z * tx - x * tz, c + w * tz + x * ty - y * tx];
-}
-
-function offSegment(x: number, y: number, ax: number, ay: number, bx: number, by: number): number {
-  const [dx, dy] = [bx - ax, by - ay];
-  const squared = dx * dx + dy * dy;
-  const part = squared ? ((x - ax) * dx + (y - ay) * dy) / squared : 0;
-  const along = Math.min(1, Math.max(0, part));
-  return Math.hypot(x - ax - along * dx, y - ay - along * dy);
+): [number, number, number] {
+  const tan = Math.tan(FOV_RAD / 2);
+  return [0, 1, 2].map(
+    (axis) => view.forward[axis]! + view.right[axis]! * u * tan * aspect + view.up[axis]! * v * tan,
+  ) as [number, number, number];
 }
 
 function nearestRobot(

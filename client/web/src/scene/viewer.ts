@@ -1,12 +1,13 @@
 /** Draws a match into an element, frame by frame: picture, cameras, names, pointing. */
 
+import { pickJoint } from "../core/design/parts";
 import type { Match } from "../core/match";
 import type { Quality } from "../core/settings";
 import { type Aim, type CameraName, type Frame2d, Rig, type ViewAxes, viewOf } from "./cameras";
 import { type Action, Director } from "./director";
 import type { FloorMarks } from "./marks";
 import { type Field, Model } from "./model";
-import { type Hit, pick, pickFlat, pickPart, project } from "./picking";
+import { type Hit, pick, pickFlat, project, rayAt } from "./picking";
 import { type Fineness, FrameTimes, firstFineness, rememberSlow, tooSlow } from "./quality";
 import type { Ring, Stage } from "./stage";
 import { Tags } from "./tags";
@@ -33,8 +34,8 @@ export interface Options {
   labels: boolean;
   inset: Inset;
   onPick: ((hit: Hit) => void) | null;
-  /** Called when the pointer comes to another part of a robot; null: it left them all. */
-  onPart: ((body: number | null) => void) | null;
+  /** Called with the joint of the link that the pointer comes to; null: it left them all. */
+  onJoint: ((joint: number | null) => void) | null;
   /** Bodies of robots that glow. */
   lit: ReadonlySet<number>;
   /** The same robots in another trial, drawn translucent. */
@@ -90,7 +91,7 @@ export class Viewer {
   private readonly observer: ResizeObserver;
   private model: Model | null = null;
   private ghost: Model | null = null;
-  private part: number | null = null;
+  private joint: number | null = null;
   private axes: ViewAxes | null = null;
   private plan: Plan | null = null;
   private pointer: { x: number; y: number } | null = null;
@@ -454,8 +455,8 @@ export class Viewer {
 
   /** The ring round what the pointer is on. */
   private point(model: Model): Ring | null {
-    if (this.options.onPart) {
-      this.pointPart(model, this.options.onPart);
+    if (this.options.onJoint) {
+      this.pointJoint(model, this.options.onJoint);
       return null;
     }
     const pickable = this.options.onPick !== null && this.pointer !== null;
@@ -471,19 +472,19 @@ export class Viewer {
     return info ? { x: info.x_m, y: info.y_m, radius: Math.max(0.05, 1.06 * info.radius_m) } : null;
   }
 
-  private pointPart(model: Model, tell: (body: number | null) => void): void {
-    const part = this.pointer && this.partAt(model, this.pointer.x, this.pointer.y);
-    this.host.style.cursor = part === null ? "" : "pointer";
-    if (part === this.part) return;
-    this.part = part;
-    tell(part);
+  private pointJoint(model: Model, tell: (joint: number | null) => void): void {
+    const joint = this.pointer && this.jointAt(model, this.pointer.x, this.pointer.y);
+    this.host.style.cursor = joint === null ? "" : "pointer";
+    if (joint === this.joint) return;
+    this.joint = joint;
+    tell(joint);
   }
 
-  private partAt(model: Model, x: number, y: number): number | null {
+  private jointAt({ scene, fk }: Model, x: number, y: number): number | null {
     const { axes, size } = this;
     if (!axes || this.map) return null;
     const [u, v] = [(2 * x) / size.width - 1, 1 - (2 * y) / size.height];
-    return pickPart(model, axes, size.width / size.height, u, v);
+    return pickJoint(scene, fk, axes.eye, rayAt(axes, size.width / size.height, u, v));
   }
 
   private listen(): void {
@@ -533,8 +534,8 @@ export class Viewer {
       if (!onPick || moved >= DRAG_PX) return;
       const { x, y } = at(event);
       const hit = this.hitAt(x, y);
-      const body = this.options.onPart && this.model ? this.partAt(this.model, x, y) : null;
-      if (body !== null) onPick({ x_m: 0, y_m: 0, ...hit, body });
+      const joint = this.options.onJoint && this.model ? this.jointAt(this.model, x, y) : null;
+      if (joint !== null) onPick({ x_m: 0, y_m: 0, ...hit, joint });
       else if (hit) onPick(hit);
     });
     host.addEventListener("dblclick", () => this.options.orbit && this.rig.release());
