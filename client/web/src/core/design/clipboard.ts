@@ -1,0 +1,188 @@
+/** Blocks of cells from and to a spreadsheet, as its clipboard has them. */
+
+import { htmlCells } from "./html_block";
+import {
+  type Area,
+  joint,
+  LEVELS,
+  numberOf,
+  readCell,
+  rowsOfKey,
+  setArea,
+  type Table,
+  type Wrong,
+  wrongOf,
+} from "./table";
+
+/** A cell of a block that can't be pasted, with the place in the table where it would stand. */
+export interface BadPaste {
+  row: number;
+  col: number;
+  text: string;
+  why: Wrong | "outside";
+}
+
+/** What came of a paste: all of it, or why nothing was changed. */
+export type Pasted = { table: Table; area: Area } | { bad: BadPaste[] };
+
+const KEY = /^(\d)\s*key$/i;
+const HEADER = /^num of postures?$/i;
+const LEGEND = /^(id of joint|position)?$/i;
+
+/**
+ * Read what is on the clipboard.
+ *
+ * @param plain As `text/plain`.
+ * @param html As `text/html`; only looked at if there is no plain text.
+ * @returns Rows of equal length; [] if there is nothing.
+ */
+export function readBlock(plain: string, html = ""): string[][] {
+  const text = plain.replace(/^\uFEFF/, "");
+  return even(text === "" && html ? htmlCells(html) : tabbedCells(text));
+}
+
+/** Write cells as spreadsheets do: tabs, and each row ends with CR LF. */
+export function writeBlock(cells: readonly (readonly (string | number)[])[]): string {
+  return cells.map((row) => `${row.map(quoted).join("\t")}\r\n`).join("");
+}
+
+/** Whether a block is a whole gait file, with its header: then the reader of files reads it. */
+export function isWholeSheet(block: readonly (readonly string[])[]): boolean {
+  const [first, second] = block
+    .map((row) => row.map((cell) => cell.normalize("NFKC").trim()))
+    .filter((row) => row.some(Boolean));
+  if (!first || !second) return false;
+  if (HEADER.test(first[0]!)) return true;
+  const isCount = (row: string[]) =>
+    /^\d+$/.test(row[0]!) && row.slice(1).every((cell) => cell === "");
+  return first.length > 1 && isCount(first) && isCount(second);
+}
+
+/**
+ * Put a block into a table: all of it, or nothing.
+ *
+ * One cell fills the whole selection; other blocks begin at its first cell. Rows that begin with
+ * the name of their key ("2 Key") go to that key of a table of postures.
+ *
+ * @param at The selection.
+ */
+export function paste(table: Table, at: Area, block: readonly (readonly string[])[]): Pasted {
+  const cells = withoutBlankEdge(spacedCells(block));
+  const named = table.kind === "postures" ? namedRows(table, cells) : null;
+  if (named) return named;
+  const isOne = cells.length === 1 && cells[0]!.length === 1;
+  const filled = isOne ? filling(at, cells[0]![0]!) : cells;
+  return pasteAt(table, at.top, at.left, filled);
+}
+
+function pasteAt(table: Table, top: number, left: number, cells: string[][]): Pasted {
+  const bad = cells.flatMap((line, r) =>
+    line.flatMap((text, c) => {
+      const [row, col] = [top + r, left + c];
+      const range = table.ranges[col];
+      const isOutside = !range || row >= table.rows.length;
+      const why = isOutside ? "outside" : wrongOf(readCell(text, range));
+      return why ? [{ row, col, why, text } as const] : [];
+    }),
+  );
+  if (bad.length) return { bad };
+  const bottom = top + Math.max(1, cells.length) - 1;
+  const right = left + Math.max(1, cells[0]?.length ?? 0) - 1;
+  const area = { top, left, bottom, right };
+  return { table: setArea(table, { row: top, col: left }, cells), area };
+}
+
+/** Paste rows that begin with the name of their key; null if they do not. */
+function namedRows(table: Table, cells: string[][]): Pasted | null {
+  const keyOf = (row: string[]) => KEY.exec(row[0]!.normalize("NFKC").trim())?.[1];
+  const rows = cells.filter((row) => !LEGEND.test(row[0]!.trim()));
+  if (!rows.length || rows.some((row) => keyOf(row) === undefined)) return null;
+  const right = joints(table) - 1;
+  const bad: BadPaste[] = [];
+  const pastedRows: number[] = [];
+  const next = rows.reduce((made, line) => withKey(made, Number(keyOf(line))), table);
+  const full = rows.reduce((made, line) => {
+    const row = rowsOfKey(next, Number(keyOf(line)))[0]!;
+    pastedRows.push(row);
+    const angles = [...line.slice(1), ...Array<string>(joints(table)).fill("")];
+    const pasted = pasteAt(made, row, 0, [angles.slice(0, Math.max(right + 1, line.length - 1))]);
+    if ("table" in pasted) return pasted.table;
+    bad.push(...pasted.bad);
+    return made;
+  }, next);
+  if (bad.length) return { bad };
+  const [top, bottom] = [Math.min(...pastedRows), Math.max(...pastedRows)];
+  return { table: full, area: { top, left: 0, bottom, right } };
+}
+
+const joints = (table: Table) => joint(0, LEVELS.length, table.legs.length);
+
+/** The table with a row for a key. */
+function withKey(table: Table, key: number): Table {
+  if (rowsOfKey(table, key).length) return table;
+  const added = { key, posture: 0, cells: table.rows[0]!.cells };
+  const rows = [...table.rows, added].toSorted((one, other) => one.key - other.key);
+  return { ...table, rows };
+}
+
+function filling({ top, left, bottom, right }: Area, text: string): string[][] {
+  return Array.from({ length: bottom - top + 1 }, () => Array(right - left + 1).fill(text));
+}
+
+/** Numbers between spaces, as in a text file: no cell of a table is several numbers. */
+function spacedCells(block: readonly (readonly string[])[]): string[][] {
+  const split = block.map((row) => (row.length === 1 ? row[0]!.trim().split(/\s+/) : []));
+  const areNumbers = split.every(
+    (cells) => cells.length > 1 && cells.every((cell) => numberOf(cell) !== null),
+  );
+  return even(areNumbers ? split : block);
+}
+
+/** Without the empty rows and columns at the end. */
+function withoutBlankEdge(cells: string[][]): string[][] {
+  const isBlank = (cell: string | undefined) => cell === undefined || cell.trim() === "";
+  const height = cells.findLastIndex((row) => !row.every(isBlank)) + 1;
+  const width = Math.max(0, ...cells.map((row) => row.findLastIndex((cell) => !isBlank(cell)) + 1));
+  return cells.slice(0, height).map((row) => row.slice(0, width));
+}
+
+/** Rows of equal length. */
+function even(rows: readonly (readonly string[])[]): string[][] {
+  const width = Math.max(0, ...rows.map((row) => row.length));
+  return rows.map((row) => [...row, ...Array<string>(width - row.length).fill("")]);
+}
+
+/** Split text at tabs and ends of lines; a cell in quotes may have both in it. */
+function tabbedCells(text: string): string[][] {
+  const rows: string[][] = [];
+  let row: string[] = [];
+  let at = 0;
+  while (at < text.length) {
+    const cell = QUOTED.exec(text.slice(at))?.[0] ?? PLAIN.exec(text.slice(at))![0];
+    row.push(unquoted(cell));
+    at += cell.length;
+    const end = text[at];
+    if (end === "\t") {
+      at++;
+      if (at < text.length) continue;
+      row.push("");
+    }
+    if (end === "\r" || end === "\n") at += text.startsWith("\r\n", at) ? 2 : 1;
+    rows.push(row);
+    row = [];
+  }
+  return rows;
+}
+
+/** A cell in quotes, up to its tab, end of line, or the end. */
+const QUOTED = /^"(?:[^"]|"")*"(?=[\t\r\n]|$)/;
+const PLAIN = /^[^\t\r\n]*/;
+
+function unquoted(cell: string): string {
+  return QUOTED.test(cell) ? cell.slice(1, -1).replaceAll('""', '"') : cell;
+}
+
+function quoted(cell: string | number): string {
+  const text = String(cell);
+  return /[\t\r\n"]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}

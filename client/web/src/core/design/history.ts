@@ -1,0 +1,95 @@
+/** The table that is edited, with every step that led to it. */
+
+import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
+import { type Columns, contentOf, refit, type Table } from "./table";
+
+interface Step {
+  /** What the step was, for the buttons; "" for the first table. */
+  readonly name: string;
+  readonly table: Table;
+  readonly version: number;
+  /** Names a movement of the hand that is one step, however often it edits. */
+  readonly gesture: string | null;
+}
+
+export class History {
+  readonly table: ReadonlySignal<Table>;
+  readonly canUndo: ReadonlySignal<boolean>;
+  readonly canRedo: ReadonlySignal<boolean>;
+  /** The names of the steps that would be undone and done again; "": none. */
+  readonly undoName: ReadonlySignal<string>;
+  readonly redoName: ReadonlySignal<string>;
+  /** The same number for the same content, so that trials belong to versions. */
+  readonly version: ReadonlySignal<number>;
+  private readonly steps = signal<readonly Step[]>([]);
+  private readonly at = signal(0);
+  private readonly versions = new Map<string, number>();
+  private readonly tables: Table[] = [];
+
+  constructor(table: Table) {
+    this.open(table);
+    const now = computed(() => this.steps.value[this.at.value]!);
+    this.table = computed(() => now.value.table);
+    this.version = computed(() => now.value.version);
+    this.canUndo = computed(() => this.at.value > 0);
+    this.canRedo = computed(() => this.at.value < this.steps.value.length - 1);
+    this.undoName = computed(() => (this.canUndo.value ? now.value.name : ""));
+    this.redoName = computed(() => this.steps.value[this.at.value + 1]?.name ?? "");
+  }
+
+  /** Begin with another table, such as that of another file; versions go on. */
+  open(table: Table): void {
+    batch(() => {
+      this.steps.value = [{ name: "", table, version: this.numberOf(table), gesture: null }];
+      this.at.value = 0;
+    });
+  }
+
+  /** Take all steps over to another robot of as many legs; no step by itself. */
+  refit(columns: Columns): void {
+    this.steps.value = this.steps.peek().map((step) => {
+      const table = refit(step.table, columns) ?? step.table;
+      return { ...step, table, version: this.numberOf(table) };
+    });
+  }
+
+  /**
+   * Edit the table: one step, unless the edit changes nothing.
+   *
+   * @param gesture Edits in a row with the same gesture, such as one drag of a slider, are one step.
+   */
+  apply(name: string, edit: (table: Table) => Table, gesture: string | null = null): void {
+    const before = this.steps.peek()[this.at.peek()]!;
+    const table = edit(before.table);
+    const version = this.numberOf(table);
+    if (version === before.version) return;
+    const goesOn = gesture !== null && before.gesture === gesture && this.at.peek() > 0;
+    const kept = this.steps.peek().slice(0, this.at.peek() + (goesOn ? 0 : 1));
+    batch(() => {
+      this.steps.value = [...kept, { name, table, version, gesture }];
+      this.at.value = kept.length;
+    });
+  }
+
+  undo(): void {
+    if (this.canUndo.peek()) this.at.value = this.at.peek() - 1;
+  }
+
+  redo(): void {
+    if (this.canRedo.peek()) this.at.value = this.at.peek() + 1;
+  }
+
+  /** The table of a version. */
+  tableOf(version: number): Table | null {
+    return this.tables[version - 1] ?? null;
+  }
+
+  private numberOf(table: Table): number {
+    const content = contentOf(table);
+    const known = this.versions.get(content);
+    if (known !== undefined) return known;
+    this.tables.push(table);
+    this.versions.set(content, this.tables.length);
+    return this.tables.length;
+  }
+}
