@@ -1,4 +1,4 @@
-"""What a court has sent, and what part of it is missing here. No I/O, no clock.
+"""Keeps what a court has sent, and knows what has not arrived. No I/O, no clock.
 
 A spectator and a gateway each hold a `CourtView`: they pass it what arrives, and ask the court for
 what is missing.

@@ -133,7 +133,7 @@ def simulate(
         arena: folder of the arena, if it is not installed.
 
     Returns:
-        The official result.
+        The result: official, or void if physics stopped.
 
     Raises:
         UserError: if the arena's matches have no end, or a record can't be written.

@@ -117,7 +117,7 @@ def _package(needed: Requirement, *, optional: bool) -> Finding:
 def court_port(
     host: str, port: int, court: str | None, credentials: Credentials | None = None
 ) -> Finding:
-    """Check that a court can listen at a port, or does already.
+    """Check that a court can listen at a port, or already does.
 
     Args:
         host: address of this machine to listen at.
@@ -145,7 +145,7 @@ def court_port(
 
 
 def web_port(host: str, port: int, *, needed: bool) -> Finding:
-    """Check that a gateway can listen at a port, or does already.
+    """Check that a gateway can listen at a port, or already does.
 
     Args:
         host: address of this machine to listen at.

@@ -267,7 +267,7 @@ class CourtFeed:
 
     @property
     def _log_number(self) -> int:
-        """Version of the log; it changes when the log begins again."""
+        """Version of the log; a new one means that events before the newest may have changed."""
         return self.picture.view.log.number
 
     @property
