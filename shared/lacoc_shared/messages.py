@@ -70,7 +70,7 @@ class Frame(msgspec.Struct, frozen=True, array_like=True):
     scene: bytes
     """First 8 bytes of the scene's hash; if it changes, clients must fetch the scene again."""
     digest: bytes
-    """8 bytes: a hash chain over the state of every beat so far (the proof of a replay)."""
+    """8 bytes: a hash chain over the states of physics after each tick so far; a replay proves it."""
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):
@@ -313,10 +313,10 @@ class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
     """Number of the session that holds the seat, so that a controller sees whether it is its own;
     0: none, as after a restart of the court."""
     heard_ms: float | None
-    """Time since the last command; None: no command was heard."""
+    """Time since the seat's join or last valid command; None: nothing was heard of it."""
     commands_hz: float
     refused: dict[str, int]
-    """Number of refused commands by reason, a name of `count.*` such as "bad-seal"."""
+    """Number of refused messages by reason, a name of `count.*` such as "bad-seal"."""
     round_trip_p50_ms: float | None = None
     """Time from a frame to the beat that has the seat's answer to it, by the court's clock: the
     median of the last 10 s; None: not known."""

@@ -23,7 +23,7 @@ _MOST_S = 60.0
 
 
 class SensedPhysics(Physics, Protocol):
-    """Physics of one robot that measures its contact with the floor (`world.sensed.SensedWorld`)."""
+    """Physics of one robot, with its contact with the floor; `world.sensed` implements it."""
 
     @property
     def weight_n(self) -> float:

@@ -35,7 +35,7 @@ class Figures:
     drift_deg_m: float | None
     """Turning to the left [deg] per metre; None if the robot hardly moved."""
     straightness: float | None
-    """Distance from start to end over length of the path, 0 to 1; None if the robot hardly moved."""
+    """Distance between the path's ends over its length, 0 to 1; None if the robot hardly moved."""
     duty: list[float]
     """For each leg, the share of ticks in which its foot is down."""
     phase: list[float | None]
@@ -57,7 +57,7 @@ class Figures:
     slip_ratio: float | None
     """Slip speed over forward speed; None if the robot hardly moves."""
     cost_of_transport: float | None
-    """Work of the motors, without braking, divided by weight times distance; None if the robot hardly
+    """Work of the motors without braking, divided by weight times distance; None if the robot hardly
     moved."""
     clearance_mm: float
     """95th percentile of the height of the feet [mm]."""
