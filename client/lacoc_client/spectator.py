@@ -59,7 +59,7 @@ class Spectator:
         self.frame: Frame | None = None
         """The newest frame."""
         self.frame_s = time.monotonic()
-        """Time when the newest frame arrived; before the first frame, when the wait for it began."""
+        """When the newest frame arrived; before the first frame, when the wait for it began."""
         self._other_since_s: float | None = None
         """Time since which frames have come without their sheet; None: the sheet fits them."""
         self.health: Health | None = None

@@ -18,7 +18,7 @@ from lacoc_shared.seat import BEAT_S
 def try_standing(
     robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str
 ) -> list[Mistake]:
-    """Let a robot stand, once in each posture of key 0.
+    """Let a robot stand, once in each posture that it takes when it stands at one of the levels.
 
     Args:
         robot: the robot.

@@ -182,7 +182,7 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Put back robots that leave their start place before play; the third time undoes "ready"."""
+        """Put back robots that stray before play; after `MOST_STRAYS` times a seat is not ready."""
         for seat in self.seats:
             gone_m = self.staging.from_start_m(seat.index)
             if gone_m <= FARTHEST_M:
