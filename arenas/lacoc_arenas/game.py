@@ -19,7 +19,7 @@ index + 1 as its state.
 """
 
 Claim = tuple[int, str]
-"""(seat, marker): a marker that an event gives to a seat. A referee may strike it out (rules 4.1)."""
+"""(seat, marker): an event gives the marker to the seat. A referee may strike it (rules 4.1)."""
 
 
 class NoSuchState(ValueError):

@@ -70,7 +70,7 @@ class Frame(msgspec.Struct, frozen=True, array_like=True):
     scene: bytes
     """First 8 bytes of the scene's hash; if it changes, clients must fetch the scene again."""
     digest: bytes
-    """8 bytes: a hash chain over the states of physics after all ticks so far (proof of a replay)."""
+    """8 bytes: a hash chain over the state of physics after every tick so far; a replay checks it."""
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):

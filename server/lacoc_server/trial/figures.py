@@ -57,8 +57,7 @@ class Figures:
     slip_ratio: float | None
     """Slip speed over forward speed; None if the robot hardly moves."""
     cost_of_transport: float | None
-    """Work of the motors without braking, divided by weight times distance; None if it hardly moved.
-    """
+    """Work of the motors (without braking) over weight times distance; None: it hardly moved."""
     clearance_mm: float
     """95th percentile of the height of the feet [mm]."""
     clearance_legs_mm: list[float]
