@@ -46,7 +46,7 @@ class Compared(NamedTuple):
     ticks: int
     cycles: int
     differs_at: int | None
-    """First cycle at whose end the state hash differs; -1: only other ticks differ; None: none do."""
+    """First cycle at whose end the state hash differs; -1: only other ticks differ; None: none."""
     walks: bool
     changes_hz: float
     """How often a foot comes down or goes up, mean over the feet [1/s]."""
@@ -124,7 +124,7 @@ def _agrees(walk: Walk) -> float:
 
 
 def _drawn(rng: random.Random, robot: str) -> tuple[Gait, SentFile]:
-    """Draw a gait of whole degrees, and its file: half of them a sample's, changed in places."""
+    """Draw a gait of whole degrees, and its file; about every second is a changed sample gait."""
     entry = entry_of(robot)
     spec = entry.robot
     assert entry.gait.locomotion is not None

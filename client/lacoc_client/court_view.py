@@ -79,7 +79,7 @@ class CourtView(Generic[T]):
 
     @property
     def has_older_sheet(self) -> bool:
-        """True if the court said that it has another sheet."""
+        """True if the court said that its newest sheet is another one."""
         return self._told.sheet not in (b"", self._sheet_hash)
 
     @property

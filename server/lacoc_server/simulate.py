@@ -56,7 +56,7 @@ def player(
     team: str | None = None,
     late_ticks: int = 0,
 ) -> Player:
-    """Seat a bot, or the ghost of a record with the files that it played with.
+    """Make a player: a bot, or the ghost of a record with the files that it played with.
 
     Args:
         arena: the arena.

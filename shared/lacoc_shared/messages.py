@@ -68,9 +68,9 @@ class Frame(msgspec.Struct, frozen=True, array_like=True):
     """Little-endian float32 for each robot: x, y, z [m, world], quaternion w, x, y, z (body to
     world), then its joint angles [rad] by joint id. Empty before READY."""
     scene: bytes
-    """First 8 bytes of the scene's hash; if it changes, clients must fetch the scene again."""
+    """Hash of the scene, 8 bytes; if it changes, clients must fetch the scene again."""
     digest: bytes
-    """8 bytes: a hash chain over the state of physics after every tick so far; a replay checks it."""
+    """Hash chain over the state of physics after every tick so far, 8 bytes; a replay checks it."""
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):
@@ -195,8 +195,8 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     beat: int
     clock_ticks: int
     kind: str
-    """phase, join, leave, ready, silent, heard, restart, decision, fault, result, advice, or a
-    game's own: flip, capture, strike."""
+    """phase, join, leave, ready, strayed, silent, heard, restart, decision, fault, result, advice,
+    or a game's own: flip, capture, strike."""
     said: Phrase
     """A whole sentence."""
     seat: int = -1
@@ -257,11 +257,11 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     seats: tuple[SheetSeat, ...]
     markers: tuple[MarkerInfo, ...]
     scene: bytes
-    """First 8 bytes of the scene's hash."""
+    """Hash of the scene, 8 bytes."""
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A body in the tree; `Frame.poses` has poses for root bodies and joint angles for others."""
+    """A body of the scene; `Frame.poses` has the pose of a robot's root body and joint angles."""
 
     name: str
     parent: int

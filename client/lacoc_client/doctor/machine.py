@@ -51,7 +51,7 @@ class Status(StrEnum):
 
 
 class Finding(msgspec.Struct, frozen=True):
-    """A finding about one thing."""
+    """One finding: what it is about, how serious it is, and what to do."""
 
     about: Phrase | str
     status: Status

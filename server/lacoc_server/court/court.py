@@ -271,7 +271,7 @@ class Court:
 
 
 def _offset_s(locators: tuple[str, ...]) -> float:
-    """Return the fraction of a second by which a court's beats are shifted (docs/architecture.md).
+    """Return the fraction of a second by which a court's beats are shifted.
 
     It comes from the addresses: two courts on a machine may share a name, but never an address.
     """

@@ -116,8 +116,8 @@ class Inbox:
         random_bytes: returns as many random bytes as asked, for numbers and secrets of sessions.
         last_seqs: for a restarted court, the newest sequence numbers in its record, by seat.
         joined: for a restarted court, the seats that are held.
-        former: hash of an older token that opens a seat too, by seat: with it the seat was taken
-         before the court's restart made new tokens.
+        former: for a restarted court that made new tokens, hash of the token with which each seat
+            was taken before, by seat; it opens the seat too.
         most_delay_ms: longest delay that makes the links equal; 0: links are not made equal.
     """
 

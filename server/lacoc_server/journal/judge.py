@@ -85,7 +85,7 @@ class RecordedPhysics:
         return self._record.touched
 
     def take(self) -> Step | None:
-        """Return what the match asked for in this beat, and the beat's frame; None: neither is."""
+        """Return this beat's requests to physics and its frame; None if it has neither."""
         record, frame = self._record, self._record.frame
         places, angles, asked = tuple(self._places), self._angles, self._asked
         self._places, self._angles, self._asked = [], None, False

@@ -44,13 +44,13 @@ def make_course(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
 
 
 class SensedWorld(World):
-    """A world of one robot that feels the floor; implements `trial.course.SensedPhysics`.
+    """A world of one robot that measures its contact with the floor (`trial.course.SensedPhysics`).
 
     Args:
         arena: a field of one seat, with the geom "floor".
         entry: the robot, weighed in.
         steps: physics steps in a tick. With fewer than `SUBSTEPS` a trial is quicker, but the robot
-         no longer moves exactly as at a court.
+            no longer moves exactly as at a court.
     """
 
     def __init__(self, arena: Arena, entry: Entry, steps: int = SUBSTEPS) -> None:

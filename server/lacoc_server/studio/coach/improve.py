@@ -33,7 +33,7 @@ class Size(StrEnum):
 
 
 class Improved(NamedTuple):
-    """The best table so far."""
+    """The best table so far, and its score."""
 
     angles_deg: Angles
     score: float

@@ -15,7 +15,7 @@ Score = Callable[[Sequence[Angles]], list[float]]
 
 
 class Matter(NamedTuple):
-    """What a change of one number does."""
+    """How a change of one number changes the score."""
 
     number: int
     """Index of the number in the table."""
