@@ -215,7 +215,7 @@ class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
     colour: str
     """#rrggbb"""
     pattern: str
-    """Distinguishes the seats without colours: plain, stripes, dots."""
+    """Tells the seats apart for people who can't see the colours: plain, stripes or dots."""
     robot: str = ""
     legs: tuple[str, ...] = ()
     """Leg labels in leg order; joints are 3 * legs."""
@@ -283,16 +283,16 @@ class SceneGeom(msgspec.Struct, frozen=True, kw_only=True):
 
     body: int
     type: str
-    """plane, sphere, capsule, cylinder, box."""
+    """plane, sphere, capsule, cylinder, box or ellipsoid."""
     size: tuple[float, float, float]
-    """MuJoCo's sizes: half lengths [m]."""
+    """MuJoCo's sizes: radii and half lengths [m]."""
     pos: tuple[float, float, float]
     quat: tuple[float, float, float, float]
     rgba: tuple[float, float, float, float]
     marker: int = -1
     """Index of the marker that this shape belongs to; -1: none."""
     state: int = -1
-    """The shape is shown while the marker is in this state."""
+    """The shape is shown while the marker is in this state; -1: it belongs to no marker."""
     seat: int = -1
     """Seat whose colour and pattern the shape has; -1: none."""
 
@@ -347,7 +347,7 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
     """How well a match has run so far: measured by the wall clock, and not part of the match."""
 
     played_beats: int
-    """Number of beats of PLAYING; the other fields are about these beats."""
+    """Number of beats of PLAYING; the next three fields are about these beats."""
     real_time_factor: float
     """Duration of these beats at 20 ms each, divided by the wall time they took; 1 is real time."""
     slow_beats: int

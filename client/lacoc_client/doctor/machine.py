@@ -33,7 +33,8 @@ from lacoc_shared.words import Phrase, render, say
 
 _MIB = 1 << 20
 _LEAST_FREE_BYTES, _GOOD_FREE_BYTES = 100 * _MIB, 1024 * _MIB
-"""A match needs 2 MiB packed, and 4 MiB while it is played."""
+"""Less free space than the first is a problem; less than the second gives a note. A match needs
+2 MiB packed, and 4 MiB while it is played."""
 _FSYNCS = 10
 _SLOW_FSYNC_S = 0.5
 """A sync that takes longer than this gives a note [s]; a record is synced once a second."""

@@ -18,7 +18,7 @@ class DriveState(msgspec.Struct, frozen=True):
 
     level: Level
     digit: int
-    """The newest key, at `level`."""
+    """Digit of the newest key; 0 if the robot stands without one."""
     posture: int
     """Index of the target posture in the digit's sequence."""
     ticks: int
