@@ -63,7 +63,7 @@ def main() -> None:
 
 
 def tell(seed: int) -> Told:
-    """Put a fault into a table, try it, and read what is said."""
+    """Put a fault into a table, let the robot walk with it, and return how it is explained."""
     rng = random.Random(seed)
     name = tuple(FAULTS)[seed % len(FAULTS)]
     code, put = FAULTS[name]

@@ -98,7 +98,7 @@ def trial_command(
 
 
 def read_robot_file(name: str) -> RobotSpec:
-    """Read a robot's file, with the limits of the rules.
+    """Read a robot's file and check it against the limits of rules 1.
 
     Raises:
         UserError: if there is no such robot.
@@ -168,7 +168,7 @@ def _bars(walk: Walk) -> list[str]:
 
 
 def _notes(walk: Walk, figures: Figures) -> list[Phrase]:
-    """List what a reader of the figures must know."""
+    """List warnings about the figures: physics stopped, or no cycle was complete."""
     notes = []
     if walk.fault is not None:
         notes.append(say("trial.fault", why=walk.fault))

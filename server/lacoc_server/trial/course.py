@@ -16,14 +16,14 @@ from lacoc_shared.seat import BEATS_PER_S
 SETTLE_TICKS = BEATS_PER_S // 2
 """Ticks for which the robot stands before a key is pressed."""
 CYCLES = 5
-"""Whole cycles that are measured. One before them is not, because the robot gets going in it."""
+"""Whole cycles that are measured. The first cycle is not, because the robot gets going in it."""
 NO_CYCLE_S = 6.0
 """How long a key is measured if its sequence has one posture, and so never repeats [s]."""
 _MOST_S = 60.0
 
 
 class SensedPhysics(Physics, Protocol):
-    """One robot on a floor that it feels; `world.sensed.SensedWorld` implements it."""
+    """Physics of one robot, with its contact with the floor; `world.sensed` implements it."""
 
     @property
     def weight_n(self) -> float:
@@ -46,7 +46,7 @@ class Course:
         world: the robot at its start place.
         robot: the robot.
         level: level at which the robot stands before the first key, as the arena has it.
-        repeat: whether sequences repeat while their key stands, as the arena has it.
+        repeat: whether sequences repeat, as the arena has it.
     """
 
     def __init__(self, world: SensedPhysics, robot: RobotSpec, level: Level, repeat: bool) -> None:
@@ -70,7 +70,7 @@ class Course:
             presses: at least one key, in the order of their ticks; the last one is measured.
             seconds: time from the last press to the end [s]; None: whole cycles after the first,
                 or `NO_CYCLE_S` if the key's sequence never begins again.
-            cycles: how many whole cycles that are.
+            cycles: number of whole cycles to measure if `seconds` is None.
         """
         robot = self._robot
         drive = Drive(
@@ -122,12 +122,13 @@ class Course:
 
 
 class Plan(NamedTuple):
-    """What a drive will command in a trial, which no physics can change."""
+    """What a drive commands in a trial; it does not depend on physics."""
 
     states: list[DriveState]
     """State of the drive in each tick."""
     starts: list[int]
-    """Ticks in which a cycle of the last key begins; also the tick after the end, if one would."""
+    """Ticks in which a cycle of the last key begins; also the tick after the last one, if a cycle
+    would begin there."""
     span: Span
     """Ticks to measure."""
 

@@ -1,8 +1,8 @@
 """Say in at most three sentences why a robot walks as it does, the most useful first.
 
 Each rule looks for one situation (docs/studio.md 3) and names the leg, the cell of the table and
-the figure that show it. A cause that stands in the table comes before an effect that physics shows.
-Nothing is said about what did not happen.
+the figure that show it. Most causes in the table come before effects that physics shows. A rule
+that finds nothing says nothing.
 """
 
 import math
@@ -22,18 +22,18 @@ from lacoc_shared.words import Phrase, say
 MOST_SENTENCES = 3
 
 _TIPPED = 0.8
-"""Least `upright` of a robot that walks: a lean of 37 degrees."""
+"""A robot has tipped over if its `upright` is below this: it leans by more than 37 degrees."""
 _AT_LIMIT_DEG = 0.5
 _SEAM_DEG, _SEAM_RATIO = 12.0, 1.6
-"""A leg jumps at the seam if an angle changes there by so much more, and so many times more, than
-in any other step."""
+"""The seam is the step from the last posture to the first. A leg jumps there if an angle changes by
+so many degrees more, and so many times more, than in any other step."""
 _LIFT_M = 0.008
-"""Legs step if they usually lift their feet higher than this."""
+"""No leg drags unless the median leg lifts its foot higher than this [m]."""
 _DRAGGED = 0.35
-"""A leg drags if it is lifted less than this part of what is usual."""
+"""A leg drags if it is lifted less than this part of the median leg's lift."""
 _SWING_M2, _AGAINST = 1e-4, 0.3
-"""A leg pushes backward if it swings backward in the air by more than the second share of the usual
-swing, and the usual swing is larger than the first."""
+"""A leg pushes backward if in the air it swings against the others, by more than `_AGAINST` of the
+median swing. The median swing must be larger than `_SWING_M2`."""
 _APART = 0.12
 """A leg is out of step if it is lifted more than this part of the sequence before or after every
 other leg."""
@@ -50,7 +50,7 @@ class Finding(NamedTuple):
 
 @dataclass(frozen=True)
 class Seen:
-    """All that the rules look at."""
+    """What the rules look at."""
 
     robot: RobotSpec
     walk: Walk
@@ -58,7 +58,7 @@ class Seen:
     press: Press
     """The key that was measured."""
     sequence: tuple[Posture, ...]
-    """Its postures [rad]."""
+    """Postures of that key [rad]."""
 
     def cell(self, posture: int, leg: int, level: int) -> Phrase:
         """Name a cell of the table."""

@@ -37,20 +37,20 @@ def practice_field() -> Arena:
 
 
 def make_course(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
-    """Make the floor for a robot's trials; arguments as in `SensedWorld`."""
+    """Make the course for a robot's trials; `steps` as in `SensedWorld`."""
     arena = practice_field()
     world = SensedWorld(arena, Entry(robot, Gait()), steps)
     return Course(world, robot, arena.match.open_levels[0], arena.match.repeat)
 
 
 class SensedWorld(World):
-    """A world of one robot that feels the floor; implements `trial.course.SensedPhysics`.
+    """A world of one robot that measures its contact with the floor (`trial.course.SensedPhysics`).
 
     Args:
         arena: a field of one seat, with the geom "floor".
         entry: the robot, weighed in.
-        steps: physics steps in a tick. With fewer than `SUBSTEPS` a trial is quicker, and no longer
-            what a court would do.
+        steps: physics steps in a tick. With fewer than `SUBSTEPS` a trial is quicker, but the robot
+            no longer moves exactly as at a court.
     """
 
     def __init__(self, arena: Arena, entry: Entry, steps: int = SUBSTEPS) -> None:
@@ -113,7 +113,7 @@ class SensedWorld(World):
         self._feel(spec, mujoco.mjtObj.mjOBJ_XBODY, "body", _FORCE)
 
     def _feel(self, spec: mujoco.MjSpec, kind: mujoco.mjtObj, name: str, fields: int) -> None:
-        """Measure the contact of a body with the floor; XBODY adds the bodies that hang on it."""
+        """Add a sensor of a body's contact with the floor; XBODY includes the bodies below it."""
         spec.add_sensor(
             name=f"floor:{name}",
             type=mujoco.mjtSensor.mjSENS_CONTACT,

@@ -1,7 +1,7 @@
 """Zenoh's configuration for courts and for everyone else, with a reason for each entry.
 
-Six of Zenoh's defaults are dangerous for a public court, such as a memory limit of 351
-clients, unlimited messages, blocking sends, or peers that bypass the access rules. Only this
+Some of Zenoh's defaults are dangerous for a public court: shared memory fails at 351 clients,
+messages may have any size, a send may block, and peers bypass the access rules. Only this
 module changes them.
 """
 
