@@ -31,7 +31,7 @@ class NoCourt(UserError):
 
 
 class NoAnswer(NoCourt):
-    """The court was asked and its answer is missing; it may have done what was asked."""
+    """The court did not answer; it may still have done what was asked."""
 
 
 class NotNow(UserError):

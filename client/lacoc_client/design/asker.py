@@ -22,13 +22,10 @@ from lacoc_shared.network.session import (
     TooLate,
     open_client,
 )
-from lacoc_shared.studio import EVERY_STUDIO, Progress, StudioKeys
+from lacoc_shared.studio import EVERY_STUDIO, TRIAL_REPLY_MAX_BYTES, Progress, StudioKeys
 from lacoc_shared.words import Phrase, say
 
 T = TypeVar("T")
-
-REPLY_BYTES = 4 << 20
-"""Largest reply: a trial of a minute of a robot with eight legs has 1.1 MiB."""
 
 _LOOK_S = 0.5
 _OPEN_S = 2.0
@@ -88,7 +85,7 @@ class Asker:
         question = session.question(keys.request(what), codec.encode(message), timeout_s)
         payload = await self._answer(question)
         try:
-            return codec.decode(payload, reply, REPLY_BYTES), payload
+            return codec.decode(payload, reply, TRIAL_REPLY_MAX_BYTES), payload
         except codec.BadMessage as error:
             raise UserError(say("design.bad-answer", error=str(error))) from None
 

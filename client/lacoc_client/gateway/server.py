@@ -15,6 +15,7 @@ from lacoc_client.gateway.page_socket import PageSocket
 from lacoc_client.gateway.wire import JOIN_BYTES
 from lacoc_client.stopping import stop_signals
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import own_address
 from lacoc_shared.words import say
 
 LOOPBACK = "127.0.0.1:0"
@@ -70,16 +71,6 @@ def url(opened: socket.socket) -> str:
     if host in _ANY:
         host = own_address()
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
-
-
-def own_address() -> str:
-    """Return this machine's IP address in its network; 127.0.0.1 if it is in none."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            probe.connect(("192.0.2.1", 9))  # sends nothing: it only finds the route
-        except OSError:
-            return "127.0.0.1"
-        return str(probe.getsockname()[0])
 
 
 def serve(

@@ -305,6 +305,8 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "gait.joint-of-level": ["joint {joint} is a joint of level {level}", "関節 {joint} は {level} の関節です"],
   "gait.joint-of-leg": ["joint {joint} is a joint of leg {leg}", "関節 {joint} は脚 {leg} のものです"],
   "gait.below-legend": ["{file}, row {row}: {cell} stands below the legend and is not read.", "{file}、{row} 行目：説明の行より下にある {cell} は読み込みません。"],
+  "gait.picture-front": ["Legs and joint ids, seen from above, front at the top:", "上から見た脚と関節番号（上が前）："],
+  "gait.picture-levels": ["Each leg has Root, 1st, 2nd, from the body outward.", "各脚の番号は、胴体側から Root、1st、2nd です。"],
   "robot.one-of": ["one of {names:or}", "{names:or}のいずれか"],
   "robot.either": ["{options:quoted,or}", "{options:quoted,or}"],
   "robot.any-of": ["{options:or}", "{options:or}"],
