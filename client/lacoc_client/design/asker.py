@@ -29,6 +29,7 @@ T = TypeVar("T")
 
 _LOOK_S = 0.5
 _OPEN_S = 2.0
+_PATIENCE_S = 3.0
 _FIRST_POLL_S, _LAST_POLL_S = 0.002, 0.02
 _SLOWER = 1.1
 
@@ -81,7 +82,7 @@ class Asker:
             NoAnswer: if it was asked, and does not answer.
             UserError: if it refuses for good.
         """
-        session, keys = self._there()
+        session, keys = await self._found()
         question = session.question(keys.request(what), codec.encode(message), timeout_s)
         payload = await self._answer(question)
         try:
@@ -89,20 +90,25 @@ class Asker:
         except codec.BadMessage as error:
             raise UserError(say("design.bad-answer", error=str(error))) from None
 
-    def progress(self, job: str, tell: Callable[[Progress], None]) -> "Listening":
+    async def progress(self, job: str, tell: Callable[[Progress], None]) -> "Listening":
         """Call a function, on another thread, for each report on a search, until closed.
 
         Raises:
             NotNow: if there is no studio.
         """
-        session, keys = self._there()
+        session, keys = await self._found()
         return Listening(session, keys.progress(job), tell)
 
-    def _there(self) -> tuple[Session, StudioKeys]:
-        session, studio = self._session, self.studio
-        if session is None or studio is None:
-            raise NotNow(self.why or say("design.no-studio"))
-        return session, StudioKeys(studio)
+    async def _found(self) -> tuple[Session, StudioKeys]:
+        """Return the way to the studio; wait a moment for one that just starts."""
+        deadline_s = time.monotonic() + _PATIENCE_S
+        while True:
+            session, studio = self._session, self.studio
+            if session is not None and studio is not None:
+                return session, StudioKeys(studio)
+            if time.monotonic() >= deadline_s:
+                raise NotNow(self.why or say("design.no-studio"))
+            await asyncio.sleep(_LAST_POLL_S)
 
     async def _answer(self, question: Question) -> bytes:
         pause_s = _FIRST_POLL_S

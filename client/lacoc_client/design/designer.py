@@ -16,6 +16,8 @@ from lacoc_shared.messages import SentFile
 
 _LOOK_S = 1.0
 """How often the folder is looked at, and pages get a sign of life."""
+_SOON_S = 0.1
+"""How soon pages are told that a studio has come or gone."""
 _SAMPLE = "hexapod"
 
 
@@ -68,13 +70,24 @@ class Designer:
             await asyncio.to_thread(self.asker.close)
 
     async def _look(self) -> None:
+        loop = asyncio.get_running_loop()
+        present, next_s = None, loop.time()
         while True:
-            await asyncio.sleep(_LOOK_S)
-            changed = await asyncio.to_thread(self.folder.look)
-            for viewer in self._viewers:
-                if changed:
-                    viewer.send(self._folder_message(changed))
-                viewer.send_if_fast(self._studio_message())
+            changed: tuple[str, ...] = ()
+            is_due = loop.time() >= next_s
+            if is_due:
+                next_s = loop.time() + _LOOK_S
+                changed = await asyncio.to_thread(self.folder.look)
+            if changed:
+                self._send(self._folder_message(changed))
+            if is_due or present != self.asker.studio:
+                present = self.asker.studio
+                self._send(self._studio_message())
+            await asyncio.sleep(_SOON_S)
+
+    def _send(self, message: bytes) -> None:
+        for viewer in self._viewers:
+            viewer.send(message)
 
     def _folder_message(self, changed: tuple[str, ...]) -> bytes:
         body = {

@@ -86,7 +86,7 @@ class StudioDesk:
             body = {"job": asked.job, **msgspec.structs.asdict(progress)}
             in_loop(loop, lambda: self._send(wire.map_message(Kind.PROGRESS, body)))
 
-        listening = self._asker.progress(job, tell)
+        listening = await self._asker.progress(job, tell)
         self._jobs.add(job)
         try:
             timeout_s = asked.seconds + _COACH_MORE_S
