@@ -62,7 +62,7 @@ def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> No
         f"a robot that goes {moved_m:.3f} m from its start within 2 s "
         "(standing with key 0 of level B)"
     )
-    assert render(mistake.expected).startswith("at most 0.05 m")
+    assert render(mistake.expected).startswith("at most 0.045 m")
 
 
 def test_a_robot_that_stands_on_one_side_leans(hexapod: RobotSpec) -> None:
@@ -101,8 +101,8 @@ def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
     ("stood", "words"),
     [
         (STILL, []),
-        (Stood(0.05, math.radians(30), math.radians(0.2), 0.0002), []),
-        (Stood(0.0501, 0.0, 0.0, 0.0), ["goes 0.050 m"]),
+        (Stood(0.045, math.radians(30), math.radians(0.2), 0.0002), []),
+        (Stood(0.0451, 0.0, 0.0, 0.0), ["goes 0.045 m"]),
         (Stood(0.0, math.radians(31), 0.0, 0.0), ["leans 31 degrees"]),
         (Stood(0.0, 0.0, math.radians(4), 0.0), ["a joint at 4.0 degrees/s"]),
         (Stood(0.0, 0.0, 0.0, 0.0003), ["its middle at 0.3 mm/s"]),

@@ -251,15 +251,15 @@ def test_access_from_a_file(file: Path) -> None:
 
 
 def test_join_lines_name_the_host(file: Path) -> None:
-    """Command lines for users have the court's `connect` address, or HOST instead of 0.0.0.0."""
+    """Command lines have the court's `connect` address, or a given host instead of 0.0.0.0."""
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 
-    main = entrances.join_lines("main", contest.courts["main"])
-    second = entrances.join_lines("second", contest.courts["second"])
+    main = entrances.join_lines("main", contest.courts["main"], "10.0.0.7")
+    second = entrances.join_lines("second", contest.courts["second"], "10.0.0.7")
 
     assert main["left"] == (
-        "lacoc play --court main --connect tcp/HOST:7447 --seat left --token left-token-of-main"
+        "lacoc play --court main --connect tcp/10.0.0.7:7447 --seat left --token left-token-of-main"
     )
     assert "referee-token-of-main" in main["referee"]
     assert "token" not in main["spectators"]
