@@ -71,7 +71,7 @@ export function Coach({ studio }: { studio: Studio }) {
       void studio.tryIt(); // says what is missing
       return;
     }
-    const job = `page-${Date.now().toString(36)}-${++jobs}`;
+    const job = `p${Date.now().toString(36)}-${++jobs}`;
     const version = studio.version.peek();
     found.value = null;
     revealed.value = false;

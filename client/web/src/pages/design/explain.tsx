@@ -1,12 +1,13 @@
 /** What a trial showed: figures, and at most three sentences that say why. */
 
 import { useComputed } from "@preact/signals";
-import { legOf } from "../../core/design/trial";
-import type { Sentence } from "../../core/design/replies";
 import { jointsOfLeg } from "../../core/design/parts";
+import type { Sentence } from "../../core/design/replies";
+import { legOf } from "../../core/design/trial";
 import { said, t } from "../../i18n";
-import { classes } from "./rows";
 import { difference, FIGURES, TILES, titleOf, written } from "./figures";
+import { guessName } from "./guess";
+import { classes } from "./rows";
 import type { Studio, Tried } from "./studio";
 
 export function Result({ studio }: { studio: Studio }) {
@@ -84,11 +85,7 @@ interface ExplainedProps {
 function Explained({ studio, tried, sentence }: ExplainedProps) {
   const leg = legOf(sentence);
   const legs = tried.robot.legs.length;
-  const joints = sentence.cell
-    ? [sentence.cell.joint]
-    : leg === null
-      ? []
-      : jointsOfLeg(leg, legs);
+  const joints = sentence.cell ? [sentence.cell.joint] : leg === null ? [] : jointsOfLeg(leg, legs);
   const row = tried.rows[sentence.cell?.posture ?? 0];
   const text = said(sentence.said);
   if (!joints.length || row === undefined) return <p>{text}</p>;
@@ -112,9 +109,9 @@ function Verdicts({ tried }: { tried: Tried }) {
     <>
       {tried.verdicts.map(({ guess, verdict }) => (
         <p key={guess.about} class={classes("verdict", verdict.right ? "right" : "wrong")}>
-          {t(verdict.right ? "design.guess.right" : "design.guess.wrong", {
-            guess: t(`design.guess.${guess.is}`),
-            was: t(`design.guess.${verdict.was}`),
+          {t(verdict.right ? "design.verdict.right" : "design.verdict.wrong", {
+            guess: guessName(guess.is),
+            was: guessName(verdict.was),
           })}
         </p>
       ))}

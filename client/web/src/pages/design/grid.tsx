@@ -8,7 +8,15 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { isWholeSheet, paste, readBlock, writeBlock } from "../../core/design/clipboard";
-import { cellsOf, clear, LEVELS, nudge, setCell, type Table, wrongOf } from "../../core/design/table";
+import {
+  cellsOf,
+  clear,
+  LEVELS,
+  nudge,
+  setCell,
+  type Table,
+  wrongOf,
+} from "../../core/design/table";
 import { type MessageName, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
 import { cellId, GridTable, rowName } from "./rows";

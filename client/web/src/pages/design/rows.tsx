@@ -1,7 +1,14 @@
 /** The cells of the grid: head, rows, and what their colours say. */
 
 import { useComputed } from "@preact/signals";
-import { type Cell, LEVELS, type Range, type Row, type Table, wrongOf } from "../../core/design/table";
+import {
+  type Cell,
+  LEVELS,
+  type Range,
+  type Row,
+  type Table,
+  wrongOf,
+} from "../../core/design/table";
 import { seam } from "../../core/design/tools";
 import { type MessageName, t } from "../../i18n";
 import { type Marked, weightsShown } from "./coach";
@@ -59,7 +66,6 @@ export function GridTable({ studio, table, focus, commit, edit }: TableProps) {
     focus();
   };
   return (
-    // biome-ignore lint/a11y/useKeyWithClickEvents: the input has the focus and takes the keys
     <table
       id="gait-grid"
       role="grid"

@@ -6,6 +6,7 @@ import { Connection, Refused } from "../../core/connection";
 import { History } from "../../core/design/history";
 import { type Guess, type Verdict, verdict } from "../../core/design/predict";
 import type { Progress, RobotReply, TrialReply } from "../../core/design/replies";
+import { type Shown, source } from "../../core/design/sources";
 import {
   type Area,
   areaOf,
@@ -20,11 +21,10 @@ import {
   type WireTable,
 } from "../../core/design/table";
 import { follow, halvesOf } from "../../core/design/tools";
-import { type Shown, source } from "../../core/design/sources";
-import { type Trial, readTrial } from "../../core/design/trial";
+import { readTrial, type Trial } from "../../core/design/trial";
 import { sequences } from "../../core/files";
 import type { Phrase } from "../../core/phrase";
-import type { FolderFile, Message, Mistake } from "../../core/wire";
+import type { FolderFile, Message, Mistake, SentFile } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
 import { Clock } from "./clock";
@@ -155,6 +155,10 @@ export class Studio {
     }),
   );
   private robotText: string | null = null;
+  /** Why no studio answers. */
+  readonly why = signal<Phrase | null>(null);
+  /** The robot of the command line. */
+  private first: SentFile | null = null;
   private greeted = false;
   private opened = false;
   private again = false;
@@ -251,6 +255,19 @@ export class Studio {
     } catch (error) {
       this.refuse(error);
     }
+  }
+
+  /** Begin with the sample gait of the robot, where it has one. */
+  async openSample(): Promise<void> {
+    const { table } = await this.connection.ask<Parsed>("sample");
+    const robot = this.robot.peek();
+    if (table && table.legs === robot?.legs.length) await this.show(table, "", "");
+  }
+
+  /** Begin with a table in which all postures are that of the robot at its start. */
+  openNew(): void {
+    const robot = this.robot.peek();
+    if (robot) this.begin(standing(robot), NO_FILE);
   }
 
   /** Take a dropped file, or the text of a pasted sheet. */
@@ -525,7 +542,9 @@ export class Studio {
   // The connection
 
   private async greet(): Promise<void> {
-    await this.connection.ask("hello", { key: runKey() });
+    const hello = { key: runKey() ?? "" };
+    const { robot } = await this.connection.ask<{ robot: SentFile | null }>("hello", hello);
+    this.first = robot;
     this.greeted = true;
     void this.openFirst();
   }
@@ -534,6 +553,7 @@ export class Studio {
     if (message.kind === "studio") {
       const was = this.present.peek();
       this.present.value = message.body.present;
+      this.why.value = message.body.why;
       if (!was && message.body.present) void this.openFirst();
     } else if (message.kind === "progress") {
       this.progress.value = message.body;
@@ -545,21 +565,24 @@ export class Studio {
     }
   }
 
-  /** The first thing to see: the robot, and the folder's first gait. */
+  /** The first thing to see: the robot, and the folder's first gait, else the sample. */
   private async openFirst(): Promise<void> {
     const { files } = this.folder.peek();
     if (this.opened || !this.greeted || !this.present.peek()) return;
     this.opened = true;
     try {
-      const robotName = files.find(({ slot }) => slot === "robot")?.name;
-      if (robotName) {
-        const { robot } = await this.connection.ask<ReadReply>("read", { name: robotName });
-        await this.useRobot(robotName, robot ?? "");
+      const own = files.find(({ slot }) => slot === "robot");
+      if (this.first) {
+        await this.useRobot(this.first.name, new TextDecoder().decode(this.first.data));
+      } else if (own) {
+        const { robot } = await this.connection.ask<ReadReply>("read", { name: own.name });
+        await this.useRobot(own.name, robot);
       } else await this.useRobot("", null);
       const gait =
         files.find(({ slot }) => slot === "postures") ??
         files.find(({ slot }) => slot === "locomotion");
       if (gait) await this.open(gait.name);
+      else await this.openSample();
     } catch (error) {
       this.opened = this.robot.peek() !== null;
       this.refuse(error);
