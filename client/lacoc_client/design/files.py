@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import PurePath
 
 from lacoc_client.design.table import FileTable, gait_of, page_table
+from lacoc_client.design.workbook_edit import edit_workbook, formulas_in
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.tables import LocomotionTable
 from lacoc_shared.gait.text import read_gait, write_gait
@@ -41,6 +42,8 @@ def read_file(name: str, data: bytes) -> FileContent:
     notes: list[Phrase] = []
     read = read_workbook if data.startswith(_PACKED) else read_gait
     table = page_table(read(data, name, notes=notes))
+    if read is read_workbook and (count := formulas_in(data, name)):
+        notes.append(say("design.formulas", file=name, count=count))
     return FileContent(table=table, notes=tuple(notes))
 
 
@@ -53,7 +56,7 @@ def file_bytes(name: str, content: FileTable | str, before: bytes | None = None)
         before: the file as it is now; None: there is none.
 
     Raises:
-        FileRefused: with every mistake of the table.
+        FileRefused: with every mistake of the table, or of the workbook that it belongs into.
         UserError: if the file can't have such a content.
     """
     if isinstance(content, str):
@@ -67,6 +70,8 @@ def file_bytes(name: str, content: FileTable | str, before: bytes | None = None)
         return write_gait(gait, leg_labels(content.legs))
     if isinstance(gait, LocomotionTable):
         raise UserError(say("design.sequences-in-workbook", name=name))
+    if before is not None:
+        return edit_workbook(before, name, gait)
     return write_workbook(gait, leg_labels(content.legs))
 
 
