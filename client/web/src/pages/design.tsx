@@ -2,7 +2,7 @@
 
 import { computed, signal, useComputed, useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
-import { bodyOf } from "../core/design/parts";
+import { bodyOf, jointsOfLeg } from "../core/design/parts";
 import { trialSource } from "../core/design/sources";
 import { pathOf, support } from "../core/design/trial";
 import { quality } from "../core/settings";
@@ -38,6 +38,7 @@ declare global {
   }
 }
 
+const LEG_GLOW = 0.5;
 const dragging = signal(false);
 const fineness = qualityOfAddress() ?? quality;
 
@@ -262,8 +263,16 @@ function CompareButton({ studio }: { studio: Studio }) {
 function Stage({ studio }: { studio: Studio }) {
   const lit = useComputed(() => {
     const scene = studio.picture.scene.value;
-    const bodies = scene ? studio.lit.value.map((joint) => bodyOf(scene, joint)) : [];
-    return new Set(bodies.filter((body) => body >= 0));
+    const legs = studio.robot.value?.legs.length ?? 0;
+    const joints = studio.lit.value;
+    const glow = new Map<number, number>();
+    if (!scene) return glow;
+    // The root link is short: the whole leg shows where it is.
+    for (const joint of joints.flatMap((one) => jointsOfLeg(one % legs, legs))) {
+      glow.set(bodyOf(scene, joint), LEG_GLOW);
+    }
+    for (const joint of joints) glow.set(bodyOf(scene, joint), 1);
+    return glow;
   }).value;
   const isWatching = studio.watching.value;
   const other = studio.other.value;

@@ -35,8 +35,8 @@ interface Props {
   onPick?: (hit: Hit) => void;
   /** The pointer came to the link of a joint, or left them all. With it, `onPick` tells joints. */
   onJoint?: (joint: number | null) => void;
-  /** Bodies of robots that glow. */
-  lit?: ReadonlySet<number>;
+  /** Bodies of robots that glow, and how strongly, from 0 to 1. */
+  lit?: ReadonlyMap<number, number>;
   /** The same robots in another trial, drawn translucent. */
   ghost?: Source["sample"] | null;
   /** Marks on the floor, asked for with each picture. */
@@ -45,7 +45,7 @@ interface Props {
   label?: string;
 }
 
-const NONE: ReadonlySet<number> = new Set();
+const NONE: ReadonlyMap<number, number> = new Map();
 
 /** All views of the page, the oldest first; `view` is the first of them. */
 interface Hooks {

@@ -32,7 +32,7 @@ import { MarkerMotion } from "./markers";
 import { FloorLayer, type FloorMarks } from "./marks";
 import { type Finish, floor } from "./materials";
 import type { Model } from "./model";
-import { afflicted, evening, ghostly, LIT, type Rgb, rgb } from "./palette";
+import { afflicted, evening, ghostly, LIT, mix, type Rgb, rgb } from "./palette";
 import { EYE, type Piece, piecesOf } from "./pieces";
 import { Pulses } from "./pulses";
 import type { Fineness } from "./quality";
@@ -46,14 +46,14 @@ export interface Ring {
 
 /** What is drawn besides the match. */
 export interface Extras {
-  /** Bodies of robots that glow. */
-  lit: ReadonlySet<number>;
+  /** Bodies of robots that glow, and how strongly, from 0 to 1. */
+  lit: ReadonlyMap<number, number>;
   /** The same robots as they were in another trial. */
   ghost: Model | null;
   marks: FloorMarks | null;
 }
 
-const NO_EXTRAS: Extras = { lit: new Set(), ghost: null, marks: null };
+const NO_EXTRAS: Extras = { lit: new Map(), ghost: null, marks: null };
 const GHOST = 0.34;
 const GROUND: Rgb = [0.055, 0.072, 0.1];
 const DARK = [0.066, 0.09, 0.13] as const;
@@ -79,6 +79,7 @@ export class Stage {
   private readonly pulses: Pulses;
   private readonly blobs: Mesh[] = [];
   private readonly ghostColours = new Map<Rgb, Rgb>();
+  private readonly litColours = new Map<number, Map<Rgb, Rgb>>();
   private readonly matrix = new Matrix4();
   private readonly pose = new Matrix4();
 
@@ -336,10 +337,20 @@ export class Stage {
     this.ghosts.done();
   }
 
-  /** The same object for the same colour: then it is not sent to the graphics card again. */
+  // The same object for the same colour: then it is not sent to the graphics card again.
+
   private ghostColour(colour: Rgb): Rgb {
     const made = this.ghostColours.get(colour) ?? ghostly(colour);
     this.ghostColours.set(colour, made);
+    return made;
+  }
+
+  private litColour(colour: Rgb, strength: number): Rgb {
+    if (!strength) return colour;
+    const ofStrength = this.litColours.get(strength) ?? new Map<Rgb, Rgb>();
+    this.litColours.set(strength, ofStrength);
+    const made = ofStrength.get(colour) ?? mix(colour, LIT, strength);
+    ofStrength.set(colour, made);
     return made;
   }
 
@@ -352,12 +363,12 @@ export class Stage {
     this.floorLayer.draw(marks);
   }
 
-  private drawRobots(layer: Layer, model: Model, lit: ReadonlySet<number>): void {
+  private drawRobots(layer: Layer, model: Model, lit: ReadonlyMap<number, number>): void {
     layer.clear();
     if (model.robots.length) {
       for (const piece of this.robotPieces) {
         const flags = model.robots[model.fk.seats[piece.body]!]?.flags ?? 0;
-        const own = lit.has(piece.body) ? LIT : piece.colour;
+        const own = this.litColour(piece.colour, lit.get(piece.body) ?? 0);
         const colour = piece.colour === EYE ? EYE : afflicted(own, flags);
         this.put(layer, piece, this.poseOf(piece.body), colour);
       }
@@ -389,6 +400,7 @@ export class Stage {
     this.ghosts?.dispose();
     this.ghosts = null;
     this.ghostColours.clear();
+    this.litColours.clear();
     this.markerPieces = [];
     this.robotPieces = [];
     for (const mesh of [...this.world.children, ...this.blobs]) {

@@ -36,8 +36,8 @@ export interface Options {
   onPick: ((hit: Hit) => void) | null;
   /** Called with the joint of the link that the pointer comes to; null: it left them all. */
   onJoint: ((joint: number | null) => void) | null;
-  /** Bodies of robots that glow. */
-  lit: ReadonlySet<number>;
+  /** Bodies of robots that glow, and how strongly, from 0 to 1. */
+  lit: ReadonlyMap<number, number>;
   /** The same robots in another trial, drawn translucent. */
   ghost: Source["sample"] | null;
   /** Marks on the floor, now. */
@@ -61,7 +61,7 @@ export interface ViewHook {
   bodyPos(name: string): [number, number, number] | null;
   /** Of the robot of another trial. */
   ghostPos(name: string): [number, number, number] | null;
-  /** Names of the bodies that glow. */
+  /** Names of the bodies that glow most. */
   readonly lit: string[];
   marker(index: number): number;
   /** Where on the page a point of the world is [px]. */
@@ -175,7 +175,8 @@ export class Viewer {
       },
       get lit() {
         const { bodies } = viewer.model?.scene ?? { bodies: [] };
-        return [...viewer.options.lit].map((body) => bodies[body]?.name ?? "");
+        const glow = [...viewer.options.lit].filter(([, strength]) => strength === 1);
+        return glow.map(([body]) => bodies[body]?.name ?? "");
       },
       bodyPos: (name) => viewer.model?.bodyPos(name) ?? null,
       ghostPos: (name) => (viewer.options.ghost && viewer.ghost?.bodyPos(name)) || null,

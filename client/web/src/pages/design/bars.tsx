@@ -248,10 +248,11 @@ function Still({ trial, other }: StillProps) {
 
 /** The support margin over time; below its line the robot falls. */
 function Margin({ trial, top }: { trial: Trial; top: number }) {
-  const { marginM, ticks } = trial;
+  const { marginM, ticks, reply } = trial;
   const high = MARGIN_ROWS * ROW;
   const zero = top + 0.68 * high;
-  const known = [...marginM].filter((one) => !Number.isNaN(one));
+  // The scale is that of the walk: at the start, on all feet, the margin is far larger.
+  const known = [...marginM.slice(reply.first, reply.end)].filter((one) => !Number.isNaN(one));
   const scale = (0.6 * high) / Math.max(0.02, ...known);
   const points = Array.from({ length: ticks }, (_, tick) => {
     const margin = marginM[tick]!;

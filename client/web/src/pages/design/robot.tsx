@@ -8,7 +8,7 @@ import { type MessageName, t } from "../../i18n";
 import { classes } from "./rows";
 import { jointName, type Studio } from "./studio";
 
-const PITCH = 42;
+const PITCH = 52;
 const HALF_BODY = 24;
 const FIRST_OUT = 40;
 const STEP_OUT = 27;
