@@ -4,9 +4,11 @@ import json
 import os
 import signal
 import subprocess
+import threading
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
+from concurrent.futures import Future
+from typing import Any, cast
 
 import msgspec
 import numpy as np
@@ -16,7 +18,12 @@ from benchmarks.trials import entry_of
 from lacoc_process import started
 
 from lacoc_robots.library import find_robot, sample_gait_files
-from lacoc_server.studio.answers import answer, try_gait
+from lacoc_server.studio.answers import answer, read_files, try_gait
+from lacoc_server.studio.coach.coach import coach, reply_of, task_of
+from lacoc_server.studio.coach.goal import Goal
+from lacoc_server.studio.coach.improve import Size
+from lacoc_server.studio.coach.trials import Trials
+from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.course import LONGEST_TICKS
 from lacoc_server.world.sensed import make_course
 from lacoc_shared.codec import decode, encode
@@ -257,19 +264,32 @@ def coach_request(job: str, **more: object) -> CoachRequest:
     return msgspec.structs.replace(request, **more)
 
 
+class Here:
+    """Runs jobs in this process, in the place of `Workers`."""
+
+    count = 1
+
+    def submit(self, function: Callable[..., Any], *arguments: object) -> Future[Any]:
+        """Run a job at once."""
+        done: Future[Any] = Future()
+        done.set_result(function(*arguments))
+        return done
+
+
 def test_a_search_can_be_repeated(asker: Asker) -> None:
-    """A search without time is one round: it has the same result again. It tells how far it is."""
+    """A search of one round has the same result in one process. It tells how far it is."""
     progress = asker.session.mailbox(KEYS.progress("one"), 1000)
-    replies = [
-        decode(asker.begin("coach", coach_request(job)).wait(), CoachReply)
-        for job in ("one", "two")
-    ]
-    assert replies[0] == replies[1]
-    first = replies[0]
-    assert len(first.changes) == 1
-    assert first.score_after > first.score_before
-    assert len(first.matters) == 24
-    assert not first.cancelled
+    request = coach_request("one")
+    reply = decode(asker.begin("coach", request).wait(), CoachReply)
+    robot, gait, _ = read_files(request.files)
+    task = task_of(robot, gait, 2, Goal.FORWARD)
+    trials = Trials(task, cast(Workers, Here()), threading.Event())
+    again = coach(trials, Size.CELL, 0.0, 0, lambda _: None)
+    assert reply == reply_of(task, 2, again)
+    assert len(reply.changes) == 1
+    assert reply.score_after > reply.score_before
+    assert len(reply.matters) == 24
+    assert not reply.cancelled
     told = []
     while (mail := progress.take()) is not None:
         told.append(decode(mail.payload, Progress))
@@ -328,15 +348,19 @@ def test_physics_that_stop_are_a_reply() -> None:
     """A trial whose physics stop has a fault and the figures of what was seen."""
     course = make_course(entry_of("hexapod").robot)
     course._world.data.qvel[:] = 1e9  # type: ignore[attr-defined]
+    course._world._keep()  # type: ignore[attr-defined]
     course._start = course._world.save()
     found = answer(
         "trial", encode(TrialRequest(protocol=PROTOCOL, files=GaitFiles())), lambda _: course
     )
     assert found.right
-    assert decode(found.payload, TrialReply).fault is not None
+    reply = decode(found.payload, TrialReply)
+    assert reply.fault is not None
+    assert reply.explained[0].said.code == "explain.fault"
+    assert (reply.ticks, reply.poses) == (0, b"")
 
 
-def test_no_process_is_left_when_a_studio_is_killed(tmp_path: Path) -> None:
+def test_no_process_is_left_when_a_studio_is_killed() -> None:
     """The processes for trials end by themselves when their studio is killed."""
     process = started(
         "studio", "--json", "--jobs", "1", "--listen", "tcp/127.0.0.1:0",
