@@ -171,7 +171,10 @@ def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path:
         file.write_text(text)
         found = look(capsys, tmp_path, "--contest", str(file))[f"port {port}"]
         assert found["status"] == "problem"
-        assert "court main runs here, but the contest file puts court hall here" in found["found"]
+        assert (
+            "court main runs here, but the contest file gives this port to court hall"
+            in found["found"]
+        )
         assert "--listen" in found["todo"]
         assert doctor.court_port("127.0.0.1", port, None).status is Status.OK
 
@@ -198,7 +201,7 @@ def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: 
         file.write_text(hall + text)
         found = look(capsys, tmp_path, "--contest", str(file))
         one = look(capsys, tmp_path, "--contest", str(file), "--court", "main")
-    assert "Nobody listens at" in found["court hall"]["found"]
+    assert "No program answers at" in found["court hall"]["found"]
     assert "Test at tcp/" in found["court main"]["found"]
     assert found["frames of main"]["status"] != "problem"
     assert "disk" in found
@@ -210,7 +213,7 @@ def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
     """A court that does not run is reported as a problem in one sentence."""
     found = look(capsys, tmp_path, "--connect", f"tcp/127.0.0.1:{free()}")
     assert found["court main"]["status"] == "problem"
-    assert "Nobody listens at" in found["court main"]["found"]
+    assert "No program answers at" in found["court main"]["found"]
 
 
 @pytest.mark.slow

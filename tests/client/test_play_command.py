@@ -247,7 +247,7 @@ def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
         ({"token": "not-the-token-of-it"}, "token"),
         ({"seat": "middle"}, 'has no seat "middle". It has left and right.'),
         ({"court": "centre"}, 'There is no court "centre" at'),
-        ({"connect": "tcp/127.0.0.1:1"}, "Nobody listens at tcp/127.0.0.1:1."),
+        ({"connect": "tcp/127.0.0.1:1"}, "No program answers at tcp/127.0.0.1:1."),
         ({"connect": "my court"}, '"my court" is not an address.'),
         ({"name": "x" * 25}, "1 to 24 printable characters"),
         ({"robot": "centipede"}, "centipede"),
@@ -279,7 +279,7 @@ def test_wrong_files_are_a_table(quiet_court: CourtProcess, tmp_path: Path) -> N
     code, said = piped(tmp_path, "", *words)
 
     assert code == 2
-    assert "1 mistake. Nothing of the file is used until all are corrected." in said
+    assert "1 mistake. The file is not used until all are corrected." in said
     assert "│ four.txt │" in said
     assert "6 legs" in said
 

@@ -224,7 +224,7 @@ def test_convert_never_overwrites(lacoc, folder, workshop):
     code, _, err = lacoc("gait", "convert", folder / "Loco-data.txt", target, "--keys", "0")
     assert code == 0
     kept = folder / "LocoTra-data.1.txt"
-    assert f"{target} was there already. It is named {kept} now." in err
+    assert f"The older {target} is now named {kept}." in err
     assert kept.read_bytes() == before
     assert read_gait_file(target) == to_locomotion(workshop, ((0,),))
 

@@ -269,7 +269,14 @@ def test_mistakes_of_loco_data(text, expected):
         ),
         pytest.param(
             f"1\n{posture('')}",
-            [(2, None, "18 cells", "only the number of postures of key [0], in a row above them")],
+            [
+                (
+                    2,
+                    None,
+                    "18 cells",
+                    "only the number of postures of key [0], in a row above these postures",
+                )
+            ],
             id="no number of postures",
         ),
         pytest.param(

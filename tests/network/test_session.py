@@ -69,7 +69,7 @@ def test_where_nobody_listens_is_said() -> None:
     """A client gets the message "Nobody listens" for a closed port."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    with pytest.raises(UserError, match="Nobody listens at tcp/127"):
+    with pytest.raises(UserError, match="No program answers at tcp/127"):
         open_client([f"127.0.0.1:{port}"], timeout_s=0.2)
 
 

@@ -59,7 +59,7 @@ def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> No
     assert moved_m > 0.05
     assert mistake.field == "start.posture_deg"
     assert render(mistake.found) == (
-        f"a robot that goes {moved_m:.3f} m from its start within 2 s "
+        f"a robot that moves {moved_m:.3f} m from its start within 2 s "
         "(standing with key 0 of level B)"
     )
     assert render(mistake.expected).startswith("at most 0.045 m")
@@ -94,7 +94,7 @@ def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
     """A robot that sinks at 1.8 mm/s after two seconds is refused, because it would fall later."""
     slow = Stood(moved_m=0.015, tilt_rad=0.18, joint_rad_s=0.0087, centre_m_s=0.0018)
     (mistake,) = mistakes_of(slow, "robot.toml", (B,))
-    assert "a joint at 0.5 degrees/s, its middle at 1.8 mm/s" in render(mistake.found)
+    assert "a joint at 0.5 degrees/s, the middle of the body at 1.8 mm/s" in render(mistake.found)
 
 
 @pytest.mark.parametrize(

@@ -259,7 +259,7 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
         process.send_signal(signal.SIGTERM)
         said, _ = process.communicate(timeout=WAIT_S)
         assert process.returncode == 0
-        assert "No record is packed now: [Errno 11] Resource temporarily unavailable" in said
+        assert "Records can't be packed now: [Errno 11] Resource temporarily unavailable" in said
         assert len(list(folder.glob("*.live.mcap"))) == 3
 
         flag.unlink()

@@ -48,7 +48,7 @@ robot = "hexapod"          # for a team that brings none: an installed robot or 
 # ang_min_deg_s = 240.0    # fastest joint
 # torque_n_m = 2.0         # strongest servo
 
-[health]                   # a match held worse than this: "replay advised"; these are the defaults
+[health]                   # a match held worse than this: "rematch advised"; these are the defaults
 # real_time_factor = 0.98  # at least, over the time that was played
 # slow_beats_percent = 1.0
 # worst_late_ms = 200.0
