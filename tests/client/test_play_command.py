@@ -90,7 +90,7 @@ def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Pa
     terminal.press("\t")
     terminal.sees("This arena allows only level B locomotion.")
     terminal.press(" ")
-    terminal.sees("The terminal has no views")
+    terminal.sees("The terminal can't change the view")
     terminal.press("k")
     terminal.sees("[k] does nothing.")
     terminal.press("x")

@@ -77,7 +77,7 @@ def test_another_program_at_the_address_is_said() -> None:
     """A client is told if another program than a court has the address."""
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
-        with pytest.raises(UserError, match="does not let this program in"):
+        with pytest.raises(UserError, match="it refuses the connection"):
             open_client([f"127.0.0.1:{port}"], timeout_s=0.2)
 
 

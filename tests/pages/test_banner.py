@@ -54,7 +54,7 @@ def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: s
     ("locale", "full"),
     [
         ("en-GB", FULL),
-        pytest.param("ja-JP", "すでに 1 ページが接続しています。", marks=pytest.mark.long),
+        pytest.param("ja-JP", "すでに上限の 1 ページが観戦中です。", marks=pytest.mark.long),
     ],
 )
 def test_a_full_hall_is_said_and_not_stormed(

@@ -105,8 +105,8 @@ def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
         (Stood(0.0451, 0.0, 0.0, 0.0), ["goes 0.045 m"]),
         (Stood(0.0, math.radians(31), 0.0, 0.0), ["leans 31 degrees"]),
         (Stood(0.0, 0.0, math.radians(4), 0.0), ["a joint at 4.0 degrees/s"]),
-        (Stood(0.0, 0.0, 0.0, 0.0003), ["its middle at 0.3 mm/s"]),
-        (Stood(0.0, 0.0, 0.0, 0.0, fault=True), ["physics can't follow"]),
+        (Stood(0.0, 0.0, 0.0, 0.0003), ["the middle of the body at 0.3 mm/s"]),
+        (Stood(0.0, 0.0, 0.0, 0.0, fault=True), ["physics can't simulate"]),
         (Stood(0.3, 1.0, 9.0, 1.0), ["goes 0.300 m", "leans 57", "a joint at 515.7"]),
     ],
 )
