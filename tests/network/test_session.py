@@ -61,7 +61,7 @@ def test_a_port_in_use_is_said(router: Session) -> None:
 
 def test_an_address_that_is_not_ours_is_said() -> None:
     """A court that listens at another machine's address gets a message that says so."""
-    with pytest.raises(UserError, match=r"no address 192\.0\.2\.1"):
+    with pytest.raises(UserError, match=r"does not have the address 192\.0\.2\.1"):
         open_court(["192.0.2.1:0"])
 
 

@@ -169,4 +169,4 @@ def test_a_gait_is_checked_for_a_robot(leaper: Path) -> None:
     other = run(gait_app, ["check", gait_file, "--robot", "octopod", "--json"])
     assert "this robot has 8 legs" in other.stdout
     both = run(gait_app, ["check", gait_file, "--robot", "hexapod", "--legs", "6"])
-    assert "leave out --legs" in str(both.exception)
+    assert "Leave out --legs" in str(both.exception)
