@@ -294,7 +294,7 @@ def test_a_port_that_is_in_use_is_said() -> None:
     """If a gateway's port is in use, the error asks for another port."""
     with server.listen("127.0.0.1:0") as opened:
         address = server.url(opened)
-        with pytest.raises(UserError, match="Choose another port"):
+        with pytest.raises(UserError, match="choose another port"):
             server.listen(address.removeprefix("http://"))
 
 

@@ -108,7 +108,7 @@ def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
     left = keyed.people["left"]
     with CourtStub() as plain:
         there = plain.address.replace("tcp/", "tls/")
-        assert "has no keys" in refused(msgspec.structs.replace(left, connect=there))
+        assert "does not use encryption" in refused(msgspec.structs.replace(left, connect=there))
         assert "tls/127" in refused(msgspec.structs.replace(left, connect=plain.address))
     bare = Access(court="main", connect=keyed.address.replace("tls/", "tcp/"))
     assert re.search(r"only with an invitation.*--invitation", refused(bare))

@@ -122,7 +122,7 @@ def test_damage_beside_a_packed_file_removes_nothing(
     damaged = bytearray((tmp_path / victim).read_bytes())
     damaged[len(damaged) // 2] ^= 1
     (tmp_path / victim).write_bytes(damaged)
-    with pytest.raises(UserError, match="all are kept"):
+    with pytest.raises(UserError, match="all of them are kept"):
         pack.pack([path], tmp_path / "m.mcap")
     assert {found.name for found in tmp_path.iterdir()} == {"m.mcap", "m.000.live.mcap"}
 

@@ -84,7 +84,7 @@ def test_an_invitation_stands_alone(tmp_path: Path, place: int) -> None:
     """No option for contest, court, address, seat or token may be given beside an invitation."""
     others = [None] * 5
     others[place] = "x"  # type: ignore[call-overload]
-    with pytest.raises(UserError, match="leave --contest"):
+    with pytest.raises(UserError, match="do not give --contest"):
         entrance.seat(written(tmp_path, LEFT), *others)
 
 
