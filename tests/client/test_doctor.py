@@ -124,7 +124,7 @@ def test_packages_that_are_not_there(tmp_path: Path) -> None:
         'pip install "no-such-thing>=2"',
     ]
     assert by_name["no-engine"][0] == Status.NOTE
-    assert "run a match" in by_name["no-engine"][1]
+    assert "run a court" in by_name["no-engine"][1]
 
 
 def test_ports_that_are_taken(

@@ -66,7 +66,7 @@ def test_an_address_that_is_not_ours_is_said() -> None:
 
 
 def test_where_nobody_listens_is_said() -> None:
-    """A client gets the message "Nobody listens" for a closed port."""
+    """A client gets the message "No program answers" for a closed port."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     with pytest.raises(UserError, match="No program answers at tcp/127"):

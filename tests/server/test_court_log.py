@@ -71,7 +71,7 @@ def test_what_went_wrong_is_said_once() -> None:
         "left seat: 1 message refused (wrong signature).",
         "Referee's desk: 1 message refused (wrong token).",
         "Slow beats: 3 new, 3 in all. The worst of all began 61 ms late.",
-        "The record m.mcap can't be written: disk full. Free some space on its disk.",
+        "The record m.mcap can't be written: disk full. Make room on its disk.",
         "The record can be written again.",
     ]
     assert [line["code"] for line in lines][-2:] == ["record.no-room", "log.record-again"]
