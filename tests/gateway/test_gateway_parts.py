@@ -259,7 +259,7 @@ def test_the_courts_list_stands_for_the_log() -> None:
 
 
 def test_the_newest_of_a_very_long_log_are_kept() -> None:
-    """A log keeps only as many newest events as a court lists, and still counts as complete."""
+    """A log keeps only its newest events, as a court does, and still counts as complete."""
     log: EventLog[int] = EventLog()
     for number in range(1, 3 * EVENTS_LISTED):
         log.add(event(number, "a"), number)

@@ -94,7 +94,7 @@ def play_command(
 
 
 def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:
-    """Read the given files, or the gait files of the current folder, and print which.
+    """Read the given files; without gait files, read and name those of the current folder.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -117,7 +117,7 @@ def play(
     """Join, and play at the terminal until the contestant leaves.
 
     Args:
-        access: the way to the seat.
+        access: address, seat and token.
         team: the team's name.
         files: the team's files.
         ready: say ready at once.

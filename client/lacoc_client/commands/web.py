@@ -119,7 +119,7 @@ def web_command(
 def _courts(
     invitation: Path | None, plan: Contest | None, court: str | None, connect: str | None
 ) -> dict[str, Access]:
-    """Find the way to each court: the named one, or all of the contest."""
+    """Find the access to the named court, or to all courts of the contest."""
     if plan is None or court is not None or connect is not None or len(plan.courts) == 1:
         access = entrance.gateway(invitation, plan, court, connect)
         return {access.court: access}
