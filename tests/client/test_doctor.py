@@ -225,7 +225,7 @@ def test_the_link_to_a_court(
     found = look(capsys, tmp_path, "--connect", court.address, "--seconds", "1")
     assert found["court main"]["status"] == "ok"
     assert found["round trip to main"]["found"].startswith("50 requests, ")
-    assert " a second while the match is in the lobby, " in found["frames of main"]["found"]
+    assert " frames a second while the match is in the lobby; " in found["frames of main"]["found"]
     assert found["frames of main"]["status"] != "problem"
     port = int(court.address.rpartition(":")[2])
     here = doctor.court_port("127.0.0.1", port, "main")

@@ -166,7 +166,7 @@ def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) ->
     code, said = piped(tmp_path, script, "play", "--terminal", "--ready", *court.where("left"))
 
     assert code == 0
-    assert "Line 1 is left out: 'w' is no key" in said
+    assert "Line 1 is left out: 'w' " in said
     assert "The match is finished: time is up." in said
     assert said.rstrip().endswith("You have left. The seat stays yours.")
     assert "refused" not in said
@@ -245,7 +245,7 @@ def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
     ("changes", "expected"),
     [
         ({"token": "not-the-token-of-it"}, "token"),
-        ({"seat": "middle"}, 'has no seat "middle". It has left and right.'),
+        ({"seat": "middle"}, 'has no seat "middle". Its seats are left and right.'),
         ({"court": "centre"}, 'There is no court "centre" at'),
         ({"connect": "tcp/127.0.0.1:1"}, "No program answers at tcp/127.0.0.1:1."),
         ({"connect": "my court"}, '"my court" is not an address.'),

@@ -102,12 +102,12 @@ def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
     [
         (STILL, []),
         (Stood(0.045, math.radians(30), math.radians(0.2), 0.0002), []),
-        (Stood(0.0451, 0.0, 0.0, 0.0), ["goes 0.045 m"]),
+        (Stood(0.0451, 0.0, 0.0, 0.0), ["moves 0.045 m"]),
         (Stood(0.0, math.radians(31), 0.0, 0.0), ["leans 31 degrees"]),
         (Stood(0.0, 0.0, math.radians(4), 0.0), ["a joint at 4.0 degrees/s"]),
         (Stood(0.0, 0.0, 0.0, 0.0003), ["the middle of the body at 0.3 mm/s"]),
         (Stood(0.0, 0.0, 0.0, 0.0, fault=True), ["physics can't simulate"]),
-        (Stood(0.3, 1.0, 9.0, 1.0), ["goes 0.300 m", "leans 57", "a joint at 515.7"]),
+        (Stood(0.3, 1.0, 9.0, 1.0), ["moves 0.300 m", "leans 57", "a joint at 515.7"]),
     ],
 )
 def test_what_is_told(stood: Stood, words: list[str]) -> None:
