@@ -48,37 +48,50 @@ def coach_command(
     size: Annotated[
         Size | None,
         typer.Option(
-            help="Search for a better table: change one number (cell), at most three, or the whole "
-            "table. Left out, the coach only says which numbers matter."
+            help="Search for a better table: change one number (cell), at most three, or the "
+            "whole table. By default the coach only says which numbers matter."
         ),
     ] = None,
     goal: Annotated[
-        Goal, typer.Option("--for", help="What the key is for: it also chooses the key.")
+        Goal,
+        typer.Option(
+            "--for", help="What the robot shall do better; this also chooses the key to change."
+        ),
     ] = Goal.FORWARD,
     key: Annotated[
-        int | None, typer.Option(help="The key of level B to change.", min=0, max=9)
+        int | None,
+        typer.Option(
+            help="The key of level B to change; by default the key of --for.", min=0, max=9
+        ),
     ] = None,
     seconds: Annotated[
         float,
         typer.Option(
             metavar="S",
-            help="How long the coach searches; then it undoes what hardly helps.",
+            help="How many seconds the coach searches; then it undoes changes that hardly help.",
             min=1.0,
             max=3600.0,
         ),
     ] = 30.0,
-    seed: Annotated[int, typer.Option(help="Another number searches in another order.", min=0)] = 0,
+    seed: Annotated[
+        int,
+        typer.Option(
+            help="Number that decides the order of the search; another number gives another order.",
+            min=0,
+        ),
+    ] = 0,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Write the better gait there, as LocoTra-data text."),
+        typer.Option(metavar="FILE", help="File for the better gait, as LocoTra-data text."),
     ] = None,
     json: options.Json = False,
 ) -> None:
     """Say which numbers of a gait matter, and search for a better gait with few changes.
 
-    Each number is turned by 10 degrees up and down, and the robot walks with it, under the
-    contest's drive and limits. With --size the coach then searches. A change that hardly helps is
-    undone, so what is left can be understood. Ctrl-C ends the search and keeps the best so far.
+    The coach makes each number 10 degrees larger and smaller, and lets the robot walk as in a
+    contest. With --size the coach then searches for a better gait. A change that hardly helps is
+    undone, so that you can understand the changes that are left. Ctrl-C ends the search and keeps
+    the best gait so far.
     """
     spec = read_robot_file(robot)
     gait = read_trial_gait(file, spec)
