@@ -19,7 +19,7 @@ PAGES_FROM := $(shell find client/web/src client/web/public -type f) \
 	$(addprefix client/web/,index.html package-lock.json vite.config.ts)
 NPM := PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix client/web --loglevel=error
 
-.PHONY: help demo test test-all format lint type walls check build bench fuzz mutants soak wheel-smoke web clean
+.PHONY: help demo test test-all test-long format lint type walls check build bench fuzz mutants soak wheel-smoke web clean
 .DELETE_ON_ERROR:
 
 help: ## Show this list.
@@ -31,7 +31,9 @@ demo: .venv/.server $(PAGES) ## See a whole match: a court, two bots and a refer
 test: .venv/.test .venv/.web $(PAGES) ## Run the tests.
 	$(PYTEST) $(ARGS)
 
-test-all: test ## Run the tests, then the long ones: soak, fuzzing, kills, other arithmetic, many examples.
+test-all: test test-long ## Run all tests.
+
+test-long: .venv/.test .venv/.web $(PAGES) ## Run the long tests: soak, fuzzing, kills, other arithmetic, many examples.
 	$(PYTEST) --long $(ARGS)
 	GLIBC_TUNABLES=$(OLDER_PROCESSOR) $(PYTEST) $(PHYSICS_TESTS) $(ARGS)
 

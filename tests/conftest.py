@@ -1,6 +1,7 @@
 """Settings of all tests: which tests run, and how many examples check each property."""
 
 import os
+import signal
 
 import pytest
 from hypothesis import settings
@@ -11,6 +12,9 @@ settings.register_profile("thorough", deadline=None, max_examples=400)
 
 # The commands of these tests print English, also on a machine whose language is Japanese.
 os.environ["LACOC_LANGUAGE"] = "en"
+
+# A shell lets what it starts in the background ignore Ctrl-C, and children would inherit that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -22,7 +22,7 @@ from lacoc_shared.mistakes import FileRefused
 from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer(
-    help="Check a robot file, export it as MJCF, list the robots there are.",
+    help="Check a robot file, export it as MJCF, or list the installed robots.",
     no_args_is_help=True,
 )
 
@@ -36,11 +36,11 @@ _Robot = Annotated[
 
 @app.command()
 def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json = False) -> None:
-    """Weigh a robot in: name every mistake in its file, or say what it is.
+    """Weigh a robot in: list every mistake in its file, or describe the robot.
 
     The robot is tried in physics: it must stay in place when it stands, with the gait files beside
-    it or in its start posture. With --contest the contest's limits count, else those of the rules.
-    With --json the mistakes are a list, empty for a robot that is right.
+    it or in its start posture. By default the limits of the rules count, with --contest those of
+    the contest. With --json the mistakes are a list, which is empty for a robot without mistakes.
     """
     notes: list[Phrase] = []
     try:
@@ -83,7 +83,8 @@ def export(
 ) -> None:
     """Write a robot as plain MJCF, which any MuJoCo opens; an older file is kept.
 
-    It stands on a floor: take the keyframe "stand". Needs the extra "server".
+    The file has a floor, and in its keyframe "stand" the robot stands there. This command needs
+    MuJoCo, which the extra "server" installs.
     """
     spec = _read(robot, contest)
     from lacoc_robots.model import export_mjcf  # a contestant's machine may have no MuJoCo
@@ -96,7 +97,7 @@ def export(
 
 @app.command("list")
 def list_robots(json: options.Json = False) -> None:
-    """List the installed robots; each name can stand where a robot file can."""
+    """List the installed robots; you can give their names in place of a robot file."""
     robots = {name: _facts(_read(name, None)) for name in installed_robots()}
     if json:
         screen.print_json(robots)

@@ -68,7 +68,7 @@ def check(
             min=1,
             max=100,
             metavar="N",
-            help="The robot's number of legs; left out, a gait for 4, 6 or 8 legs is fine.",
+            help="How many legs the robot has; by default gaits for 4, 6 or 8 legs are accepted.",
         ),
     ] = None,
     robot: Annotated[
@@ -76,8 +76,9 @@ def check(
         typer.Option(
             "--robot",
             metavar="ROBOT",
-            help="The robot that the gait is for: a robot file (.toml), a robot's folder, or an "
-            "installed name. Its legs and ranges count, and it is tried whether it stands.",
+            help="The robot that the gait is for: a robot file (.toml), a robot's folder, or "
+            "an installed name. The gait must fit its legs and ranges, and the robot must "
+            "be able to stand.",
         ),
     ] = None,
     json: options.Json = False,
@@ -144,12 +145,12 @@ def convert(
         str | None,
         typer.Option(
             metavar="KEYS",
-            help="From postures to locomotion: the postures of each key from 0 on. "
-            f"By default the sample's: '{_SAMPLE_KEYS_TEXT}'.",
+            help="To make locomotion from postures: the postures of each key, from key 0 on. "
+            f"By default as in the sample: '{_SAMPLE_KEYS_TEXT}'.",
         ),
     ] = None,
 ) -> None:
-    """Turn a gait file into another kind; an older file of that name is kept with a number."""
+    """Convert a gait file to another kind; an older file of that name is kept with a number."""
     locomotion = _is_locomotion(target)
     table = read_gait_file(source)
     if keys is not None and not (locomotion and isinstance(table, PostureTable)):

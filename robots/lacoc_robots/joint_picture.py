@@ -51,7 +51,7 @@ def labels_of(mistakes: Sequence[Mistake]) -> tuple[str, ...] | None:
 
 
 def _ids(leg: int, legs: int, lit: Collection[int], outward: int) -> list[tuple[str, str]]:
-    """Write the ids of a leg's joints; from the body outward they go to the right or left."""
+    """Write a leg's joint ids; the joint at the body is first if `outward` is 1, last if -1."""
     joints = [leg + legs * level for level in range(JOINTS_PER_LEG)][::outward]
     parts: list[tuple[str, str]] = []
     for joint in joints:

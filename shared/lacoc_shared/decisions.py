@@ -46,7 +46,7 @@ class Freeze(_Decision, frozen=True, tag="freeze"):
 
 
 class Unfreeze(_Decision, frozen=True, tag="unfreeze"):
-    """End a freeze."""
+    """Let a frozen robot move again."""
 
     seat: str
 
@@ -66,7 +66,7 @@ class Set(_Decision, frozen=True, tag="set"):
 
 
 class TakeBack(_Decision, frozen=True, tag="take-back"):
-    """Strike out one event and judge the match again without it."""
+    """Take back one event and judge the match again without it."""
 
     event: int
     """Number of the event."""
@@ -88,7 +88,7 @@ class Abort(_Decision, frozen=True, tag="abort"):
 
 
 class Declare(_Decision, frozen=True, tag="declare"):
-    """Name the winner, whatever the rules computed."""
+    """Declare the winner, also against the result of the rules."""
 
     winner: str
     """A seat's id, or "draw"."""

@@ -124,7 +124,7 @@ def test_packages_that_are_not_there(tmp_path: Path) -> None:
         'pip install "no-such-thing>=2"',
     ]
     assert by_name["no-engine"][0] == Status.NOTE
-    assert "run a match" in by_name["no-engine"][1]
+    assert "run a court" in by_name["no-engine"][1]
 
 
 def test_ports_that_are_taken(
@@ -171,7 +171,10 @@ def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path:
         file.write_text(text)
         found = look(capsys, tmp_path, "--contest", str(file))[f"port {port}"]
         assert found["status"] == "problem"
-        assert "court main runs here, but the contest file puts court hall here" in found["found"]
+        assert (
+            "court main runs here, but the contest file gives this port to court hall"
+            in found["found"]
+        )
         assert "--listen" in found["todo"]
         assert doctor.court_port("127.0.0.1", port, None).status is Status.OK
 
@@ -198,7 +201,7 @@ def test_every_court_of_a_contest(capsys: pytest.CaptureFixture[str], tmp_path: 
         file.write_text(hall + text)
         found = look(capsys, tmp_path, "--contest", str(file))
         one = look(capsys, tmp_path, "--contest", str(file), "--court", "main")
-    assert "Nobody listens at" in found["court hall"]["found"]
+    assert "No program answers at" in found["court hall"]["found"]
     assert "Test at tcp/" in found["court main"]["found"]
     assert found["frames of main"]["status"] != "problem"
     assert "disk" in found
@@ -210,7 +213,7 @@ def test_no_court_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
     """A court that does not run is reported as a problem in one sentence."""
     found = look(capsys, tmp_path, "--connect", f"tcp/127.0.0.1:{free()}")
     assert found["court main"]["status"] == "problem"
-    assert "Nobody listens at" in found["court main"]["found"]
+    assert "No program answers at" in found["court main"]["found"]
 
 
 @pytest.mark.slow
@@ -222,7 +225,7 @@ def test_the_link_to_a_court(
     found = look(capsys, tmp_path, "--connect", court.address, "--seconds", "1")
     assert found["court main"]["status"] == "ok"
     assert found["round trip to main"]["found"].startswith("50 requests, ")
-    assert " a second while the match is in the lobby, " in found["frames of main"]["found"]
+    assert " frames a second while the match is in the lobby; " in found["frames of main"]["found"]
     assert found["frames of main"]["status"] != "problem"
     port = int(court.address.rpartition(":")[2])
     here = doctor.court_port("127.0.0.1", port, "main")

@@ -272,7 +272,7 @@ def test_a_bot_says_that_its_court_is_silent(open_court: OpenCourt) -> None:
     assert any("holds the left seat" in line for line in lines)
     os.kill(court.process.pid, signal.SIGSTOP)
     try:
-        said = next(line for line in lines if line.startswith("Link: "))
+        said = next(line for line in lines if line.startswith("Connection: "))
     finally:
         os.kill(court.process.pid, signal.SIGCONT)
     assert "the court has sent nothing for" in said

@@ -90,7 +90,7 @@ def test_keys_of_a_terminal(started: tuple[CourtProcess, Terminal], tmp_path: Pa
     terminal.press("\t")
     terminal.sees("This arena allows only level B locomotion.")
     terminal.press(" ")
-    terminal.sees("The terminal has no views")
+    terminal.sees("The terminal can't change the view")
     terminal.press("k")
     terminal.sees("[k] does nothing.")
     terminal.press("x")
@@ -166,7 +166,7 @@ def test_keys_from_a_pipe_play_a_match(open_court: OpenCourt, tmp_path: Path) ->
     code, said = piped(tmp_path, script, "play", "--terminal", "--ready", *court.where("left"))
 
     assert code == 0
-    assert "Line 1 is left out: 'w' is no key" in said
+    assert "Line 1 is left out: 'w' " in said
     assert "The match is finished: time is up." in said
     assert said.rstrip().endswith("You have left. The seat stays yours.")
     assert "refused" not in said
@@ -245,9 +245,9 @@ def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
     ("changes", "expected"),
     [
         ({"token": "not-the-token-of-it"}, "token"),
-        ({"seat": "middle"}, 'has no seat "middle". It has left and right.'),
+        ({"seat": "middle"}, 'has no seat "middle". Its seats are left and right.'),
         ({"court": "centre"}, 'There is no court "centre" at'),
-        ({"connect": "tcp/127.0.0.1:1"}, "Nobody listens at tcp/127.0.0.1:1."),
+        ({"connect": "tcp/127.0.0.1:1"}, "No program answers at tcp/127.0.0.1:1."),
         ({"connect": "my court"}, '"my court" is not an address.'),
         ({"name": "x" * 25}, "1 to 24 printable characters"),
         ({"robot": "centipede"}, "centipede"),
@@ -279,7 +279,7 @@ def test_wrong_files_are_a_table(quiet_court: CourtProcess, tmp_path: Path) -> N
     code, said = piped(tmp_path, "", *words)
 
     assert code == 2
-    assert "1 mistake. Nothing of the file is used until all are corrected." in said
+    assert "1 mistake. The file is not used until all are corrected." in said
     assert "│ four.txt │" in said
     assert "6 legs" in said
 

@@ -67,7 +67,7 @@ def test_files_saved_in_one_moment_go_by_their_names(tmp_path: Path) -> None:
 
 
 def test_sequences_that_are_older_than_their_postures_are_told(tmp_path: Path) -> None:
-    """A player who edits Loco-data.xlsx is told that level B has not changed (workshop 4-1)."""
+    """A player whose LocoTra-data.txt is older than the table is told so (workshop 4-1)."""
     table = write(tmp_path / "Loco-data.xlsx", b"", 1000)
     sequences = write(tmp_path / "LocoTra-data.txt", b"", 1000)
     assert remarks(tmp_path, [table, sequences]) == []

@@ -90,5 +90,5 @@ def test_services_take_the_option(
     assert cli.main([*words, *where]) == 2
     assert time.monotonic() - begin_s > 2.5
     note, error = capsys.readouterr().err.splitlines()
-    assert note.startswith("Nobody listens at tcp/127.0.0.1:")
-    assert error.startswith("Error: Nobody listens at tcp/127.0.0.1:")
+    assert note.startswith("No program answers at tcp/127.0.0.1:")
+    assert error.startswith("Error: No program answers at tcp/127.0.0.1:")

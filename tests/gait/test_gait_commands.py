@@ -118,7 +118,7 @@ def test_check_notes_labels_that_are_exchanged(lacoc, tmp_path, workshop, kind):
     code, out, err = lacoc("gait", "check", tmp_path / kind)
     assert (code, f"{kind}: no mistakes" in out) == (0, True)
     assert " ".join(err.split()) == (
-        f"Note: {kind}, row 12, column 2: the legend says L,F, and joint 0 is a joint of leg R,F. "
+        f"Note: {kind}, row 12, column 2: the legend says L,F, but joint 0 is a joint of leg R,F. "
         "The order of the columns counts, not the legend."
     )
 
@@ -224,7 +224,7 @@ def test_convert_never_overwrites(lacoc, folder, workshop):
     code, _, err = lacoc("gait", "convert", folder / "Loco-data.txt", target, "--keys", "0")
     assert code == 0
     kept = folder / "LocoTra-data.1.txt"
-    assert f"{target} was there already. It is named {kept} now." in err
+    assert f"The older {target} is now named {kept}." in err
     assert kept.read_bytes() == before
     assert read_gait_file(target) == to_locomotion(workshop, ((0,),))
 
@@ -238,8 +238,8 @@ def test_convert_never_overwrites(lacoc, folder, workshop):
         ("Loco-data.txt", "LocoTra.txt", "0;12", "is not a list of postures"),
         ("Loco-data.txt", "LocoTra.txt", "0" + ";0" * 10, "11 keys, and the longest has 1"),
         ("Loco-data.txt", "LocoTra.txt", "0" + ",0" * 100, "the longest has 101 postures"),
-        ("Loco-data.txt", "Loco-data.xlsx", "0", "--keys is for making locomotion from postures"),
-        ("LocoTra-data.txt", "LocoTra.txt", "0", "--keys is for making locomotion from postures"),
+        ("Loco-data.txt", "Loco-data.xlsx", "0", "--keys makes locomotion from postures"),
+        ("LocoTra-data.txt", "LocoTra.txt", "0", "--keys makes locomotion from postures"),
         ("Loco-data.txt", "Loco-data.ods", None, "the name of B must end with .txt or .xlsx"),
         ("Loco-data.txt", "no/folder.txt", None, "No such file or directory"),
         ("many.txt", "Loco-data.txt", None, "many.txt has 11 different postures"),

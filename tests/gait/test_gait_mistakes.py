@@ -61,7 +61,7 @@ def test_three_planted_mistakes_at_the_locomotion_level():
             1,
             None,
             None,
-            "3, but 2 rows of angles below",
+            "the number 3, but 2 rows of angles below it",
             "as many rows as the file says for key [1]",
         ),
         (7, 1, 0, "R,F", '"x"', ANGLE),
@@ -147,12 +147,12 @@ def test_what_is_no_number(cell):
         ),
         pytest.param(
             loco([posture()], announced=3),
-            [(1, 2, "3, but 1 posture below", "as many rows as the file says above")],
+            [(1, 2, "the number 3, but 1 posture below it", "as many rows as the file says above")],
             id="fewer rows",
         ),
         pytest.param(
             loco([posture(), posture("1 Key"), "Position\tR,F"], announced=1),
-            [(1, 2, "1, but 2 postures below", "as many rows as the file says above")],
+            [(1, 2, "the number 1, but 2 postures below it", "as many rows as the file says above")],
             id="more rows",
         ),
         pytest.param(
@@ -205,7 +205,7 @@ def test_what_is_no_number(cell):
         pytest.param(
             loco([posture()]) + "\nPosition\tR,F\n" + posture("1 Key"),
             [
-                (1, 2, "1, but 3 postures below", "as many rows as the file says above"),
+                (1, 2, "the number 1, but 3 postures below it", "as many rows as the file says above"),
                 (3, None, "1 angle", "18 angles (3 for each of 6 legs)"),
                 (3, 1, '"Position"', 'a key from "0 Key" to "9 Key"'),
                 (3, 2, '"R,F"', ANGLE),
@@ -235,7 +235,7 @@ def test_what_is_no_number(cell):
         pytest.param(
             loco([posture(), posture("", j0="\t1").strip("\n")], announced=1),
             [
-                (1, 2, "1, but 2 postures below", "as many rows as the file says above"),
+                (1, 2, "the number 1, but 2 postures below it", "as many rows as the file says above"),
                 (3, 1, "1", 'a key from "0 Key" to "9 Key"'),
                 (3, None, "17 angles", "18 angles (3 for each of 6 legs)"),
             ],
@@ -254,22 +254,29 @@ def test_mistakes_of_loco_data(text, expected):
     [
         pytest.param(
             f"2\n1\n{posture('')}",
-            [(1, 1, "2, but 1 key below", "as many keys as the file says above")],
+            [(1, 1, "the number 2, but 1 key below it", "as many keys as the file says above")],
             id="fewer keys",
         ),
         pytest.param(
             f"1\n1\n{posture('')}\n1\n{posture('')}",
-            [(1, 1, "1, but 2 keys below", "as many keys as the file says above")],
+            [(1, 1, "the number 1, but 2 keys below it", "as many keys as the file says above")],
             id="more keys",
         ),
         pytest.param(
             f"1\n2\n{posture('')}",
-            [(2, 1, "2, but 1 row of angles below", "as many rows as the file says for key [0]")],
+            [(2, 1, "the number 2, but 1 row of angles below it", "as many rows as the file says for key [0]")],
             id="fewer rows",
         ),
         pytest.param(
             f"1\n{posture('')}",
-            [(2, None, "18 cells", "only the number of postures of key [0], in a row above them")],
+            [
+                (
+                    2,
+                    None,
+                    "18 cells",
+                    "only the number of postures of key [0], in a row above these postures",
+                )
+            ],
             id="no number of postures",
         ),
         pytest.param(
@@ -303,7 +310,7 @@ def test_mistakes_of_loco_data(text, expected):
         ),
         pytest.param(
             "3",
-            [(1, 1, "3, but 0 keys below", "as many keys as the file says above")],
+            [(1, 1, "the number 3, but 0 keys below it", "as many keys as the file says above")],
             id="nothing else",
         ),
     ],

@@ -274,9 +274,9 @@ def test_what_stands_below_the_legend_is_said():
 @pytest.mark.parametrize(
     ("was", "now", "said"),
     [
-        ("ID of Joint\t0\t1", "ID of Joint\t1\t0", "says 1, and this is the column of joint 0"),
-        ("Position\tR,F", "Position\tLB", "says LB, and joint 0 is a joint of leg R,F"),
-        ("\tRoot\t", "\t2nd\t", "says 2nd, and joint 0 is a joint of level Root"),
+        ("ID of Joint\t0\t1", "ID of Joint\t1\t0", "says 1, but this is the column of joint 0"),
+        ("Position\tR,F", "Position\tLB", "says LB, but joint 0 is a joint of leg R,F"),
+        ("\tRoot\t", "\t2nd\t", "says 2nd, but joint 0 is a joint of level Root"),
     ],
 )
 def test_a_legend_that_contradicts_the_columns_is_said(was, now, said):

@@ -259,7 +259,7 @@ def test_the_courts_list_stands_for_the_log() -> None:
 
 
 def test_the_newest_of_a_very_long_log_are_kept() -> None:
-    """A log keeps only as many newest events as a court lists, and still counts as complete."""
+    """A log keeps only its newest events, as a court does, and still counts as complete."""
     log: EventLog[int] = EventLog()
     for number in range(1, 3 * EVENTS_LISTED):
         log.add(event(number, "a"), number)
@@ -286,7 +286,7 @@ def test_what_a_court_does_not_list_any_more_is_not_missed() -> None:
 )
 def test_a_wrong_place_to_listen_is_said(where: str) -> None:
     """A gateway refuses a wrong address to listen at, and the error says so."""
-    with pytest.raises(UserError, match=r"not a place to listen|not possible to listen"):
+    with pytest.raises(UserError, match=r"not a place to listen|can't listen"):
         server.listen(where)
 
 
@@ -294,7 +294,7 @@ def test_a_port_that_is_in_use_is_said() -> None:
     """If a gateway's port is in use, the error asks for another port."""
     with server.listen("127.0.0.1:0") as opened:
         address = server.url(opened)
-        with pytest.raises(UserError, match="Choose another port"):
+        with pytest.raises(UserError, match="choose another port"):
             server.listen(address.removeprefix("http://"))
 
 

@@ -100,7 +100,7 @@ def test_a_join_that_the_match_refuses_makes_no_session(court: CourtStub, sessio
 
 def test_an_unknown_seat_and_an_unknown_court_are_named(session: Session) -> None:
     """The message about an unknown seat or court lists those that exist."""
-    with pytest.raises(UserError, match=r'no seat "middle". It has left and right'):
+    with pytest.raises(UserError, match=r'no seat "middle". Its seats are left and right'):
         Controller(session, "main", "middle", "t", "Blue")
     with pytest.raises(UserError, match=r'no court "mian" at .* The courts there: main'):
         Controller(session, "mian", "left", "t", "Blue")
@@ -206,7 +206,7 @@ def test_a_refusal_says_whether_to_ask_again(court: CourtStub, session: Session)
 @pytest.mark.parametrize("seat", ["", "a//b", "le?ft", "#"])
 def test_a_seat_that_is_no_key_is_said(court: CourtStub, session: Session, seat: str) -> None:
     """If a seat's name can't be part of a key expression, the refusal lists the court's seats."""
-    with pytest.raises(UserError, match=r"has no seat .* It has left and right"):
+    with pytest.raises(UserError, match=r"has no seat .* Its seats are left and right"):
         Controller(session, "main", seat, "t", "Blue")
 
 

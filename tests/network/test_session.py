@@ -61,15 +61,15 @@ def test_a_port_in_use_is_said(router: Session) -> None:
 
 def test_an_address_that_is_not_ours_is_said() -> None:
     """A court that listens at another machine's address gets a message that says so."""
-    with pytest.raises(UserError, match=r"no address 192\.0\.2\.1"):
+    with pytest.raises(UserError, match=r"does not have the address 192\.0\.2\.1"):
         open_court(["192.0.2.1:0"])
 
 
 def test_where_nobody_listens_is_said() -> None:
-    """A client gets the message "Nobody listens" for a closed port."""
+    """A client gets the message "No program answers" for a closed port."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    with pytest.raises(UserError, match="Nobody listens at tcp/127"):
+    with pytest.raises(UserError, match="No program answers at tcp/127"):
         open_client([f"127.0.0.1:{port}"], timeout_s=0.2)
 
 
@@ -77,7 +77,7 @@ def test_another_program_at_the_address_is_said() -> None:
     """A client is told if another program than a court has the address."""
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
-        with pytest.raises(UserError, match="does not let this program in"):
+        with pytest.raises(UserError, match="it refuses the connection"):
             open_client([f"127.0.0.1:{port}"], timeout_s=0.2)
 
 

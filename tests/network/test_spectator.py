@@ -104,10 +104,10 @@ def test_a_court_whose_frames_do_not_fit_its_sheet_is_told_of(
     """If frames always name another scene than the sheet does, an error says so."""
     spectator = Spectator(session, "main")
     court.scene = make_scene("a scene that no sheet describes")
-    with pytest.raises(UserError, match="does not fit its own description"):
+    with pytest.raises(UserError, match="do not fit the court's own description"):
         until(lambda: spectator.wait_frame(1.0) and False)
     court.network.publish_scene(court.scene)
-    with pytest.raises(UserError, match="does not fit its own description"):
+    with pytest.raises(UserError, match="do not fit the court's own description"):
         spectator.scene()
 
 
@@ -115,7 +115,7 @@ def test_another_version_of_the_protocol_is_a_sentence(court: CourtStub, session
     """A court with another version of the protocol is refused with both version numbers."""
     court.in_a_beat(lambda: court.show(court.scene, protocol=99))
     until(lambda: decode(session.ask(KEYS.sheet), Sheet).protocol == 99)
-    with pytest.raises(UserError, match=r"version 99 .* this program version 2"):
+    with pytest.raises(UserError, match=r"version 99 .* this program uses version 2"):
         Spectator(session, "main")
 
 
@@ -162,7 +162,7 @@ def test_a_court_that_comes_back_with_another_version(court: CourtStub, session:
     court.in_a_beat(lambda: court.show(court.scene, protocol=99))
     until(lambda: decode(session.ask(KEYS.sheet), Sheet).protocol == 99)
     court.in_a_beat(lambda: court.network.publish_frame(encode({"version": 99}), 0.0))
-    with pytest.raises(UserError, match=r"version 99 .* this program version 2"):
+    with pytest.raises(UserError, match=r"version 99 .* this program uses version 2"):
         until(lambda: spectator.wait_frame(1.0) and False)
 
 

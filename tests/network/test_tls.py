@@ -108,10 +108,10 @@ def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
     left = keyed.people["left"]
     with CourtStub() as plain:
         there = plain.address.replace("tcp/", "tls/")
-        assert "has no keys" in refused(msgspec.structs.replace(left, connect=there))
+        assert "does not use encryption" in refused(msgspec.structs.replace(left, connect=there))
         assert "tls/127" in refused(msgspec.structs.replace(left, connect=plain.address))
     bare = Access(court="main", connect=keyed.address.replace("tls/", "tcp/"))
-    assert re.search(r"has keys.*--invitation", refused(bare))
+    assert re.search(r"only with an invitation.*--invitation", refused(bare))
     assert "--invitation" in refused(Access(court="main", connect=keyed.address))
 
 
@@ -122,7 +122,7 @@ def test_a_damaged_certificate_and_nobody_there(keyed: KeyedCourt) -> None:
     assert "damaged" in refused(msgspec.structs.replace(left, ca=damaged))
     by_mail = left.ca.replace("-----BEGIN", "\u2014\u2013BEGIN\u00a0")
     assert "damaged" in refused(msgspec.structs.replace(left, ca=by_mail))
-    assert "Nobody listens" in refused(msgspec.structs.replace(left, connect="tls/127.0.0.1:1"))
+    assert "No program answers" in refused(msgspec.structs.replace(left, connect="tls/127.0.0.1:1"))
 
 
 def test_a_court_needs_keys_for_tls_and_tls_for_keys(keyed: KeyedCourt, tmp_path: Path) -> None:
@@ -131,7 +131,7 @@ def test_a_court_needs_keys_for_tls_and_tls_for_keys(keyed: KeyedCourt, tmp_path
         open_court(["tls/127.0.0.1:0"])
     contest = keyed_file(tmp_path)
     contest.write_text(contest.read_text().replace('"127.0.0.1:0"', '"tcp/127.0.0.1:0"'))
-    with pytest.raises(UserError, match=r"has keys.*Write tls/127"):
+    with pytest.raises(UserError, match=r"are encrypted.*Write tls/127"):
         contests.load(contest)
 
 

@@ -43,18 +43,18 @@ def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: s
     show.sees(WAITS[path], 'There is no court "centre" here. The courts here: main.')
     show.page.close()
     show = opened(open_page, venue, f"{path}?court=centre", locale="ja-JP")
-    show.sees(WAITS[path], "ここにコート「centre」はありません（あるコート：main）。")
+    show.sees(WAITS[path], "コート「centre」はありません（使えるコート：main）。")
     show.page.close()
     show = opened(open_page, venue, path)
     show.sees(WAITS[path], "Waiting for court main")
-    show.sees(WAITS[path], f"Nobody listens at tcp/127.0.0.1:{venue.court_port}.")
+    show.sees(WAITS[path], f"No program answers at tcp/127.0.0.1:{venue.court_port}.")
 
 
 @pytest.mark.parametrize(
     ("locale", "full"),
     [
         ("en-GB", FULL),
-        pytest.param("ja-JP", "すでに 1 ページが接続しています。", marks=pytest.mark.long),
+        pytest.param("ja-JP", "すでに上限の 1 ページが観戦中です。", marks=pytest.mark.long),
     ],
 )
 def test_a_full_hall_is_said_and_not_stormed(

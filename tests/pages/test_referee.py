@@ -138,7 +138,7 @@ def to_playing(page: Page, venue: Venue) -> None:
 
 @pytest.mark.long
 def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
-    """If a match ran too slowly, the page advises a replay and says why, in both languages."""
+    """If a match ran too slowly, the page advises a rematch and says why, in both languages."""
     wanted = "[health]\nreal_time_factor = 2.0\n"  # no court can be so fast
     venue.contest.write_text(wanted + venue.contest.read_text())
     venue.court("--seconds", "2")
@@ -147,8 +147,8 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     to_playing(page, venue)
     phase(page, 6)
     advice = page.locator(".match .advice")
-    expect(advice).to_contain_text("of real time (at least 2 is required)")
-    log_has(page, "A replay is advised: the match ran at ")
+    expect(advice).to_contain_text("times real time (at least 2 is required)")
+    log_has(page, "A rematch is advised: the match ran at ")
     expect(other.locator(".match .advice h3")).to_have_text("再試合を推奨")
     expect(other.locator(".match .advice li").first).to_contain_text("実時間の")
     step(page)  # advice only: the result is the referee's word

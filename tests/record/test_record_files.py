@@ -325,7 +325,7 @@ def test_files_that_are_no_record_of_one_match_are_refused(
         (late.path, "the segments before it are missing"),
         ([mine, late.path], "belongs to match late"),
         ([mine, mine], "given after segment 0"),
-        ([], "no record was named"),
+        ([], "give at least one record file"),
     ):
         with pytest.raises(UserError, match=sentence):
             Record.read(paths)
@@ -481,7 +481,7 @@ def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed:
     path = tmp_path / "part.mcap"
     data = packed.read_bytes()
     path.write_bytes(data[: len(data) // 2])
-    with pytest.raises(NoMatch, match="never closed, not copied whole, or is damaged"):
+    with pytest.raises(NoMatch, match="not closed or not copied completely, or it is damaged"):
         Record.read(path)
 
 

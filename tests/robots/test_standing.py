@@ -59,7 +59,7 @@ def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> No
     assert moved_m > 0.05
     assert mistake.field == "start.posture_deg"
     assert render(mistake.found) == (
-        f"a robot that goes {moved_m:.3f} m from its start within 2 s "
+        f"a robot that moves {moved_m:.3f} m from its start within 2 s "
         "(standing with key 0 of level B)"
     )
     assert render(mistake.expected).startswith("at most 0.045 m")
@@ -94,7 +94,7 @@ def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
     """A robot that sinks at 1.8 mm/s after two seconds is refused, because it would fall later."""
     slow = Stood(moved_m=0.015, tilt_rad=0.18, joint_rad_s=0.0087, centre_m_s=0.0018)
     (mistake,) = mistakes_of(slow, "robot.toml", (B,))
-    assert "a joint at 0.5 degrees/s, its middle at 1.8 mm/s" in render(mistake.found)
+    assert "a joint at 0.5 degrees/s, the middle of the body at 1.8 mm/s" in render(mistake.found)
 
 
 @pytest.mark.parametrize(
@@ -102,12 +102,12 @@ def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
     [
         (STILL, []),
         (Stood(0.045, math.radians(30), math.radians(0.2), 0.0002), []),
-        (Stood(0.0451, 0.0, 0.0, 0.0), ["goes 0.045 m"]),
+        (Stood(0.0451, 0.0, 0.0, 0.0), ["moves 0.045 m"]),
         (Stood(0.0, math.radians(31), 0.0, 0.0), ["leans 31 degrees"]),
         (Stood(0.0, 0.0, math.radians(4), 0.0), ["a joint at 4.0 degrees/s"]),
-        (Stood(0.0, 0.0, 0.0, 0.0003), ["its middle at 0.3 mm/s"]),
-        (Stood(0.0, 0.0, 0.0, 0.0, fault=True), ["physics can't follow"]),
-        (Stood(0.3, 1.0, 9.0, 1.0), ["goes 0.300 m", "leans 57", "a joint at 515.7"]),
+        (Stood(0.0, 0.0, 0.0, 0.0003), ["the middle of the body at 0.3 mm/s"]),
+        (Stood(0.0, 0.0, 0.0, 0.0, fault=True), ["physics can't simulate"]),
+        (Stood(0.3, 1.0, 9.0, 1.0), ["moves 0.300 m", "leans 57", "a joint at 515.7"]),
     ],
 )
 def test_what_is_told(stood: Stood, words: list[str]) -> None:
@@ -169,4 +169,4 @@ def test_a_gait_is_checked_for_a_robot(leaper: Path) -> None:
     other = run(gait_app, ["check", gait_file, "--robot", "octopod", "--json"])
     assert "this robot has 8 legs" in other.stdout
     both = run(gait_app, ["check", gait_file, "--robot", "hexapod", "--legs", "6"])
-    assert "leave out --legs" in str(both.exception)
+    assert "Leave out --legs" in str(both.exception)

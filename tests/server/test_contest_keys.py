@@ -170,7 +170,7 @@ def test_the_entry_goes_into_any_contest_file(tmp_path: Path) -> None:
     ("old", "new", "said"),
     [
         ('"0.0.0.0:7447"', '"tcp/0.0.0.0:7447"', r"Write tls/0.0.0.0:7447"),
-        ("arena =", "aren =", "There can be: arena"),
+        ("arena =", "aren =", "Allowed entries: arena"),
         ("[contest]", "[contest", "can't be read"),
     ],
 )

@@ -38,7 +38,7 @@ class Disk(NamedTuple):
 
 @contextmanager
 def limited(contest: Path, folder: Path) -> Iterator[Disk]:
-    """Run a court; its `Disk` is full while RLIMIT_FSIZE keeps its files from growing."""
+    """Run a court whose `Disk` can be filled: then RLIMIT_FSIZE keeps records from growing."""
     records = folder / "recordings"
     with served(contest, records) as court:
 

@@ -92,7 +92,7 @@ def lost(verdict: HealthVerdict) -> list[object]:
 
 
 def test_a_match_that_is_held_well() -> None:
-    """At 50 beats a second without a late beat or a lost repeat, no replay is advised."""
+    """At 50 beats a second without a late beat or a lost repeat, no rematch is advised."""
     held = Held()
     held.seconds(4)
     verdict = held.verdict
@@ -206,7 +206,7 @@ def test_refusals_of_this_match() -> None:
 
 
 def test_faults_of_physics() -> None:
-    """A single fault of physics is counted, and is enough to advise a replay."""
+    """A single fault of physics is counted, and is enough to advise a rematch."""
     script = Script(faults={3: Fault(LEFT, say("fault.velocity"))})
     held = Held(Stage("othello", QUICK, script=script).to_playing())
     held.seconds(1)
@@ -298,7 +298,7 @@ def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
     assert isinstance(verdict, Verdict)
     assert verdict.kind is Kind.SAME
     said = CliRunner().invoke(app, ["info", str(path)]).output
-    assert "Replay advised: a beat began 300 ms late" in said
+    assert "Rematch advised: the latest beat began 300 ms late" in said
     exported = json.loads(result_json(record))
     assert exported["health"]["worst_late_ms"] == 300.0
     assert exported["computed"] == "draw"

@@ -97,7 +97,7 @@ def test_a_renamed_record_is_told(tmp_path: Path) -> None:
     match_id = killed(tmp_path, "semi-final")
     path = files.segment_path(tmp_path, match_id, 0)
     path.rename(files.segment_path(tmp_path, f"{TEN}-final-001", 0))
-    words = rf'The file is from match "{match_id}" of court "semi-final"\. Change the.*--fresh'
+    words = rf'The file is from match "{match_id}" of court "semi-final"\. Give the files.*--fresh'
     with pytest.raises(UserError, match=words):
         unfinished(tmp_path, "final", OTHELLO)
 
@@ -259,7 +259,7 @@ def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
         process.send_signal(signal.SIGTERM)
         said, _ = process.communicate(timeout=WAIT_S)
         assert process.returncode == 0
-        assert "No record is packed now: [Errno 11] Resource temporarily unavailable" in said
+        assert "Records can't be packed now: [Errno 11] Resource temporarily unavailable" in said
         assert len(list(folder.glob("*.live.mcap"))) == 3
 
         flag.unlink()

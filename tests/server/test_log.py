@@ -244,7 +244,7 @@ def test_what_a_fault_in_ready_leaves_in_the_log() -> None:
 
 
 def test_what_the_court_measured_in_the_log() -> None:
-    """The log says that a replay is advised, with the reasons, and later that it no longer is."""
+    """The log says that a rematch is advised, with the reasons, and later that it no longer is."""
     stage = Stage(overrides=QUICK).to(P.PLAYING)
     assert stage.match.advice == ()
     reasons = (say("health.late-beat", late_ms=80, most_ms=60), "a text of an old record")

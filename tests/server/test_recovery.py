@@ -129,7 +129,7 @@ def test_settings_that_were_changed_count_from_the_next_match(contest: Path, fol
 
 
 def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> None:
-    """The health verdict includes the time before a kill; too many restarts advise a replay."""
+    """The health verdict includes the time before a kill; too many restarts advise a rematch."""
     lasts(contest, 4)
     contest.write_text("health.resumptions = 0\n" + contest.read_text())
     with ExitStack() as stack:
@@ -148,7 +148,7 @@ def test_how_well_it_was_held_outlives_the_kill(contest: Path, folder: Path) -> 
         those.until(lambda: any(event.kind == "advice" for event in those.view.events))
         assert those.phase == Phase.FINISHED
         told = next(render(event.said) for event in those.view.events if event.kind == "advice")
-        assert "the court was started again 1 time (at most 0 are allowed)" in told
+        assert "the court was restarted 1 time during the match (at most 0 are allowed)" in told
     record = packed(folder)
     assert record.health is not None
     assert record.health.resumptions == 1

@@ -38,7 +38,10 @@ def test_who_leaves_its_start_place_before_play_is_put_back() -> None:
     assert from_start_m(stage) > 0.05
     (event,) = strayed(stage)
     assert (event.seat, event.beat) == (LEFT, stage.frame.beat)
-    assert render(event.said) == "Ants moved 0.06 m away from its start place. It is put back."
+    assert (
+        render(event.said)
+        == "The robot of Ants moved 0.06 m away from its start place. The robot is put back."
+    )
     assert math.isclose(event.data["distance_m"], 0.06, abs_tol=1e-6)
     stage.beat()
     assert from_start_m(stage) < 1e-6
@@ -62,7 +65,7 @@ def test_who_leaves_again_and_again_is_not_ready() -> None:
     stage = straying(3, 6, 9).to_ready()
     stage.run(9)
     assert [event.data["times"] for event in strayed(stage)] == [1, 2, 3]
-    words = "Ants left its start place 3 times. It is not ready any more."
+    words = "The robot of Ants left its start place 3 times. Ants is not ready any more."
     assert render(strayed(stage)[-1].said) == words
     stage.beat()
     assert stage.phase is Phase.LOBBY

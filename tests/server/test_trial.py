@@ -267,5 +267,5 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     said = capsys.readouterr()
     assert "speed forward" in said.out
     assert "The feet slide at" not in said.out  # nothing is explained without a whole cycle
-    assert "not repeated often enough" in said.err
+    assert "repeated too few times" in said.err
     assert run("--robot", "quadruped") == 2

@@ -90,7 +90,7 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
         ),
         ('arena = "othello"', "arena = 3", r"court.main.arena.*Expected `str`, got `int`"),
         ('arena = "othello"', "", r"\[court.main\].*missing required field `arena`"),
-        ("arena =", "aren =", r"unknown field `aren`.*There can be: arena, listen"),
+        ("arena =", "aren =", r"unknown field `aren`.*Allowed entries: arena, listen"),
         ('token = "left-token-of-main"', "token = 5", r"court.main.seat.left.token"),
         ('token = "left-token-of-main"', 'token = "short"', r"seat.left.token.*length >= 12"),
         ("right-token-of-main", "left-token-of-main", r"court.main.*same token"),

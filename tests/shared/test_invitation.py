@@ -73,9 +73,9 @@ def test_an_invitation_is_for_one_role(tmp_path: Path) -> None:
     assert entrance.gateway(gateway, *nothing) == GATEWAY
     assert entrance.gateway(left, *nothing) == WATCH
     assert entrance.spectator(left, *nothing) == WATCH
-    with pytest.raises(UserError, match="an invitation for the referee, not for a contestant"):
+    with pytest.raises(UserError, match="for the role of referee, not of contestant"):
         entrance.seat(referee, *nothing, None, None)
-    with pytest.raises(UserError, match="for the contestant, not for a referee"):
+    with pytest.raises(UserError, match="for the role of contestant, not of referee"):
         entrance.referee(left, *nothing, None)
 
 
@@ -84,7 +84,7 @@ def test_an_invitation_stands_alone(tmp_path: Path, place: int) -> None:
     """No option for contest, court, address, seat or token may be given beside an invitation."""
     others = [None] * 5
     others[place] = "x"  # type: ignore[call-overload]
-    with pytest.raises(UserError, match="leave --contest"):
+    with pytest.raises(UserError, match="do not give --contest"):
         entrance.seat(written(tmp_path, LEFT), *others)
 
 

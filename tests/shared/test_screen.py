@@ -64,7 +64,7 @@ def test_one_mistake_is_one(capsys: pytest.CaptureFixture[str]) -> None:
     screen.refused([Mistake(file="a.txt", found="nothing", expected="a table")])
 
     err = capsys.readouterr().err
-    assert err.startswith("Error: 1 mistake. Nothing of the file is used")
+    assert err.startswith("Error: 1 mistake. The file is not used")
     assert "a table" in err
 
 

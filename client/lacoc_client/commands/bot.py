@@ -49,7 +49,7 @@ def bot_command(
         str | None,
         typer.Option(
             envvar="LACOC_ARENA",
-            help="The arena to look for the bot in; by default the one the court plays.",
+            help="The arena that has the bot; by default the arena that the court plays.",
         ),
     ] = None,
     team: Annotated[
@@ -64,16 +64,17 @@ def bot_command(
         list[Path] | None,
         typer.Option(
             metavar="FILE",
-            help="A gait file; give it again for the other level. By default the robot's own.",
+            help="A gait file; give it a second time for the other level. By default the "
+            "robot's own gait.",
         ),
     ] = None,
     wait: options.WaitForCourt = None,
 ) -> None:
     """Let a bot hold a seat: it joins, says ready and plays, match after match.
 
-    It ends with Ctrl-C, or when the court has been gone for two minutes (or for the time of --wait,
-    if that is longer). A bot is a Python file with a function bot(sheet, seat), which returns a
-    function from a frame to a key.
+    The bot ends with Ctrl-C, or when the court has been gone for two minutes (or for the time of
+    --wait, if that is longer). Your own bot is a Python file with a function bot(sheet, seat). This
+    function returns another function, which takes a frame and returns a key.
     """
     access = entrance.seat(invitation, contest, court, connect, seat, token)
     notes: list[Phrase] = []

@@ -49,20 +49,23 @@ def doctor_command(
         typer.Option(
             envvar="LACOC_WEB_LISTEN",
             metavar="HOST:PORT",
-            help=f"Where 'lacoc web' shall serve; by default {_WEB} is looked at.",
+            help=f"Address at which 'lacoc web' will serve; by default {_WEB} is checked.",
         ),
     ] = None,
     seconds: Annotated[
-        float, typer.Option(help="How long clock and frames are watched.", min=0.2, max=600)
+        float,
+        typer.Option(
+            help="How many seconds to measure the clock and the frames.", min=0.2, max=600
+        ),
     ] = 3.0,
     json: options.Json = False,
 ) -> None:
     """Check whether this machine is ready: packages, ports, graphics, clock, disk.
 
-    With --invitation, --connect or --contest it also checks the link to a court, or to each court
-    of the contest: is it there, how long does a request take, how many frames arrive. With --court
-    it checks that court only. Every finding is ok, a note or a problem, and says what to do. The
-    exit code is 0 unless there is a problem.
+    With --invitation, --connect or --contest this command also checks the connection to a court, or
+    to each court of the contest: whether the court answers, how long a request takes, and how many
+    frames arrive. With --court it checks only that court. Every finding is ok, a note or a problem;
+    notes and problems say what to do. The exit code is 0 unless there is a problem.
     """
     plan = None if contest is None else contests.load(contest)
     planned = [*plan.courts] if plan and court is None else [court]

@@ -18,11 +18,13 @@ from lacoc_shared.words import say
 
 Browser = Annotated[
     bool,
-    typer.Option("--open/--no-open", help="Open the page in the browser, or only say where it is."),
+    typer.Option(
+        "--open/--no-open", help="Open the page in the browser, or only print its address."
+    ),
 ]
 Terminal = Annotated[
     bool,
-    typer.Option("--terminal", help="Here in this terminal, instead of a page in the browser."),
+    typer.Option("--terminal", help="Use this terminal instead of a page in the browser."),
 ]
 
 

@@ -33,15 +33,16 @@ TeamName = Annotated[
 Robot = Annotated[
     str | None,
     typer.Option(
-        metavar="FILE|NAME", help="Your robot file, or an installed robot; else the contest's."
+        metavar="FILE|NAME",
+        help="Your robot file, or the name of an installed robot; by default the contest's robot.",
     ),
 ]
 Gaits = Annotated[
     list[Path] | None,
     typer.Option(
         metavar="FILE",
-        help="A gait file: Loco-data.txt, Loco-data.xlsx or LocoTra-data.txt; give it again for "
-        "the other level. By default those in this folder, the one saved last of each kind.",
+        help="A gait file: Loco-data.txt, Loco-data.xlsx or LocoTra-data.txt. Give --gait "
+        "twice for both levels. By default the newest file of each level in this folder.",
     ),
 ]
 
@@ -68,8 +69,8 @@ def play_command(
 ) -> None:
     """Hold a seat and steer your robot with the keyboard.
 
-    A page opens in your browser; only this machine can open it. What you give here is filled in
-    there already, and you can give the rest there.
+    A page opens in your browser; only this machine can open it. The page already has what you give
+    here, and you can enter the rest there.
 
     With --terminal the keys are: 0-9 move the robot. The arrows up, left, right and down are 2, 1,
     3 and 0 of level B. Tab changes the level. x restarts, r says ready, q leaves, z leaves and
@@ -77,8 +78,9 @@ def play_command(
 
     With --terminal keys can also come from a pipe. A line holds keys, which are pressed one after
     another: '2', 'tab 1', or '1 2 3 4'. A number with a point at the start of a line is a time:
-    '1.5 3' presses 3 after 1.5 seconds of play since the keys before. Keys that move the robot wait
-    until the match is played. The last key stands until the match is over.
+    '1.5 3' presses 3 when 1.5 seconds of play have passed since the key before. Keys that move the
+    robot wait until the match is played. The last key of the pipe stays pressed until the match is
+    over.
     """
     if terminal:
         access = entrance.seat(invitation, contest, court, connect, seat, token)
@@ -92,7 +94,7 @@ def play_command(
 
 
 def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:
-    """Read the given files, or the gait files of the current folder, and print which.
+    """Read the given files; without gait files, read and name those of the current folder.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -115,7 +117,7 @@ def play(
     """Join, and play at the terminal until the contestant leaves.
 
     Args:
-        access: the way to the seat.
+        access: address, seat and token.
         team: the team's name.
         files: the team's files.
         ready: say ready at once.

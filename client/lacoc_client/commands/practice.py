@@ -28,7 +28,8 @@ def practice_command(
     recordings: Annotated[
         Path | None,
         typer.Option(
-            metavar="FOLDER", help="Keep the record of this practice there; by default it is not."
+            metavar="FOLDER",
+            help="Folder for the record of this practice; by default no record is kept.",
         ),
     ] = None,
     terminal: pages.Terminal = False,
@@ -39,8 +40,8 @@ def practice_command(
     A page opens in your browser. Both levels are open: postures (A) and locomotion (B); Tab changes
     the level. x puts the robot back to the start, z leaves and writes Pos-data.txt.
 
-    With --terminal q leaves. Keys can come from a pipe as in 'lacoc play'; after the last one
-    practice ends.
+    With --terminal q leaves. Keys can come from a pipe as in 'lacoc play'; practice ends after the
+    last key.
     """
     files = own_files(robot, gait or [])
     if not terminal:

@@ -33,9 +33,9 @@ from lacoc_shared.seat import Phase, SeatFlag
 from lacoc_shared.words import Phrase, counted, render, say
 
 app = typer.Typer(
-    help="Referee a match: decide, read the log, see how the court is.\n\n"
-    "'status' says which decisions are legal now, and why the others are not. Every decision goes "
-    "into the record with who and why.",
+    help="Referee a match: decide, read the log, see how well the court runs.\n\n"
+    "'status' says which decisions are possible now, and why the others are not. The "
+    "record keeps every decision with the referee's name and the reason.",
     no_args_is_help=True,
 )
 
@@ -53,7 +53,7 @@ _FIELDS = {
     "marker": "Name of the disc, corner or flag: c2r3, corner0, flag7.",
     "state": "What it becomes: neutral, left, right or down.",
     "event": "Number of the event, as in 'lacoc referee log'.",
-    "dry_run": "Only say what would change.",
+    "dry_run": "Only show what would change.",
     "winner": "The seat that wins, or 'draw'.",
 }
 _TYPES = {int: "A whole number.", float: "A number.", bool: "Yes or no."}
@@ -61,7 +61,7 @@ _TYPES = {int: "A whole number.", float: "A number.", bool: "Yes or no."}
 _TokenUnused = Annotated[
     str | None,
     typer.Option(
-        "--token", envvar="LACOC_TOKEN", metavar="TOKEN", help="Not needed for this command."
+        "--token", envvar="LACOC_TOKEN", metavar="TOKEN", help="This command needs no token."
     ),
 ]
 
@@ -80,13 +80,18 @@ def _default_name() -> str:
 
 _COMMON: dict[str, tuple[Any, Any]] = {
     "reason": (
-        Annotated[str, typer.Option(metavar="TEXT", help="Why; it goes into the record.")],
+        Annotated[
+            str, typer.Option(metavar="TEXT", help="The reason; it is written into the record.")
+        ],
         "",
     ),
     "by": (
         Annotated[
             str,
-            typer.Option(metavar="NAME", help="Who decides; by default your name on this machine."),
+            typer.Option(
+                metavar="NAME",
+                help="The referee's name; by default your user name on this machine.",
+            ),
         ],
         "",
     ),
@@ -96,7 +101,7 @@ _COMMON: dict[str, tuple[Any, Any]] = {
             typer.Option(
                 metavar="SECONDS",
                 min=0,
-                help="How long to wait for the court, and until the decision is legal.",
+                help="How many seconds to wait for the court, and until the decision is possible.",
             ),
         ],
         None,
@@ -179,7 +184,7 @@ def status(
     token: _TokenUnused = None,
     json: options.Json = False,
 ) -> None:
-    """Show phase, clock, score, links, and which decisions are legal."""
+    """Show phase, clock, score, connections, and which decisions are possible."""
     access = entrance.spectator(invitation, contest, court, connect)
     with open_client([access.connect], credentials=access.credentials) as session:
         view = Spectator(session, access.court)
@@ -199,11 +204,11 @@ def log(
     connect: options.Connect = None,
     token: _TokenUnused = None,
     follow: Annotated[
-        bool, typer.Option("--follow", help="Go on with the events that come, until Ctrl-C.")
+        bool, typer.Option("--follow", help="Go on with new events, until Ctrl-C.")
     ] = False,
     json: options.Json = False,
 ) -> None:
-    """List the events of the match with their numbers; --json: one object a line."""
+    """List the events of the match with their numbers; with --json, one on each line."""
     access = entrance.spectator(invitation, contest, court, connect)
     with open_client([access.connect], credentials=access.credentials) as session:
         view = Spectator(session, access.court)

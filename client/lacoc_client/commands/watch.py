@@ -37,23 +37,23 @@ def watch_command(
     connect: options.Connect = None,
     terminal: pages.Terminal = False,
     board: Annotated[
-        bool, typer.Option("--board", help="In this terminal, with the field from above, too.")
+        bool, typer.Option("--board", help="Use this terminal, and show the field from above too.")
     ] = False,
     json: Annotated[
         bool,
         typer.Option(
-            "--json", help="Print every event, and frames, as JSON for a program: one a line."
+            "--json", help="Print events and frames as JSON for a program, one on each line."
         ),
     ] = False,
     hz: Annotated[
         float,
         typer.Option(
-            min=0, max=50, help="With --json: how many frames to print a second; 0: none."
+            min=0, max=50, help="With --json: how many frames to print in a second; 0 prints none."
         ),
     ] = 2.0,
     forever: Annotated[
         bool,
-        typer.Option("--forever", help="Not at a page: go on with the next match, until Ctrl-C."),
+        typer.Option("--forever", help="Without a page: go on with the next match, until Ctrl-C."),
     ] = False,
     browser: pages.Browser = True,
 ) -> None:
@@ -88,7 +88,7 @@ class _End:
         self._ended_s: float | None = None
 
     def __call__(self) -> bool:
-        """Return whether to end: somebody asked for it, or the match's last event has been seen."""
+        """Return whether to end: somebody asked for it, or the match is over and fully told."""
         if self._stopping():
             return True
         frame = self._view.frame

@@ -36,15 +36,15 @@ def web_command(
         typer.Option(
             envvar="LACOC_WEB_LISTEN",
             metavar="HOST:PORT",
-            help="Where to serve the pages; 0.0.0.0:8080 lets everybody in the room see them.",
+            help="Address for the pages; 0.0.0.0:8080 lets everybody on the same network see them.",
         ),
     ] = server.LOOPBACK,
     host: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME",
-            help="A name by which browsers may call this machine, besides its own; may be given "
-            "again.",
+            help="Another name by which browsers may open this machine's pages; can be given "
+            "more than once.",
         ),
     ] = None,
     key: Annotated[
@@ -52,7 +52,8 @@ def web_command(
         typer.Option(
             envvar="LACOC_WEB_KEY",
             metavar="KEY",
-            help="What lets a page act; by default made from the contest file, or new each time.",
+            help="The page key, which lets a page act; by default made from the contest file, "
+            "or new each time.",
         ),
     ] = None,
     recordings: Annotated[
@@ -66,7 +67,9 @@ def web_command(
     viewers: Annotated[
         int,
         typer.Option(
-            min=1, max=2000, help="How many watching pages may be open at once; more are sent away."
+            min=1,
+            max=2000,
+            help="How many watching pages may be open at once; further pages are refused.",
         ),
     ] = VIEWERS_MOST,
     browser: Annotated[
@@ -77,9 +80,9 @@ def web_command(
 ) -> None:
     """Serve the pages: spectators, broadcast, contestants, referee, replays.
 
-    Everybody who can reach this machine may watch. To play or to referee, a page needs the address
-    with the key, and the seat's or the referee's token. The pages wait for a court that is not
-    there yet.
+    Everybody who can reach this machine may watch. To play or to referee, open the address with the
+    key, and enter the token of the seat or of the referee. The pages wait for a court that is not
+    running yet.
     """
     plan = None if contest is None else contests.load(contest)
     exporter = Exporter(metrics) if metrics else None
@@ -117,7 +120,7 @@ def web_command(
 def _courts(
     invitation: Path | None, plan: Contest | None, court: str | None, connect: str | None
 ) -> dict[str, Access]:
-    """Find the way to each court: the named one, or all of the contest."""
+    """Find the access to the named court, or to all courts of the contest."""
     if plan is None or court is not None or connect is not None or len(plan.courts) == 1:
         access = entrance.gateway(invitation, plan, court, connect)
         return {access.court: access}

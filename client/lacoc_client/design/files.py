@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import PurePath
 
 from lacoc_client.design.table import FileTable, gait_of, page_table
+from lacoc_client.design.text_edit import edit_text
 from lacoc_client.design.workbook_edit import edit_workbook, formulas_in
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.tables import LocomotionTable
@@ -66,13 +67,15 @@ def file_bytes(name: str, content: FileTable | str, before: bytes | None = None)
     if _suffix(name) == _ROBOT:
         raise UserError(say("design.bad-name", name=name))
     gait = gait_of(content, name)
-    if _suffix(name) != _WORKBOOK:
-        return write_gait(gait, leg_labels(content.legs))
     if isinstance(gait, LocomotionTable):
-        raise UserError(say("design.sequences-in-workbook", name=name))
+        if _suffix(name) == _WORKBOOK:
+            raise UserError(say("design.sequences-in-workbook", name=name))
+        return write_gait(gait, leg_labels(content.legs))
     if before is not None:
-        return edit_workbook(before, name, gait)
-    return write_workbook(gait, leg_labels(content.legs))
+        edit = edit_workbook if _suffix(name) == _WORKBOOK else edit_text
+        return edit(before, name, gait)
+    write = write_workbook if _suffix(name) == _WORKBOOK else write_gait
+    return write(gait, leg_labels(content.legs))
 
 
 def sent_gait(table: FileTable, name: str) -> SentFile:

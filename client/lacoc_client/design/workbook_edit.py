@@ -109,7 +109,9 @@ def _layout(rows: Sequence[Row], name: str, table: PostureTable) -> _Layout:
     row_of = {int(found[1]): row for row in body if (found := KEY.fullmatch(row.cells[0]))}
     _check_robot(row_of.values(), name, table)
     first = legend[0].number if legend else 0
-    stop = legend[-1].number + 1 if legend else 0
+    stop = first
+    while stop in {row.number for row in legend}:  # words further below are a person's own
+        stop += 1
     end = first or filled[-1].number + len(table.postures) + 1
     used = {row.number for row in filled}
     free = [number for number in range(header.number + 1, end) if number not in used]
@@ -234,8 +236,10 @@ class _Edit:
         changes = {place: wanted for place, wanted in layout.wanted.items() if self._differs(place)}
         if not changes:
             return {}
+        new_rows = {row for (row, _), wanted in layout.wanted.items() if isinstance(wanted, str)}
         for place, wanted in layout.wanted.items():
-            if place in changes or (self._formula(place) and isinstance(wanted, float)):
+            is_formula = self._formula(place) and isinstance(wanted, float)
+            if place in changes or place[0] in new_rows or is_formula:
                 contents[place] = self._content(place, wanted)
         first, stop = layout.legend
         for row in range(first, stop) if layout.down else ():

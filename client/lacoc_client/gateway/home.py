@@ -42,7 +42,7 @@ class Home:
     """A gateway's settings."""
 
     courts: dict[str, Access]
-    """The way to each court, by its name; a page that names no court gets the first."""
+    """Access to each court, by its name; a page that names no court gets the first."""
     kind: Kind = "venue"
     contest: str = ""
     """The contest's name; "" if nobody gave it one."""

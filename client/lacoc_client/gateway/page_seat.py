@@ -104,7 +104,7 @@ class PageSeat:
         self._joins += 1
 
     def _entry(self, asked: wire.JoinAsk, watching: Access) -> tuple[Access, str, SeatFiles]:
-        """Return the way to the seat, the team's name and its files; fill in what is missing."""
+        """Return seat access, team name and files; the prefill has what the page left out."""
         token, name = asked.token, asked.name
         files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
         prefill = self._prefill

@@ -36,7 +36,7 @@ class SeatThread:
     """Joins a seat and holds it until the page has gone.
 
     Args:
-        access: the way to the seat.
+        access: address, seat and token.
         team: the team's name.
         files: returns the team's files as text, and adds notes about them; called on the thread,
             because a workbook takes a while.

@@ -48,7 +48,7 @@ robot = "hexapod"          # for a team that brings none: an installed robot or 
 # ang_min_deg_s = 240.0    # fastest joint
 # torque_n_m = 2.0         # strongest servo
 
-[health]                   # a match held worse than this: "replay advised"; these are the defaults
+[health]                   # a match held worse than this: "rematch advised"; these are the defaults
 # real_time_factor = 0.98  # at least, over the time that was played
 # slow_beats_percent = 1.0
 # worst_late_ms = 200.0
@@ -81,7 +81,9 @@ token = "{referee}"
 
 @app.command()
 def init(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Where to write it.")] = _DEFAULT,
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="The contest file to write.")
+    ] = _DEFAULT,
     arena: Annotated[
         str, typer.Option(metavar="NAME", help="The court's game: an arena's name or folder.")
     ] = "othello",
@@ -122,26 +124,27 @@ def keys(
         list[str] | None,
         typer.Option(
             metavar="HOST",
-            help="Name or number by which others reach the courts' machine; may be given again.",
+            help="Name or number by which others reach the courts' machine; can be given more "
+            "than once.",
         ),
     ] = None,
     renew: Annotated[
         bool,
         typer.Option(
             "--renew",
-            help="Replace all keys: everybody needs a new invitation. The old are kept with a "
-            "number.",
+            help="Replace all keys: everybody needs a new invitation. The old keys are kept "
+            "with a number.",
         ),
     ] = False,
 ) -> None:
     """Encrypt a contest: make its keys, and an invitation for each person.
 
-    They go to the folder 'keys' beside the contest file, or to 'keys-FILE' if 'keys' belongs to
-    another contest. An entry in the contest file names the folder. From then on the courts listen
-    with TLS, and each person can do no more than their invitation allows.
+    The keys and invitations go to the folder 'keys' beside the contest file, or to 'keys-FILE' if
+    'keys' belongs to another contest. An entry in the contest file names the folder. From then on
+    the courts use encryption (TLS), and each person can do only what their invitation allows.
 
-    Run again, it adds what is new (a court, a token, a host); invitations that were handed out stay
-    valid. Courts that are running use the new keys after a restart.
+    If you run this command again, it adds what is new (a court, a token, a host). Invitations that
+    were handed out stay valid. Courts that are running use the new keys after a restart.
     """
     from lacoc_server.keys.make import make_keys  # needs packages that the base install lacks
 

@@ -39,16 +39,17 @@ def demo_command(
     left: Annotated[str, typer.Option(help="Bot in the left seat.")] = "planner",
     right: Annotated[str, typer.Option(help="Bot in the right seat.")] = "nearest",
     seconds: Annotated[
-        float | None, typer.Option(help="Length of the match, if not the arena's.", min=0.1)
+        float | None,
+        typer.Option(help="Length of the match in seconds; by default the arena's.", min=0.1),
     ] = None,
     speed: Annotated[
         float, typer.Option(help="2 plays twice as fast as real time.", min=0.1, max=20)
     ] = 1.0,
     headless: Annotated[
-        bool, typer.Option("--headless", help="Show the events only: no page, no picture.")
+        bool, typer.Option("--headless", help="Show only the events: no page and no picture.")
     ] = False,
     recordings: Annotated[
-        Path, typer.Option(metavar="FOLDER", help="Where the record goes.")
+        Path, typer.Option(metavar="FOLDER", help="Folder for the record.")
     ] = Path("recordings"),
 ) -> None:
     """Show a whole match: a court, two bots and a referee meet over the network.

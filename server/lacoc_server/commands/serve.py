@@ -43,8 +43,8 @@ def serve_command(
         str | None,
         typer.Option(
             envvar="LACOC_ARENA",
-            help="The game where there is no contest file: othello, flag-strike, practice, or the "
-            "path of an arena's folder.",
+            help="The game, if there is no contest file: othello, flag-strike, practice, or "
+            "the path of an arena's folder.",
         ),
     ] = None,
     listen: Annotated[
@@ -52,7 +52,7 @@ def serve_command(
         typer.Option(
             envvar="LACOC_LISTEN",
             metavar="ADDRESS",
-            help="Where to listen, such as tcp/0.0.0.0:7447; port 0 takes a free one.",
+            help="Address at which to listen, such as tcp/0.0.0.0:7447; port 0 takes a free port.",
         ),
     ] = None,
     recordings: Annotated[
@@ -64,7 +64,8 @@ def serve_command(
         ),
     ] = None,
     seconds: Annotated[
-        float | None, typer.Option(help="Length of a match, if not the arena's.", min=0.1)
+        float | None,
+        typer.Option(help="Length of a match in seconds; by default the arena's.", min=0.1),
     ] = None,
     speed: Annotated[
         float, typer.Option(help="2 plays twice as fast as real time.", min=0.1, max=50)
@@ -76,14 +77,14 @@ def serve_command(
     metrics: options.Metrics = None,
     json: options.Json = False,
 ) -> None:
-    """Run a court: it steps the robots, keeps the clock, scores and records.
+    """Run a court: it moves the robots, keeps clock and score, and records the match.
 
     Without a contest file the court makes its own tokens and prints the command line for each
     contestant and for the referee. Ctrl-C closes the court; the record is finished first.
 
-    If the court was killed in a match, start it again in the same way. The match goes on where it
-    stopped: it is halted and keeps its seats, clock and score. A match without a referee resumes by
-    itself when a contestant is back. Without a contest file both the new tokens and the old ones
+    If the court was killed in a match, start it again in the same way. The match is then halted,
+    and goes on where it stopped, with its seats, clock and score. A match without a referee resumes
+    by itself when a contestant is back. Without a contest file both the new tokens and the old ones
     open the seats.
     """
     plan, made_here = _contest(contest, arena, listen, court)

@@ -62,7 +62,8 @@ def simulate_command(
         ),
     ] = "hexapod",
     seconds: Annotated[
-        float | None, typer.Option(help="Length of a match, if not the arena's.", min=0.1)
+        float | None,
+        typer.Option(help="Length of a match in seconds; by default the arena's.", min=0.1),
     ] = None,
     both_sides: Annotated[
         bool, typer.Option("--both-sides", help="Play every pair a second time with seats swapped.")
@@ -70,21 +71,22 @@ def simulate_command(
     repeat: Annotated[
         int,
         typer.Option(
-            help="How often each pair plays; the bots start a little later each time.", min=1
+            help="How many times each pair plays; the bots start a little later each time.", min=1
         ),
     ] = 1,
     jobs: Annotated[
         int | None, typer.Option(help="Processes at a time; by default one for each core.", min=1)
     ] = None,
     record: Annotated[
-        Path | None, typer.Option(metavar="FOLDER", help="Write a record of each match there.")
+        Path | None, typer.Option(metavar="FOLDER", help="Folder for a record of each match.")
     ] = None,
     json: options.Json = False,
 ) -> None:
-    """Play matches of bots or ghosts headless, and print the results.
+    """Play matches of bots or ghosts without a picture, and print the results.
 
-    'planner@anna' lets the bot planner steer the files in the folder anna: LocoTra-data.txt, and
-    robot.toml if there is one. Bots use key 0 to stand, 1 for left, 2 for forward, 3 for right.
+    'planner@anna' lets the bot planner steer a robot with the files in the folder anna:
+    LocoTra-data.txt, and robot.toml if there is one. Bots use key 0 to stand, 1 to turn left, 2 to
+    go forward, 3 to turn right.
 
     Physics and rules are those of a court: a simulated match is bit for bit the match that a court
     would play.

@@ -51,27 +51,27 @@ def trial_command(
         str,
         typer.Option(
             metavar="KEYS",
-            help="Keys to press: '2', or '1:3, 2' for key 1 for 3 s and then key 2. The last one "
-            "is measured; by default it is 2, forward.",
+            help="Keys to press: '2', or '1:3, 2' for key 1 for 3 s and then key 2. The last "
+            "key is measured. By default key 2, forward, is pressed.",
         ),
     ] = "",
     seconds: Annotated[
         float | None,
         typer.Option(
             metavar="S",
-            help="How long the last key is pressed; by default until its sequence was repeated "
-            "6 times.",
+            help="How many seconds to press the last key; by default until its sequence was "
+            "repeated 6 times.",
             min=0.1,
             max=60.0,
         ),
     ] = None,
     json: options.Json = False,
 ) -> None:
-    """Let a robot walk alone under the contest's drive: figures, foot bars, and what explains them.
+    """Let a robot walk alone, and print how well it walks: figures, foot bars and explanations.
 
     The robot moves exactly as at a court. A file of postures (Loco-data) is tried with the
-    sequences of the sample's keys: 0 stand, 1 turn left, 2 forward, 3 turn right. Figures are of
-    whole cycles; the first cycle, in which the robot gets going, does not count.
+    sequences of the sample's keys: 0 stand, 1 turn left, 2 forward, 3 turn right. The figures are
+    averages of whole cycles, without the first cycle, in which the robot starts to move.
     """
     spec = read_robot_file(robot)
     gait = read_trial_gait(file, spec)

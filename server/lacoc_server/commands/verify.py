@@ -36,7 +36,7 @@ def verify_command(
         float,
         typer.Option(
             metavar="M",
-            help="How far another machine may be from the record [m, rad].",
+            help="How far the results of another machine may be from the record [m, rad].",
             min=0.0,
             max=1e-3,
         ),

@@ -49,6 +49,10 @@ CourseOf = Callable[[RobotSpec], Course]
 _Request = TypeVar("_Request", bound=msgspec.Struct)
 
 
+class Busy(UserError):
+    """Too much waits at the studio; the same request may come again."""
+
+
 class Answer(NamedTuple):
     """An encoded reply, or an encoded `Refusal`."""
 
@@ -112,7 +116,7 @@ def refusal(error: BadMessage | FileRefused | UserError) -> Refusal:
             why = say("refused.mistakes", count=count, first=first)
             return Refusal(why, tuple(error.mistakes[:_MISTAKES_TOLD]))
         case UserError():
-            return Refusal(error.phrase)
+            return Refusal(error.phrase, again=isinstance(error, Busy))
     return Refusal(say("refused.bad-request", error=str(error)))
 
 

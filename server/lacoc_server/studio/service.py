@@ -1,19 +1,20 @@
 """A studio's place on the network: requests come in, processes answer them."""
 
-import contextlib
 from collections.abc import Sequence
 from concurrent.futures import CancelledError, Future
 from functools import partial
 from typing import Self
 
-from lacoc_server.studio.answers import Answer
+from lacoc_server.studio.answers import Answer, Busy, read, refusal
 from lacoc_server.studio.floors import answered
+from lacoc_server.studio.searches import Searches
 from lacoc_server.studio.workers import WorkerDied, Workers
-from lacoc_shared.codec import encode
+from lacoc_shared.codec import BadMessage, encode
 from lacoc_shared.command import log
-from lacoc_shared.messages import PROTOCOL, Refusal
+from lacoc_shared.messages import PROTOCOL, Done, Refusal
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Request, open_studio
-from lacoc_shared.studio import RobotRequest, StudioKeys
+from lacoc_shared.studio import CancelRequest, CoachRequest, Progress, RobotRequest, StudioKeys
 from lacoc_shared.words import render, say
 
 _MOST_WAITING = 128
@@ -36,12 +37,13 @@ class Studio:
     """
 
     def __init__(self, name: str, listen: Sequence[str], jobs: int | None = None) -> None:
-        keys = StudioKeys(name)
+        self._keys = keys = StudioKeys(name)
         self._log = log.get(studio=name)
         self._session = session = open_studio(listen)
         self._workers = Workers(jobs)
         for _ in range(self._workers.count):  # so that the first student does not wait for MuJoCo
             self._workers.submit(answered, "robot", encode(RobotRequest(protocol=PROTOCOL)))
+        self._searches = Searches(jobs, self._told, self._failed)
         session.answer(keys.request("*"), self._arrived)
         session.announce(keys.alive)
         self.locators = session.locators()
@@ -51,25 +53,45 @@ class Studio:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._searches.close()
         self._workers.close()
         self._session.close()
 
     def _arrived(self, request: Request) -> None:
-        what = request.key.rpartition("/")[2]
-        if self._workers.waiting >= _MOST_WAITING:
-            request.refuse(encode(Refusal(say("studio.busy"), again=True)))
-            return
-        result = self._workers.submit(answered, what, request.payload)
-        result.add_done_callback(partial(self._done, request))
+        """Take a request in, on Zenoh's thread; what takes long is done elsewhere."""
+        what, payload = request.key.rpartition("/")[2], request.payload
+        try:
+            match what:
+                case "coach":
+                    self._searches.add(read(payload, CoachRequest), partial(_answer, request))
+                case "cancel":
+                    self._searches.cancel(read(payload, CancelRequest).job)
+                    request.reply(encode(Done()))
+                case _:
+                    if self._workers.waiting >= _MOST_WAITING:
+                        raise Busy(say("studio.busy"))
+                    result = self._workers.submit(answered, what, payload)
+                    result.add_done_callback(partial(self._done, request))
+        except (BadMessage, UserError) as error:
+            request.refuse(encode(refusal(error)))
 
     def _done(self, request: Request, result: "Future[Answer]") -> None:
         try:
-            right, payload = result.result()
-        except (WorkerDied, CancelledError) as error:
-            self._log.warning(render(say("studio.died")), error=str(error))
-            right, payload = False, encode(Refusal(say("studio.died"), again=True))
-        except Exception as error:  # a bug: one request fails, the studio does not
-            self._log.warning(str(error))
-            right, payload = False, encode(Refusal(say("studio.failed")))
-        with contextlib.suppress(Exception):  # whoever asked may have gone
-            (request.reply if right else request.refuse)(payload)
+            answer = result.result()
+        except (Exception, CancelledError) as error:
+            answer = self._failed(error)
+        _answer(request, answer)
+
+    def _failed(self, error: BaseException) -> Answer:
+        """Log why a request has no answer, and make one."""
+        ended = isinstance(error, WorkerDied | CancelledError)
+        why = say("studio.died") if ended else say("studio.failed")
+        self._log.warning(render(why), code=why.code, error=repr(error))
+        return Answer(False, encode(Refusal(why, again=ended)))
+
+    def _told(self, job: str, how_far: Progress) -> None:
+        self._session.send(self._keys.progress(job), encode(how_far))
+
+
+def _answer(request: Request, answer: Answer) -> None:
+    (request.reply if answer.right else request.refuse)(answer.payload)

@@ -16,7 +16,7 @@ ContestFile = Annotated[
         "--contest",
         envvar="LACOC_CONTEST",
         metavar="FILE",
-        help="Contest file: says what is left open here (see 'lacoc contest').",
+        help="Contest file; it has what you do not give here (see 'lacoc contest').",
     ),
 ]
 Invitation = Annotated[
@@ -25,7 +25,7 @@ Invitation = Annotated[
         "--invitation",
         envvar="LACOC_INVITATION",
         metavar="FILE",
-        help="Your invitation, from the organiser: it says court, address, seat and token.",
+        help="Your invitation: a file from the organiser with court, address, seat and token.",
     ),
 ]
 CourtName = Annotated[
@@ -34,7 +34,7 @@ CourtName = Annotated[
         "--court",
         envvar="LACOC_COURT",
         metavar="NAME",
-        help="Name of the court; by default the contest's only one, or 'main'.",
+        help="Name of the court; by default the contest's only court, or 'main'.",
     ),
 ]
 Connect = Annotated[
@@ -58,8 +58,8 @@ Token = Annotated[
         "--token",
         envvar="LACOC_TOKEN",
         metavar="TOKEN",
-        help="Your token, from the organiser. In the environment others on this machine "
-        "can't read it.",
+        help="Your token, from the organiser. To hide it from others on this machine, set it "
+        "as LACOC_TOKEN.",
     ),
 ]
 WaitForCourt = Annotated[
@@ -69,7 +69,8 @@ WaitForCourt = Annotated[
         envvar="LACOC_WAIT",
         metavar="SECONDS",
         min=0,
-        help="How long to wait for a court that is not there, as a service does.",
+        help="How many seconds to wait for a court that is not running yet; for programs that "
+        "start by themselves.",
     ),
 ]
 Metrics = Annotated[
@@ -78,7 +79,8 @@ Metrics = Annotated[
         "--metrics",
         envvar="LACOC_METRICS",
         metavar="HOST:PORT",
-        help="Answer Prometheus there, such as 127.0.0.1:9100; without it nothing listens.",
+        help="Address for metrics, which Prometheus reads, such as 127.0.0.1:9100; by default "
+        "there are none.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]

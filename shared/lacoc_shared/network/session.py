@@ -94,7 +94,7 @@ class Mailbox:
         """End the subscription; messages that came before can still be taken."""
         if self.subscriber is not None:
             with suppress(zenoh.ZError):  # its session may be closed already
-                self.subscriber.undeclare()
+                self.subscriber.undeclare()  # type: ignore[no-untyped-call]
 
     def deliver(self, sample: zenoh.Sample) -> None:
         """Store a message; runs on Zenoh's thread."""

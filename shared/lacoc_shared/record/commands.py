@@ -27,18 +27,20 @@ _NOT_IN_NAMES = re.compile(r"[^\w.-]")
 
 app = lazy_group(
     "lacoc.commands.replay",
-    help="Look at the record of a match, check it, take tables out of it.",
+    help="Look at the record of a match, check it, or export tables from it.",
 )
 
 File = Annotated[
-    Path, typer.Argument(metavar="FILE", help="The .mcap of a match, or any of its segments.")
+    Path, typer.Argument(metavar="FILE", help="The .mcap file of a match, or any of its segments.")
 ]
 
 
 @app.command()
 def info(
     file: File,
-    json: Annotated[bool, typer.Option("--json", help="One line of JSON for a program.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print one line of JSON for a program.")
+    ] = False,
 ) -> None:
     """Say what a record holds: teams, result, versions, whether it is complete."""
     record = Record.read(file)
@@ -59,20 +61,27 @@ def export(
     file: File,
     pos_data: Annotated[
         list[str] | None,
-        typer.Option(metavar="SEAT", help="The way of a seat's robot as Pos-data.txt; repeatable."),
+        typer.Option(
+            metavar="SEAT",
+            help="Export the path of a seat's robot as Pos-data.txt; can be given more than once.",
+        ),
     ] = None,
-    events: Annotated[bool, typer.Option("--events", help="All events as CSV.")] = False,
-    result: Annotated[bool, typer.Option("--result", help="The result as JSON.")] = False,
+    events: Annotated[bool, typer.Option("--events", help="Export all events as CSV.")] = False,
+    result: Annotated[bool, typer.Option("--result", help="Export the result as JSON.")] = False,
     picture: Annotated[
-        bool, typer.Option("--foxglove", help="An MCAP that Foxglove, Lichtblick and Rerun draw.")
+        bool,
+        typer.Option(
+            "--foxglove", help="Export an MCAP file that Foxglove, Lichtblick and Rerun can show."
+        ),
     ] = False,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Folder for the files; made if it is not there.")
+        Path,
+        typer.Option(metavar="DIR", help="Folder for the files; it is made if it does not exist."),
     ] = Path(),
 ) -> None:
-    """Take tables, the result or a 3D view out of a record. Without an option: all of them.
+    """Export tables, the result or a 3D view from a record; without an option, all of them.
 
-    A file of the same name that is there already is kept with a number.
+    An older file of the same name is kept with a number.
     """
     record = Record.read(file)
     if record.cut:

@@ -191,7 +191,7 @@ export const referee = {
     "bad: the match runs slower than real time",
     "不良：試合が実時間より遅れています",
   ],
-  "courtHealth.advice": ["Replay advised", "再試合を推奨"],
+  "courtHealth.advice": ["Rematch advised", "再試合を推奨"],
   "courtHealth.unknown": ["no news from the court", "コートの情報がありません"],
   "courtHealth.factor": ["Real-time factor", "実時間比"],
   "courtHealth.slow": ["Slow beats", "遅れた回数"],
