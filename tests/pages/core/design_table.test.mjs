@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { History } from "../../../client/web/src/core/design/history.ts";
+import * as rows from "../../../client/web/src/core/design/rows.ts";
 import * as t from "../../../client/web/src/core/design/table.ts";
 import * as tools from "../../../client/web/src/core/design/tools.ts";
 
@@ -34,7 +35,7 @@ const sample = t.fromWire(
 
 test("keys 3 and 4 of the sample are the mirror of 1 and 2", () => {
   assert.equal(sample.rows.length, 9);
-  const halves = tools.halvesOf(t.sequenceOf(sample, 2, ["0", "8765", "1234", "5678"]));
+  const halves = tools.halvesOf(rows.sequenceOf(sample, 2, ["0", "8765", "1234", "5678"]));
   assert.deepEqual(halves, [
     { from: 1, to: 3 },
     { from: 2, to: 4 },

@@ -1,13 +1,13 @@
 /** Blocks of cells from and to a spreadsheet, as its clipboard has them. */
 
 import { htmlCells } from "./html_block";
+import { rowsOfKey } from "./rows";
 import {
   type Area,
   joint,
   LEVELS,
   numberOf,
   readCell,
-  rowsOfKey,
   setArea,
   type Table,
   type Wrong,
@@ -158,28 +158,41 @@ function tabbedCells(text: string): string[][] {
   let row: string[] = [];
   let at = 0;
   while (at < text.length) {
-    const cell = QUOTED.exec(text.slice(at))?.[0] ?? PLAIN.exec(text.slice(at))![0];
-    row.push(unquoted(cell));
-    at += cell.length;
-    const end = text[at];
-    if (end === "\t") {
+    const end = quoteEnd(text, at) ?? cellEnd(text, at);
+    row.push(unquoted(text.slice(at, end)));
+    at = end;
+    if (text[at] === "\t") {
       at++;
       if (at < text.length) continue;
       row.push("");
     }
-    if (end === "\r" || end === "\n") at += text.startsWith("\r\n", at) ? 2 : 1;
+    if (at < text.length) at += text.startsWith("\r\n", at) ? 2 : 1;
     rows.push(row);
     row = [];
   }
   return rows;
 }
 
-/** A cell in quotes, up to its tab, end of line, or the end. */
-const QUOTED = /^"(?:[^"]|"")*"(?=[\t\r\n]|$)/;
-const PLAIN = /^[^\t\r\n]*/;
+/** Where a cell ends that does not stand in quotes. */
+function cellEnd(text: string, from: number): number {
+  let at = from;
+  while (at < text.length && !"\t\r\n".includes(text[at]!)) at++;
+  return at;
+}
 
+/** Where a cell in quotes ends; null: it is none. */
+function quoteEnd(text: string, from: number): number | null {
+  if (text[from] !== '"') return null;
+  for (let at = text.indexOf('"', from + 1); at >= 0; at = text.indexOf('"', at + 2)) {
+    if (text[at + 1] !== '"') return cellEnd(text, at + 1) === at + 1 ? at + 1 : null;
+  }
+  return null;
+}
+
+/** The content of a cell in quotes; text with a quote at its begin only stays. */
 function unquoted(cell: string): string {
-  return QUOTED.test(cell) ? cell.slice(1, -1).replaceAll('""', '"') : cell;
+  const isQuoted = quoteEnd(cell, 0) === cell.length;
+  return isQuoted ? cell.slice(1, -1).replaceAll('""', '"') : cell;
 }
 
 function quoted(cell: string | number): string {

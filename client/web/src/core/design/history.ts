@@ -1,7 +1,7 @@
 /** The table that is edited, with every step that led to it. */
 
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
-import { type Columns, contentOf, refit, type Table } from "./table";
+import { type Columns, type Row, refit, type Table } from "./table";
 
 interface Step {
   /** What the step was, for the buttons; "" for the first table. */
@@ -24,7 +24,10 @@ export class History {
   private readonly steps = signal<readonly Step[]>([]);
   private readonly at = signal(0);
   private readonly versions = new Map<string, number>();
-  private readonly tables: Table[] = [];
+  private readonly rows = new Map<string, number>();
+  private readonly rowNumbers = new WeakMap<Row, number>();
+  /** By version, from 1. */
+  private tables: Table[] = [];
 
   constructor(table: Table) {
     this.open(table);
@@ -47,8 +50,10 @@ export class History {
 
   /** Take all steps over to another robot of as many legs; no step by itself. */
   refit(columns: Columns): void {
+    const fitted = (table: Table) => refit(table, columns) ?? table;
+    this.tables = this.tables.map(fitted);
     this.steps.value = this.steps.peek().map((step) => {
-      const table = refit(step.table, columns) ?? step.table;
+      const table = fitted(step.table);
       return { ...step, table, version: this.numberOf(table) };
     });
   }
@@ -85,11 +90,23 @@ export class History {
   }
 
   private numberOf(table: Table): number {
-    const content = contentOf(table);
+    const content = `${table.kind} ${table.rows.map((row) => this.rowNumber(row)).join(" ")}`;
     const known = this.versions.get(content);
     if (known !== undefined) return known;
     this.tables.push(table);
     this.versions.set(content, this.tables.length);
     return this.tables.length;
+  }
+
+  /** The same number for the same row: a long table costs a short text for each version. */
+  private rowNumber(row: Row): number {
+    let number = this.rowNumbers.get(row);
+    if (number === undefined) {
+      const content = JSON.stringify([row.key, row.posture, row.cells]);
+      number = this.rows.get(content) ?? this.rows.size;
+      this.rows.set(content, number);
+      this.rowNumbers.set(row, number);
+    }
+    return number;
   }
 }

@@ -28,7 +28,7 @@ export function htmlCells(html: string): string[][] {
   for (const [token] of html.matchAll(TOKEN)) {
     const tag = /^<(\/?)([a-z]+)/i.exec(token);
     if (!tag) {
-      if (cell !== null && !token.startsWith("<!--")) cell += decoded(token).replace(/\s+/g, " ");
+      if (cell !== null && !/^<[!?]/.test(token)) cell += decoded(token.replace(/\s+/g, " "));
       continue;
     }
     const [isEnd, name] = [tag[1] === "/", tag[2]!.toLowerCase()];
