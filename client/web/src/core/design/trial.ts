@@ -56,8 +56,9 @@ export function readTrial(reply: TrialReply, legs: number): Trial {
   const { ticks } = reply;
   const joints = LEVELS.length * legs;
   const bytes = (data: Uint8Array) => sized(data, ticks, 1);
+  // The arrays may lie at any byte of the message, so each is copied.
   const floats = (data: Uint8Array, each: number) =>
-    new Float32Array(sized(data, ticks * each, 4).slice().buffer);
+    new Float32Array(new Uint8Array(sized(data, ticks * each, 4)).buffer);
   return {
     reply,
     legs,
