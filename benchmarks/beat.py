@@ -65,7 +65,7 @@ def beat(arena: str, rounds: int) -> dict[str, Any]:
 
 @contextmanager
 def _clocked_steps() -> Iterator[list[float]]:
-    """Note the time of each call of `mj_step` [s]."""
+    """Give a list that receives the time of each call of `mj_step` [s]."""
     took_s: list[float] = []
     step = mujoco.mj_step
 
@@ -86,7 +86,8 @@ def whole_match(arena: str, rounds: int) -> dict[str, Any]:
 
     Returns:
         The median times of the match and of bare physics [s]; their ratio, bare to match; how
-        many times faster than real time the match was; and the size of its record [bytes].
+        many times faster than real time the match was; and the size of its record [bytes], also
+        for each second of the match.
     """
     match_s, bare_s, shares, sizes = [], [], [], []
     loaded = arenas.load(arena)

@@ -285,7 +285,7 @@ def _event_added(copy: _Copy) -> None:
 
 
 def _section(copy: _Copy) -> None:
-    """Take a section out of another match: poses, touches and the snapshot at its end."""
+    """Put in a section of another match: its poses, its touches, and perhaps its last snapshot."""
     starts = [beat for beat, _ in copy.record.snapshots]
     beats = {beat for beat, _ in copy.other.snapshots}
     pairs = [(one, two) for one, two in pairwise(starts) if one in beats and two in beats]
@@ -376,7 +376,7 @@ def _chain(copy: _Copy) -> None:
 
 
 def _touch(copy: _Copy) -> None:
-    """Let a robot touch a marker that it does not touch, or not touch one that it does."""
+    """Add a touch that did not happen, or remove the touches of a beat."""
     at = copy.frame(Phase.PLAYING)
     beat = copy.record.frames[at][0]
     touches = copy.record.touches

@@ -251,7 +251,7 @@ class _Run:
         return newest.name.partition(".")[0]
 
     def _verify(self, match_id: str) -> None:
-        """Verify a match's record, and count and delete it, before the next match begins."""
+        """Verify a match's record, count it if it is right, and delete it."""
         path, end_s = packed_path(self._folder, match_id), time.monotonic() + _PACKED_S
         while not path.exists() and time.monotonic() < end_s:
             time.sleep(0.1)

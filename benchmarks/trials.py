@@ -19,10 +19,10 @@ from typing import NamedTuple
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_server.match.match import Match
-from lacoc_server.trial.course import SETTLE_TICKS, Course
+from lacoc_server.trial.course import SETTLE_TICKS, Course, practice_field
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.walk import Press, Walk
-from lacoc_server.world.sensed import make_course, practice_field
+from lacoc_server.world.sensed import make_course
 from lacoc_server.world.world import World
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
 from lacoc_shared.gait.text import write_gait
@@ -46,12 +46,12 @@ class Compared(NamedTuple):
     ticks: int
     cycles: int
     differs_at: int | None
-    """First cycle whose state hash differs, or -1 for another tick; None: none does."""
+    """First cycle at whose end the state hash differs; -1: only other ticks differ; None: none."""
     walks: bool
     changes_hz: float
     """How often a foot comes down or goes up, mean over the feet [1/s]."""
     agrees: float
-    """Share of ticks and feet in which load and height say the same."""
+    """Share of ticks and feet in which load and height agree whether the foot is down."""
 
 
 def main() -> None:
@@ -82,7 +82,7 @@ def main() -> None:
 
 
 def compared(seed: int) -> Compared:
-    """Draw a table, try it, and play it in a match."""
+    """Draw a random table, and compare its trial with a match of the same keys."""
     rng = random.Random(seed)
     robot = ROBOTS[seed % len(ROBOTS)]
     gait, locomotion = _drawn(rng, robot)
@@ -124,7 +124,7 @@ def _agrees(walk: Walk) -> float:
 
 
 def _drawn(rng: random.Random, robot: str) -> tuple[Gait, SentFile]:
-    """Draw a gait of whole degrees, and its file: half of them a sample's, changed in places."""
+    """Draw a gait of whole degrees, and its file; about every second is a changed sample gait."""
     entry = entry_of(robot)
     spec = entry.robot
     assert entry.gait.locomotion is not None
@@ -194,7 +194,7 @@ def entry_of(robot: str) -> Entry:
 
 @cache
 def course_of(robot: str) -> Course:
-    """Make the floor for a sample robot's trials."""
+    """Make the course for a sample robot's trials."""
     return make_course(entry_of(robot).robot)
 
 

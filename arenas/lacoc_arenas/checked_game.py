@@ -243,7 +243,7 @@ def marker_of_geom(game: AnyGame, geom: str) -> tuple[int, int]:
     """Return the marker that a geom shows, and the state; (-1, -1) if it shows no marker.
 
     Raises:
-        UserError: if the geom's name begins as a marker's, and there is no such marker or state.
+        UserError: if the geom's name begins with "marker:", and there is no such marker or state.
     """
     kind, _, rest = geom.partition(":")
     if kind != "marker":

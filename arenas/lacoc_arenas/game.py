@@ -19,7 +19,7 @@ index + 1 as its state.
 """
 
 Claim = tuple[int, str]
-"""(seat, marker) of an event that a referee strikes out (rules 4.1)."""
+"""(seat, marker): an event gives the marker to the seat. A referee may strike it (rules 4.1)."""
 
 
 class NoSuchState(ValueError):
@@ -107,7 +107,7 @@ class Game(Protocol[S]):
     """The rules of a game, made by its arena's `rules.make(settings)`."""
 
     state_type: type[S]
-    """The struct that holds the state of a match; it must be encodable (snapshots)."""
+    """The struct that holds the state of a match; msgpack must be able to encode it."""
     markers: tuple[MarkerInfo, ...]
     """The board: discs, corners, flags; empty for a game without a board."""
     starts: tuple[tuple[Place, ...], ...]

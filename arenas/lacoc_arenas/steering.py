@@ -137,7 +137,7 @@ class Pilot:
         return seat.posture < before or self._postures[seat.key] == 1
 
     def _must_restart(self, poses: list[Pose], now: int) -> bool:
-        """Say whether the robot lies on its back, or hangs on the other robot, for too long."""
+        """Say whether the robot was on its back, or in another robot's legs, for too long."""
         pose = poses[self._seat]
         others = [other for other in poses if other is not pose]
         tangled = any(pose.distance_m(other.x_m, other.y_m) < _TANGLED_M for other in others)
@@ -199,7 +199,7 @@ def _is_near(pose: Pose, other: Pose) -> bool:
 
 
 def _key_for(bearing_rad: float, stray_rad: float) -> Key:
-    """Walk if the bearing is small, else turn towards it."""
+    """Return the key that walks if the bearing is small, else the one that turns towards it."""
     bearing_rad = math.remainder(bearing_rad, math.tau)
     if abs(bearing_rad) <= stray_rad:
         return FORWARD

@@ -35,7 +35,7 @@ _WHY = {int(no): why for no, why in WHY_NO.items()}
 
 
 class Hold(Enum):
-    """How a controller holds its seat: the names of `hold.*`."""
+    """Whether a controller holds its seat, and if not, why; each value names a text `hold.*`."""
 
     NOT_JOINED = "not-joined"
     HELD = "held"
@@ -85,7 +85,7 @@ class _Press(NamedTuple):
 
 
 class Controller:
-    """One seat of a court, held for a person's page, a bot or a ghost.
+    """Holds one seat of a court for a person, a bot or a ghost.
 
     One thread uses it. While the seat is held, that thread calls `poll` or `wait_frame` at least
     ten times a second: they repeat the last command, which keeps the seat alive. After a restart of

@@ -1,4 +1,4 @@
-"""What a court has sent, and what part of it is missing here. No I/O, no clock.
+"""Keeps what a court has sent, and knows what has not arrived. No I/O, no clock.
 
 A spectator and a gateway each hold a `CourtView`: they pass it what arrives, and ask the court for
 what is missing.
@@ -79,7 +79,7 @@ class CourtView(Generic[T]):
 
     @property
     def has_older_sheet(self) -> bool:
-        """True if the court said that it has another sheet."""
+        """True if the court said that its newest sheet is another one."""
         return self._told.sheet not in (b"", self._sheet_hash)
 
     @property

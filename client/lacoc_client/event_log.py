@@ -22,7 +22,7 @@ class EventLog(Generic[T]):
         self._first = 1
         """Lowest event number that the court still lists."""
         self.number = 0
-        """Version of the log; it changes when the log begins again."""
+        """Version of the log; a new one means that events before the newest may have changed."""
 
     def __iter__(self) -> Iterator[T]:
         return iter([kept for _, kept in self._known.values()])

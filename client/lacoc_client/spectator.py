@@ -59,7 +59,7 @@ class Spectator:
         self.frame: Frame | None = None
         """The newest frame."""
         self.frame_s = time.monotonic()
-        """When the newest frame arrived; before the first: when this began to wait."""
+        """When the newest frame arrived; before the first frame, when the wait for it began."""
         self._other_since_s: float | None = None
         """Time since which frames have come without their sheet; None: the sheet fits them."""
         self.health: Health | None = None
@@ -214,7 +214,7 @@ class Spectator:
             self._read_sheet(sheet)
 
     def _take_events(self) -> None:
-        """Take in new events, but not while a requested list is under way: the list is older."""
+        """Take in new events, but not while a requested list, which is older, is under way."""
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
             if event is not None and self._view.add_event(event, mail.payload):

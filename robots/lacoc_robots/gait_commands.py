@@ -12,6 +12,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
+from lacoc_robots.joint_picture import joint_picture, labels_of
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
@@ -121,7 +122,11 @@ def check(
     for note in notes:
         screen.warn(note)
     if mistakes:
-        raise FileRefused(mistakes)
+        screen.refused(mistakes)
+        if (labels := spec.labels if spec else labels_of(mistakes)) is not None:
+            lit = {mistake.joint for mistake in mistakes if mistake.joint is not None}
+            screen.show(joint_picture(labels, lit), screen.stderr)
+        raise typer.Exit(2)
 
 
 @app.command()
@@ -234,7 +239,7 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 
 
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
-    """Name the feet lifted in each posture; equal neighbours are joined, and six steps shown."""
+    """Name the feet lifted in each posture; equal neighbours are one step, and six are shown."""
     steps = [step for step, _ in itertools.groupby(_lifted(p, labels) for p in sequence)]
     none, then = render(say("gait-command.no-feet")), render(say("gait-command.then"))
     shown = then.join(" ".join(step) or none for step in steps[:6])

@@ -89,8 +89,8 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
     def capsules(self, root: float, first: float, second: float) -> tuple[Capsule, ...]:
         """Compute the shapes of the three links; a shape is as long as its link, ends included.
 
-        The root link begins with its middle on the root hinge. The workshop's root link is as long
-        as its radius, so its shape is a sphere there.
+        The root link's shape also reaches one radius behind the root hinge. The workshop's root
+        link is as long as its radius, so its shape is a sphere around that hinge.
         """
         points = self.points(root, first, second)
         shapes = []

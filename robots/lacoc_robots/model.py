@@ -13,7 +13,7 @@ from lacoc_shared.gait.tables import JOINTS_PER_LEG
 MODEL_VERSION = 2
 """Increased when the model of a robot or its solver changes, because paths change then.
 
-1: dense Jacobian, motors without a highest speed.
+Version 1 had a dense Jacobian, and motors without a highest speed.
 """
 
 TIMESTEP_S = 0.002

@@ -18,7 +18,7 @@ from lacoc_shared.seat import BEAT_S
 def try_standing(
     robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str
 ) -> list[Mistake]:
-    """Let a robot stand, once in each posture of key 0.
+    """Let a robot stand with key 0 of each level; equal postures are tried once.
 
     Args:
         robot: the robot.

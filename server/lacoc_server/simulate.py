@@ -56,7 +56,7 @@ def player(
     team: str | None = None,
     late_ticks: int = 0,
 ) -> Player:
-    """Seat a bot, or the ghost of a record with the files that it played with.
+    """Make a player: a bot, or the ghost of a record with the files that it played with.
 
     Args:
         arena: the arena.
@@ -133,7 +133,7 @@ def simulate(
         arena: folder of the arena, if it is not installed.
 
     Returns:
-        The official result.
+        The result: official, or void if physics stopped.
 
     Raises:
         UserError: if the arena's matches have no end, or a record can't be written.

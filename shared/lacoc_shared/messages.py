@@ -68,9 +68,9 @@ class Frame(msgspec.Struct, frozen=True, array_like=True):
     """Little-endian float32 for each robot: x, y, z [m, world], quaternion w, x, y, z (body to
     world), then its joint angles [rad] by joint id. Empty before READY."""
     scene: bytes
-    """First 8 bytes of the scene's hash; if it changes, clients must fetch the scene again."""
+    """Hash of the scene, 8 bytes; if it changes, clients must fetch the scene again."""
     digest: bytes
-    """8 bytes: a hash chain over the state of every beat so far (the proof of a replay)."""
+    """Hash chain over the state of physics after every tick so far, 8 bytes; a replay checks it."""
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):
@@ -195,8 +195,8 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     beat: int
     clock_ticks: int
     kind: str
-    """phase, join, leave, ready, silent, heard, restart, decision, fault, result, advice, or a
-    game's own: flip, capture, strike."""
+    """phase, join, leave, ready, strayed, silent, heard, restart, decision, fault, result, advice,
+    or a game's own: flip, capture, strike."""
     said: Phrase
     """A whole sentence."""
     seat: int = -1
@@ -215,7 +215,7 @@ class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
     colour: str
     """#rrggbb"""
     pattern: str
-    """Distinguishes the seats without colours: plain, stripes, dots."""
+    """Tells the seats apart for people who can't see the colours: plain, stripes or dots."""
     robot: str = ""
     legs: tuple[str, ...] = ()
     """Leg labels in leg order; joints are 3 * legs."""
@@ -257,11 +257,11 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     seats: tuple[SheetSeat, ...]
     markers: tuple[MarkerInfo, ...]
     scene: bytes
-    """First 8 bytes of the scene's hash."""
+    """Hash of the scene, 8 bytes."""
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A body in the tree; `Frame.poses` has poses for root bodies and joint angles for others."""
+    """A body of the scene; `Frame.poses` has the pose of a robot's root body and joint angles."""
 
     name: str
     parent: int
@@ -283,16 +283,16 @@ class SceneGeom(msgspec.Struct, frozen=True, kw_only=True):
 
     body: int
     type: str
-    """plane, sphere, capsule, cylinder, box."""
+    """plane, sphere, capsule, cylinder, box or ellipsoid."""
     size: tuple[float, float, float]
-    """MuJoCo's sizes: half lengths [m]."""
+    """MuJoCo's sizes: radii and half lengths [m]."""
     pos: tuple[float, float, float]
     quat: tuple[float, float, float, float]
     rgba: tuple[float, float, float, float]
     marker: int = -1
     """Index of the marker that this shape belongs to; -1: none."""
     state: int = -1
-    """The shape is shown while the marker is in this state."""
+    """The shape is shown while the marker is in this state; -1: it belongs to no marker."""
     seat: int = -1
     """Seat whose colour and pattern the shape has; -1: none."""
 
@@ -313,10 +313,10 @@ class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
     """Number of the session that holds the seat, so that a controller sees whether it is its own;
     0: none, as after a restart of the court."""
     heard_ms: float | None
-    """Time since the last command; None: no command was heard."""
+    """Time since the seat's join or last valid command; None: nothing was heard of it."""
     commands_hz: float
     refused: dict[str, int]
-    """Number of refused commands by reason, a name of `count.*` such as "bad-seal"."""
+    """Number of refused messages by reason, a name of `count.*` such as "bad-seal"."""
     round_trip_p50_ms: float | None = None
     """Time from a frame to the beat that has the seat's answer to it, by the court's clock: the
     median of the last 10 s; None: not known."""
@@ -347,7 +347,7 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
     """How well a match has run so far: measured by the wall clock, and not part of the match."""
 
     played_beats: int
-    """Number of beats of PLAYING; the other fields are about these beats."""
+    """Number of beats of PLAYING; the next three fields are about these beats."""
     real_time_factor: float
     """Duration of these beats at 20 ms each, divided by the wall time they took; 1 is real time."""
     slow_beats: int

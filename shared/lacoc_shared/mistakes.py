@@ -107,7 +107,7 @@ class UserError(Exception):
 
 
 def printable(text: str, longest: int = 40) -> str:
-    """Shorten a foreign text and make it safe for a terminal, to quote it in a message.
+    """Shorten a text from outside and make it safe for a terminal, to quote it in a message.
 
     An unusual space or an invisible mark is replaced by its name, any other unprintable character
     by U+FFFD.

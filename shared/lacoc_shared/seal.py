@@ -1,8 +1,8 @@
 """Hashed tokens, and the seals that prove which seat a command is from.
 
-A token opens a seat (or the referee's desk) and is sent once, with the join. After that
-the session's secret, 16 bytes from the court, seals every command: a keyed BLAKE2b of 8
-bytes over the key expression and the numbers as text, joined by spaces.
+A seat's token is sent only with a join, and a referee's token with each decision. After a join
+the session's secret, 16 bytes from the court, seals every command and request of the seat: a
+keyed BLAKE2b of 8 bytes over the key expression and the numbers as text, joined by spaces.
 """
 
 import hashlib

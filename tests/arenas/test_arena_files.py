@@ -47,7 +47,7 @@ def _all_left(game: Any) -> Any:
 
 
 def _flanked(game: Any) -> Any:
-    """Return the Robot-Othello board after the left robot flips a run; None for other games."""
+    """Return the Robot-Othello board after the left robot flips discs; None for other games."""
     if not game.markers or game.markers[0].kind != "disc":
         return None
     state = game.start()
@@ -86,7 +86,7 @@ def test_setting_changes_what_it_says(name: str, key: str, value: Any) -> None:
 
 
 def test_every_setting_is_tested() -> None:
-    """`SETTINGS` has every entry of [game], except two that have tests of their own."""
+    """`SETTINGS` has every entry of [game], except two of Flag-Strike that other tests change."""
     for name in INSTALLED:
         tested = {key for arena_name, key, _ in SETTINGS if arena_name == name}
         tested |= {"clearance_m", "colour"} if name == "flag-strike" else set()
@@ -303,7 +303,7 @@ def test_unreadable_file(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_no_whole_arena(tmp_path: Path) -> None:
-    """An error names the files that a folder lacks, and the place for a change of numbers only."""
+    """An error names an arena's missing files, and says where a contest file changes numbers."""
     with pytest.raises(UserError, match=r"lacks arena\.toml, rules\.py, field\.py and bots\.py\. "):
         arena.load(str(tmp_path))
     (tmp_path / "arena.toml").write_text("title = ''")

@@ -1,4 +1,4 @@
-"""Bots of both games, tried on a simple field where robots glide without physics."""
+"""Tests of the bots, most of them with robots that glide without physics."""
 
 import math
 import random
@@ -226,7 +226,7 @@ def key_for(
 
 @pytest.mark.parametrize("heading", [-3.0, -1.0, 0.0, 0.5, 2.0, 3.1])
 def test_eyes_read_poses(heading: float) -> None:
-    """`Eyes` reads the robots' poses from a frame; a robot's heading is that of its body's +y."""
+    """`Eyes` reads the robots' poses from a frame; a heading is the direction of a body's +y."""
     frame = make_frame([(0.1, -0.2, heading), AWAY], [STAND, STAND])
     pose, other = Eyes(SHEET).poses(frame)
     assert (pose.x_m, pose.y_m, pose.up) == pytest.approx((0.1, -0.2, 1.0))
@@ -247,7 +247,7 @@ def test_eyes_read_poses(heading: float) -> None:
     ],
 )
 def test_turn_to_a_point_then_walk(target_m: tuple[float, float] | None, key: Key | None) -> None:
-    """A pilot turns to its target the shorter way and then walks; without a target it stands."""
+    """A pilot turns the shorter way to its target and walks; without a target it presses no key."""
     assert key_for(target_m) == key
 
 
@@ -310,7 +310,7 @@ def test_no_key_while_keys_are_refused() -> None:
 
 
 def test_stuck_at_a_wall() -> None:
-    """A pilot turns when its robot has walked for a while without moving."""
+    """A pilot turns when its robot has stepped forward for a while but stays in its place."""
     at_wall = (0.9, 0.5, 0.0)
     stuck = [
         make_frame([at_wall, AWAY], [FORWARD, STAND], ticks=tick, postures=(tick // 18 % 4, 0))
@@ -329,7 +329,7 @@ def test_straight_walks_on() -> None:
 
 
 def test_walk_shows_every_key() -> None:
-    """The practice bot `walk` presses each key of its gait in turn."""
+    """The practice bot `walk` presses the keys 1, 2 and 3 of level B one after another."""
     ground = arena.load("practice")
     brain = ground.bots["walk"](make_sheet(ground), 0)
     pressed, key = [], STAND
@@ -343,7 +343,7 @@ def test_walk_shows_every_key() -> None:
 
 @pytest.mark.parametrize("name", ["othello", "flag-strike", "practice"])
 def test_bots_are_pure(name: str) -> None:
-    """A bot gives the same keys for the same frames: it uses no clock and no chance."""
+    """A bot gives the same keys for the same frames: it uses no clock and no random numbers."""
     ground = arena.load(name)
     sheet = make_sheet(ground)
     poses = [(p.x_m, p.y_m, p.heading_rad) for p in (places[0] for places in ground.game.starts)]

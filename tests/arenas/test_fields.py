@@ -48,7 +48,7 @@ def test_names_agree(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_states_of_the_rules_have_a_shape(name: str) -> None:
-    """A referee can set a marker to exactly those states that have a shape."""
+    """A referee can set a marker to exactly the states that the field has shapes for."""
     game = arena.load(name).game
     for index, marker in enumerate(game.markers):
         for state in range(4):
@@ -143,7 +143,7 @@ def colour_of(geom: Any, swap: bool) -> tuple[float, ...]:
 
 
 def looks(name: str, turn: bool) -> Any:
-    """Return place, shape and colour of each geom as numbers; `turn` turns the field by half."""
+    """Return place, shape and colour of each geom; `turn` turns by 180° and swaps the seats."""
     model = build(name).compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)

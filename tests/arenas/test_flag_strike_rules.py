@@ -111,7 +111,7 @@ def test_lasts_three_minutes() -> None:
 
 @pytest.mark.parametrize("corner", range(4))
 def test_corner_takes_the_colour(corner: int) -> None:
-    """A robot whose middle comes into a corner takes it (workshop 5-2 rule 2)."""
+    """A robot whose middle comes into a corner takes this corner (workshop 5-2 rule 2)."""
     after, events = tick(START, view(CORNERS[corner]))
     assert claims(events) == [(0, f"corner{corner}")]
     assert events[0].kind == "capture"
@@ -140,7 +140,7 @@ def test_corner_is_nowhere_for_no_number() -> None:
 
 
 def test_corner_can_be_retaken() -> None:
-    """The other robot can take a corner while the first is inside (workshop 5-2 rule 3)."""
+    """A robot can take a corner while the other robot is still inside (workshop 5-2 rule 3)."""
     held, _ = tick(START, view(CORNERS[0]))
     after, events = tick(held, view(CORNERS[0]), view(CORNERS[0]))
     assert claims(events) == [(1, "corner0")]
@@ -249,7 +249,7 @@ def test_all_corners_win() -> None:
 
 @pytest.mark.parametrize(("flag", "points"), [("flag0", 1), ("flag8", 2), ("flag19", 5)])
 def test_strike(flag: str, points: int) -> None:
-    """A flag that one robot touches falls, and the robot keeps its points (workshop 5-2 rule 5)."""
+    """A flag that one robot touches falls; its points stay with the robot (workshop 5-2 rule 5)."""
     after, events = tick(START, view(touched=(flag,)))
     assert claims(events) == [(0, flag)]
     assert events[0].kind == "strike"
@@ -335,7 +335,7 @@ def test_struck_touch_is_void_until_let_go() -> None:
 
 
 def test_void_touch_does_not_protect_the_flag() -> None:
-    """While one robot's touch is taken back, the other robot can strike the same flag."""
+    """After one robot's strike is taken back, the other robot can still strike the same flag."""
     touching = view(touched=("flag6",))
     after, _ = tick(START, touching, struck=frozenset({(0, "flag6")}))
     fallen, events = tick(after, touching, touching)

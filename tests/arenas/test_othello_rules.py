@@ -99,7 +99,7 @@ OPENINGS = {
 
 @pytest.mark.parametrize("name", OPENINGS)
 def test_opening(name: str) -> None:
-    """Each of the four openings has its board."""
+    """Each of the four openings gives the expected board."""
     assert picture(with_settings(opening=name).start().cells) == OPENINGS[name]
 
 
@@ -155,7 +155,7 @@ def test_start_cell_is_the_last_cell() -> None:
 
 
 def test_being_put_down_flips_nothing() -> None:
-    """After [x] the start cell is the last cell, and nothing flips (rules 5)."""
+    """After [x], the robot's start cell is its last cell, and nothing flips (rules 5)."""
     before = state(board("......", "......", "......", "RL...."), "c1r2")
     after, events = GAME.step(before, (view("c0r2", placed="c0r2"), view(GAP)), 0.02)
     assert events == ()
@@ -166,7 +166,7 @@ def test_being_put_down_flips_nothing() -> None:
 
 
 def test_being_put_down_and_in_a_gap_at_once() -> None:
-    """After [x] the start cell is the last cell even if the robot is in a gap in that tick."""
+    """After [x], the start cell is the last cell even if the robot is in a gap in that tick."""
     before = state(board("LR...."), "c0r5", "c1r5")
     after, _ = GAME.step(before, (view(GAP, placed="c0r2"), view(GAP)), 0.02)
     assert after.last == (INDEX["c0r2"], INDEX["c1r5"])
@@ -175,7 +175,7 @@ def test_being_put_down_and_in_a_gap_at_once() -> None:
 
 
 def test_walking_off_the_start_in_the_tick_of_being_put_down() -> None:
-    """A robot that leaves its start cell in the tick of [x] can already flip from it."""
+    """A robot that leaves its start cell in the tick of [x] can flip the next disc from there."""
     before = state(board("......", "......", "......", "LR...."), "c4r4")
     after, events = GAME.step(before, (view("c1r2", placed="c0r2"), view(GAP)), 0.02)
     assert [event.marker for event in events] == ["c1r2"]
@@ -187,7 +187,7 @@ def test_walking_off_the_start_in_the_tick_of_being_put_down() -> None:
 
 @pytest.mark.parametrize(("offset_m", "inside"), [(0.0, True), (0.125, True), (0.1250001, False)])
 def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
-    """A robot is on a disc when its middle is within the radius, edge included."""
+    """A robot is on a disc when its middle is within the disc's radius, edge included."""
     game = with_settings(pitch_m=0.5, disc_radius_m=0.125)
     x_m, y_m = 0.25, -0.25
     cell = INDEX["c3r2"]
@@ -211,12 +211,12 @@ def test_entering_at_the_radius(offset_m: float, inside: bool) -> None:
     ],
 )
 def test_between_and_outside_the_discs(x_m: float, y_m: float) -> None:
-    """A place between discs, outside the board, or of NaN belongs to no cell."""
+    """A point between discs, outside the board, or with NaN or infinity belongs to no cell."""
     assert GAME.cell_at(x_m, y_m) == NO_CELL
 
 
 def test_touching_discs_share_no_point() -> None:
-    """Where two discs touch, the shared point belongs to the outer disc."""
+    """A point where two discs touch belongs to the outer disc, or on the field's axes to none."""
     game = with_settings(pitch_m=0.5, disc_radius_m=0.25)
     assert game.cell_at(0.5, 0.25) == INDEX["c4r3"]
     assert game.cell_at(-0.5, -0.25) == INDEX["c1r2"]
@@ -286,7 +286,7 @@ def test_never_diagonally(cell: str) -> None:
 
 
 def test_colour_of_the_last_cell_counts_now() -> None:
-    """A robot flips a disc only if its last cell still has its colour when it enters (rules 5)."""
+    """A robot flips no disc from a last cell that has lost the robot's colour (rules 5)."""
     before = state(board("LR...."), "c0r5")
     lost = GAME.set(before, INDEX["c0r5"], RIGHT)
     assert tick(lost, "c1r5")[1] == ()
@@ -351,7 +351,7 @@ def test_flip_in_row_and_column_at_once() -> None:
 
 
 def test_no_run_without_a_flip_by_walking() -> None:
-    """Without a flip by walking, no run flips (rules 5)."""
+    """A run of discs flips only together with a disc that a robot flips by walking (rules 5)."""
     before = state(board("......", "RRRL.."), "c0r3")
     after, events = tick(before, "c0r4")
     assert events == ()
@@ -359,7 +359,7 @@ def test_no_run_without_a_flip_by_walking() -> None:
 
 
 def test_flank_off() -> None:
-    """With `flank = false`, no runs flip."""
+    """With `flank = false`, no run of discs flips."""
     game = with_settings(flank=False)
     after, events = tick(state(board("LRRL.."), "c0r5"), "c1r5", game=game)
     assert picture(after.cells)[0] == "LLRL.."
@@ -370,7 +370,7 @@ def test_flank_off() -> None:
 
 
 def test_both_enter_the_same_neutral_disc() -> None:
-    """A neutral disc that both enter stays neutral and becomes the last cell of both (rules 5)."""
+    """A neutral disc that both robots enter at once stays neutral and is the last cell of both."""
     before = state(board("L.R..."), "c0r5", "c2r5")
     after, events = tick(before, "c1r5", "c1r5")
     assert events == ()
@@ -394,7 +394,7 @@ def test_a_disc_that_is_the_others_last_cell_can_be_entered() -> None:
 
 
 def test_last_cell_that_flips_in_the_same_tick_still_counts() -> None:
-    """Flips are judged on the board before the tick, so robots can swap discs (rules 5)."""
+    """Flips are judged on the board before the tick, so two robots can flip each other's disc."""
     before = state(board("LR....", "RL...."), "c0r5", "c1r5")
     after, events = tick(before, "c1r5", "c0r5")
     assert {(event.seat, event.marker) for event in events} == {(0, "c1r5"), (1, "c0r5")}
@@ -489,7 +489,7 @@ def test_struck_is_one_claim_only() -> None:
 
 
 def test_event_says_what_happened() -> None:
-    """The event of a flip names the team, the disc and its runs."""
+    """The event of a flip names the entered disc and the discs that flip with it."""
     _, events = tick(state(board("LRRL.."), "c0r5"), "c1r5")
     assert events[0].said == say("event.flip", team="", marker="c1r5", also=["c2r5"])
     assert events[0].kind == "flip"

@@ -215,7 +215,7 @@ def test_a_wrong_answer_in_a_match_is_told(race: Path, was: str, now: str, says:
 
 
 def test_a_referee_s_wrong_state_stays_a_value_error(race: Path) -> None:
-    """A state that a referee can't set is refused as such, not as a mistake of the arena."""
+    """A marker state that a referee can't set is not reported as a mistake of the arena."""
     game = arena.load(str(race)).game
     with pytest.raises(NoSuchState, match="neutral, left or right"):
         game.set(game.start(), 0, 3)

@@ -116,7 +116,7 @@ def test_turned_match(name: str, data: st.DataObject) -> None:
 @pytest.mark.parametrize("name", GAMES)
 @given(data=st.data())
 def test_score_is_the_board(name: str, data: st.DataObject) -> None:
-    """A tick changes only the markers in its events; a score is the sum of a team's markers."""
+    """A tick changes only the markers in its events; a score is the points of a team's markers."""
     game = GAMES[name]
     state = game.start()
     for views, _ in data.draw(observations(game)):

@@ -11,7 +11,7 @@ from lacoc_process import Lacoc
 
 
 def environment(**changes: str) -> dict[str, str]:
-    """Return this process's environment with changes, without LACOC_ variables (options)."""
+    """Return this process's environment without LACOC_ variables (options), and with `changes`."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith("LACOC_")}
     return kept | changes
 

@@ -81,7 +81,7 @@ def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
 
 
 def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:
-    """Return doctor's findings if `metadata` replaces that of the installed packages."""
+    """Return doctor's findings about packages, some of which have the given metadata."""
     for name, text in metadata.items():
         (folder / f"{name}.dist-info").mkdir()
         (folder / f"{name}.dist-info" / "METADATA").write_text(f"Metadata-Version: 2.1\n{text}\n")
@@ -112,7 +112,7 @@ def test_a_package_of_the_wrong_version(tmp_path: Path) -> None:
 
 
 def test_packages_that_are_not_there(tmp_path: Path) -> None:
-    """An old Python or a missing package is a problem; if only courts need it, it is a note."""
+    """An old Python or a missing package is a problem; a missing package for courts is a note."""
     needs = 'Requires-Dist: no-such-thing>=2\nRequires-Dist: no-engine>=3; extra == "server"'
     metadata = f"Name: lacoc\nVersion: 9\nRequires-Python: >=3.99\n{needs}"
     found = packages_beside(tmp_path, {"lacoc-9": metadata})

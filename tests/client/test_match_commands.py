@@ -163,7 +163,7 @@ def test_ready_for_a_contestant_who_cannot(
 def test_a_waiting_referee_does_nothing_twice(
     open_court: OpenCourt, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`lacoc referee` does not repeat a decision whose answer was lost: it may be made already."""
+    """`lacoc referee` repeats no decision whose answer was lost; the court may have made it."""
     court = open_court("--arena", "othello")
     decide, asked = RefereeClient.decide, []
 

@@ -243,5 +243,5 @@ def test_a_field_is_the_scene_s_floor() -> None:
     [(["left", "right"], ["L", "R"]), (["solo"], ["S"]), (["a1", "a2"], ["1", "2"])],
 )
 def test_every_seat_has_its_letter(ids: list[str], letters: list[str]) -> None:
-    """A seat is shown by its first letter, or by its number if the first letters are the same."""
+    """Seats are shown by their first letters, or as 1, 2, ... if two seats begin alike."""
     assert seat_letters(ids) == letters

@@ -91,7 +91,7 @@ def test_nothing_named_leaves_all_to_the_contest() -> None:
 
 
 def test_a_robot_brings_the_gait_beside_it() -> None:
-    """An installed robot brings its own sample gait."""
+    """A player who names an installed robot sends that robot's sample gait with it."""
     files = gather("quadruped", [])
 
     assert files.robot is not None

@@ -76,7 +76,7 @@ class Lacoc(subprocess.Popen[Any]):
 
 
 def started(*words: str, before: Sequence[str] = (), **options: Any) -> subprocess.Popen[Any]:
-    """Start a `lacoc` command; `before` is another command line that runs it."""
+    """Start a `lacoc` command, by itself or as the last words of the command line `before`."""
     if before:
         return subprocess.Popen([*before, *COMMAND, *words], **options)
     return Lacoc(*words, **options)

@@ -21,7 +21,7 @@ _MEMORY_BYTES = 4 << 30
 
 
 def main() -> None:
-    """Feed every target and print the results."""
+    """Feed hostile inputs to the targets, print the results, and exit with 1 after a finding."""
     parser = argparse.ArgumentParser(prog="python tests/fuzz", description=__doc__)
     parser.add_argument("--packets", type=int, default=1_000_000)
     parser.add_argument("--files", type=int, default=100_000)

@@ -1,4 +1,4 @@
-"""Feeds inputs to a target, counts the outcomes, and stops each input after a second."""
+"""Feeds inputs to a target, counts the outcomes, and stops each input after 1 s of CPU time."""
 
 import signal
 import time
@@ -35,7 +35,7 @@ class Figures:
 
     @property
     def refused(self) -> int:
-        """Number of inputs that were refused with a documented error."""
+        """Return the number of inputs that were refused with a documented error."""
         return self.inputs - self.accepted - self.crashes - self.hangs - self.state_changes
 
 

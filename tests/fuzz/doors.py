@@ -170,7 +170,7 @@ class Doors:
         """Let the court handle the waiting packets.
 
         Raises:
-            StateChanged: if anything happened without a right to it.
+            StateChanged: if a packet changed what its sender had no right to change.
         """
         batch, self._batch = self._batch, []
         desks: dict[str, int] = {}
@@ -297,7 +297,7 @@ def request_seeds() -> list[bytes]:
 
 
 def join_seeds() -> list[bytes]:
-    """Return joins with all files, with few files, with a wrong token and of another version."""
+    """Return joins with all files and with none, with wrong tokens, and of another version."""
     robot = SentFile(*find_robot("hexapod"))
     postures, locomotion = sample_gait_files("hexapod")
     files = {"robot": robot, "postures": postures, "locomotion": locomotion}
@@ -329,7 +329,7 @@ def seat_key(what: str) -> Callable[[bytes], str]:
 
 
 def request_key(payload: bytes) -> str:
-    """Return the key expression for a request with a known sequence number, else that of ready."""
+    """Return the key expression of the request with the payload's number, or else of ready."""
     at = payload.find(b"seq") + 3
     asked = next((what for what, _, seq in _REQUESTS if payload[at : at + 1] == bytes((seq,))), "")
     return KEYS.request("left", asked or "ready")

@@ -114,7 +114,7 @@ def _page_seeds() -> list[bytes]:
 
 
 def write_files() -> None:
-    """Write gaits, robots, arenas, a contest and a key script."""
+    """Write gaits, workbooks, robots, arenas, a contest file and a key script."""
     for name in installed_robots():
         write("robot", f"{name}.toml", find_robot(name)[1])
         for file in sample_gait_files(name):

@@ -1,4 +1,4 @@
-"""Makes hostile inputs from good ones. All chance comes from a seed, so a run can be repeated."""
+"""Makes hostile inputs from good ones; the same random seed makes the same inputs again."""
 
 import io
 import random

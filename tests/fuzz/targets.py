@@ -1,4 +1,4 @@
-"""A function for each reader of foreign bytes: it lets only undocumented errors through."""
+"""A target for each reader of foreign bytes; it passes on only errors that are not documented."""
 
 import os
 import tempfile

@@ -41,7 +41,7 @@ def test_nothing_but_the_documented_refusals(target: Target, times: int) -> None
 
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_the_same_seed_makes_the_same_inputs(target: Target) -> None:
-    """The same seed makes the same inputs."""
+    """The same random seed makes the same inputs."""
     one, other = (Mutator(target.seeds, target.kind, "7") for _ in range(2))
     assert [one.next() for _ in range(20)] == [other.next() for _ in range(20)]
 

@@ -1,4 +1,4 @@
-"""The workshop's sample gait (workshop Fig. 4-1)."""
+"""Gives tests the workshop's sample gait (workshop Fig. 4-1)."""
 
 import math
 

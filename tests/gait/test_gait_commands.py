@@ -1,15 +1,18 @@
 """The commands `lacoc gait check` and `lacoc gait convert` (rules 2)."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+from lacoc_robots.joint_picture import joint_picture, labels_of
 from lacoc_shared.command.cli import main
-from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.gait.cells import LEG_LABELS, leg_labels
 from lacoc_shared.gait.tables import SAMPLE_KEYS, PostureTable, to_locomotion
 from lacoc_shared.gait.text import read_gait, write_gait
 from lacoc_shared.gait.workbook import read_gait_file, write_workbook
+from lacoc_shared.mistakes import Mistake
 
 
 @pytest.fixture
@@ -69,6 +72,32 @@ def test_check_lists_every_mistake_of_every_file(lacoc, folder):
         for name in ("a.txt", "b.txt")
         for place in (("4", "2", "R,B", "-451"), ("5", "3", "L,B", '"x"'))
     ]
+
+
+def test_check_draws_the_legs_of_the_mistakes(lacoc, tmp_path):
+    """Below the mistakes stands a picture of the legs with their joint ids."""
+    postures = ["Num of Posture 1", "0 Key " + "0 " * 16 + "200 0"]
+    (tmp_path / "Loco-data.txt").write_text("\n".join(postures))
+    code, _, err = lacoc("gait", "check", str(tmp_path / "Loco-data.txt"))
+    assert code == 2
+    assert "  L,F  17 11  5 ─┐   ┌─  0  6 12  R,F" in err
+    assert "  L,C  16 10  4 ─┤   ├─  1  7 13  R,C" in err
+
+
+@pytest.mark.parametrize("legs", LEG_LABELS)
+def test_the_picture_names_the_leg_of_each_joint(legs):
+    """Each line of the picture has the joints of its two legs, and only mistakes stand out."""
+    labels = LEG_LABELS[legs]
+    picture = joint_picture(labels, {legs})
+    for line in picture.plain.splitlines()[1:-1]:
+        left, *ids, right = re.findall(r"[LR],\w+|\d+", line)
+        assert {labels[int(one) % legs] for one in ids[:3]} == {left}
+        assert {labels[int(one) % legs] for one in ids[3:]} == {right}
+    assert [picture.plain[s.start : s.end].strip() for s in picture.spans if "red" in s.style] == [
+        str(legs)
+    ]
+    mistake = Mistake(file="a", found="b", expected="c", joint=legs, leg=labels[0])
+    assert labels_of([mistake]) is not None
 
 
 def test_check_shows_right_files_beside_wrong_ones(lacoc, folder):

@@ -315,7 +315,7 @@ def test_mistakes_of_locotra_data(text, expected):
 
 @pytest.mark.parametrize("legs", [6, ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")])
 def test_a_gait_for_another_robot_is_called_so(legs):
-    """If all rows have 12 angles instead of 18, this is one mistake; others are still listed."""
+    """Rows that all have 12 angles instead of 18 are one mistake; others are still listed."""
     text = loco([posture(angles=12), posture("1 Key", angles=12, j7="x")])
     assert places(refused(text, legs=legs)) == [
         (

@@ -29,7 +29,7 @@ degrees = st.one_of(
 
 
 def mistakes_of(read: Callable[[bytes, str], object], data: bytes) -> list[Mistake] | None:
-    """Return the mistakes for which data are refused; None if they are read."""
+    """Return the mistakes for which data are refused; None if the data are read."""
     try:
         read(data, "x")
     except FileRefused as refusal:
@@ -78,7 +78,7 @@ def test_an_angle_is_written_without_loss(value_deg):
 
 @given(st.integers(-150_000, 150_000))
 def test_a_short_number_stays_as_it_was(thousandths):
-    """45 degrees are written as 45, never as 45.00000000000001."""
+    """An angle with at most 3 decimals [deg] is written unchanged: 45, never 45.00000000000001."""
     assert degrees_of(math.radians(thousandths / 1000)) == thousandths / 1000
 
 

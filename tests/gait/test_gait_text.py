@@ -195,7 +195,7 @@ def test_the_order_and_the_choice_of_keys_is_free():
 
 @pytest.mark.parametrize("legs", [4, 6, 8])
 def test_three_columns_a_leg(legs):
-    """A robot with 4, 6 or 8 legs has 12, 18 or 24 columns."""
+    """The gait of a robot with 4, 6 or 8 legs has 12, 18 or 24 columns."""
     row = "\t".join(["10"] * (3 * legs))
     data = f"1\n1\n{row}\n".encode()
     for known in (None, legs, [str(leg) for leg in range(legs)]):
@@ -221,7 +221,7 @@ def test_at_most_32_kib():
 
 
 def test_a_range_for_each_joint():
-    """A robot file may allow each joint its own range, within the limits of rules 1."""
+    """Each joint may have its own range of angles, and an angle outside its range is a mistake."""
     data = FIGURE_4_2.encode()
     limits = [(-45.0, 45.0)] * 6 + [(0.0, 20.0)] * 6 + [(0.0, 40.0)] * 6
     assert isinstance(read_gait(data, "x", legs=6, range_deg=limits), LocomotionTable)

@@ -301,6 +301,6 @@ def test_a_file_is_told_by_its_content(tmp_path, sample, workshop, legs):
 
 
 def test_a_file_that_is_not_there(tmp_path):
-    """A missing file gives one sentence with its name and the reason."""
+    """The error for a missing file names the file and gives the reason."""
     with pytest.raises(UserError, match=r"Cannot read .*none\.txt: No such file or directory\."):
         read_gait_file(tmp_path / "none.txt")

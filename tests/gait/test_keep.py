@@ -31,7 +31,7 @@ def test_a_number_that_is_taken_is_left_alone(tmp_path):
 
 
 def test_making_room_without_a_file(tmp_path):
-    """Making room creates and renames nothing where no file is in the way."""
+    """`make_room` creates and renames nothing where no file is in the way."""
     assert make_room(tmp_path / "a.txt") is None
     assert make_room(tmp_path / "none" / "a.txt") is None
     assert list(tmp_path.iterdir()) == []

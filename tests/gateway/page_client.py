@@ -41,7 +41,7 @@ class Refused(Exception):
 
 
 def refusal(code: str) -> pytest.RaisesExc[Refused]:
-    """Expect the block to raise `Refused`, whose reason is the phrase with this code."""
+    """Return a context manager that expects `Refused` with the phrase of this code."""
     return pytest.raises(Refused, check=lambda error: error.why.code == code)
 
 

@@ -213,7 +213,7 @@ def test_what_is_not_understood_is_refused(
 def test_garbage_ends_a_connection_and_nothing_else(
     open_venue: Venue, garbage: bytes | str
 ) -> None:
-    """Bytes that no page sends end their own connection and no other."""
+    """Bytes that no page sends end the connection on which they came, and no other."""
     with PageClient(open_venue.url) as page, PageClient(open_venue.url) as other:
         page.socket.send(garbage)
         page.wait(page.closed.is_set)
@@ -379,7 +379,7 @@ def test_a_match_is_not_sent_again_and_again(open_venue: Venue) -> None:
 
 @pytest.mark.long
 def test_a_flood_of_one_page_does_not_disturb_a_seat(venue: Venue) -> None:
-    """While other pages flood the gateway, most of a contestant's keys take effect in 8 beats."""
+    """While other pages flood the gateway, most keys of a contestant take effect within 8 beats."""
     venue.court()
     venue.web()
     left, right = venue.contestant("left"), venue.contestant("right")

@@ -31,7 +31,7 @@ def refused(page: PageClient, number: int) -> Refused:
 
 
 def test_a_wrong_token_is_said_in_a_field(keyed: Venue) -> None:
-    """Only the refusal of a wrong token has the field that keeps a page from asking again."""
+    """Only the refusal of a wrong token sets the field that keeps a page from asking again."""
     page = keyed.page(keyed.key)
     wrong = refused(page, page.send("enter", token=WRONG, by="Kim"))
     assert wrong.is_the_token

@@ -321,7 +321,7 @@ def test_a_slow_page_never_gets_a_backlog(open_venue: Venue) -> None:
 
 
 def test_what_goes_astray_disturbs_no_page(venue: Venue) -> None:
-    """An unreadable frame disturbs no page; from the sheet, a page learns of a wrong version."""
+    """An unreadable frame disturbs no page; a sheet of another version is reported to pages."""
     with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
         venue.web()
         page = venue.page()

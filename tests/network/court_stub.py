@@ -85,7 +85,7 @@ def make_event(number: int, match: int = 1, text: str = "something") -> Event:
 
 
 class CourtStub:
-    """A court with a beat every 5 ms on a thread of its own; `inputs` has what entered the match.
+    """A court with a beat every 5 ms on a thread of its own; `inputs` has all that its match got.
 
     Its match refuses digit 9, and a join by a team called "Nobody".
     """

@@ -55,7 +55,7 @@ def test_a_decision_becomes_an_input() -> None:
 def test_a_request_is_refused_with_its_reason(
     name: str, payload: bytes, code: str, why: str
 ) -> None:
-    """A request that is wrong is refused with its reason, and counted."""
+    """A wrong request is refused with a reason, and the desk counts the refusal."""
     desk = DecisionDesk(HASHES)
     refusal = desk.decision(name, payload)
     assert isinstance(refusal, Refusal)

@@ -177,7 +177,7 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
     ],
 )
 def test_a_join_is_refused_with_its_reason(payload: bytes, code: str, why: str) -> None:
-    """A wrong join is refused with its reason and counted, and the seat's holder plays on."""
+    """A wrong join is refused with a reason and counted, and the seat's holder plays on."""
     inbox = make()
     holder = take_seat(inbox)
     refusal = inbox.join(LEFT, payload)
@@ -268,7 +268,7 @@ def altered(payload: bytes, field: str, value: object) -> bytes:
     ],
 )
 def test_an_altered_command_is_refused(field: str, value: object, why: str) -> None:
-    """A command is refused if any of its numbers was changed after it was sealed."""
+    """A command is refused if any part of it was changed after it was sealed."""
     inbox = make()
     joined = take_seat(inbox)
     assert inbox.beat(0.1, [[altered(command(joined, 10), field, value)], []]) == []
@@ -427,7 +427,7 @@ def test_an_overheard_command_does_not_keep_a_seat_alive() -> None:
 
 
 def test_a_controller_that_gets_no_frames_is_not_believed_for_long() -> None:
-    """A controller that always names the same frame counts as silent three seconds after it."""
+    """A controller that always names the same frame counts as silent 3 s after that frame."""
     inbox = make()
     joined = take_seat(inbox)
     for beat in range(1, 1001):

@@ -198,7 +198,7 @@ def test_the_delay_follows_seldom_and_falls_only_by_much() -> None:
 
 
 def test_an_old_frame_gains_no_more_than_two_beats() -> None:
-    """A key that names an older frame takes effect at most two beats earlier and counts as late."""
+    """A key that names an older frame gains at most two beats by that, and counts as late."""
     clock = warm(2, 12)
     for claim in (2, 5, 12, 200):
         clock.begin()

@@ -23,7 +23,7 @@ JOIN = Keys("main").request("left", "join")
 
 
 def of_page(court: str, user: str = "", password: str = "", ca: str = "") -> zenoh.Config:
-    """Return docs/protocol.md's configuration for this court; its part for keys needs a user."""
+    """Return docs/protocol.md's configuration for a court; its part for keys needs a user."""
     (text,) = re.findall(r"```json5\n(.*?)```", PAGE, re.DOTALL)
     for there, here in (
         ("tls/court.example.org:7447", court),
@@ -74,7 +74,7 @@ def test_a_stranger_enters_a_court_with_keys(tmp_path: Path) -> None:
 
 
 def is_not_answered(stranger: zenoh.Session, payload: bytes) -> None:
-    """Send a request that nobody answers; repeat it until the desk is known to the stranger."""
+    """Repeat a request until it reaches a desk, and check that nobody answers it."""
     end_s = time.monotonic() + 30
     while not (replies := ask(stranger, payload, 0.3)):
         assert time.monotonic() < end_s, "the desk did not become known"

@@ -1,4 +1,4 @@
-"""Tokens, hashes of tokens, seals and passwords."""
+"""Tests of tokens, hashes of tokens, seals and passwords."""
 
 import base64
 import hashlib

@@ -104,7 +104,7 @@ def test_a_certificate_out_of_its_time(tmp_path: Path, made: timedelta, said: st
 
 
 def test_keys_and_no_keys(keyed: KeyedCourt) -> None:
-    """A message says which of court and client uses keys if the other one does not."""
+    """If only the court or only the client uses keys, the message says which one."""
     left = keyed.people["left"]
     with CourtStub() as plain:
         there = plain.address.replace("tcp/", "tls/")
@@ -184,7 +184,7 @@ def test_no_password_in_zenohs_own_log(keyed: KeyedCourt, tmp_path: Path) -> Non
 
 @contextmanager
 def _tunnel(host: str, to_port: int) -> Iterator[int]:
-    """Give a port of another address that forwards connections to the same court."""
+    """Give a port at the address `host` that forwards connections to `to_port` of 127.0.0.1."""
     with ExitStack() as stack:
         door = stack.enter_context(socket.create_server((host, 0)))
         open_sockets: list[socket.socket] = []

@@ -43,7 +43,7 @@ class NoBrowser(Exception):
 
 
 def find_chromium() -> str:
-    """Return Chromium's path; if it is missing, install Debian's when the user is root.
+    """Return Chromium's path; if it is missing and the user is root, install Debian's Chromium.
 
     Raises:
         NoBrowser: if none is found and none can be installed.

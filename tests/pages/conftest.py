@@ -99,13 +99,13 @@ def console() -> Iterator[Console]:
 
 @pytest.fixture
 def slow_screen() -> bool:
-    """Give True: pages draw about five pictures a second. Tests of the drawing override it."""
+    """Give True: pages draw about five pictures a second. Tests of the drawing override this."""
     return True
 
 
 @pytest.fixture
 def open_page(browser: Browser, console: Console, slow_screen: bool) -> Iterator[OpenPage]:
-    """Give a function that opens pages, each in a fresh browser context, as different people do."""
+    """Give a function that opens pages, each in a fresh browser context, like another person's."""
     contexts: list[BrowserContext] = []
 
     def opened(**options: Any) -> Page:

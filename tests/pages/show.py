@@ -69,7 +69,7 @@ class Show:
 
 
 def violations(page: Page) -> list[tuple[str, list[str]]]:
-    """Return the serious mistakes that axe-core finds: the rule and the elements of each."""
+    """Return the serious accessibility mistakes that axe-core finds, each as rule and elements."""
     import axe_core_python.sync_playwright  # type: ignore[import-not-found,import-untyped]
 
     found = axe_core_python.sync_playwright.Axe().run(page)["violations"]

@@ -91,7 +91,7 @@ class Stand:
 
 
 def pixels_of(page: Page, reader: Page) -> npt.NDArray[np.uint8]:
-    """Return a page's picture (height, width, 3); the page `reader` may load `data:` addresses."""
+    """Return a page's picture (height, width, 3), decoded by a page that may load `data:`."""
     png = base64.b64encode(page.screenshot()).decode()
     width, height, text = reader.evaluate(_PIXELS, png)
     flat = np.frombuffer(base64.b64decode(text), np.uint8)

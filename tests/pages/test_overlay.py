@@ -200,7 +200,7 @@ def test_accessible(venue: Venue, open_page: OpenPage) -> None:
 
 
 def test_a_part_that_cannot_be_loaded(venue: Venue, open_page: OpenPage, console: Any) -> None:
-    """A page whose script can't be loaded once, as after an update of the server, recovers."""
+    """The overlay recovers if its script fails to load once, as after an update of the server."""
     console.expect("ERR_FAILED|Failed to fetch dynamically imported module|Unable to preload")
     venue.court()
     venue.web()

@@ -491,7 +491,7 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
 
 @pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None:
-    """While court or gateway is down, the page shows a banner and grey keys; then it goes on."""
+    """While court or gateway is down, the page shows a banner and grey keys; then play goes on."""
     court = venue.court("--seconds", "120")
     web = venue.web()
     page = sit(venue.url)
@@ -747,7 +747,7 @@ def walk(chance: random.Random, joints: tuple[int, ...]) -> list[Frame]:
 
 
 def test_no_message_stands_in_two_catalogues() -> None:
-    """Each message name is in only one part of the catalogue, because a second would replace it."""
+    """Each message name is in only one part of the catalogue, or one text would replace another."""
     folder = Path(__file__).parents[2] / "client" / "web" / "src" / "i18n"
     names = [
         name

@@ -311,7 +311,7 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(
 
 
 def test_without_the_key_one_only_sees(court: Venue, referee: Referee) -> None:
-    """Without the page key the page shows everything, and says how to get a link with it."""
+    """Without the page key the page shows everything, and says how to get a link with the key."""
     page = referee(key=False)
     expect(page.locator(".enter")).to_contain_text("#key=")
     expect(page.locator("input[name=token]")).to_have_count(0)
@@ -476,7 +476,7 @@ def test_a_double_click_does_one_thing(court: Venue, referee: Referee) -> None:
 
 
 def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
-    """The reason why a choice in a popover can't be made disappears when the popover closes."""
+    """The text that says why a choice can't be made closes together with the choice's popover."""
     page = at_the_desk(referee())
     disc(page, "c2r2").click()
     page.locator(".pick .states .act").first.hover()
@@ -529,7 +529,7 @@ def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) 
 
 @pytest.mark.long
 def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
-    """The page names a marker in the page's language, not as the record does."""
+    """The page names a marker in the page's language, not by its name in the record."""
     text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")
     venue.contest.write_text(text, "utf-8")
     venue.court()

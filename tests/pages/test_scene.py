@@ -29,7 +29,7 @@ BLUE, ORANGE = "#0072b2", "#e69f00"
 
 @pytest.fixture(scope="session")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Build the stand and two matches, once for all processes that share this run."""
+    """Give the folder of the built stand and two matches, which the processes of a run share."""
     own = tmp_path_factory.getbasetemp()
     folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "stand"
     with locked("stand"):

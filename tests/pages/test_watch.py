@@ -388,7 +388,7 @@ def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
 
 
 def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
-    """Without WebGL the page draws a flat map; on a phone the banner covers neither score nor map.
+    """Without WebGL the page draws a flat map; on a phone the banner does not cover the score.
 
     The court is killed for this check, because a lost court has one of the longest banners.
     """

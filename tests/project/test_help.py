@@ -152,6 +152,7 @@ def test_an_english_line_is_found(
 def test_a_mistake_in_the_use_is_told_in_japanese(
     typed: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """A wrong command line is reported in Japanese if this language is set."""
     with pytest.raises(SystemExit):
         cli.main(typed.split())
     assert said in capsys.readouterr().err

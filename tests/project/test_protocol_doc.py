@@ -76,19 +76,19 @@ def test_what_travels_as_an_array_says_so(name: str) -> None:
 
 
 def test_every_decision_and_its_fields() -> None:
-    """The table of decisions has those of `lacoc_shared.decisions`, in the same order."""
+    """docs/protocol.md lists each decision of `lacoc_shared.decisions` with its fields in order."""
     expected = {name: fields(kind) for name, kind in DECISIONS.items()}
     assert list(by_name(SECTIONS["Decisions"]).items()) == list(expected.items())
 
 
 def test_every_input_and_its_fields() -> None:
-    """The table of inputs has those of `lacoc_shared.inputs`, in the same order."""
+    """docs/protocol.md lists each input of `lacoc_shared.inputs` with its fields, in order."""
     expected = {name: fields(kind) for name, kind in INPUTS.items()}
     assert list(by_name(section("Inputs of the record")).items()) == list(expected.items())
 
 
 def test_every_topic_of_a_record_and_its_message() -> None:
-    """The table of topics has those of `lacoc_shared.record.schema`, in the same order."""
+    """docs/protocol.md lists each topic of a record with its message, in the code's order."""
     table = rows(section("The record"))
     assert [row[0].strip("`") for row in table] == list(schema.KINDS)
     for (_, cell, _), kind in zip(table, schema.KINDS.values(), strict=True):

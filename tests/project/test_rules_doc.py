@@ -85,7 +85,7 @@ def test_flag_strike() -> None:
 
 
 def test_practice() -> None:
-    """docs/rules.md states practice's size of the field and its limit for silence in minutes."""
+    """docs/rules.md states the size of practice's field and its limit for silence in minutes."""
     size = settings("practice")["size_m"]
     text = SECTIONS["Practice"]
     assert "{} x {} m".format(*size) in text  # type: ignore[misc]

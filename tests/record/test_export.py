@@ -164,7 +164,7 @@ def test_the_result_as_json(record: Record, result: Result) -> None:
 
 
 def _foxglove(record: Record) -> dict[str, list[tuple[int, Any]]]:
-    """Return the messages of each topic, decoded with the schemas in the file alone."""
+    """Return (time [ns], message) by topic and schema, decoded with only the file's own schemas."""
     reader = make_reader(
         io.BytesIO(foxglove(record)), validate_crcs=True, decoder_factories=[DecoderFactory()]
     )
@@ -218,7 +218,7 @@ def test_foxglove_has_every_shape(record: Record) -> None:
 
 
 def test_foxglove_shows_the_board_as_it_changes(record: Record) -> None:
-    """Each change of the board writes the whole board, so a viewer can start at any time."""
+    """A Foxglove file has the whole board at each change, so a viewer can start at any time."""
     boards = _foxglove(record)["/board foxglove.SceneUpdate"]
     assert [(time - boards[0][0]) // 20_000_000 for time, _ in boards] == [0, 20]
     for _, update in boards:
@@ -274,7 +274,7 @@ def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
 
 
 def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> None:
-    """`lacoc replay export` without options writes all outputs; older files get a number."""
+    """`lacoc replay export` without options writes all outputs; older files stay, numbered."""
     path, out = write_match(tmp_path), tmp_path / "out"
     for _ in range(2):
         done = CliRunner().invoke(app, ["export", str(path), "--out", str(out)])

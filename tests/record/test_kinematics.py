@@ -146,7 +146,7 @@ def test_a_scene_without_robots_needs_no_poses(scene: Scene) -> None:
 
 
 def test_poses_of_other_robots_are_refused() -> None:
-    """Poses with a wrong number of floats are refused; the message has the right number too."""
+    """Poses with a wrong number of floats are refused; the message gives the right number."""
     left, right = split_poses(np.arange(20, dtype="<f4").tobytes(), (2, 4))
     assert left.tolist() == list(range(9))
     assert right.tolist() == list(range(9, 20))

@@ -80,7 +80,7 @@ def test_a_court_has_its_own_matches_in_their_order(tmp_path: Path) -> None:
 def test_a_match_is_over_when_its_court_ended_it(
     tmp_path: Path, header: Callable[..., Header]
 ) -> None:
-    """A match is over only if its court ended it; then it is listed until packing is complete."""
+    """Only a match that its court ended is over. It counts as unpacked until packing ends."""
     ids = [f"20260501-10000{number}-main-001" for number in range(4)]
     writers = [RecordWriter(tmp_path, header(match_id=match_id)) for match_id in ids[:3]]
     ended, left, cut = writers

@@ -54,7 +54,7 @@ def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) 
 def test_packing_that_was_interrupted_is_repeated(
     tmp_path: Path, write_segments: WriteSegments
 ) -> None:
-    """Packing works again after a kill that left a half-written file or a packed segment."""
+    """Packing can be repeated after a kill left a half-written file or a segment already packed."""
     first, second = write_segments(tmp_path)
     record, data = Record.read(first), second.read_bytes()
     (tmp_path / "m.mcap.part").write_bytes(b"half")

@@ -374,7 +374,7 @@ def test_a_full_disk_loses_nothing(tmp_path: Path, header: MakeHeader, frame: Ma
 def test_a_disk_that_reports_errors_later_is_heard(
     tmp_path: Path, header: MakeHeader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """An error that the disk reports at `fsync` is kept in `sync_trouble`."""
+    """An error that the disk reports at `fsync` is kept in the writer's `sync_trouble`."""
     writer = RecordWriter(tmp_path, header())
     asked = threading.Event()
 
@@ -416,7 +416,7 @@ def _messages(data: bytes) -> dict[str, list[bytes]]:
 
 
 def test_a_bomb_is_no_record(segment: Path, tmp_path: Path) -> None:
-    """A chunk that unpacks to far more than a match has is refused as damaged."""
+    """A chunk that unpacks to far more bytes than a match can have is refused as damaged."""
     packed = zstandard.ZstdCompressor().compress(bytes(1 << 28))
     for told in (1 << 28, 100):
         body = struct.pack("<QQQII", 0, 0, told, 0, 4) + b"zstd"
@@ -431,7 +431,7 @@ def test_a_bomb_is_no_record(segment: Path, tmp_path: Path) -> None:
 
 
 def test_many_inputs_in_a_beat_are_read_in_linear_time(header: MakeHeader, tmp_path: Path) -> None:
-    """A record with 20,000 inputs in one beat is read within two seconds."""
+    """A record with 20,000 inputs in one beat is read within two seconds of CPU time."""
     writer = RecordWriter(tmp_path, header())
     for seq in range(20_000):
         writer.input(3, KeySeat(0, seq, 1, 2))
@@ -459,7 +459,7 @@ def test_a_damaged_time_ends_what_is_read(
 
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.8])
 def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: Path) -> None:
-    """A damaged packed file is read up to the damaged chunk, and the message gives its byte."""
+    """A damaged packed file is read up to the damaged chunk; the message says where this begins."""
     data = bytearray(packed.read_bytes())
     chunks = [at for at, opcode in _records_of(data) if opcode == Opcode.CHUNK]
     at = chunks[int(part * len(chunks))]

@@ -25,7 +25,7 @@ def hexapod(hexapod_text: str) -> RobotSpec:
 
 @pytest.fixture
 def compile_world() -> Compile:
-    """Give a function that compiles a floor with robots on it, one robot for each seat."""
+    """Give a function that compiles a model of a floor and robots, one robot for each seat."""
 
     def compile_world(*robots: RobotSpec, degree: bool = True) -> mj.MjModel:
         world = mj.MjSpec()

@@ -1,4 +1,4 @@
-"""Searches of `benchmarks.leaps`: no robot that is let in leaves its start place."""
+"""Searches of `benchmarks.leaps`: no robot that passes the weigh-in leaves its start place."""
 
 import os
 
@@ -10,7 +10,7 @@ from lacoc_robots.standing import FARTHEST_M
 
 @pytest.mark.slow
 def test_no_robot_that_is_let_in_leaps() -> None:
-    """Among 35 robots made at random, each that the weigh-in accepts stays at its start place."""
+    """Of 30 random robots and 5 variants, none that is accepted leaves its start place."""
     found = [judge(at_random(seed)) for seed in range(30)]
     farthest = max(found, key=lambda one: one.leap_m or 0.0)
     found += [judge(changed(farthest.candidate, seed)) for seed in range(5)]
@@ -23,7 +23,7 @@ def test_no_robot_that_is_let_in_leaps() -> None:
 
 @pytest.mark.long
 def test_no_search_finds_a_leap() -> None:
-    """None of 2,000 random robots and 2,000 variants of the farthest leaves its start place."""
+    """Of 2,000 random robots and 2,000 variants, none that is accepted leaves its start place."""
     found = list(search(2000, 2000, os.cpu_count() or 1, seed=0))
     leaps_m = [one.leap_m for one in found if one.leap_m is not None]
     assert len(leaps_m) > 500

@@ -33,7 +33,7 @@ def test_check_weighs_in(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_check_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
-    """`robot check --json` prints the same facts for a program."""
+    """`robot check --json` prints the facts of a correct robot as JSON."""
     assert lacoc("robot", "check", "quadruped", "--json") == 0
     facts = json.loads(capsys.readouterr().out)
     assert (facts["legs"], facts["joints"], facts["mass_kg"]) == (4, 12, 0.76)
@@ -129,7 +129,7 @@ def test_export_without_mujoco(
 
 
 def test_nothing_there(capsys: pytest.CaptureFixture[str]) -> None:
-    """For an unknown robot the command prints one line and exits with code 2."""
+    """`robot check` of an unknown robot prints one line and exits with code 2."""
     assert lacoc("robot", "check", "centipede") == 2
     printed = capsys.readouterr()
     assert printed.err.count("\n") == 1

@@ -49,7 +49,7 @@ def test_a_robot_of_exactly_3_kg() -> None:
 
 
 def test_start(hexapod: RobotSpec) -> None:
-    """The body's underside starts at LEG_L + LEG_R above the floor (workshop 4-3)."""
+    """The body's underside starts 0.055 m above the floor (workshop 4-3: LEG_L + LEG_R)."""
     assert hexapod.start_height_m == pytest.approx(0.04 + 0.015)
     assert hexapod.start_z_m == pytest.approx(0.055 + 0.025)
     assert hexapod.advance == "reached"
@@ -312,7 +312,7 @@ SCALARS = st.one_of(
 
 @given(st.data())
 def test_any_entry_replaced(data: st.DataObject) -> None:
-    """Any value in place of a number is read, or raises FileRefused."""
+    """A robot file with any values in place of its numbers is read, or raises FileRefused."""
     numbers = list(re.finditer(r"(?m)(?<=[=\[,] )\s*-?\d+(\.\d+)?", HEXAPOD))
     text = HEXAPOD
     for at in sorted(data.draw(st.sets(st.integers(0, len(numbers) - 1), max_size=4)))[::-1]:

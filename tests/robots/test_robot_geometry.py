@@ -20,14 +20,14 @@ def turned(*joints: int, by_deg: float = 30.0) -> tuple[float, ...]:
 
 
 def test_feet_on_the_floor_at_angle_zero(hexapod: RobotSpec) -> None:
-    """With every angle 0 the feet are exactly on the floor, 135 mm to the side of the middle."""
+    """With every angle 0 the feet are on the floor, 135 mm to the side of the body's middle."""
     for index, (*_, foot) in enumerate(hexapod.points(ZERO)):
         assert foot.z + hexapod.start_z_m == pytest.approx(0.0, abs=1e-12)
         assert foot.x == pytest.approx(0.135 if index in RIGHT else -0.135)
 
 
 def test_lengths_between_hinges(hexapod: RobotSpec) -> None:
-    """From hinge to hinge the links are 15, 70 and 70 mm long in any posture."""
+    """From one hinge to the next, or to the foot, the links are 15, 70 and 70 mm long."""
     posture = tuple(math.radians(7 * j - 60) for j in range(18))
     for points in hexapod.points(posture):
         lengths = [math.dist(a, b) for a, b in pairwise(points)]
@@ -85,7 +85,7 @@ def test_joint_ids_go_level_by_level(hexapod: RobotSpec) -> None:
 
 
 def test_fig_1_3_posture(hexapod: RobotSpec) -> None:
-    """With 1st and 2nd joint at 30 degrees the shank leans 60 degrees outward (workshop 3-1)."""
+    """With 1st and 2nd joint at 30 degrees, a shank leans 60 degrees outward (workshop 3-1)."""
     _, _, knee, foot = hexapod.points(turned(6, 12))[0]
     assert (foot.x - knee.x, foot.z - knee.z) == pytest.approx(
         (0.070 * math.sin(math.radians(60)), -0.070 * math.cos(math.radians(60)))

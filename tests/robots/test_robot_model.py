@@ -52,7 +52,7 @@ def test_official_options(hexapod: RobotSpec, compile_world: Compile) -> None:
 
 @pytest.mark.parametrize("degree", [True, False])
 def test_joints_and_servos(hexapod: RobotSpec, compile_world: Compile, degree: bool) -> None:
-    """Joints and servos have the file's values, in a world of degrees and in one of radians."""
+    """Joints and servos have the file's values, whether the world uses degrees or radians."""
     model = compile_world(hexapod, degree=degree)
     assert (model.njnt, model.nu) == (19, 18)
     for joint in range(18):
@@ -84,7 +84,7 @@ def test_masses(name: str, compile_world: Compile) -> None:
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_kinematics_agree(name: str, compile_world: Compile) -> None:
-    """Our forward kinematics and the compiled model agree on every hinge and shape."""
+    """Our forward kinematics and the compiled model agree on where each hinge and link is."""
     robot = sample(name)
     model = compile_world(robot)
     posture = tuple(math.radians(angle) for angle in itertools.islice(itertools.cycle(
@@ -182,7 +182,7 @@ def test_export_opens_and_stands(name: str) -> None:
 def test_no_warnings_at_the_limits(
     ang_min_deg_s: str, kp: str, kv: str, hexapod_text: str, compile_world: Compile
 ) -> None:
-    """The lightest robot without joint damping stays finite under random commands."""
+    """Random commands cause no MuJoCo warning, even at the limits of mass, AngMin, kp and kv."""
     text = hexapod_text.replace("kp = 20.0", f"kp = {kp}").replace("kv = 0.5", f"kv = {kv}")
     text = text.replace("damping = 0.02", "damping = 0.0").replace("= 0.125", "= 0.210")
     text = text.replace("ang_min_deg_s = 120", f"ang_min_deg_s = {ang_min_deg_s}")

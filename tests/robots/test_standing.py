@@ -49,7 +49,7 @@ def swept(robot: RobotSpec) -> Posture:
 
 
 def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> None:
-    """The mistake of a robot that rows away names the level, the distance and the limit."""
+    """The mistake of a robot that rows itself away names the level, the distance and the limit."""
     gait = Gait(PostureTable({0: hexapod.start_posture}), LocomotionTable(((swept(hexapod),),)))
     assert try_standing(hexapod, gait, (A,), "robot.toml") == []
     mistakes = try_standing(hexapod, gait, (A, B), "robot.toml")
@@ -62,7 +62,7 @@ def test_a_robot_that_rows_itself_away_is_told_how_far(hexapod: RobotSpec) -> No
         f"a robot that goes {moved_m:.3f} m from its start within 2 s "
         "(standing with key 0 of level B)"
     )
-    assert render(mistake.expected).startswith("at most 0.05 m")
+    assert render(mistake.expected).startswith("at most 0.045 m")
 
 
 def test_a_robot_that_stands_on_one_side_leans(hexapod: RobotSpec) -> None:
@@ -101,8 +101,8 @@ def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
     ("stood", "words"),
     [
         (STILL, []),
-        (Stood(0.05, math.radians(30), math.radians(0.2), 0.0002), []),
-        (Stood(0.0501, 0.0, 0.0, 0.0), ["goes 0.050 m"]),
+        (Stood(0.045, math.radians(30), math.radians(0.2), 0.0002), []),
+        (Stood(0.0451, 0.0, 0.0, 0.0), ["goes 0.045 m"]),
         (Stood(0.0, math.radians(31), 0.0, 0.0), ["leans 31 degrees"]),
         (Stood(0.0, 0.0, math.radians(4), 0.0), ["a joint at 4.0 degrees/s"]),
         (Stood(0.0, 0.0, 0.0, 0.0003), ["its middle at 0.3 mm/s"]),
@@ -111,7 +111,7 @@ def test_a_robot_that_is_about_to_buckle_is_not_at_rest() -> None:
     ],
 )
 def test_what_is_told(stood: Stood, words: list[str]) -> None:
-    """Each value beyond its bound gives one mistake; a value on the bound gives none."""
+    """A mistake names each value beyond its bound; a value on its bound gives no mistake."""
     mistakes = mistakes_of(stood, "robot.toml", (A, B))
     assert len(mistakes) == len(words)
     for mistake, word in zip(mistakes, words, strict=True):
@@ -121,7 +121,7 @@ def test_what_is_told(stood: Stood, words: list[str]) -> None:
 
 
 def test_the_posture_of_key_0() -> None:
-    """Key 0 gives the first posture of a level; without key 0, it is the start posture."""
+    """A robot stands in a level's first posture of key 0, or without key 0 in its start posture."""
     first, other, start = (0.1,) * 12, (0.2,) * 12, (0.3,) * 12
     gait = Gait(PostureTable({0: first, 1: other}), LocomotionTable(((first, other), (other,))))
     assert standing_postures(gait, (B, A), start) == {first: [A, B]}
@@ -131,7 +131,7 @@ def test_the_posture_of_key_0() -> None:
 
 @pytest.fixture
 def leaper(tmp_path: Path, hexapod_text: str) -> Path:
-    """Give a folder with the sample robot, whose legs now start far from its gait's key 0."""
+    """Give a folder with the hexapod, changed so that its legs start far from key 0 of its gait."""
     text = hexapod_text.replace(
         "45,  0, -45, -45,  0, 45,  # root", "100, 100, 100, 100, 100, 100,  # root"
     )

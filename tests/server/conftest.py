@@ -27,7 +27,7 @@ def loud() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def has_other_arithmetic() -> None:
-    """Skip the test if this machine has no second arithmetic, one that gives other bits."""
+    """Skip the test if this machine has no second arithmetic, which gives other last bits."""
     there = json.loads(elsewhere("benchmarks.proof", ["fingerprint"]))
     if arithmetic.same(arithmetic.here(), there):
         pytest.skip("the second arithmetic of this machine is the first")

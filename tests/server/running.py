@@ -113,7 +113,7 @@ class Party:
 
     @property
     def trouble(self) -> str:
-        """Return what the court reports about the disk of its record."""
+        """Return what the court reports about its record's disk; empty if nothing is wrong."""
         trouble = None if self.view.health is None else self.view.health.record_trouble
         return render(trouble) if trouble else ""
 
@@ -139,7 +139,7 @@ class Party:
 
 @contextmanager
 def party(contest: Path) -> Iterator[Party]:
-    """Join all contestants at a contest's running court, and say ready for each."""
+    """Join all contestants at a contest's running court, say ready for each, and give the party."""
     _, court = load(contest).court()
     with open_client([court.address()]) as session:
         yield Party(session, contest)

@@ -69,10 +69,10 @@ def decide(decision: d.Decision, reason: str = "agreed", by: str = "Kubota") -> 
 
 @dataclass
 class Script:
-    """A script of where robots are and what they touch, by tick of PLAYING; the first tick is 1."""
+    """What scripted physics does in each tick of PLAYING; the first tick is 1."""
 
     poses: dict[int, dict[int, tuple[float, float]]] = field(default_factory=dict)
-    """Tick -> seat -> x, y [m]; a robot stays there until the next entry."""
+    """Tick -> seat -> x, y [m]; a robot stays there until a later tick gives it another place."""
     touches: dict[int, dict[int, tuple[int, ...]]] = field(default_factory=dict)
     """Tick -> seat -> indices of touched markers; in all other ticks nothing is touched."""
     faults: dict[int, Fault] = field(default_factory=dict)

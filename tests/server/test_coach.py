@@ -48,12 +48,12 @@ def searched(size: Size, rounds: int = 40) -> Improved:
 
 
 def changes(found: Improved) -> int:
-    """Count the numbers that differ from zero."""
+    """Count the angles of the found table that differ from zero."""
     return sum(angle != 0 for angle in found.angles_deg)
 
 
 def test_a_size_limits_the_changes() -> None:
-    """A search changes one number, three, or any; with more numbers it finds a better table."""
+    """A search may change one number, three or all; with more numbers it finds a better table."""
     cell, three, table = (searched(size) for size in Size)
     assert (changes(cell), changes(three)) == (1, 3)
     assert made_up([(0,) * 6])[0] < cell.score < three.score < table.score
@@ -61,7 +61,7 @@ def test_a_size_limits_the_changes() -> None:
 
 
 def test_a_number_is_turned_to_its_best_degree() -> None:
-    """A search for three numbers that finds only one worth changing still finds its best degree."""
+    """If only one number is worth changing, a search for three changes finds its best degree."""
 
     def one_number(tables: Sequence[Angles]) -> list[float]:
         return [100.0 - (table[0] - 12) ** 2 for table in tables]
@@ -130,7 +130,7 @@ def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
 
 
 def test_goals() -> None:
-    """Goals score speed, or turning left or right; a robot on its belly scores below zero."""
+    """A goal scores speed, or turning left or right; a robot on its belly scores below zero."""
     task = sample_task(2)
     forward = try_table(task, task.table.angles_deg)
     left = try_table(sample_task(1), sample_task(1).table.angles_deg)
@@ -151,7 +151,7 @@ def sample_task(key: int) -> Task:
 @pytest.mark.slow
 @pytest.mark.long
 def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """`lacoc coach` changes at most three numbers, writes the gait, and it walks faster."""
+    """`lacoc coach` writes a gait that walks faster, with at most three numbers changed."""
     out = tmp_path / "better.txt"
     words = ["coach", str(SAMPLE), "--size", "three", "--seconds", "2", "--out", str(out), "--json"]
     try:

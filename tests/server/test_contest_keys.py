@@ -140,7 +140,7 @@ def test_renew_keeps_the_old_with_a_number(file: Path) -> None:
 
 
 def test_the_entry_goes_into_any_contest_file(tmp_path: Path) -> None:
-    """The entry `keys` is added with or without a table [contest], and all other lines stay.
+    """The entry `keys` is added to files with and without a table [contest]; other lines stay.
 
     If the file has `contest.name = ...`, the message gives the line to add by hand.
     """

@@ -80,7 +80,7 @@ def test_what_went_wrong_is_said_once() -> None:
 
 
 def test_slow_beats_are_told_now_and_then() -> None:
-    """Of slow beats in every second, the first is logged at once, the others 30 in a line."""
+    """If each second has a slow beat, the first is logged at once, and then 30 in each line."""
     with capture_logs() as lines:
         log = CourtLog("main")
         for second in range(100):

@@ -13,7 +13,7 @@ from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture, Post
 A, B = Level.POSTURE, Level.LOCOMOTION
 ANG_MIN = math.radians(120)
 STEP_DEG = 2.4
-"""How far a joint moves in a tick of 20 ms at 120 degrees/s (rules 1)."""
+"""The largest move of a commanded angle in a tick of 20 ms, at 120 degrees/s (rules 1)."""
 
 
 def posture(*degrees: float) -> Posture:
@@ -182,7 +182,7 @@ def test_level_a_holds_its_posture() -> None:
 
 @pytest.mark.parametrize("level", [A, B])
 def test_key_0_is_the_start_posture_where_the_file_lacks_it(level: Level) -> None:
-    """If the file has no key 0, the robot takes its start posture instead."""
+    """If a gait has no key 0, pressing 0 moves the robot to its start posture."""
     it = drive(postures={3: 24.0}, start=12.0)
     state = ticks(it, it.press(it.begin(A), A, 3), 10)[-1]
     assert state.angles == posture(24.0)

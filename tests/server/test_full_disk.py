@@ -38,7 +38,7 @@ class Disk(NamedTuple):
 
 @contextmanager
 def limited(contest: Path, folder: Path) -> Iterator[Disk]:
-    """Give a court whose files the system can keep from growing (RLIMIT_FSIZE)."""
+    """Run a court; its `Disk` is full while RLIMIT_FSIZE keeps its files from growing."""
     records = folder / "recordings"
     with served(contest, records) as court:
 
@@ -56,7 +56,7 @@ def limited(contest: Path, folder: Path) -> Iterator[Disk]:
 
 @contextmanager
 def small(contest: Path, folder: Path) -> Iterator[Disk]:
-    """Give a court that records on a disk of 16 MiB in memory, which another file can fill."""
+    """Run a court that records on a disk of 16 MiB in memory; another file can fill this `Disk`."""
     mount = folder / "disk"
     mount.mkdir()
     inside = ["unshare", "--user", "--map-root-user", "--mount", "--"]
@@ -88,7 +88,7 @@ def read(folder: Path) -> Record:
 
 
 def is_given(those: Party, reason: str) -> bool:
-    """Return whether an event with this reason was received (it may follow its beat's frame)."""
+    """Return whether an event with these words in its reason came; it may come after its frame."""
     given = (event.data["reason"] for event in those.view.events if "reason" in event.data)
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
@@ -185,7 +185,7 @@ def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -
 
 
 def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
-    """While no file can be made for the next match, the last match stays and health says why."""
+    """While no file can be made for the next match, the last stays; the health report says why."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     with served(contest, folder), party(contest) as those:
         those.decide(Abort())

@@ -56,7 +56,7 @@ def pose(stage: Stage) -> np.ndarray:
 
 @cache
 def by_hand(digits: tuple[int, ...], heading_deg: float = 90.0) -> Walk:
-    """Walk at level A by a key every 0.5 s, as at a keyboard, and return the speeds."""
+    """Press these keys of level A in turn, one every 0.5 s, and return the measured speeds."""
     stage = practice(heading_deg)
     frames = [pose(stage)]
     for number, digit in zip(range(int(RUN_S / 0.5)), cycle(digits)):
@@ -69,7 +69,7 @@ def by_hand(digits: tuple[int, ...], heading_deg: float = 90.0) -> Walk:
 
 
 def by_sequence(joins: JoinSeat | None = None) -> Walk:
-    """Walk forward at level B by one press of a key, and return the speeds."""
+    """Press key 2 of level B (forward) once, and return the measured speeds."""
     stage = practice(90.0, joins)
     frames = [pose(stage)]
     stage.beat(key(0, FORWARD, level=B))
@@ -111,7 +111,7 @@ def test_0_stands() -> None:
 
 
 def test_every_heading_is_as_fast() -> None:
-    """A robot walks equally fast in all headings, thanks to elliptic cones (docs/facts.md 2)."""
+    """With elliptic friction cones, speed does not depend on the heading (docs/facts.md 2)."""
     speeds = [by_hand((1, 2, 3, 4), heading).forward_mm_s for heading in (90.0, 27.0)]
     assert speeds[0] == pytest.approx(speeds[1], abs=0.3)
 

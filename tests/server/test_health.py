@@ -306,7 +306,7 @@ def test_the_record_has_the_verdict_and_verifies(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_simulated_match_has_none(tmp_path: Path) -> None:
-    """A simulated match has no verdict, because it has neither a wall clock nor links."""
+    """A simulated match has no health verdict, because it has neither a wall clock nor links."""
     made = setup("othello", {"match": {"duration_s": 0.5}})
     ground = arenas.load("othello")
     simulate(made, [player(ground, seat, "straight") for seat in (0, 1)], tmp_path)

@@ -39,7 +39,7 @@ LATER = "20260501-100500"
 def held(
     folder: Path, court: str = "main", opened: str = TEN, number: int = 1, arena: str = "othello"
 ) -> Journal:
-    """Play 50 beats of a match, to PLAYING (practice: in LOBBY); return its open journal."""
+    """Play 50 beats of a match, in PLAYING (practice: in LOBBY), and return its open journal."""
     made = msgspec.structs.replace(
         setup(arena, QUICK), match_id=f"{opened}-{court}-{number:03d}", court=court, match=number
     )

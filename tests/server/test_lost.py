@@ -49,7 +49,7 @@ def hall(tmp_path: Path) -> Iterator[Hall]:
 
 
 def test_a_killed_controller_is_taken_back_in_any_phase(hall: Hall) -> None:
-    """In every phase, only its own token takes back the seat of a killed controller."""
+    """From LOBBY to FINISHED, only the seat's own token takes back a killed controller's seat."""
     with open_client([hall.court.address()]) as session:
 
         def lose_and_guess(bot: subprocess.Popen[bytes]) -> None:
@@ -182,7 +182,8 @@ def test_loss_and_jitter_make_nobody_silent(hall: Hall) -> None:
 def test_a_real_cable(tmp_path: Path) -> None:
     """When a virtual cable goes down and up, the robot stands and walks again.
 
-    The match runs in another process: a new network would interrupt a browser's page loads.
+    The match runs in a process with its own network: a new cable in this one would interrupt the
+    page loads of other tests' browsers.
     """
     with ProcessPoolExecutor(1, get_context("spawn")) as apart:
         if not apart.submit(pull_a_real_cable, tmp_path).result():

@@ -165,7 +165,7 @@ def test_the_first_free_start_place_is_used(arena: str, taken: int) -> None:
 
 
 def test_a_wide_robot_needs_more_room() -> None:
-    """[x] skips a start place if the other robot is nearer to it than both radii together."""
+    """[x] skips a start place nearer to the other robot than the radii of both robots together."""
     stage = Stage("flag-strike", QUICK)
     radii = {}
     for robot in ("hexapod", "long-legs"):
@@ -185,7 +185,7 @@ def test_a_wide_robot_needs_more_room() -> None:
 
 
 def test_both_restart_at_once() -> None:
-    """If both seats press [x] in one tick, each gets its first place, whichever came first."""
+    """If both seats press [x] in one tick, each gets its first place in either order of arrival."""
     for order in ((LEFT, RIGHT), (RIGHT, LEFT)):
         swapped = {LEFT: (0.6, 0.0), RIGHT: (-0.6, 0.0)}
         stage = playing("flag-strike", Script(poses={1: swapped}), ticks=2)

@@ -268,7 +268,7 @@ def test_all_corners_win_whatever_the_points_where_the_arena_says_so() -> None:
 
 
 def test_the_shortest_match_is_one_tick() -> None:
-    """A match of 0.02 s has one tick, but a match of 0 s has no end."""
+    """A match of 0.02 s ends after one tick."""
     stage = Stage(overrides={"match": {"duration_s": 0.02}}).to_playing()
     stage.until(P.FINISHED, at_most=5)
     assert (stage.match.ticks, stage.match.ended) == (1, say("over.time"))

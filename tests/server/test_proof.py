@@ -82,7 +82,7 @@ def with_arithmetic(record: Record, made_by: Mapping[str, str]) -> Record:
 def test_bits_may_differ_only_where_another_arithmetic_recorded(
     made_by: Mapping[str, str], finding: Finding, kind: Kind
 ) -> None:
-    """A record of the same arithmetic must have equal bits; with another, a bound is enough."""
+    """A record of the same arithmetic must have equal bits; one of another may differ a little."""
     found = conclude([header(made_by=made_by)], 10, 10, [None], [finding])
     assert (found.kind, found.same) == (kind, kind is not Kind.DIFFERS)
     assert found.differs_at == (5 if kind is Kind.DIFFERS else None)
@@ -138,7 +138,7 @@ def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("has_other_arithmetic")
 def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> None:
-    """With another arithmetic an honest record still verifies as the same, and no forgery does."""
+    """Verified with another arithmetic, honest records still pass, and no forgery does."""
     lines = elsewhere("benchmarks.proof", ["verdicts", *map(str, paths)]).splitlines()
     found = [json.loads(line) for line in lines]
     assert [one["kind"] for one in found] == [Kind.OTHER_ARITHMETIC] * len(paths), found

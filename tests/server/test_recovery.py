@@ -59,7 +59,7 @@ def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
         after = those.frame
         assert after.clock_ticks >= seen.clock_ticks
         assert [seat.applied_seq for seat in after.seats] == applied
-        if after.clock_ticks == seen.clock_ticks:  # else the last frame died with the court
+        if after.clock_ticks == seen.clock_ticks:  # else a frame was lost
             assert (after.poses, after.digest) == (seen.poses, seen.digest)
         those.until(
             lambda: sum("is back" in render(event.said) for event in those.view.events) == 2

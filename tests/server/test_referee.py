@@ -1,6 +1,6 @@
 """Tests of the referee's decisions: when each is legal, why not, and what it does (rules 4.1).
 
-In the workshop's text these are 5-1 rule 8 and 5-2 rule 9.
+In the workshop's text, decisions are in 5-1 rule 8 and 5-2 rule 9.
 """
 
 import math
@@ -349,7 +349,7 @@ def test_clock_moves_the_end() -> None:
 
 
 def test_clock_in_old_records() -> None:
-    """An old record's `clock` with positive `seconds` shortens the match; its log is the same."""
+    """An old record's `clock` with positive `seconds` shortens the match, and is logged as then."""
     old: d.Decision = decode(encode({"type": "clock", "seconds": 10.0}), d.Decision)
     stage = stage_in(P.PLAYING)
     was = stage.frame.clock_ticks
@@ -399,7 +399,7 @@ def test_what_changes_the_winner_is_told() -> None:
 
 
 def test_abort_is_void() -> None:
-    """`abort` makes a match void; after the end, the computed result is kept."""
+    """`abort` makes a match void; if the match had ended, its computed result is kept."""
     stage = stage_in(P.PLAYING)
     done(stage, d.Abort())
     result = stage.beats[-1].result

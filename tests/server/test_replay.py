@@ -47,7 +47,7 @@ BEATS = 420
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, list[Beat]]]:
-    """Give the segment of a match that is still being played, and the match's beats."""
+    """Give the path of a segment whose match is still on, and the match's beats."""
     journal = Journal(Match(setup("flag-strike", QUICK), World), tmp_path_factory.mktemp("live"))
     assert journal.writer is not None
     beats = [journal.beat(INPUTS.get(number, ()))[0] for number in range(BEATS)]
@@ -154,7 +154,7 @@ def test_one_flipped_bit_of_a_pose_is_named(
 def test_nothing_of_a_record_can_be_changed_unseen(
     what: str, words: str, live: tuple[Path, list[Beat]]
 ) -> None:
-    """Verify also finds a changed event, touch or snapshot."""
+    """Verify also finds a changed event, a missing touch or a changed snapshot."""
     record = Record.read(live[0])
     if what == "event":
         event = record.events[-1]
@@ -215,7 +215,7 @@ def test_a_changed_result_is_named(tmp_path: Path) -> None:
 
 
 def test_another_mujoco_is_refused(live: tuple[Path, list[Beat]]) -> None:
-    """A record of another MuJoCo is refused; the message says which version to install."""
+    """A record of another version of MuJoCo is refused; the message says which one to install."""
     record = Record.read(live[0])
     versions = {**record.header.versions, "mujoco": "3.9.9"}
     record.headers[0] = msgspec.structs.replace(record.header, versions=versions)
@@ -228,7 +228,7 @@ def test_another_mujoco_is_refused(live: tuple[Path, list[Beat]]) -> None:
 
 
 def go_on(match: Match, beats: list[Beat]) -> None:
-    """Play a resumed match on, and check that each beat has the same bits as in the whole match."""
+    """Continue a resumed match; check that each beat has the same bits as in the whole match."""
     for number in range(match.beats + 1, len(beats)):
         beat = match.beat(INPUTS.get(number, ()))
         assert encode(beat.frame) == encode(beats[number].frame), number

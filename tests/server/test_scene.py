@@ -109,7 +109,7 @@ def test_what_pages_cannot_draw_is_said(kind: str) -> None:
 
 
 def test_a_robot_starts_where_its_arena_says() -> None:
-    """The arena says where a robot starts; the two robots face each other's side."""
+    """A robot starts where its arena says, and faces the other robot's side of the field."""
     ground = arenas.load("othello")
     it = World(ground, [entry()] * 2)
     for seat, sign in ((0, 1.0), (1, -1.0)):

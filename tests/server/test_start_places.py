@@ -57,7 +57,7 @@ def test_a_step_within_the_place_is_none() -> None:
 
 
 def test_who_leaves_again_and_again_is_not_ready() -> None:
-    """When a robot is put back a third time, its team is not ready; then counting starts anew."""
+    """If a robot leaves its place three times, its team is no longer ready; the count restarts."""
     assert MOST_STRAYS == 3
     stage = straying(3, 6, 9).to_ready()
     stage.run(9)
@@ -74,7 +74,7 @@ def test_who_leaves_again_and_again_is_not_ready() -> None:
 
 
 def test_a_start_in_that_beat_finds_it_at_its_place() -> None:
-    """If the referee starts while a robot is away, it begins play at its start place."""
+    """If the referee starts while a robot is away, the robot begins play at its start place."""
     stage = straying(3).to_ready()
     stage.run(2)
     assert len(strayed(stage)) == 1
@@ -84,7 +84,7 @@ def test_a_start_in_that_beat_finds_it_at_its_place() -> None:
 
 
 def test_one_who_leaves_or_comes_anew_on_the_way_back_disturbs_nothing() -> None:
-    """If a team leaves or changes its robot before it is put back, the field becomes empty."""
+    """If a team leaves or changes its robot while the robot is away, the field becomes empty."""
     for item in (LeaveSeat(LEFT), join(LEFT, robot="octopod")):
         stage = straying(3).to_ready()
         stage.run(2)

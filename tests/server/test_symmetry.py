@@ -85,7 +85,7 @@ their turned path by more than the bound of the test.
     ],
 )
 def test_the_physics_gives_the_turned_path(arena: str, ticks: int, least_contacts: int) -> None:
-    """Paths in the turned match differ by less than 1e-6 m, also when robots push each other."""
+    """Poses in the turned match differ by less than 1e-6 (m, rad), also when the robots collide."""
     one, other = (Stage.real(arena, QUICK).to_playing() for _ in range(2))
     mirrored = swapped(COLLIDING)
     worst, contacts = 0.0, 0

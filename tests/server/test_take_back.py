@@ -22,7 +22,7 @@ AWAY = (0.0, 0.0)
 
 
 def cell(name: str) -> tuple[float, float]:
-    """Return the centre of a disc [m]."""
+    """Return the centre of a disc, such as "c2r1" (column 2, row 1) [m]."""
     return (int(name[1]) - 2.5) * 0.3, (int(name[3]) - 2.5) * 0.3
 
 
@@ -93,7 +93,7 @@ def test_an_event_may_appear() -> None:
             5: {RIGHT: "c3r2", LEFT: "c2r1"},
             10: {LEFT: "c2r2"},
             15: {LEFT: "c3r2"},  # takes the disc that the right robot stands on
-            20: {RIGHT: "c2r2"},  # from a disc that is not its own any more: nothing
+            20: {RIGHT: "c2r2"},  # flips nothing: it comes from a disc that it has lost
         }
     )
     assert stage.scores == (19, 17)
@@ -136,7 +136,7 @@ def test_a_strike() -> None:
 
 
 def test_adjust_and_set() -> None:
-    """The decisions `adjust` and `set` can be taken back too."""
+    """The decisions `adjust` and `set` can be taken back."""
     stage = othello(CHAIN)
     adjust, put = stage.decide(d.Adjust("right", 7)), stage.decide(d.Set("c0r0", "right"))
     assert stage.scores == (19, 24)
@@ -230,7 +230,7 @@ def test_the_end_stays_what_it_was_if_a_later_set_is_taken_back() -> None:
 
 
 def test_a_match_may_turn_out_to_have_been_over() -> None:
-    """If the match would have ended without the event, a take-back ends it there."""
+    """If a match would have ended without an event, taking this event back ends it."""
     walks = dict(ALL_FOUR)
     walks[35] = {RIGHT: CORNERS[0]}
     stage = flag_strike(walks, {60: {RIGHT: (22,)}})
@@ -318,7 +318,7 @@ def test_paths_restarts_clock_and_other_decisions_stay() -> None:
 
 
 def test_both_orders_give_the_same() -> None:
-    """If three independent events are taken back, their order does not matter."""
+    """If three independent events are taken back, the order of the take-backs does not matter."""
     walks = {
         10: {LEFT: "c2r2", RIGHT: "c3r4"},
         20: {LEFT: "c3r2", RIGHT: "c2r4"},
@@ -394,7 +394,7 @@ def test_ticks_that_nothing_can_be_taken_back_from_are_not_kept(arena: str) -> N
 
 
 def test_the_first_event_of_a_match_is_taken_back_as_exactly_as_any() -> None:
-    """The first event can be taken back exactly, although no tick before it is kept."""
+    """A match's first event can be taken back exactly, although no tick before it is kept."""
     late = {tick + 3000: step for tick, step in CHAIN.items()}
     stage, twin = othello(late, ticks=3100), othello({3030: CHAIN[30]}, ticks=3100)
     reply = take_back(stage, event(stage, "flip", "c3r2").number)

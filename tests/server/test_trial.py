@@ -35,7 +35,7 @@ SAMPLE = Path(__file__).parents[2] / "robots/lacoc_robots/samples/hexapod/Loco-d
 
 @pytest.fixture(scope="module")
 def courses() -> dict[str, Course]:
-    """Give a floor for the trials of each sample robot."""
+    """Give the course of each sample robot by name: a floor for its trials."""
     return {name: make_course(entry_of(name).robot) for name in ROBOTS}
 
 
@@ -96,7 +96,7 @@ def test_a_trial_can_be_repeated(courses: dict[str, Course], sample: Walk) -> No
 
 
 def test_a_long_sequence_is_measured_in_whole_cycles(courses: dict[str, Course]) -> None:
-    """A cycle may take longer than a key that never repeats is measured."""
+    """A long sequence is measured for a whole cycle, even if the cycle takes more than 3 s."""
     start = entry_of("hexapod").robot.start_posture
     sway = tuple(angle + 0.3 for angle in start[:6]) + start[6:]
     gait = Gait(None, LocomotionTable((((start, sway) * 10),)))
@@ -106,7 +106,7 @@ def test_a_long_sequence_is_measured_in_whole_cycles(courses: dict[str, Course])
 
 
 def test_a_trial_that_ends_at_once_has_figures(sample: Walk) -> None:
-    """Physics that stop in the first tick leave figures of nothing, and no error."""
+    """If physics stops in the first tick, a trial still has figures, and no error is raised."""
     nothing = {
         name: value[:0] for name, value in vars(sample).items() if isinstance(value, np.ndarray)
     }
@@ -204,7 +204,7 @@ def test_keys_as_people_type_them() -> None:
 
 @pytest.mark.parametrize("seed", range(len(FAULTS)), ids=FAULTS)
 def test_the_first_sentence_names_the_fault(seed: int) -> None:
-    """The first sentence names a gait's only fault and its leg; without a fault it names none."""
+    """An explanation first names the gait's only fault and leg, or no fault if there is none."""
     told = tell(seed)
     assert told.named, told
 
@@ -223,12 +223,12 @@ def test_a_walk_that_fell_is_explained(courses: dict[str, Course]) -> None:
     figures = measure(walk)
     assert figures.cycles == 0
     assert figures.margin_mm is not None
-    said = explain(robot, walk, figures, press, (fallen,))
-    assert said[0].code in ("explain.belly", "explain.tipped", "explain.limit")
+    explained = explain(robot, walk, figures, press, (fallen,))
+    assert explained[0].said.code in ("explain.belly", "explain.tipped", "explain.limit")
 
 
 def test_a_robot_that_goes_backward_is_not_said_to_go_forward(sample: Walk) -> None:
-    """The sentence about speed is left out where it would be wrong."""
+    """If a robot goes backward, its explanation does not say that it walks forward."""
     robot, gait = entry_of("hexapod").robot, entry_of("hexapod").gait
     press = Press(SETTLE_TICKS, Level.LOCOMOTION, 2)
     sequence = gait.sequence(Level.LOCOMOTION, 2)
@@ -236,7 +236,7 @@ def test_a_robot_that_goes_backward_is_not_said_to_go_forward(sample: Walk) -> N
 
     def codes(speed_mm_s: float) -> list[str]:
         figures = replace(measure(sample), speed_mm_s=speed_mm_s)
-        return [said.code for said in explain(robot, sample, figures, press, sequence)]
+        return [one.said.code for one in explain(robot, sample, figures, press, sequence)]
 
     assert "explain.walks" in codes(60.0)
     assert "explain.walks" not in codes(-60.0)

@@ -171,7 +171,7 @@ def test_silence_keeps_a_halted_match_waiting_and_then_ends_it() -> None:
 
 
 def test_two_have_time_to_read_who_has_won() -> None:
-    """A match of two without a referee shows its result for ten seconds before the next opens."""
+    """A match of two teams without a referee shows its result for 10 s before the next opens."""
     rules = {"start": "ready", "countdown_s": 0.02, "duration_s": 0.2}
     held = Held("othello", None, {"match": rules})
     held.begin()

@@ -265,9 +265,9 @@ POLE_M, REACH_M = 0.01, 0.25
 
 
 def gaps_m(it: World, seat: int, poles: Sequence[tuple[float, float]]) -> np.ndarray:
-    """Return each pole's horizontal distance from a robot's nearest leg or (upright) body [m].
+    """Return the horizontal gap from each pole to a robot's nearest leg or (upright) body [m].
 
-    It is computed from the pose; it is the true distance if all parts are lower than the poles.
+    A negative gap is an overlap. Gaps are true if all parts of the robot are lower than the poles.
     """
     robot = it._robots[seat]
     at = robot.root_qpos

@@ -1,4 +1,4 @@
-"""Messages to bytes and back, and which bytes are refused (docs/protocol.md)."""
+"""Messages become bytes and come back; other bytes are refused (docs/protocol.md)."""
 
 import hashlib
 import subprocess

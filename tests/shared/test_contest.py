@@ -1,4 +1,4 @@
-"""The contest file, and which source of an option wins over which."""
+"""Tests of the contest file, and of which source gives an option its value."""
 
 from pathlib import Path
 from typing import Annotated
@@ -217,7 +217,7 @@ def test_the_only_court_needs_no_name(file: Path) -> None:
 
 
 def test_access_without_a_file(file: Path) -> None:
-    """Without a contest file, the access comes from options; an error names a missing option."""
+    """Without a contest file, address and token come from options; errors name a missing option."""
     access = entrances.seat_access(None, None, "10.0.0.7", "left", "t" * 20)
 
     assert access == Access(
@@ -251,15 +251,15 @@ def test_access_from_a_file(file: Path) -> None:
 
 
 def test_join_lines_name_the_host(file: Path) -> None:
-    """The command lines to hand out have the court's public address, or HOST in its place."""
+    """Command lines have the court's `connect` address, or a given host instead of 0.0.0.0."""
     file.write_text(GOOD + SECOND)
     contest = contests.load(file)
 
-    main = entrances.join_lines("main", contest.courts["main"])
-    second = entrances.join_lines("second", contest.courts["second"])
+    main = entrances.join_lines("main", contest.courts["main"], "10.0.0.7")
+    second = entrances.join_lines("second", contest.courts["second"], "10.0.0.7")
 
     assert main["left"] == (
-        "lacoc play --court main --connect tcp/HOST:7447 --seat left --token left-token-of-main"
+        "lacoc play --court main --connect tcp/10.0.0.7:7447 --seat left --token left-token-of-main"
     )
     assert "referee-token-of-main" in main["referee"]
     assert "token" not in main["spectators"]

@@ -33,7 +33,7 @@ def said(code: str, encoding: str = "utf-8") -> str:
 
 
 def test_lines_for_a_program() -> None:
-    """With JSON, each line has its time, level, court and match; no line comes before `start`."""
+    """With JSON, a line has time, level, court and match; messages before `start` are dropped."""
     first, second = map(json.loads, said(SAY.format(json=True)).splitlines())
     assert datetime.fromisoformat(first.pop("timestamp")).tzinfo is not None
     assert first == {

@@ -19,7 +19,7 @@ leak of 0.1 MB in each match gives more than this limit.
 @pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="the kernel's own counts are read")
 def test_nothing_grows_and_nothing_is_left_over() -> None:
-    """No process keeps more threads, files or sockets than when warm, and all records verify.
+    """No process gains threads, files, sockets or children after the warm-up; all records verify.
 
     The memory of each process except the visitors' grows by less than 3 %.
     """
@@ -47,7 +47,7 @@ def _figures(looks: list[Look]) -> Figures:
 
 
 def test_a_leak_would_be_seen() -> None:
-    """Memory that grows by 0.5 % at each measurement is a leak; one high measurement is none."""
+    """Memory that grows by 0.5 % at each measurement is a leak; one high measurement is not."""
     steady = [Look(at_s, 100_000_000, 9, 20, 3, 0) for at_s in range(20)]
     growing = [look._replace(memory_bytes=round(1e8 * 1.005**look.at_s)) for look in steady]
     off = [*steady[:9], steady[9]._replace(memory_bytes=150_000_000), *steady[10:]]

@@ -52,7 +52,7 @@ class _Hunter(ABC):
         return self._pilot.toward(frame, poses, target_m)
 
     def open(self, board: tuple[int, ...], marker: int) -> bool:
-        """Say whether a marker can be gained: a standing flag, or a corner that is not ours."""
+        """Say whether a marker can be gained: a standing flag, or a corner that is not held."""
         return board[marker] == NEUTRAL or (marker < CORNERS and board[marker] != self.seat + 1)
 
     @abstractmethod
@@ -130,7 +130,7 @@ class Planner(_Hunter):
         return all(board[other] == own for other in range(CORNERS) if other != corner)
 
     def _decisive(self, board: tuple[int, ...], scores: tuple[int, ...], corner: int) -> float:
-        """Return the worth of a corner that ends the match: high if we win then, else 0."""
+        """Return the worth of a corner that ends the match: high if this seat then wins, else 0."""
         points = self.game.markers[corner].points
         lost = points if board[corner] != NEUTRAL else 0
         finals = tuple(

@@ -9,7 +9,7 @@ _TICKS_PER_KEY = 4 * BEATS_PER_S
 
 
 def walk(sheet: Sheet, seat: int) -> Brain:
-    """Press each key for four seconds: the sequences if level B is open, else the postures."""
+    """Make a brain that presses each key for four seconds, at level B if it is open, else at A."""
     postures, sequences = sheet.seats[seat].keys
     level = Level.LOCOMOTION if sequences and Level.LOCOMOTION in sheet.levels else Level.POSTURE
     keys = [Key(level, digit) for digit in (sequences if level else postures)]

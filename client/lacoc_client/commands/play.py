@@ -140,7 +140,7 @@ def play(
 
 
 def _await_own_entry(controller: Controller, team: str) -> None:
-    """Wait for the sheet that names the own team; it comes a moment after the join."""
+    """Wait for the sheet that names this team; the sheet comes a moment after the join."""
     deadline_s = time.monotonic() + _SHEET_S
     while time.monotonic() < deadline_s:
         controller.wait_frame(0.05)

@@ -120,7 +120,7 @@ def _print_json(view: Spectator, hz: float, end: _End) -> None:
 
 
 def _draw(view: Spectator, terminal: LineView | BoardView, end: _End) -> None:
-    """Draw in one place; in a pipe print events as lines, and one picture at the end."""
+    """Draw in place on a terminal; in a pipe print events as lines, and one picture at the end."""
     console = screen.stdout
     in_place = console.is_terminal
     drawn_s = 0.0

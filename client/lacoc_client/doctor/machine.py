@@ -33,7 +33,8 @@ from lacoc_shared.words import Phrase, render, say
 
 _MIB = 1 << 20
 _LEAST_FREE_BYTES, _GOOD_FREE_BYTES = 100 * _MIB, 1024 * _MIB
-"""A match needs 2 MiB packed, and 4 MiB while it is played."""
+"""Less free space than the first is a problem; less than the second gives a note. A match needs
+2 MiB packed, and 4 MiB while it is played."""
 _FSYNCS = 10
 _SLOW_FSYNC_S = 0.5
 """A sync that takes longer than this gives a note [s]; a record is synced once a second."""
@@ -51,7 +52,7 @@ class Status(StrEnum):
 
 
 class Finding(msgspec.Struct, frozen=True):
-    """A finding about one thing."""
+    """One finding: what it is about, how serious it is, and what to do."""
 
     about: Phrase | str
     status: Status
@@ -117,7 +118,7 @@ def _package(needed: Requirement, *, optional: bool) -> Finding:
 def court_port(
     host: str, port: int, court: str | None, credentials: Credentials | None = None
 ) -> Finding:
-    """Check that a court can listen at a port, or does already.
+    """Check that a court can listen at a port, or already does.
 
     Args:
         host: address of this machine to listen at.
@@ -145,7 +146,7 @@ def court_port(
 
 
 def web_port(host: str, port: int, *, needed: bool) -> Finding:
-    """Check that a gateway can listen at a port, or does already.
+    """Check that a gateway can listen at a port, or already does.
 
     Args:
         host: address of this machine to listen at.

@@ -21,7 +21,7 @@ use other threads, so they never wait for these.
 
 
 class Courts:
-    """The feeds of a gateway's courts and their referees; made when first asked for.
+    """The feed and the referees of each court of a gateway, made when it is first asked for.
 
     Args:
         home: the gateway's settings.

@@ -125,7 +125,7 @@ class CourtFeed:
             await asyncio.sleep(_LOOK_S)
 
     def _come_back(self) -> None:
-        """Take up a court after a silence; it may be another one, so everything is sent again."""
+        """Show the court again after a silence; it may have a new match, so send everything."""
         self._connected, self._why = True, None
         self.log(f"Court {self.court} sends frames.", "link", connected=True)
         self.audience.send(self._link(), *self._all())
@@ -267,7 +267,7 @@ class CourtFeed:
 
     @property
     def _log_number(self) -> int:
-        """Version of the log; it changes when the log begins again."""
+        """Version of the log; a new one means that events before the newest may have changed."""
         return self.picture.view.log.number
 
     @property

@@ -14,7 +14,7 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 from websockets.http11 import Request
 
 KEPT_BYTES = 1 << 20
-"""Most bytes that may wait for a page; a page with more has gone or is hopeless, and is cut off."""
+"""Most bytes that may wait for a page; a page with more is cut off: it has gone or is too slow."""
 _UNSENT_BYTES = 4096
 """Bytes that the system may hold back before a page counts as slow: a dozen frames."""
 _UNANSWERED_S = 1.0

@@ -24,7 +24,7 @@ _KEPT = 2000
 
 
 class Listed(msgspec.Struct, frozen=True):
-    """A recording, as it is listed."""
+    """One entry of the list of recordings."""
 
     name: str
     bytes: int

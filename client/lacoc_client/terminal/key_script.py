@@ -27,7 +27,7 @@ class _Step(NamedTuple):
 
 
 class KeyScript:
-    """The keys of a script, each when it is due."""
+    """Holds the keys of a script, and returns each when it is due."""
 
     def __init__(self) -> None:
         self._steps: deque[_Step] = deque()

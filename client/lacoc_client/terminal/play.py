@@ -218,7 +218,7 @@ class TerminalPlay:
         return Group(first, second, self._third(now_s))
 
     def _third(self, now_s: float) -> Text:
-        """Return the most important line: link, answer to a key, seat, phase, or the keys."""
+        """Return the third line: the most urgent of link, answer to a key, seat, phase and keys."""
         controller, frame = self._controller, self._view.frame
         assert frame is not None
         banner = words.link(self._view.silent_s(now_s))

@@ -144,7 +144,7 @@ def _written(robot: RobotSpec, gait: Gait, digit: int, table: KeyTable, angles: 
 
 
 def _place(task: Task, digit: int, index: int) -> Phrase:
-    """Name a cell as people find it: the first posture of the key that has it."""
+    """Name a cell by its key, the first posture that has it, the leg and the joint's place."""
     row, joint = task.table.cell(index)
     legs = len(task.robot.legs)
     return say(

@@ -17,6 +17,7 @@ from lacoc_shared.contest.file import Court
 from lacoc_shared.contest.tokens import new_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import own_address
 from lacoc_shared.words import render, say
 
 app = typer.Typer(
@@ -162,21 +163,23 @@ def show(
     file: _FileToRead = _DEFAULT,
     court: options.CourtName = None,
     host: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="HOST",
-            help="Name or address of the court's machine, where the file does not say it.",
+            help="Name or address of the court's machine, if the file does not name it; by default "
+            "this machine's address.",
         ),
-    ] = "HOST",
+    ] = None,
     json: options.Json = False,
 ) -> None:
     """Print the command line for each contestant, the referee and spectators."""
     contest = contests.load(file)
     names = [contest.court(court)[0]] if court else list(contest.courts)
+    any_host = host or own_address()
     if contest.keys:
         lines = {n: entrances.invitation_lines(entrances.everybody(contest, n)) for n in names}
     else:
-        lines = {name: entrances.join_lines(name, contest.courts[name], host) for name in names}
+        lines = {name: entrances.join_lines(name, contest.courts[name], any_host) for name in names}
     if json:
         screen.print_json(lines)
         return
@@ -188,8 +191,8 @@ def show(
             screen.stdout.print(line, markup=False, soft_wrap=True)  # to be copied whole
     if contest.keys:
         screen.note(say("contest.invitations", folder=str(contest.keys.invitations)))
-    if any("/HOST:" in line for by_person in lines.values() for line in by_person.values()):
-        screen.note(say("contest.host"))
+    elif host is None and not all(contest.courts[name].host for name in names):
+        screen.note(say("contest.host", host=any_host))
 
 
 def _check_court(name: str, court: Court) -> None:

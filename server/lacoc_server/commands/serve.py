@@ -29,7 +29,7 @@ from lacoc_shared.contest.tokens import hash_token
 from lacoc_shared.keyspace import Keys
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.network.address import endpoint
+from lacoc_shared.network.address import endpoint, own_address
 from lacoc_shared.words import say
 
 app = typer.Typer()
@@ -205,7 +205,7 @@ def _open_doors(
         open_court = contests.Court(
             arena=entry.arena, listen=locators, seat=entry.seat, referee=entry.referee
         )
-        for who, line in entrances.join_lines(name, open_court).items():
+        for who, line in entrances.join_lines(name, open_court, own_address()).items():
             screen.show(say("serve.enter", who=who, command=line))
 
 

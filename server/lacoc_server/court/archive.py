@@ -34,7 +34,7 @@ class Archive:
         self._aside.submit(self._pack, match_id)
 
     def take(self, match_id: str, writer: RecordWriter | None) -> None:
-        """Finish the record of a finished match; its last message is written at once."""
+        """Finish a match's record: write its end now; close and pack it on the other thread."""
         if writer is None:
             return
         writer.end()

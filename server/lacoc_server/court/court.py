@@ -1,4 +1,4 @@
-"""A court: the loop that gives a match its beats, and the only code that reads a clock.
+"""A court: the loop that gives a match its beats. No other code of it reads the monotonic clock.
 
 The loop, an outbox that sends, and an archive that stores the records of finished matches each have
 a thread. A beat takes what arrived, passes it to the match and records it, and only then answers
@@ -271,7 +271,7 @@ class Court:
 
 
 def _offset_s(locators: tuple[str, ...]) -> float:
-    """Return the fraction of a second by which a court's beats are shifted (docs/architecture.md).
+    """Return the fraction of a second by which a court's beats are shifted.
 
     It comes from the addresses: two courts on a machine may share a name, but never an address.
     """

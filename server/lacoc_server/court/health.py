@@ -22,8 +22,8 @@ from lacoc_shared.words import Phrase, say
 _LEAST_FACTOR = 1e-4
 """Smallest real-time factor that is used; it avoids a division by zero."""
 _CARRIED = 2
-"""Most repeats of a second above ten that count for the next second: with jitter one second has 11
-and the next 9.
+"""Most repeats above ten in a second that count for the next second. With jitter one second has 11
+repeats and the next 9.
 """
 
 

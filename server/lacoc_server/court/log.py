@@ -51,7 +51,11 @@ class CourtLog:
         self._refused = refused
         slow = health.slow_beats - self._slow_beats
         at = health.match, health.beat
-        if slow and not (self._slow_told[0] == at[0] and at[1] - self._slow_told[1] < _SLOW_BEATS):
+        if not any(seat.joined for seat in health.seats):  # a slow beat disturbs nobody yet
+            self._slow_beats = health.slow_beats
+        elif slow and not (
+            self._slow_told[0] == at[0] and at[1] - self._slow_told[1] < _SLOW_BEATS
+        ):
             worst_ms = health.worst_late_ms
             said = say("log.slow-beats", count=slow, all=health.slow_beats, worst_ms=worst_ms)
             _write(write, said, kind="slow", count=slow, worst_late_ms=worst_ms)

@@ -37,11 +37,11 @@ class Weighing:
         self._worker.shutdown(cancel_futures=True)
 
     def __call__(self, join: Join) -> Join | None:
-        """Complete a join.
+        """Weigh in the files of a join.
 
         Returns:
-            The join with its robot; None while the robot is being tried: call again in the next
-            beat.
+            The join with its robot file filled in; None while the robot is being tried: call again
+            in the next beat.
 
         Raises:
             FileRefused: with every mistake of every file, or with what the robot did when it should

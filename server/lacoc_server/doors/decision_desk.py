@@ -45,7 +45,7 @@ class DecisionDesk:
         """Number of refusals by `Why`."""
 
     def enter(self, payload: bytes) -> Done | Refusal:
-        """Check the token of somebody who only enters.
+        """Check the token of a referee who enters and decides nothing yet.
 
         Args:
             payload: should be an `Enter`.

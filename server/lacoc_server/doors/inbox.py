@@ -113,11 +113,11 @@ class Inbox:
             joined.
         check_files: weighs a join's files in. It returns the join with the robot file filled in, or
             None while it needs more time; it raises `FileRefused` for bad files.
-        random_bytes: returns that many random bytes, for numbers and secrets of sessions.
+        random_bytes: returns as many random bytes as asked, for numbers and secrets of sessions.
         last_seqs: for a restarted court, the newest sequence numbers in its record, by seat.
         joined: for a restarted court, the seats that are held.
-        former: hashes of older tokens that open the seats too, by seat: those with which seats were
-            taken before a restart of the court made new ones.
+        former: for a restarted court that made new tokens, hash of the token with which each seat
+            was taken before, by seat; it opens the seat too.
         most_delay_ms: longest delay that makes the links equal; 0: links are not made equal.
     """
 
@@ -162,8 +162,8 @@ class Inbox:
             silent: for each seat, whether it is silent in the match.
 
         Returns:
-            For each seat, in this order: that it fell silent or is heard again; the newest [x] that
-            takes effect now; the newest digit that takes effect now (rules 3).
+            For each seat up to three inputs, in this order: it fell silent or is heard again; the
+            newest [x] that takes effect now; the newest digit that takes effect now (rules 3).
         """
         self._now_s = now_s
         inputs: list[Input] = []

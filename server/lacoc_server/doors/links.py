@@ -27,9 +27,10 @@ CHANGE_BEATS = 3 * BEATS_PER_S
 LOWER_BEATS = 2
 """Smallest step down of the common delay [beats]: a delay that wavers is worse than a long one."""
 FRESH_BEATS = 2 * BEATS_PER_S
-"""Oldest frame [beats] that a repeat may name as a sign of life; else its sender has gone."""
+"""Greatest age [beats] of a frame that a repeat may name as a sign of life of its sender."""
 TRUST_S = 2 * BEAT_S
-"""Added to a seat's p95: no command is believed to have been under way for longer than the sum."""
+"""Added to the p95 of a seat's round trips: no command is believed to have taken longer than the
+sum."""
 
 
 _NONE = (0, 0)
@@ -204,7 +205,7 @@ class Links:
         link.trip = Trip(trips_s[p50], trips_s[p95])
 
     def _agree(self) -> None:
-        """Set the common delay to the longest p95 of all seats, in whole beats."""
+        """Set the common delay to the seats' longest p95; lower it by at least `LOWER_BEATS`."""
         longest_s = max((link.trip.p95_s for link in self._links if link.trip), default=0.0)
         wanted = min(math.ceil(longest_s / BEAT_S), self._most_beats)
         if not self._delay_beats - LOWER_BEATS < wanted <= self._delay_beats:

@@ -92,12 +92,12 @@ class CourtNetwork:
         ]
         self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
         self._waiting: dict[Desk, tuple[Request, Later]] = {}
-        """The request of each desk that has no answer yet; those behind it wait too."""
+        """The request at each desk that is still being judged; the requests behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
         self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
         self._log_desk = session.desk(keys.event, _FETCH_DESK)
         self._log: deque[Event] = deque(maxlen=EVENTS_LISTED)
-        """The events of the match."""
+        """The newest events of the match."""
         self._sheet_bytes = self._scene_bytes = b""
         session.announce(keys.alive)
         self.locators = session.locators()

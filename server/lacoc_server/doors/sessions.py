@@ -10,7 +10,7 @@ _REMEMBERED = 64
 
 
 class Why(StrEnum):
-    """Reasons why a message was refused. They are names of `count.*`; a referee sees the counts."""
+    """Reasons why a message was refused. The texts `count.*` tell a referee how often each was."""
 
     BAD_BYTES = "bad-bytes"
     TOO_LONG = "too-long"
@@ -43,7 +43,7 @@ class Sessions:
     """The sessions of a court; at most one holds a seat.
 
     Args:
-        random_bytes: returns that many random bytes.
+        random_bytes: returns as many random bytes as asked.
     """
 
     def __init__(self, random_bytes: Callable[[int], bytes]) -> None:

@@ -1,8 +1,8 @@
 """A match with its record: a beat's messages go to the disk before anybody is answered.
 
-A beat's frame is written after everything else of that beat, and so seals it. Messages without the
-frame of their beat come from a court that was killed in that beat. Only a beat in which nothing
-happened has no frame.
+Only a snapshot is written after the frame of its beat, so a beat with its frame is complete. A beat
+in which nothing happened may have no frame. Other messages without the frame of their beat come
+from a court that was killed in that beat.
 """
 
 import platform

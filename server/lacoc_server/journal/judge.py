@@ -34,7 +34,7 @@ _SCENE_BOUND = 1e-9
 
 
 class RecordedPhysics:
-    """Plays the part of physics with recorded poses, and notes what the match asks for.
+    """Answers a match from the record in place of physics, and notes what the match asks for.
 
     Args:
         world: the robots as this machine builds them; it is not stepped.
@@ -57,7 +57,7 @@ class RecordedPhysics:
 
     @property
     def digest(self) -> bytes:
-        """Digest in the recorded frame; without a frame, that of `world`."""
+        """Digest in the newest recorded frame; without a frame, that of `world`."""
         frame = self._record.frame
         return frame.digest if frame else self.world.digest
 
@@ -75,7 +75,7 @@ class RecordedPhysics:
         return self._record.snapshot or b""
 
     def poses(self) -> bytes:
-        """Return the poses in the frame."""
+        """Return the poses in the newest frame; without a frame, those of `world`."""
         frame = self._record.frame
         return frame.poses if frame and frame.poses else self.world.poses()
 
@@ -85,7 +85,7 @@ class RecordedPhysics:
         return self._record.touched
 
     def take(self) -> Step | None:
-        """Return what this beat asked for and what its frame shows; None if there is neither."""
+        """Return this beat's requests to physics and its frame; None if it has neither."""
         record, frame = self._record, self._record.frame
         places, angles, asked = tuple(self._places), self._angles, self._asked
         self._places, self._angles, self._asked = [], None, False
@@ -327,7 +327,7 @@ def header_at(record: Record, beat: int) -> Header:
 
 
 def _same_result(record: Record, again: Result | None, last: int) -> bool:
-    """Return whether two results are equal, up to the last beat that was answered."""
+    """Return whether two results are equal; a result that was never sent is not compared."""
     recorded = record.result
     if recorded is None:  # a beat of an earlier segment may have had it, unanswered
         return again is None or len(record.headers) > 1

@@ -21,7 +21,8 @@ from lacoc_shared.words import Phrase, say
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 """Phases in which the court halts a match after a restart."""
 _OPENING_BYTES = 1 << 14
-"""A file smaller than this [bytes] and without a header was cut while it was opened; it is empty.
+"""A file without a header and smaller than this [bytes] is skipped: its court was killed while it
+opened the match.
 """
 
 

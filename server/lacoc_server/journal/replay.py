@@ -84,7 +84,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
     """Continue a match where its record ends.
 
     Up to the newest snapshot the recorded poses stand in for physics; only the rest is simulated.
-    On that stretch another arithmetic stays within `BOUND` of the record.
+    There another arithmetic must stay within `BOUND` of the record.
 
     Args:
         record: record of a court that was killed; it may be cut anywhere.

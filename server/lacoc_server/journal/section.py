@@ -225,7 +225,7 @@ def _end(
 
 
 def _apart(recorded: bytes, poses: bytes) -> float:
-    """Return the largest difference between two frames' poses; infinite for other robots."""
+    """Return the largest difference between two frames' poses; infinite if their sizes differ."""
     if len(recorded) != len(poses):
         return float("inf")
     gaps = np.abs(np.frombuffer(recorded, "<f4").astype(float) - np.frombuffer(poses, "<f4"))

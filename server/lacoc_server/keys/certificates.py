@@ -70,7 +70,7 @@ class Authority(NamedTuple):
 
     @property
     def ends(self) -> datetime:
-        """The end of its validity, and of all certificates that it issued."""
+        """When the authority and all certificates that it issued expire."""
         return self.certificate.not_valid_after_utc
 
     def pair(self) -> Pair:

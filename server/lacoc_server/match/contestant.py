@@ -21,7 +21,7 @@ _AFTER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
 
 def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
-    """Take a seat, or come back to it; during a match its files stay as they were at the start."""
+    """Take a seat, or come back to it; during a match new files wait for the next match."""
     seat = match.seats[item.seat]
     if match.phase in _BEFORE:
         return _sit_down(match, seat, item)

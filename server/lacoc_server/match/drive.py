@@ -1,4 +1,4 @@
-"""The drive: from a standing command to commanded angles, tick by tick (rules 3).
+"""The drive: it turns the newest key into commanded angles, tick by tick (rules 3).
 
 Pure and exact: it knows only commanded angles, never measured ones, so drives can be checked with
 pencil and paper. `DriveState` is what changes; a `Drive` is made from a seat's robot and gait.
@@ -18,7 +18,7 @@ class DriveState(msgspec.Struct, frozen=True):
 
     level: Level
     digit: int
-    """The standing command."""
+    """Digit of the newest key; 0 if the robot stands without one."""
     posture: int
     """Index of the target posture in the digit's sequence."""
     ticks: int
@@ -34,11 +34,11 @@ class Drive:
 
     Args:
         gait: gait of the seat's robot.
-        start: (joints,) start posture [rad]; key 0 commands it at a level whose file has no key 0.
+        start: (joints,) start posture [rad]; the robot stands in it at a level without a key 0.
         ang_min_rad_s: AngMin, the speed of every commanded angle [rad/s].
         advance: when a sequence goes on: when its posture is "reached", or by "time".
         hold_us: how long a reached posture is held, or the time of each posture [us].
-        repeat: whether sequences repeat while the command stands.
+        repeat: whether a sequence begins again after its last posture.
     """
 
     def __init__(
@@ -75,8 +75,8 @@ class Drive:
     def press(self, state: DriveState, level: Level, digit: int) -> DriveState:
         """Take a command; its sequence begins with this tick.
 
-        A command is (level, digit). With `repeat`, pressing the standing command again changes
-        nothing; without, it starts the sequence again.
+        A command is (level, digit). With `repeat`, pressing the same command again changes nothing.
+        Without `repeat`, its sequence starts again.
         """
         was_pressed = (level, digit) == (state.level, state.digit) and not state.stands
         if self._repeat and was_pressed:

@@ -135,7 +135,7 @@ class Admission:
 def _read_gait(
     file: SentFile, robot: RobotSpec | None, notes: list[Phrase]
 ) -> PostureTable | LocomotionTable:
-    """Read a gait for a robot; for any robot if there is none because its file was refused."""
+    """Read a gait for a robot; for any robot if the robot's file was refused (None)."""
     if robot is None:
         return read_gait(file.data, file.name)
     labels, ranges_deg = robot.labels, robot.ranges_deg

@@ -98,11 +98,11 @@ class History:
         self._append(step)
 
     def knows(self, number: int) -> bool:
-        """Return whether an event can be taken back: it stands, and the game or a `set` made it."""
+        """Return whether an event can be taken back: the game or `set` made it, and it counts."""
         return number in self._step_of
 
     def without(self, number: int) -> Fold:
-        """Judge the game again without one event; change nothing here.
+        """Judge the game again without one event; the history stays as it is.
 
         Raises:
             KeyError: if there is no such event.

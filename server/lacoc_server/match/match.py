@@ -182,7 +182,7 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Put back robots that leave their start place before play; the third time ends READY."""
+        """Put back robots that stray before play; after `MOST_STRAYS` times a seat is not ready."""
         for seat in self.seats:
             gone_m = self.staging.from_start_m(seat.index)
             if gone_m <= FARTHEST_M:
@@ -206,7 +206,7 @@ class Match(MatchState):
             self.finish(say("over.time"))
 
     def _fail(self, fault: Fault) -> None:
-        """Handle a fault: the state before the tick stands, and a match in play halts."""
+        """Log a fault. A match in play halts; before play no seat is ready any more."""
         self.tell("fault", say("event.fault", why=fault.why), seat=fault.seat)
         if self.phase is Phase.PLAYING:
             self.enter(Phase.HALTED)

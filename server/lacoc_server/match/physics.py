@@ -59,7 +59,7 @@ class Physics(Protocol):
         """
 
     def save(self) -> bytes:
-        """Return the whole state after the last tick; physics can go on from it bit for bit."""
+        """Return the whole present state; physics can go on from it bit for bit."""
 
     def poses(self) -> bytes:
         """Return the poses of the robots, in the form of `Frame.poses`."""
@@ -69,7 +69,7 @@ class Physics(Protocol):
 
 
 class MakePhysics(Protocol):
-    """Builds the physics of a match: once, when all seats are ready."""
+    """Builds the physics of a match: the empty field, or the robots once all seats are ready."""
 
     def __call__(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
         """Build the physics of the robots; without entries, that of the empty field."""

@@ -45,7 +45,7 @@ class Staging:
         self._starts: list[Place] = []
 
     def build(self, seats: Sequence[Seat]) -> None:
-        """Compile the model: once, before the match (docs/architecture.md)."""
+        """Put the robots of all seats on the field: compile the model."""
         entries = [seat.entry for seat in seats if seat.entry]
         self.physics = self.make_physics(self._arena, entries)
         sizes = [4 * (7 + entry.robot.joints) for entry in entries]

@@ -32,7 +32,7 @@ TRANSITIONS: dict[Phase, frozenset[Phase]] = {
     Phase.OFFICIAL: frozenset(),
     Phase.VOID: frozenset(),
 }
-"""Phases that may follow each phase; `next` opens a new match instead."""
+"""Phases that may follow each phase. After the last two the decision `next` opens a new match."""
 
 _ENTERED = {
     Phase.LOBBY: say("event.lobby"),

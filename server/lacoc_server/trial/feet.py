@@ -45,7 +45,7 @@ def phases(down: Bools, first: int, cycles: Sequence[tuple[int, int]]) -> list[f
 
     Args:
         down: (ticks, legs) whether the foot is down.
-        first: a tick before which nothing counts.
+        first: feet that come down before this tick do not count.
         cycles: first tick of each cycle, and the tick after its last.
 
     Returns:

@@ -23,19 +23,19 @@ class Figures:
     seconds: float
     """How long was measured [s]."""
     cycles: int
-    """Whole cycles that were measured; 0: the sequence did not begin again, so no cycle was."""
+    """Whole cycles that were measured; 0: no cycle was completed."""
     cycle_s: float | None
     """Period of the gait [s]; None without a cycle."""
     speed_mm_s: float
-    """Forward speed [mm/s]: the way in the direction in which the robot looked at first."""
+    """Forward speed [mm/s], in the direction that the robot faced at first."""
     lateral_mm_s: float
     """Speed to the left [mm/s]."""
     drift_deg_s: float
     """Turning speed to the left [deg/s]."""
     drift_deg_m: float | None
-    """Turning to the left [deg] per metre of way; None without a way."""
+    """Turning to the left [deg] per metre; None if the robot hardly moved."""
     straightness: float | None
-    """Distance over length of the path, from 0 to 1; None without a path."""
+    """Distance between the path's ends over its length, 0 to 1; None if the robot hardly moved."""
     duty: list[float]
     """For each leg, the share of ticks in which its foot is down."""
     phase: list[float | None]
@@ -57,7 +57,7 @@ class Figures:
     slip_ratio: float | None
     """Slip speed over forward speed; None if the robot hardly moves."""
     cost_of_transport: float | None
-    """Work of the motors divided by weight and way, without braking. None without a way."""
+    """Work of the motors (without braking) over weight times distance; None: it hardly moved."""
     clearance_mm: float
     """95th percentile of the height of the feet [mm]."""
     clearance_legs_mm: list[float]
@@ -65,11 +65,11 @@ class Figures:
     belly_share: float
     """Share of ticks in which another part than a shank bears weight on the floor."""
     upright: float
-    """Least cosine of the angle between the body's up and the world's: 1 is level, 0 lies."""
+    """Smallest cosine of the body's lean from upright: 1 is level, 0 lies on its side."""
 
 
 def measure(walk: Walk) -> Figures:
-    """Put numbers to a walk.
+    """Compute the figures of a walk.
 
     Args:
         walk: a trial; its `span` is measured.

@@ -38,7 +38,7 @@ def parse_keys(text: str, gait: Gait, first_tick: int) -> list[Press]:
     Args:
         text: keys in order, separated by commas. Each is a digit. A letter before it names its
             level ("A4"); each but the last has its time after it ("1:3" is key 1 for 3 s). The
-            last key stands to the end.
+            last key stays pressed to the end.
         gait: the gait whose keys they are.
         first_tick: when the first key is pressed.
 

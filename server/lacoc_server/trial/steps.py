@@ -24,7 +24,7 @@ class Steps:
 
     @property
     def swing_m2(self) -> list[float]:
-        """For each leg, its way forward weighted by its lift; negative: it swings backward."""
+        """For each leg, its motion forward weighted by its lift; negative: it swings backward."""
         return [
             sum(
                 (ahead[index] - ahead[index - 1]) * (lift[index] + lift[index - 1]) / 2

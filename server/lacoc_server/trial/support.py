@@ -11,7 +11,7 @@ Point = tuple[float, float]
 
 
 def hull(points: Sequence[Point]) -> list[Point]:
-    """Return the corners of the convex hull, counter-clockwise; one or two if there are no more."""
+    """Return the corners of the convex hull, counter-clockwise; two if all points are on a line."""
     ordered = sorted(set(points))
     if len(ordered) < 3:
         return ordered

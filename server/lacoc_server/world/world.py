@@ -1,4 +1,4 @@
-"""The world: the only place where physics is stepped (docs/architecture.md)."""
+"""The world: the robots of a match and their field in MuJoCo, stepped tick by tick."""
 
 import hashlib
 import math

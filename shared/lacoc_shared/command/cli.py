@@ -37,9 +37,9 @@ Panels = Mapping[str, tuple[str, ...]]
 
 _PANELS: Panels = {
     "Play": ("demo", "practice", "play", "watch"),
-    "Prepare your robot": ("gait", "trial", "coach", "robot"),
+    "Prepare your robot": ("design", "gait", "trial", "coach", "robot"),
     "Run a contest": ("contest", "serve", "web", "referee", "doctor"),
-    "Study and develop": ("replay", "simulate", "bot"),
+    "Study and develop": ("replay", "simulate", "bot", "studio"),
 }
 _OTHERS = "Commands of other packages"
 _EXTRAS = {"cmaes": "server", "cryptography": "server", "mujoco": "server"}

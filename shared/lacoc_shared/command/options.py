@@ -2,7 +2,7 @@
 
 The command line takes precedence over the environment: typer's `envvar` does this. Both
 take precedence over the contest file and the defaults: an option that is not given is
-None, and `contest` looks it up.
+None, and `contest.entrances` looks it up in the contest file.
 """
 
 from pathlib import Path

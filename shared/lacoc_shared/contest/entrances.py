@@ -104,7 +104,7 @@ def everybody(contest: Contest, court: str, any_host: str = "127.0.0.1") -> dict
     return seats | dict(zip(OTHERS, others, strict=True))
 
 
-def join_lines(name: str, court: Court, any_host: str = "HOST") -> dict[str, str]:
+def join_lines(name: str, court: Court, any_host: str) -> dict[str, str]:
     """Write the command line for each person at a court: the seats, the referee, spectators.
 
     Args:

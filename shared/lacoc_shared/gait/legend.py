@@ -17,8 +17,8 @@ _LABELS = (_IDS_LABEL, "position")
 def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
     """Split the rows of Loco-data into postures, legend, and the rows below the legend.
 
-    The legend begins at the first row that can belong to one, below all rows with a key. No row
-    after that is a posture: it is a remark, or an empty row of a sheet.
+    The legend begins at the first row that can belong to one, below all rows with a key. Below
+    that row there is no posture: only legend rows, remarks and empty rows of a sheet.
     """
     keys = [index for index, row in enumerate(rows) if KEY.fullmatch(row.cells[0])]
     table_end = keys[-1] + 1 if keys else 0
@@ -37,7 +37,7 @@ def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
 def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
     """Find a label in a legend row that does not fit its column.
 
-    The order of the columns counts, not the legend.
+    Angles are read by the order of the columns, not by the legend.
 
     Args:
         file: the file's name.

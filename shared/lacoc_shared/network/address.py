@@ -200,3 +200,13 @@ def _why_not_listening(one: str) -> Phrase | None:
             return say("listen.rights", port=str(port))
         return say("listen.impossible", at=one, why=error.strerror or str(error))
     return None
+
+
+def own_address() -> str:
+    """Return this machine's IP address in its network; 127.0.0.1 if it is in none."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))  # sends nothing: it only finds the route
+        except OSError:
+            return "127.0.0.1"
+        return str(probe.getsockname()[0])

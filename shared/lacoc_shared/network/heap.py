@@ -12,7 +12,7 @@ _M_MMAP_THRESHOLD, _M_ARENA_MAX = -3, -8  # in malloc.h
 _HEAPS = 2
 _BLOCK_BYTES = 1 << 20
 """Blocks above this size, such as a MuJoCo model, are allocated outside the heaps and returned when
-freed. Without a fixed value, glibc raises it whenever a larger block is freed, and later blocks of
+freed. Without a fixed size, glibc raises it whenever a larger block is freed, and later blocks of
 that size then stay in the heaps.
 """
 

@@ -1,1 +1,1 @@
-"""The record of a match: journal while it runs, replay when it is over (docs/architecture.md)."""
+"""The record of a match: written while the match runs, and read again for replays and exports."""

@@ -150,7 +150,7 @@ def _write(messages: Sequence[_Message], path: Path) -> None:
 
 
 def main(folder: str, *match_ids: str) -> int:
-    """Pack matches of a folder; the exit code says whether it worked."""
+    """Pack matches of a folder, or with "--copy" a copy of one; return the exit code."""
     if hasattr(os, "nice"):
         os.nice(10)  # lower priority: the next match is running
     if folder == "--copy":

@@ -43,7 +43,7 @@ class Record:
     """(beat, encoded `Frame`)."""
     touches: dict[int, Touch] = field(default_factory=dict)
     snapshots: list[tuple[int, bytes]] = field(default_factory=list)
-    """(beat, state of the court after it)."""
+    """(beat, state of physics after it)."""
     sheets: list[tuple[int, Sheet]] = field(default_factory=list)
     scenes: list[tuple[int, Scene]] = field(default_factory=list)
     result: Result | None = None

@@ -40,7 +40,7 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
     started: str
     """Wall time at which the segment began, ISO 8601, UTC."""
     versions: dict[str, str]
-    """lacoc, protocol, mujoco, machine: a replay is exact only if they are the same."""
+    """lacoc, protocol, mujoco, model, machine; a replay needs the same mujoco and model."""
     arithmetic: dict[str, str] = {}
     """Fingerprint of the arithmetic of the machine (`functions`, `model`, `path`: hashes) and its
     origin (`processor`, `libc`, `python`, `system`). Empty in older records."""

@@ -1,4 +1,4 @@
-"""Write the record of a running match as a journal; a killed court loses nothing of it.
+"""Write the record of a running match; a killed court loses nothing of it.
 
 The file is plain MCAP (https://mcap.dev/spec), unchunked and unbuffered: each message is one system
 call. `mcap.writer` would put a buffer before the file. A kill would lose that buffer, and filling

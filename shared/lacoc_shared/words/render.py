@@ -23,9 +23,9 @@ LONGEST_LIST = 100
 LONGEST_TEXT = 2000
 """Most characters of a value that are shown."""
 LARGEST = 1e15
-"""A number above this is shown as "?"."""
+"""A number of this size or more is shown as "?"."""
 DECIMALS = 6
-"""Decimals of a number if its template has no such format; trailing zeros are left out."""
+"""Decimals of a number if its template does not say how many; trailing zeros are left out."""
 
 _CONTROLS = re.compile(
     "[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]"
@@ -134,7 +134,7 @@ def _word(code: str, language: Language) -> str:
 
 
 def _text(text: str) -> str:
-    """Shorten a foreign text, and replace characters that would move the text around it."""
+    """Shorten a text from outside, and replace characters that would move the text around it."""
     short = text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
     return _CONTROLS.sub("\N{REPLACEMENT CHARACTER}", short)
 

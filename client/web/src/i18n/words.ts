@@ -1,15 +1,7 @@
 /** Clocks, scores and states in words, the same on every page. */
 
 import type { Match } from "../core/match";
-import {
-  BEATS_PER_S,
-  type Event,
-  type Frame,
-  Phase,
-  SeatFlag,
-  type SeatFrame,
-  type Sheet,
-} from "../core/wire";
+import { BEATS_PER_S, type Event, type Frame, Phase, SeatFlag, type Sheet } from "../core/wire";
 import { type MessageName, t } from "./index";
 
 export { BEATS_PER_S };
@@ -56,8 +48,10 @@ export function markerName(name: string): string {
   return /^c\d+r\d+$/.test(name) ? t("marker.disc", { name }) : name;
 }
 
-/** Why a seat's keys do nothing now, or that it is not heard; "" if all is well. */
-export function seatState(seat: SeatFrame): string {
+/** Why a seat's keys do nothing now, or that it is not heard; "" if all is well or play is over. */
+export function seatState(frame: Frame, index: number): string {
+  const seat = frame.seats[index];
+  if (!seat || frame.phase >= Phase.FINISHED) return "";
   const seconds = Math.ceil(seat.locked_ticks / BEATS_PER_S);
   if (seat.flags & SeatFlag.FROZEN) return t("seat.frozen", { seconds });
   if (seat.locked_ticks) return t("seat.locked", { seconds });

@@ -19,7 +19,11 @@ export function Mistakes({ mistakes }: { mistakes: readonly Mistake[] }) {
       <tbody>
         {mistakes.map((one, index) => (
           <tr key={index}>
-            <td>{one.file}</td>
+            <td>
+              {one.file}
+              {/* The sheet and the cell of a workbook. */}
+              {one.row != null && one.field && <small>{one.field}</small>}
+            </td>
             <td>{one.row ?? one.field ?? ""}</td>
             <td>{one.column ?? ""}</td>
             <td>{one.joint == null ? "" : `${one.joint}${one.leg ? ` (${one.leg})` : ""}`}</td>

@@ -43,20 +43,22 @@ function Team({ match, index, points }: TeamProps) {
   const shown = useMemo(
     () =>
       computed(() => {
-        const seat = match.frame.value?.seats[index];
-        return seat ? [seat.flags, seat.score, seatState(seat)].join("|") : "";
+        const frame = match.frame.value;
+        const seat = frame?.seats[index];
+        return frame && seat ? [seat.flags, seat.score, seatState(frame, index)].join("|") : "";
       }),
     [match, index],
   );
   shown.value; // draw again only when one of these changes, not 50 times a second
   const sheet = match.sheet.value;
-  const seat = match.frame.peek()?.seats[index];
-  if (!sheet || !seat) return null;
+  const frame = match.frame.peek();
+  const seat = frame?.seats[index];
+  if (!sheet || !frame || !seat) return null;
   const joined = seat.flags & SeatFlag.JOINED;
-  const state = joined ? seatState(seat) : t("seat.nobody");
+  const state = joined ? seatState(frame, index) : t("seat.nobody");
   return (
     <div
-      class={`team${joined && !(seat.flags & SeatFlag.SILENT) ? "" : " away"}`}
+      class={`team${joined && (!(seat.flags & SeatFlag.SILENT) || !state) ? "" : " away"}`}
       data-seat={index}
     >
       <SeatMark sheet={sheet} index={index} />

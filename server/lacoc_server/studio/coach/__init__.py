@@ -1,4 +1,4 @@
-"""The coach: which numbers of a table matter, and how to change few of them for a better walk.
+"""Find which numbers of a key's table matter, and change few of them for a better walk.
 
 `goal` says what better means. `table` is a key's sequence as whole degrees in cells. `matter`
 changes each cell a little, `improve` searches. `trials` runs them all in processes. Everything is

@@ -1,19 +1,19 @@
-"""What the coach is asked for, and how well a walk does it."""
+"""The goals that a coach can have, and the score of a walk."""
 
 from enum import StrEnum
 
 from lacoc_server.trial.figures import Figures
 
 _BELLY, _UPRIGHT = 0.02, 0.9
-"""A walk counts as fallen if parts other than feet are on the floor for more than the first share
-of its ticks, or if `upright` is below the second."""
+"""A robot counts as fallen if parts other than feet are on the floor for more than `_BELLY` of the
+ticks, or if `upright` is below `_UPRIGHT`."""
 _TURN_MM_S_PER_DEG_S = 3.0
 """A turn of 20 deg/s is worth as much as a walk of 60 mm/s."""
 _DRIFT_FREE_DEG_S = 3.0
 
 
 class Goal(StrEnum):
-    """What a gait is for."""
+    """What the key is for."""
 
     FORWARD = "forward"
     RIGHT = "right"
@@ -22,11 +22,11 @@ class Goal(StrEnum):
 
 
 def score(figures: Figures, goal: Goal) -> float:
-    """Say how good a walk is [mm/s]; a robot that rests on its body or tips over gets below 0.
+    """Return the score of a walk [mm/s]; negative if the robot rests on its body or tips over.
 
     Args:
         figures: figures of the walk.
-        goal: what the gait is for.
+        goal: what the key is for.
     """
     fallen = max(0.0, _UPRIGHT - figures.upright) + max(0.0, figures.belly_share - _BELLY)
     if fallen:

@@ -1,4 +1,4 @@
-"""Search for a better table, with as few changes as a size allows."""
+"""Search for a better table; a size says how many of its numbers may change."""
 
 import math
 import random
@@ -16,9 +16,9 @@ _STEPS_DEG = (5, 10, 15, 20, 30)
 _SIGMA_DEG = 12.0
 _POPULATION = 16
 _GIVE_BACK = 0.02
-"""A change is undone if the score is at most this share lower without it."""
+"""A change is undone if that lowers the score by at most this share."""
 _FEW = 16
-"""How many of the numbers that matter most are combined for the size "three"."""
+"""For the size "three" only this many numbers are tried: those that matter most."""
 
 
 class Size(StrEnum):
@@ -33,14 +33,14 @@ class Size(StrEnum):
 
 
 class Improved(NamedTuple):
-    """The best table so far."""
+    """The best table so far, and its score."""
 
     angles_deg: Angles
     score: float
 
 
 IsOver = Callable[[], bool]
-"""Whether the time for the search is over."""
+"""Returns whether the time for the search is over."""
 
 
 def improve(
@@ -54,13 +54,15 @@ def improve(
 ) -> Iterator[Improved]:
     """Search for a better table; yield the best one so far, again and again.
 
+    At the end each change that hardly helps is undone.
+
     Args:
         table: the student's own angles [deg].
         ranges_deg: lowest and highest angle of each number.
         size: how many numbers may change.
         matters: the numbers of the table, those that matter most first.
         score: tries tables and returns their scores.
-        is_over: asked after each round of trials.
+        is_over: asked after each round of trials; True ends the search.
         seed: seed of all random numbers.
     """
     search = _Search(table, ranges_deg, score)
@@ -73,7 +75,7 @@ def improve(
 
 
 class _Search:
-    """The best table so far, and everything that was tried."""
+    """Tries tables; keeps their scores and the best table so far."""
 
     def __init__(
         self, table: Angles, ranges_deg: Sequence[tuple[float, float]], score: Score
@@ -86,7 +88,7 @@ class _Search:
         self.tried([table])
 
     def tried(self, tables: Sequence[Angles]) -> list[float]:
-        """Try tables; one that was tried before is not tried again."""
+        """Return the scores of tables; a table that was tried before is not tried again."""
         new = list(dict.fromkeys(one for one in tables if one not in self._known))
         self._known.update(zip(new, self._score(new), strict=True))
         for one in new:
@@ -139,7 +141,7 @@ def _first_change(before: Angles, after: Angles) -> int:
 
 
 def _whole(search: _Search, is_over: IsOver, seed: int) -> Iterator[Improved]:
-    """Let all numbers change: CMA-ES on whole degrees, around the student's own."""
+    """Change all numbers with CMA-ES in whole degrees; each run starts at the best table so far."""
     bounds = np.array([(round(low), round(high)) for low, high in search.ranges_deg], float)
     restarts = random.Random(seed)
     while not is_over():
@@ -161,7 +163,7 @@ def _whole(search: _Search, is_over: IsOver, seed: int) -> Iterator[Improved]:
 
 
 def _give_back(search: _Search) -> Iterator[Improved]:
-    """Undo each change that hardly helps, so that the change is small and can be understood."""
+    """Undo each change that hardly helps, so that a student can understand those that are left."""
     best = search.best
     for index in range(len(search.own)):
         own_deg = search.own[index]

@@ -1,4 +1,4 @@
-"""Which numbers of a table matter: each is changed a little, up and down."""
+"""Find which numbers of a table matter: each number is changed a little, up and down."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -8,38 +8,38 @@ from lacoc_server.studio.coach.table import Angles
 STEP_DEG = 10
 """How far each number is changed [deg]."""
 CONFIRMED = 12
-"""How many of the numbers that matter most are tried again, with the steps of the contest."""
+"""How many of the numbers that matter most are tried again, with the contest's physics."""
 
 Score = Callable[[Sequence[Angles]], list[float]]
-"""Tries tables and returns how good each is."""
+"""Tries tables and returns the score of each."""
 
 
 class Matter(NamedTuple):
-    """What a change of one number does."""
+    """How a change of one number changes the score."""
 
     number: int
     """Index of the number in the table."""
     up: float
     """Change of the score when the number is `STEP_DEG` larger."""
     down: float
-    """Change of the score when it is smaller."""
+    """Change of the score when the number is `STEP_DEG` smaller."""
 
     @property
     def size(self) -> float:
-        """The larger of both changes: the order in which numbers matter."""
+        """The larger of both changes without its sign; numbers are ranked by it."""
         return max(abs(self.up), abs(self.down))
 
 
 def what_matters(
     table: Angles, ranges_deg: Sequence[tuple[float, float]], quick: Score, exact: Score
 ) -> list[Matter]:
-    """Rank the numbers of a table by what a change of each does.
+    """Rank the numbers of a table by how much a small change of each alters the score.
 
     Args:
         table: the angles [deg].
         ranges_deg: lowest and highest angle of each number.
-        quick: a score that is cheap, to find the order.
-        exact: the score of the contest, for the numbers at the top.
+        quick: returns rough scores; they rank all numbers.
+        exact: returns scores with the contest's physics; they rank the first `CONFIRMED` again.
 
     Returns:
         All numbers, those that matter most first.

@@ -1,7 +1,7 @@
 """A key's sequence as cells with whole degrees, as the file has them.
 
 A sequence may have the same posture more than once. In a Loco-data file each posture is a row, and
-changing the row changes it everywhere. So a row is a posture that differs from all others.
+changing the row changes it everywhere. So a table has one row for each different posture.
 """
 
 import math
@@ -45,11 +45,11 @@ class KeyTable(NamedTuple):
         return tuple(round(math.degrees(angle)) for row in self.rows for angle in row)
 
     def cell(self, index: int) -> Cell:
-        """Return the cell of an angle."""
+        """Return the cell of the angle with this index."""
         return Cell(*divmod(index, self.joints))
 
     def sequence(self, angles_deg: Angles) -> tuple[Posture, ...]:
-        """Return the sequence with other angles [rad]; an angle that did not change stays exact."""
+        """Return the sequence with new angles [rad]; an angle that did not change stays exact."""
         joints = self.joints
         rows = []
         for index, row in enumerate(self.rows):
@@ -63,5 +63,5 @@ class KeyTable(NamedTuple):
         return tuple(rows[index] for index in self.order)
 
     def changed(self, before: Angles, after: Angles) -> list[int]:
-        """List the angles that differ between two versions of this table."""
+        """Return the indices of the angles that differ between two versions of this table."""
         return [i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b]

@@ -1,4 +1,4 @@
-"""Many trials on all cores; each process keeps a floor of its own."""
+"""Run many trials in several processes; each process keeps the course that its robot walks on."""
 
 import os
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from lacoc_server.world.world import SUBSTEPS
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
 
 _QUICK_STEPS, _QUICK_CYCLES = 4, 2
-"""A quick trial has steps of 5 ms and measures two cycles."""
+"""A quick trial has physics steps of 5 ms and measures two cycles of the sequence."""
 _CYCLES = 3
 
 
@@ -29,7 +29,7 @@ class Task(NamedTuple):
     stand: tuple[Posture, ...]
     """Sequence of key 0, in which the robot stands before it walks."""
     table: KeyTable
-    """The key that the search changes."""
+    """Table of the key that the search changes."""
     goal: Goal
 
 
@@ -46,7 +46,7 @@ class Trials:
         self._jobs = jobs or os.cpu_count() or 1
         self._pool = ProcessPoolExecutor(self._jobs, mp_context=get_context("spawn"))
         self.count = 0
-        """Trials so far."""
+        """Number of trials so far."""
 
     def __enter__(self) -> Self:
         return self
@@ -75,7 +75,7 @@ class Trials:
 def try_table(
     task: Task, angles_deg: Angles, steps: int = SUBSTEPS, cycles: int = _CYCLES
 ) -> Figures:
-    """Try a table in this process."""
+    """Let the robot walk with a table, in this process, and return the figures of its walk."""
     tables = (task.stand, task.table.sequence(angles_deg))
     press = Press(SETTLE_TICKS, Level.LOCOMOTION, 1)
     course = _course(task.robot, steps)

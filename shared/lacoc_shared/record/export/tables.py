@@ -19,7 +19,7 @@ def pos_data(record: Record, seat: str) -> bytes:
     """Make the Pos-data.txt of a seat (rules 2).
 
     Raises:
-        UserError: if there is no such seat, or no robot ever moved in it.
+        UserError: if there is no such seat, or no frame has poses of robots.
     """
     index = seat_index(record, seat)
     data: PosData | None = None

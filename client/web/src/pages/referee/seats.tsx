@@ -35,8 +35,7 @@ interface Props {
 function SeatCard({ desk, sheet, index }: Props) {
   const { court } = desk;
   const state = useMemo(() => {
-    const of = ({ seats }: Frame) => (seats[index] ? seatState(seats[index]) : "");
-    return part(court, of, "");
+    return part(court, (frame) => seatState(frame, index), "");
   }, [court, index]).value;
   const side = seatName(sheet.seats[index]?.id ?? "");
   return (
