@@ -4,8 +4,7 @@ import { computed, type ReadonlySignal } from "@preact/signals";
 import { ForwardKinematics } from "../fk";
 import type { Match } from "../match";
 import type { Moment } from "../timeline";
-import { type Frame, Phase, type Scene } from "../wire";
-import type { RobotReply } from "./replies";
+import { type Frame, Phase, type RobotReply, type Scene } from "../wire";
 import type { Cell } from "./table";
 import type { Trial } from "./trial";
 

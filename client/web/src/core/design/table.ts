@@ -4,6 +4,8 @@
  * A table never changes: every edit returns another one, and rows that stay are the same objects.
  */
 
+import type { FileTable, RobotReply } from "../wire";
+
 /** An angle [deg]; text where no angle within the joint's range was typed: kept, and shown red. */
 export type Cell = number | string;
 
@@ -35,13 +37,6 @@ export interface Area {
   readonly left: number;
   readonly bottom: number;
   readonly right: number;
-}
-
-/** A table on the wire. */
-export interface WireTable {
-  kind: Table["kind"];
-  legs: number;
-  rows: { key: number; posture: number; angles_deg: number[] }[];
 }
 
 /** What a table has its columns from. */
@@ -121,12 +116,12 @@ export function badCells(table: Table): BadCell[] {
 }
 
 /** The columns of a robot, for `fromWire` and `refit`. */
-export function columnsOf(robot: { legs: string[]; ranges_deg: [number, number][] }): Columns {
+export function columnsOf(robot: RobotReply): Columns {
   return { legs: robot.legs, ranges: robot.ranges_deg };
 }
 
 /** Make a table of one on the wire; angles outside the ranges become text. */
-export function fromWire(wire: WireTable, columns: Columns): Table {
+export function fromWire(wire: FileTable, columns: Columns): Table {
   const fits = wire.legs === columns.legs.length;
   const legs = fits ? columns.legs : Array.from({ length: wire.legs }, (_, leg) => String(leg));
   const ranges = fits ? columns.ranges : legs.flatMap(() => LEVELS.map(() => USUAL_RANGE));
@@ -139,7 +134,7 @@ export function fromWire(wire: WireTable, columns: Columns): Table {
 }
 
 /** A table for the wire; null while a cell has no angle. */
-export function toWire(table: Table): WireTable | null {
+export function toWire(table: Table): FileTable | null {
   if (badCells(table).length) return null;
   const rows = table.rows.map(({ key, posture, cells }) => ({
     key,

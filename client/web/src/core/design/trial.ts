@@ -1,7 +1,6 @@
 /** A trial, tick by tick: a tick is 20 ms. */
 
-import { ROOT_FLOATS } from "../wire";
-import type { Sentence, TrialReply } from "./replies";
+import { ROOT_FLOATS, type Sentence, type TrialReply } from "../wire";
 import { LEVELS } from "./table";
 
 export interface Trial {
@@ -130,7 +129,7 @@ export function figure(figures: Record<string, unknown>, name: string): number |
 }
 
 /** The leg of a sentence; null: it is about the whole robot. */
-export function legOf({ leg = -1 }: Sentence): number | null {
+export function legOf({ leg }: Sentence): number | null {
   return leg < 0 ? null : leg;
 }
 
