@@ -224,6 +224,15 @@ test("rows with the names of their keys go to these keys", () => {
   );
 });
 
+test("a key that comes twice is no row for a key", () => {
+  const angles = Array(18).fill("1");
+  const pasted = paste(sample, area(1, 0), [
+    ["1 Key", ...angles],
+    ["1 Key", ...angles],
+  ]);
+  assert.deepEqual([pasted.bad[0].text, pasted.bad[0].why], ["1 Key", "number"]);
+});
+
 test("a whole file is told from a block", () => {
   const whole = [
     "Num of Posture\t9\r\n0 Key\t45\t0\r\n",
@@ -236,6 +245,14 @@ test("a whole file is told from a block", () => {
   for (const text of whole) assert.ok(isWholeSheet(readBlock(text)), text);
   for (const text of parts) assert.ok(!isWholeSheet(readBlock(text)), text);
   assert.ok(!isWholeSheet(readBlock(writeBlock(walking.rows.map(({ cells }) => cells)))));
+});
+
+test("of a paste that is much too large a thousand cells are told", () => {
+  for (const piece of ["1\n", "x\t", "1 2\n", "\n"]) {
+    const pasted = paste(sample, area(0, 0), readBlock(piece.repeat(20_000)));
+    if (piece === "\n") assert.equal(pasted.table, sample);
+    else assert.equal(pasted.bad.length, 1000, JSON.stringify(piece));
+  }
 });
 
 test("megabytes are read, also where quotes and tags never end", () => {
