@@ -9,13 +9,7 @@ import { decode } from "../../../client/web/node_modules/@msgpack/msgpack/dist.e
 import { signal } from "../../../client/web/node_modules/@preact/signals/dist/signals.mjs";
 import * as parts from "../../../client/web/src/core/design/parts.ts";
 import { paceOf, verdict, wayOf } from "../../../client/web/src/core/design/predict.ts";
-import {
-  lowestM,
-  postureSource,
-  Rest,
-  source,
-  trialSource,
-} from "../../../client/web/src/core/design/sources.ts";
+import { lowestM, Rest, source, trialSource } from "../../../client/web/src/core/design/sources.ts";
 import * as t from "../../../client/web/src/core/design/trial.ts";
 import { ForwardKinematics } from "../../../client/web/src/core/fk.ts";
 import { chanceOf } from "./design_sample.mjs";
@@ -195,12 +189,12 @@ each("a view shows a trial at a tick, and a posture", ({ robot, trial }) => {
     tick.value = asked;
     assert.equal(trials.sample(0).beat, shown);
   }
-  const cells = signal(robot.start_deg);
-  const postures = postureSource(robot, cells);
+  const posture = signal({ cells: robot.start_deg });
+  const postures = source(signal(robot), posture);
   const first = postures.sample(0);
   assert.equal(postures.sample(1), first);
   assert.deepEqual([...first.before.scene], [...robot.sheet.scene]);
-  cells.value = robot.start_deg.with(0, 0).with(1, 10);
+  posture.value = { cells: robot.start_deg.with(0, 0).with(1, 10) };
   const second = postures.sample(2);
   assert.notEqual(second.before.beat, first.before.beat);
   assert.ok(Math.abs(posesOf(second.before)[8] - (10 * Math.PI) / 180) < 1e-6);

@@ -68,11 +68,14 @@ export class History {
     const table = edit(before.table);
     const version = this.numberOf(table);
     if (version === before.version) return;
-    const goesOn = gesture !== null && before.gesture === gesture && this.at.peek() > 0;
+    const goesOn = gesture !== null && before.gesture === gesture;
     const kept = this.steps.peek().slice(0, this.at.peek() + (goesOn ? 0 : 1));
+    // A drag that ends where it began leaves no step.
+    const isBack = goesOn && kept.at(-1)?.version === version;
+    const steps = isBack ? kept : [...kept, { name, table, version, gesture }];
     batch(() => {
-      this.steps.value = [...kept, { name, table, version, gesture }];
-      this.at.value = kept.length;
+      this.steps.value = steps;
+      this.at.value = steps.length - 1;
     });
   }
 

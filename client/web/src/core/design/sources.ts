@@ -24,14 +24,6 @@ export function trialSource(robot: RobotReply, trial: Trial, tick: ReadonlySigna
   );
 }
 
-/** Show a robot at rest in a posture: angles [deg] by joint id. */
-export function postureSource(robot: RobotReply, cells: ReadonlySignal<readonly Cell[]>): Source {
-  return source(
-    computed(() => robot),
-    computed(() => ({ cells: cells.value })),
-  );
-}
-
 /** Show whatever is to be shown now; the view goes on with its picture when that changes. */
 export function source(
   robot: ReadonlySignal<RobotReply | null>,

@@ -153,18 +153,6 @@ export function refit(table: Table, { legs, ranges }: Columns): Table | null {
   return { ...table, legs, ranges, rows };
 }
 
-/** Whether two tables have the same rows. */
-export function sameRows(one: Table, other: Table): boolean {
-  const { rows } = other;
-  const isSame = (row: Row, index: number) => row === rows[index] || sameRow(row, rows[index]!);
-  return one.kind === other.kind && one.rows.length === rows.length && one.rows.every(isSame);
-}
-
-function sameRow(one: Row, other: Row): boolean {
-  const isNamed = one.key === other.key && one.posture === other.posture;
-  return isNamed && one.cells.every((cell, col) => cell === other.cells[col]);
-}
-
 /** The area between two cells, in whatever order. */
 export function areaOf(one: { row: number; col: number }, other = one): Area {
   return {
