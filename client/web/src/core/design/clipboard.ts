@@ -1,13 +1,13 @@
 /** Blocks of cells from and to a spreadsheet, as its clipboard has them. */
 
 import { htmlCells } from "./html_block";
+import { rowsOfKey } from "./rows";
 import {
   type Area,
   joint,
   LEVELS,
   numberOf,
   readCell,
-  rowsOfKey,
   setArea,
   type Table,
   type Wrong,
@@ -24,6 +24,9 @@ export interface BadPaste {
 
 /** What came of a paste: all of it, or why nothing was changed. */
 export type Pasted = { table: Table; area: Area } | { bad: BadPaste[] };
+
+/** Bad cells that are told of one paste. */
+const MOST_BAD = 1000;
 
 const KEY = /^(\d)\s*key$/i;
 const HEADER = /^num of postures?$/i;
@@ -76,15 +79,16 @@ export function paste(table: Table, at: Area, block: readonly (readonly string[]
 }
 
 function pasteAt(table: Table, top: number, left: number, cells: string[][]): Pasted {
-  const bad = cells.flatMap((line, r) =>
-    line.flatMap((text, c) => {
+  const bad: BadPaste[] = [];
+  for (const [r, line] of cells.entries()) {
+    for (const [c, text] of line.entries()) {
       const [row, col] = [top + r, left + c];
-      const range = table.ranges[col];
-      const isOutside = !range || row >= table.rows.length;
-      const why = isOutside ? "outside" : wrongOf(readCell(text, range));
-      return why ? [{ row, col, why, text } as const] : [];
-    }),
-  );
+      const range = row < table.rows.length ? table.ranges[col] : undefined;
+      const why = range ? wrongOf(readCell(text, range)) : "outside";
+      if (why) bad.push({ row, col, text, why });
+      if (bad.length === MOST_BAD) return { bad };
+    }
+  }
   if (bad.length) return { bad };
   const bottom = top + Math.max(1, cells.length) - 1;
   const right = left + Math.max(1, cells[0]?.length ?? 0) - 1;
@@ -92,27 +96,33 @@ function pasteAt(table: Table, top: number, left: number, cells: string[][]): Pa
   return { table: setArea(table, { row: top, col: left }, cells), area };
 }
 
-/** Paste rows that begin with the name of their key; null if they do not. */
+/** Paste rows that begin with the name of their key; null if they do not, or a key comes twice. */
 function namedRows(table: Table, cells: string[][]): Pasted | null {
-  const keyOf = (row: string[]) => KEY.exec(row[0]!.normalize("NFKC").trim())?.[1];
-  const rows = cells.filter((row) => !LEGEND.test(row[0]!.trim()));
-  if (!rows.length || rows.some((row) => keyOf(row) === undefined)) return null;
-  const right = joints(table) - 1;
+  const named = cells
+    .filter((line) => !LEGEND.test(line[0]!.trim()))
+    .map((line) => ({ key: Number(KEY.exec(line[0]!.normalize("NFKC").trim())?.[1]), line }));
+  const keys = new Set(named.map(({ key }) => key));
+  if (!keys.size || keys.size < named.length || keys.has(Number.NaN)) return null;
+  const whole = named.reduce((made, { key }) => withKey(made, key), table);
+  const width = joints(table);
+  const lines = named.map(({ key, line }) => {
+    const angles = Array.from(
+      { length: Math.max(width, line.length - 1) },
+      (_, id) => line[id + 1],
+    );
+    return { row: rowsOfKey(whole, key)[0]!, angles: angles.map((angle) => angle ?? "") };
+  });
+  let next = whole;
   const bad: BadPaste[] = [];
-  const pastedRows: number[] = [];
-  const next = rows.reduce((made, line) => withKey(made, Number(keyOf(line))), table);
-  const full = rows.reduce((made, line) => {
-    const row = rowsOfKey(next, Number(keyOf(line)))[0]!;
-    pastedRows.push(row);
-    const angles = [...line.slice(1), ...Array<string>(joints(table)).fill("")];
-    const pasted = pasteAt(made, row, 0, [angles.slice(0, Math.max(right + 1, line.length - 1))]);
-    if ("table" in pasted) return pasted.table;
-    bad.push(...pasted.bad);
-    return made;
-  }, next);
+  for (const { row, angles } of lines) {
+    const pasted = pasteAt(next, row, 0, [angles]);
+    if ("bad" in pasted) bad.push(...pasted.bad);
+    else next = pasted.table;
+  }
   if (bad.length) return { bad };
-  const [top, bottom] = [Math.min(...pastedRows), Math.max(...pastedRows)];
-  return { table: full, area: { top, left: 0, bottom, right } };
+  const rows = lines.map(({ row }) => row);
+  const [top, bottom] = [Math.min(...rows), Math.max(...rows)];
+  return { table: next, area: { top, left: 0, bottom, right: width - 1 } };
 }
 
 const joints = (table: Table) => joint(0, LEVELS.length, table.legs.length);
@@ -131,25 +141,31 @@ function filling({ top, left, bottom, right }: Area, text: string): string[][] {
 
 /** Numbers between spaces, as in a text file: no cell of a table is several numbers. */
 function spacedCells(block: readonly (readonly string[])[]): string[][] {
-  const split = block.map((row) => (row.length === 1 ? row[0]!.trim().split(/\s+/) : []));
-  const areNumbers = split.every(
-    (cells) => cells.length > 1 && cells.every((cell) => numberOf(cell) !== null),
-  );
-  return even(areNumbers ? split : block);
+  const split = (row: readonly string[]) => row[0]!.trim().split(/\s+/);
+  const areNumbers = (row: readonly string[]) =>
+    row.length === 1 &&
+    split(row).length > 1 &&
+    split(row).every((cell) => numberOf(cell) !== null);
+  return even(block.every(areNumbers) ? block.map(split) : block);
 }
 
 /** Without the empty rows and columns at the end. */
 function withoutBlankEdge(cells: string[][]): string[][] {
   const isBlank = (cell: string | undefined) => cell === undefined || cell.trim() === "";
   const height = cells.findLastIndex((row) => !row.every(isBlank)) + 1;
-  const width = Math.max(0, ...cells.map((row) => row.findLastIndex((cell) => !isBlank(cell)) + 1));
+  const width = most(cells, (row) => row.findLastIndex((cell) => !isBlank(cell)) + 1);
   return cells.slice(0, height).map((row) => row.slice(0, width));
 }
 
 /** Rows of equal length. */
 function even(rows: readonly (readonly string[])[]): string[][] {
-  const width = Math.max(0, ...rows.map((row) => row.length));
+  const width = most(rows, (row) => row.length);
   return rows.map((row) => [...row, ...Array<string>(width - row.length).fill("")]);
+}
+
+/** The largest of some numbers; there may be millions. */
+function most<T>(rows: readonly T[], of: (row: T) => number): number {
+  return rows.reduce((largest, row) => Math.max(largest, of(row)), 0);
 }
 
 /** Split text at tabs and ends of lines; a cell in quotes may have both in it. */
@@ -158,28 +174,41 @@ function tabbedCells(text: string): string[][] {
   let row: string[] = [];
   let at = 0;
   while (at < text.length) {
-    const cell = QUOTED.exec(text.slice(at))?.[0] ?? PLAIN.exec(text.slice(at))![0];
-    row.push(unquoted(cell));
-    at += cell.length;
-    const end = text[at];
-    if (end === "\t") {
+    const end = quoteEnd(text, at) ?? cellEnd(text, at);
+    row.push(unquoted(text.slice(at, end)));
+    at = end;
+    if (text[at] === "\t") {
       at++;
       if (at < text.length) continue;
       row.push("");
     }
-    if (end === "\r" || end === "\n") at += text.startsWith("\r\n", at) ? 2 : 1;
+    if (at < text.length) at += text.startsWith("\r\n", at) ? 2 : 1;
     rows.push(row);
     row = [];
   }
   return rows;
 }
 
-/** A cell in quotes, up to its tab, end of line, or the end. */
-const QUOTED = /^"(?:[^"]|"")*"(?=[\t\r\n]|$)/;
-const PLAIN = /^[^\t\r\n]*/;
+/** Where a cell ends that does not stand in quotes. */
+function cellEnd(text: string, from: number): number {
+  let at = from;
+  while (at < text.length && !"\t\r\n".includes(text[at]!)) at++;
+  return at;
+}
 
+/** Where a cell in quotes ends; null: it is none. */
+function quoteEnd(text: string, from: number): number | null {
+  if (text[from] !== '"') return null;
+  for (let at = text.indexOf('"', from + 1); at >= 0; at = text.indexOf('"', at + 2)) {
+    if (text[at + 1] !== '"') return cellEnd(text, at + 1) === at + 1 ? at + 1 : null;
+  }
+  return null;
+}
+
+/** The content of a cell in quotes; text with a quote at its begin only stays. */
 function unquoted(cell: string): string {
-  return QUOTED.test(cell) ? cell.slice(1, -1).replaceAll('""', '"') : cell;
+  const isQuoted = quoteEnd(cell, 0) === cell.length;
+  return isQuoted ? cell.slice(1, -1).replaceAll('""', '"') : cell;
 }
 
 function quoted(cell: string | number): string {

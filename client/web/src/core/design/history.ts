@@ -1,7 +1,7 @@
 /** The table that is edited, with every step that led to it. */
 
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
-import { type Columns, contentOf, refit, type Table } from "./table";
+import { type Columns, type Row, refit, type Table } from "./table";
 
 interface Step {
   /** What the step was, for the buttons; "" for the first table. */
@@ -24,7 +24,10 @@ export class History {
   private readonly steps = signal<readonly Step[]>([]);
   private readonly at = signal(0);
   private readonly versions = new Map<string, number>();
-  private readonly tables: Table[] = [];
+  private readonly rows = new Map<string, number>();
+  private readonly rowNumbers = new WeakMap<Row, number>();
+  /** By version, from 1. */
+  private tables: Table[] = [];
 
   constructor(table: Table) {
     this.open(table);
@@ -47,8 +50,10 @@ export class History {
 
   /** Take all steps over to another robot of as many legs; no step by itself. */
   refit(columns: Columns): void {
+    const fitted = (table: Table) => refit(table, columns) ?? table;
+    this.tables = this.tables.map(fitted);
     this.steps.value = this.steps.peek().map((step) => {
-      const table = refit(step.table, columns) ?? step.table;
+      const table = fitted(step.table);
       return { ...step, table, version: this.numberOf(table) };
     });
   }
@@ -63,11 +68,14 @@ export class History {
     const table = edit(before.table);
     const version = this.numberOf(table);
     if (version === before.version) return;
-    const goesOn = gesture !== null && before.gesture === gesture && this.at.peek() > 0;
+    const goesOn = gesture !== null && before.gesture === gesture;
     const kept = this.steps.peek().slice(0, this.at.peek() + (goesOn ? 0 : 1));
+    // A drag that ends where it began leaves no step.
+    const isBack = goesOn && kept.at(-1)?.version === version;
+    const steps = isBack ? kept : [...kept, { name, table, version, gesture }];
     batch(() => {
-      this.steps.value = [...kept, { name, table, version, gesture }];
-      this.at.value = kept.length;
+      this.steps.value = steps;
+      this.at.value = steps.length - 1;
     });
   }
 
@@ -85,11 +93,23 @@ export class History {
   }
 
   private numberOf(table: Table): number {
-    const content = contentOf(table);
+    const content = `${table.kind} ${table.rows.map((row) => this.rowNumber(row)).join(" ")}`;
     const known = this.versions.get(content);
     if (known !== undefined) return known;
     this.tables.push(table);
     this.versions.set(content, this.tables.length);
     return this.tables.length;
+  }
+
+  /** The same number for the same row: a long table costs a short text for each version. */
+  private rowNumber(row: Row): number {
+    let number = this.rowNumbers.get(row);
+    if (number === undefined) {
+      const content = JSON.stringify([row.key, row.posture, row.cells]);
+      number = this.rows.get(content) ?? this.rows.size;
+      this.rows.set(content, number);
+      this.rowNumbers.set(row, number);
+    }
+    return number;
   }
 }

@@ -1,6 +1,7 @@
 /** The table in a piece of HTML, as spreadsheets put it onto the clipboard; no document is made. */
 
-const TOKEN = /<!--[\s\S]*?-->|<(style|script|title)\b[\s\S]*?<\/\1\s*>|<[^>]*>|[^<]+|</gi;
+const TOKEN =
+  /<!--[\s\S]*?(?:-->|$)|<(style|script|title)\b[\s\S]*?(?:<\/\1\s*>|$)|<[^<>]*>|[^<]+|</gi;
 const SPAN = (name: string) => new RegExp(`\\b${name}\\s*=\\s*["']?(\\d+)`, "i");
 const ENTITIES: Readonly<Record<string, string>> = {
   amp: "&",
@@ -11,8 +12,8 @@ const ENTITIES: Readonly<Record<string, string>> = {
   nbsp: " ",
   minus: "\u2212",
 };
-/** Cells that one merged cell can stand for, and columns of a row. */
-const MOST_CELLS = 1000;
+/** Rows and columns of a merged cell that count: a table of a gait has fewer. */
+const MOST_SPAN = 200;
 
 /** The cells of the first table; a merged cell stands in its first place. [] without a table. */
 export function htmlCells(html: string): string[][] {
@@ -28,7 +29,7 @@ export function htmlCells(html: string): string[][] {
   for (const [token] of html.matchAll(TOKEN)) {
     const tag = /^<(\/?)([a-z]+)/i.exec(token);
     if (!tag) {
-      if (cell !== null && !token.startsWith("<!--")) cell += decoded(token).replace(/\s+/g, " ");
+      if (cell !== null && !/^<[!?]/.test(token)) cell += decoded(token.replace(/\s+/g, " "));
       continue;
     }
     const [isEnd, name] = [tag[1] === "/", tag[2]!.toLowerCase()];
@@ -37,7 +38,8 @@ export function htmlCells(html: string): string[][] {
     if (name === "table" && isEnd && rows.length) break;
     if (name === "tr" && !isEnd) {
       row = [];
-      rows.push(row);
+      // Excel ends a table with a hidden row that has its widths.
+      if (!/display:\s*none/i.test(token)) rows.push(row);
     } else if ((name === "td" || name === "th") && !isEnd) {
       if (!row) {
         row = [];
@@ -48,7 +50,7 @@ export function htmlCells(html: string): string[][] {
     }
   }
   close();
-  return rows;
+  return rows.filter((cells) => cells.length);
 }
 
 /** Marks the place of the cell whose text is being read. */
@@ -59,7 +61,7 @@ function open(row: string[], covered: number[], columns: number, height: number)
     covered[row.length]!--;
     row.push("");
   }
-  for (let column = 0; column < columns && row.length < MOST_CELLS; column++) {
+  for (let column = 0; column < columns; column++) {
     covered[row.length] = height - 1;
     row.push(column ? "" : OPEN);
   }
@@ -67,7 +69,7 @@ function open(row: string[], covered: number[], columns: number, height: number)
 
 function spanOf(tag: string, name: string): number {
   const span = Number(SPAN(name).exec(tag)?.[1] ?? 1);
-  return Math.min(MOST_CELLS, Math.max(1, span));
+  return Math.min(MOST_SPAN, Math.max(1, span));
 }
 
 function tidy(text: string): string {

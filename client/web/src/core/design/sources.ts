@@ -4,8 +4,7 @@ import { computed, type ReadonlySignal } from "@preact/signals";
 import { ForwardKinematics } from "../fk";
 import type { Match } from "../match";
 import type { Moment } from "../timeline";
-import { type Frame, Phase, type Scene } from "../wire";
-import type { RobotReply } from "./replies";
+import { type Frame, Phase, type RobotReply, type Scene } from "../wire";
 import type { Cell } from "./table";
 import type { Trial } from "./trial";
 
@@ -22,14 +21,6 @@ export function trialSource(robot: RobotReply, trial: Trial, tick: ReadonlySigna
   return source(
     computed(() => robot),
     computed(() => ({ trial, tick: tick.value })),
-  );
-}
-
-/** Show a robot at rest in a posture: angles [deg] by joint id. */
-export function postureSource(robot: RobotReply, cells: ReadonlySignal<readonly Cell[]>): Source {
-  return source(
-    computed(() => robot),
-    computed(() => ({ cells: cells.value })),
   );
 }
 

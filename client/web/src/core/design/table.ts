@@ -4,7 +4,7 @@
  * A table never changes: every edit returns another one, and rows that stay are the same objects.
  */
 
-import { MAX_KEYS, MAX_POSTURES_PER_KEY } from "../wire";
+import type { FileTable, RobotReply } from "../wire";
 
 /** An angle [deg]; text where no angle within the joint's range was typed: kept, and shown red. */
 export type Cell = number | string;
@@ -39,13 +39,6 @@ export interface Area {
   readonly right: number;
 }
 
-/** A table on the wire. */
-export interface WireTable {
-  kind: Table["kind"];
-  legs: number;
-  rows: { key: number; posture: number; angles_deg: number[] }[];
-}
-
 /** What a table has its columns from. */
 export interface Columns {
   readonly legs: readonly string[];
@@ -72,7 +65,7 @@ const EXACT = 1e9;
 const MOST_TEXT = 100;
 
 const NUMBER = /^[+-]?(\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?$/i;
-/** Signs that stand for a minus: U+2212, dashes, and the long vowel that a Japanese "-" key types. */
+/** Dashes, the minus sign, and the long vowel. */
 const MINUS = /^[\u2010-\u2015\u2212\u30FC]/;
 
 /** The joint id of a leg's joint (rules 1). */
@@ -84,9 +77,16 @@ export const legAndLevel = (id: number, legs: number) => ({
   level: Math.floor(id / legs),
 });
 
-/** The number in a text, with a decimal point or comma and in any width; null: none. */
+/**
+ * The number in a text, with a decimal point or comma and in any width; null: none. The keys for
+ * minus, point and comma of a Japanese keyboard count as these: an input method types "ー", "。", "、".
+ */
 export function numberOf(text: string): number | null {
-  const plain = text.normalize("NFKC").trim().replace(MINUS, "-").replace("。", ".");
+  const plain = text
+    .normalize("NFKC")
+    .trim()
+    .replace(MINUS, "-")
+    .replace(/[。、]/, ".");
   const number = plain.replace(/\s*°$/, "");
   return NUMBER.test(number) ? Number(number.replace(",", ".")) + 0 : null;
 }
@@ -116,12 +116,12 @@ export function badCells(table: Table): BadCell[] {
 }
 
 /** The columns of a robot, for `fromWire` and `refit`. */
-export function columnsOf(robot: { legs: string[]; ranges_deg: [number, number][] }): Columns {
+export function columnsOf(robot: RobotReply): Columns {
   return { legs: robot.legs, ranges: robot.ranges_deg };
 }
 
 /** Make a table of one on the wire; angles outside the ranges become text. */
-export function fromWire(wire: WireTable, columns: Columns): Table {
+export function fromWire(wire: FileTable, columns: Columns): Table {
   const fits = wire.legs === columns.legs.length;
   const legs = fits ? columns.legs : Array.from({ length: wire.legs }, (_, leg) => String(leg));
   const ranges = fits ? columns.ranges : legs.flatMap(() => LEVELS.map(() => USUAL_RANGE));
@@ -134,7 +134,7 @@ export function fromWire(wire: WireTable, columns: Columns): Table {
 }
 
 /** A table for the wire; null while a cell has no angle. */
-export function toWire(table: Table): WireTable | null {
+export function toWire(table: Table): FileTable | null {
   if (badCells(table).length) return null;
   const rows = table.rows.map(({ key, posture, cells }) => ({
     key,
@@ -151,16 +151,6 @@ export function refit(table: Table, { legs, ranges }: Columns): Table | null {
     withCells(row, (cell, col) => readCell(String(cell), ranges[col]!)),
   );
   return { ...table, legs, ranges, rows };
-}
-
-/** Whether two tables have the same rows. */
-export function sameRows(one: Table, other: Table): boolean {
-  return one.rows === other.rows || contentOf(one) === contentOf(other);
-}
-
-/** The rows of a table as text: the same for the same content. */
-export function contentOf(table: Table): string {
-  return JSON.stringify([table.kind, table.rows.map((row) => [row.key, row.posture, row.cells])]);
 }
 
 /** The area between two cells, in whatever order. */
@@ -237,104 +227,4 @@ export function mapRows(table: Table, edit: (row: Row, index: number) => Row): T
 export function withCells(row: Row, edit: (cell: Cell, col: number) => Cell): Row {
   const cells = row.cells.map(edit);
   return cells.every((cell, col) => cell === row.cells[col]) ? row : { ...row, cells };
-}
-
-/** Whether a row can be added after a row. */
-export function canAdd(table: Table, after: number): boolean {
-  if (table.kind === "postures") return freeKey(table) !== null;
-  const key = table.rows[after]?.key ?? -1;
-  return rowsOfKey(table, key).length < MAX_POSTURES_PER_KEY;
-}
-
-/**
- * Add a copy of a row: in a table of postures under the lowest free key, in one of locomotion right
- * after the row, in the same key. Without room the table stays as it is.
- */
-export function addRow(table: Table, after: number): Table {
-  const row = table.rows[after];
-  if (!row || !canAdd(table, after)) return table;
-  if (table.kind === "postures") {
-    return sorted(table, [...table.rows, { ...row, key: freeKey(table)! }]);
-  }
-  return numbered(table, table.rows.toSpliced(after + 1, 0, row));
-}
-
-/** Add a key with a copy of a row as its only posture; without room the table stays as it is. */
-export function addKey(table: Table, from: number): Table {
-  if (table.kind === "postures") return addRow(table, from);
-  const key = keysOf(table).length;
-  const row = table.rows[from];
-  if (!row || key >= MAX_KEYS) return table;
-  return { ...table, rows: [...table.rows, { key, posture: 0, cells: row.cells }] };
-}
-
-/** Whether a row can be removed: the keys of locomotion have no gaps, and one row stays. */
-export function canRemove(table: Table, row: number): boolean {
-  const found = table.rows[row];
-  if (!found || table.rows.length < 2) return false;
-  if (table.kind === "postures") return true;
-  return rowsOfKey(table, found.key).length > 1 || found.key === keysOf(table).length - 1;
-}
-
-/** Remove a row; the table stays as it is if the row can't be removed. */
-export function removeRow(table: Table, row: number): Table {
-  if (!canRemove(table, row)) return table;
-  return numbered(table, table.rows.toSpliced(row, 1));
-}
-
-/** Give a row the cells of another one. */
-export function copyRow(table: Table, from: number, to: number): Table {
-  const cells = table.rows[from]?.cells;
-  if (!cells) return table;
-  return mapRows(table, (row, index) => (index === to ? withCells(row, (_, c) => cells[c]!) : row));
-}
-
-/** The digits of the keys, in ascending order. */
-export function keysOf(table: Table): number[] {
-  return [...new Set(table.rows.map(({ key }) => key))];
-}
-
-/** The rows of a key, as indices. */
-export function rowsOfKey(table: Table, key: number): number[] {
-  return [...table.rows.keys()].filter((row) => table.rows[row]!.key === key);
-}
-
-/**
- * The rows that a key of level B runs through, as indices; null if it has none.
- *
- * @param sequences For each key from 0 on the digits of its postures; for a table of postures.
- */
-export function sequenceOf(
-  table: Table,
-  key: number,
-  sequences: readonly string[],
-): number[] | null {
-  if (table.kind === "locomotion") {
-    const rows = rowsOfKey(table, key);
-    return rows.length ? rows : null;
-  }
-  const rows = [...(sequences[key] ?? "")].map((digit) => rowsOfKey(table, Number(digit))[0]);
-  return rows.length && rows.every((row) => row !== undefined) ? rows : null;
-}
-
-function freeKey(table: Table): number | null {
-  const taken = new Set(keysOf(table));
-  for (let key = 0; key < MAX_KEYS; key++) if (!taken.has(key)) return key;
-  return null;
-}
-
-function sorted(table: Table, rows: Row[]): Table {
-  return { ...table, rows: rows.toSorted((one, other) => one.key - other.key) };
-}
-
-/** Number the postures of each key of locomotion. */
-function numbered(table: Table, rows: Row[]): Table {
-  if (table.kind === "postures") return { ...table, rows };
-  const counts = new Map<number, number>();
-  const counted = rows.map((row) => {
-    const posture = counts.get(row.key) ?? 0;
-    counts.set(row.key, posture + 1);
-    return posture === row.posture ? row : { ...row, posture };
-  });
-  return { ...table, rows: counted };
 }

@@ -1,7 +1,6 @@
 /** A trial, tick by tick: a tick is 20 ms. */
 
-import { ROOT_FLOATS } from "../wire";
-import type { Sentence, TrialReply } from "./replies";
+import { ROOT_FLOATS, type Sentence, type TrialReply } from "../wire";
 import { LEVELS } from "./table";
 
 export interface Trial {
@@ -56,8 +55,9 @@ export function readTrial(reply: TrialReply, legs: number): Trial {
   const { ticks } = reply;
   const joints = LEVELS.length * legs;
   const bytes = (data: Uint8Array) => sized(data, ticks, 1);
+  // The arrays may lie at any byte of the message, so each is copied.
   const floats = (data: Uint8Array, each: number) =>
-    new Float32Array(sized(data, ticks * each, 4).slice().buffer);
+    new Float32Array(new Uint8Array(sized(data, ticks * each, 4)).buffer);
   return {
     reply,
     legs,
@@ -129,7 +129,7 @@ export function figure(figures: Record<string, unknown>, name: string): number |
 }
 
 /** The leg of a sentence; null: it is about the whole robot. */
-export function legOf({ leg = -1 }: Sentence): number | null {
+export function legOf({ leg }: Sentence): number | null {
   return leg < 0 ? null : leg;
 }
 
