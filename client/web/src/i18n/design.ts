@@ -115,7 +115,6 @@ export const design = {
   "design.step.turn": ["turning", "角度の変更"],
   "design.step.coach": ["the coach's change", "コーチの変更"],
   "design.step.restore": ["going back to trial {number}", "試行 {number} の表に戻す"],
-  "design.step.robot": ["another robot", "ロボットの変更"],
   "design.step.take": ["taking in {name}", "{name} の取り込み"],
   "design.step.theirs": ["reading the file again", "ファイルの再読み込み"],
   "design.less": ["Turn by -{degrees} degrees", "-{degrees} 度"],

@@ -1,8 +1,8 @@
 /** The coach: which numbers matter, and a better gait; both only after one's own guess. */
 
 import { signal, useSignal } from "@preact/signals";
-import type { CoachReply } from "../../core/design/replies";
 import { change } from "../../core/design/table";
+import type { CoachReply } from "../../core/wire";
 import { t } from "../../i18n";
 import { unit } from "./figures";
 import { jointName, type Studio } from "./studio";

@@ -2,8 +2,8 @@
 
 import { useComputed } from "@preact/signals";
 import { jointsOfLeg } from "../../core/design/parts";
-import type { Sentence } from "../../core/design/replies";
 import { legOf } from "../../core/design/trial";
+import type { Sentence } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { difference, FIGURES, TILES, titleOf, written } from "./figures";
 import { guessName } from "./guess";

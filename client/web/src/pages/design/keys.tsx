@@ -1,7 +1,7 @@
 /** The keys of level B: what each runs through, and which of them a trial presses. */
 
 import { useSignal } from "@preact/signals";
-import { keysOf, rowsOfKey } from "../../core/design/table";
+import { keysOf, rowsOfKey } from "../../core/design/rows";
 import { digitsOf, sequences } from "../../core/files";
 import { MAX_KEYS } from "../../core/wire";
 import { type MessageName, t } from "../../i18n";

@@ -1,9 +1,9 @@
 /** The robot: a picture of its legs and joints to point at, and its numbers beside their limits. */
 
 import { jointsOfLeg } from "../../core/design/parts";
-import type { RobotReply } from "../../core/design/replies";
 import { joint, LEVELS } from "../../core/design/table";
 import { mirrorLeg } from "../../core/design/tools";
+import type { RobotReply } from "../../core/wire";
 import { type MessageName, t } from "../../i18n";
 import { classes } from "./rows";
 import { jointName, type Studio } from "./studio";

@@ -1,7 +1,8 @@
 /** The selected cells in one strip: − and +, a slider, and the tools for rows and legs. */
 
 import { useSignal } from "@preact/signals";
-import { addKey, addRow, canAdd, canRemove, removeRow, setCell } from "../../core/design/table";
+import { addKey, addRow, canAdd, canRemove, removeRow } from "../../core/design/rows";
+import { setCell } from "../../core/design/table";
 import { copyLeg, halvesOf, mirrorLeg, mirrorRows, otherHalf } from "../../core/design/tools";
 import { t } from "../../i18n";
 import { turnCells } from "./grid";

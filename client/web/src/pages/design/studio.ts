@@ -5,7 +5,7 @@ import { runKey, socketUrl } from "../../core/address";
 import { Connection, Refused } from "../../core/connection";
 import { History } from "../../core/design/history";
 import { type Guess, type Verdict, verdict } from "../../core/design/predict";
-import type { Progress, RobotReply, TrialReply } from "../../core/design/replies";
+import { sequenceOf } from "../../core/design/rows";
 import { type Shown, source } from "../../core/design/sources";
 import {
   type Area,
@@ -14,17 +14,23 @@ import {
   columnsOf,
   fromWire,
   legAndLevel,
-  refit,
-  sequenceOf,
   type Table,
   toWire,
-  type WireTable,
 } from "../../core/design/table";
 import { follow, halvesOf } from "../../core/design/tools";
 import { readTrial, type Trial } from "../../core/design/trial";
 import { sequences } from "../../core/files";
 import type { Phrase } from "../../core/phrase";
-import type { FolderFile, Message, Mistake, SentFile } from "../../core/wire";
+import type {
+  FileTable,
+  FolderFile,
+  Message,
+  Mistake,
+  Progress,
+  RobotReply,
+  SentFile,
+  TrialReply,
+} from "../../core/wire";
 import { said, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
 import { Clock } from "./clock";
@@ -63,14 +69,14 @@ export interface OpenFile {
 export interface Conflict {
   name: string;
   version: string;
-  table: WireTable | null;
+  table: FileTable | null;
   mistakes: readonly Mistake[];
   /** Whether somebody wants to save; else the file changed while it was open. */
   saving: boolean;
 }
 
 interface ReadReply {
-  table: WireTable | null;
+  table: FileTable | null;
   robot: string | null;
   version: string;
   notes: Phrase[];
@@ -297,7 +303,7 @@ export class Studio {
     try {
       const reply = await this.connection.ask<{
         version?: string;
-        conflict?: { table: WireTable | null; version: string; mistakes?: Mistake[] };
+        conflict?: { table: FileTable | null; version: string; mistakes?: Mistake[] };
       }>("save", { name, table: wire, version: from, force });
       if (reply.conflict) {
         const { table: theirs, version: now, mistakes = [] } = reply.conflict;
@@ -356,10 +362,13 @@ export class Studio {
       this.robotText = text;
       this.robotName.value = text === null ? "" : name;
       this.robot.value = robot;
-      const table = this.table.peek();
-      const fitting = table && refit(table, columnsOf(robot));
-      if (!fitting) this.begin(standing(robot), NO_FILE);
-      else this.history.peek()!.apply(t("design.step.robot"), () => fitting);
+      const fits = this.table.peek()?.legs.length === robot.legs.length;
+      if (!fits) this.begin(standing(robot), NO_FILE);
+      else {
+        const isSaved = this.isSaved.peek();
+        this.history.peek()!.refit(columnsOf(robot));
+        if (isSaved) this.file.value = { ...this.file.peek(), saved: this.version.peek() };
+      }
     });
   }
 
@@ -382,7 +391,7 @@ export class Studio {
     });
   }
 
-  private async show(wire: WireTable, name: string, version: string): Promise<void> {
+  private async show(wire: FileTable, name: string, version: string): Promise<void> {
     const robot = this.robot.peek();
     if (!robot) return;
     if (wire.legs !== robot.legs.length) {
@@ -392,7 +401,7 @@ export class Studio {
   }
 
   /** Put a table in place of this one, in one step. */
-  private async replace(wire: WireTable, name: string): Promise<void> {
+  private async replace(wire: FileTable, name: string): Promise<void> {
     const robot = this.robot.peek();
     if (!robot) return;
     const table = fromWire(wire, columnsOf(robot));
