@@ -7,7 +7,13 @@
 
 import { useSignal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
-import { isWholeSheet, paste, readBlock, writeBlock } from "../../core/design/clipboard";
+import {
+  type BadPaste,
+  isWholeSheet,
+  paste,
+  readBlock,
+  writeBlock,
+} from "../../core/design/clipboard";
 import {
   cellsOf,
   clear,
@@ -268,19 +274,31 @@ export function pasteInto(studio: Studio, plain: string, html: string): void {
   }
   const pasted = paste(table, studio.area.peek(), block);
   if ("bad" in pasted) {
-    const { row, col, text, why } = pasted.bad[0]!;
-    const reason = t(`design.bad.${why}` as MessageName, rangeOf(table, col));
-    if (why === "outside") toast(t("design.notPastedOutside"), "no");
-    else {
-      const key = table.rows[row]?.key ?? "?";
-      const where = jointName(table.legs, col);
-      toast(t("design.notPasted", { text, key, where, reason }), "no");
-    }
+    refusePaste(studio, table, pasted.bad);
     return;
   }
   studio.edit(t("design.step.paste"), () => pasted.table);
   const { top, left, bottom, right } = pasted.area;
   studio.select({ row: top, col: left }, { row: bottom, col: right });
+}
+
+/** Say why nothing was pasted; the cells that are in the way turn red. */
+function refusePaste(studio: Studio, table: Table, bad: readonly BadPaste[]): void {
+  const inside = bad.filter(({ why }) => why !== "outside");
+  studio.unpasted.value = inside.map(({ row, col, text, why }) => ({
+    row,
+    col,
+    why: `“${text}” ${t(`design.bad.${why}` as MessageName, rangeOf(table, col))}`,
+  }));
+  const [first] = inside;
+  if (!first) {
+    toast(t("design.notPastedOutside"), "no");
+    return;
+  }
+  const { row, col, text, why } = first;
+  const reason = t(`design.bad.${why}` as MessageName, rangeOf(table, col));
+  const key = table.rows[row]?.key ?? "?";
+  toast(t("design.notPasted", { text, key, where: jointName(table.legs, col), reason }), "no");
 }
 
 function rangeOf(table: Table, col: number): { low: number; high: number } {

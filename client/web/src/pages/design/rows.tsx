@@ -32,6 +32,7 @@ export function GridTable({ studio, table, focus, commit, edit }: TableProps) {
   const sequence = studio.sequence.value ?? [];
   const target = useComputed(() => targetRow(studio)).value;
   const weights = weightsShown(studio);
+  const unpasted = byRow(studio.unpasted.value);
   const last = table.rows.length - 1;
   const isSequence = table.kind === "locomotion";
 
@@ -95,6 +96,7 @@ export function GridTable({ studio, table, focus, commit, edit }: TableProps) {
             right={index >= area.top && index <= area.bottom ? area.right : -1}
             lit={lit}
             weights={weights?.get(index) ?? null}
+            unpasted={unpasted.get(index) ?? null}
             onSelect={() => {
               studio.select({ row: index, col: 0 }, { row: index, col: row.cells.length - 1 });
               focus();
@@ -178,6 +180,8 @@ interface RowProps {
   right: number;
   lit: ReadonlySet<number>;
   weights: ReadonlyMap<number, Marked> | null;
+  /** Why what was pasted can't stand, by column. */
+  unpasted: ReadonlyMap<number, string> | null;
   onSelect: () => void;
 }
 
@@ -216,6 +220,10 @@ function GridRow(props: RowProps) {
               marked && "weighted",
             )}
             {...wrongProps(cell, props.ranges[col]!)}
+            {...(props.unpasted?.has(col) && {
+              "data-unpasted": true,
+              title: props.unpasted.get(col)!,
+            })}
             {...(marked && { style: `--weight: ${marked.share}`, title: marked.text })}
           >
             {cell}
@@ -243,6 +251,14 @@ export function cellId({ row, col }: Place): string {
 
 export function classes(...names: (string | false | undefined | null)[]): string {
   return names.filter(Boolean).join(" ");
+}
+
+function byRow(cells: Studio["unpasted"]["value"]): Map<number, Map<number, string>> {
+  const found = new Map<number, Map<number, string>>();
+  for (const { row, col, why } of cells) {
+    found.set(row, (found.get(row) ?? new Map()).set(col, why));
+  }
+  return found;
 }
 
 function wrongProps(cell: Cell, [low, high]: Range) {

@@ -123,6 +123,9 @@ export class Studio {
     this.pointed.value.length ? this.pointed.value : [this.active.value.col],
   );
 
+  /** Cells where what was pasted can't stand, with the reason; until the next edit or move. */
+  readonly unpasted = signal<readonly (Place & { why: string })[]>([]);
+
   /** The key of level B that a trial presses. */
   readonly key = signal(FORWARD);
   /** Whether the second half of the key's sequence follows the first as its mirror. */
@@ -191,6 +194,7 @@ export class Studio {
       return halves.length && fits ? follow(before, after, halves) : after;
     };
     batch(() => {
+      this.unpasted.value = [];
       history.apply(name, whole, gesture);
       this.stayInside();
       this.watching.value = false;
@@ -213,6 +217,7 @@ export class Studio {
   /** Go to a cell, and let the picture show its posture. */
   select(place: Place, from: Place = place): void {
     batch(() => {
+      this.unpasted.value = [];
       this.active.value = this.inside(place);
       this.anchor.value = this.inside(from);
       this.watching.value = false;
