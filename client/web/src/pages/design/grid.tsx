@@ -92,7 +92,8 @@ class Typist {
       case "Escape":
         return () => this.cancel();
       case "Enter":
-        if (!wide) return then(event.shiftKey ? -1 : 1, 0);
+        // It stays where it is: the picture must show the posture that was changed.
+        if (!wide) return then(0, 0);
         this.commit(); // and the page lets the robot walk
         return null;
       case "Tab":
