@@ -155,9 +155,9 @@ class Searches:
             if not 0 <= request.seconds <= _MOST_S:
                 said = say("studio.coach-seconds", seconds=request.seconds, most_s=_MOST_S)
                 raise UserError(said)
-            robot, gait, _ = read_files(request.files)
-            key = coached_key(gait, goal, request.key)
-            task = task_of(robot, gait, key, goal)
+            files = read_files(request.files)
+            key = coached_key(files.gait, goal, request.key)
+            task = task_of(files.robot, files.gait, key, goal, files.sequences)
             trials = Trials(task, workers, search.stop)
             found = coach(trials, size, request.seconds, request.seed, tell)
         except (FileRefused, UserError) as error:
