@@ -120,7 +120,6 @@ class Searches:
     def _run(self) -> None:
         while True:
             with self._changed:
-                self._running = None
                 self._changed.wait_for(lambda: self._waiting or self._closing)
                 if self._closing:
                     return
@@ -128,9 +127,12 @@ class Searches:
                 if self._workers is None:
                     self._workers = Workers(self._jobs, background=True, limit_s=600.0)
             try:
-                search.done(self._answer(search, self._workers))
+                answer = self._answer(search, self._workers)
             except Exception as error:
-                search.done(self._failed(error))
+                answer = self._failed(error)
+            with self._changed:
+                self._running = None  # its name is free before its answer is there
+            search.done(answer)
 
     def _answer(self, search: _Search, workers: Workers) -> Answer:
         request = search.request
