@@ -88,7 +88,8 @@ def tell(seed: int) -> Told:
     gait = Gait(None, LocomotionTable((*(start,) * KEY, sequence)))
     press = Press(SETTLE_TICKS, Level.LOCOMOTION, KEY)
     walk = course_of("hexapod").walk(gait, [press])
-    said = explain(entry.robot, walk, measure(walk), press, sequence)
+    explained = explain(entry.robot, walk, measure(walk), press, sequence)
+    said = [one.said for one in explained]
     label = entry.robot.labels[leg]
     named = bool(said) and said[0].code in code and (name in WHOLE or label in _legs(said[0]))
     return Told(name, label, named, tuple(render(phrase) for phrase in said))

@@ -19,10 +19,10 @@ from typing import NamedTuple
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_server.match.match import Match
-from lacoc_server.trial.course import SETTLE_TICKS, Course
+from lacoc_server.trial.course import SETTLE_TICKS, Course, practice_field
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.walk import Press, Walk
-from lacoc_server.world.sensed import make_course, practice_field
+from lacoc_server.world.sensed import make_course
 from lacoc_server.world.world import World
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable
 from lacoc_shared.gait.text import write_gait

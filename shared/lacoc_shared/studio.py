@@ -15,6 +15,8 @@ from lacoc_shared.words import Phrase
 
 STUDIO_MAX_BYTES = 131_072
 """Largest request that a studio reads."""
+TRIAL_REPLY_MAX_BYTES = 2 << 20
+"""Largest reply of a studio: a trial of 60 s with eight legs has 1.1 MB."""
 EVERY_STUDIO = "lacoc/*/live/studio"
 """Key expression for the announcements of all studios that can be reached (Zenoh's liveliness)."""
 
@@ -52,13 +54,13 @@ class StudioKeys:
 
 
 class GaitFiles(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The files that a request is about, as text or workbooks; as those of a join."""
+    """The files that a request is about, as those of a join: text, no workbooks."""
 
     robot: SentFile | None = None
     """None: the workshop's hexapod."""
     postures: SentFile | None = None
     locomotion: SentFile | None = None
-    """With neither file: the sample gait of the robot."""
+    """With neither file and no robot: the workshop's sample gait."""
     sequences: tuple[tuple[int, ...], ...] | None = None
     """Digits of the postures of each key of level B, if there is no locomotion file; None: as in
     the sample's keys."""
@@ -84,16 +86,17 @@ class RobotReply(msgspec.Struct, frozen=True, kw_only=True):
     start_z_m: float
     """Height of the body's origin above the floor in that posture."""
     facts: dict[str, Any]
-    """Sizes, masses and speeds by name, with units in the names."""
-    limits: dict[str, Any]
-    """Limits of the rules by name, for the same numbers."""
+    """Sizes, masses and speeds by name, with units in the names (docs/protocol.md). What legs can
+    differ in is a pair: lowest and highest."""
+    limits: dict[str, tuple[float | None, float | None]]
+    """Lowest and highest value that the rules allow, for facts of the same name."""
     sheet: Sheet
     """A sheet with the robot in its only seat, for drawing."""
     scene: Scene
 
 
 class TrialRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for a trial."""
+    """Ask for a trial of at most 60 s."""
 
     protocol: int
     files: GaitFiles
@@ -177,11 +180,16 @@ class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     size: str | None = None
     """How much may change: cell, three or table; None: only say which numbers matter."""
     seconds: float = 30.0
+    """How long to search: from 0 to 120. Before it the studio finds which numbers matter, and after
+    it undoes what hardly helps."""
     seed: int = 0
 
 
 class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """End a search early; its reply has the best so far."""
+    """End a search early; the reply is `Done`, and the search's own reply has the best so far.
+
+    A search that still waits is refused.
+    """
 
     protocol: int
     job: str
@@ -191,7 +199,7 @@ class Progress(msgspec.Struct, frozen=True, kw_only=True):
     """How far a search is; several times a second."""
 
     stage: str
-    """matters, search or undo."""
+    """waiting (for the searches of others), matters, search or undo."""
     done: float
     """Share of the stage, from 0 to 1."""
     trials: int

@@ -8,10 +8,9 @@ from typing import get_args
 import msgspec
 import pytest
 
-from lacoc_shared import inputs, keyspace, messages
+from lacoc_shared import inputs, keyspace, messages, mistakes, studio
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.decisions import DECISIONS
-from lacoc_shared.mistakes import Mistake
 from lacoc_shared.record import schema
 from lacoc_shared.seat import No, Phase, SeatFlag
 
@@ -19,10 +18,11 @@ PAGE = (Path(__file__).parents[2] / "docs" / "protocol.md").read_text(encoding="
 SECTIONS = dict(re.findall(r"^### (\w+)\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL))
 MESSAGES = {
     kind.__name__: kind
-    for kind in (*vars(messages).values(), *vars(schema).values(), Mistake)
+    for module in (messages, schema, studio, mistakes)
+    for kind in vars(module).values()
     if isinstance(kind, type)
     and issubclass(kind, msgspec.Struct)
-    and kind.__module__ in (messages.__name__, schema.__name__, Mistake.__module__)
+    and kind.__module__ == module.__name__
 }
 INPUTS = {str(kind.__struct_config__.tag): kind for kind in get_args(inputs.Input)}
 
@@ -128,12 +128,27 @@ def test_every_key_expression() -> None:
     assert {one.replace("{court}", "main") for one in found} == expected
 
 
+def test_every_key_expression_of_a_studio() -> None:
+    """The key expressions in the studio's section are those of `lacoc_shared.studio`."""
+    keys = studio.StudioKeys("main")
+    asked = [keys.request(what) for what in ("robot", "trial", "coach", "cancel")]
+    found = [
+        expression
+        for row in rows(section("The studio"))
+        for expression in re.findall(r"`([^`]+)`", row[0])
+    ]
+    expected = [*asked, keys.progress("{job}"), keys.alive]
+    assert [one.replace("{studio}", "main") for one in found] == expected
+
+
 def test_sizes_and_numbers() -> None:
     """The limits, phases, flags and reasons in docs/protocol.md are those of the code."""
     table = section("Key expressions")
     assert f"at most {keyspace.COMMAND_MAX_BYTES // 1024} KiB" in table
     assert f"at most {keyspace.DECISION_MAX_BYTES // 1024} KiB" in table
     assert f"at most {keyspace.JOIN_MAX_BYTES // 1024} KiB" in table
+    assert f"at most {studio.STUDIO_MAX_BYTES // 1024} KiB" in section("The studio")
+    assert f"at most {studio.TRIAL_REPLY_MAX_BYTES >> 20} MiB" in section("The studio")
     assert f"version {messages.PROTOCOL} of the protocol" in PAGE
     assert ", ".join(f"{phase.value} {phase.name}" for phase in Phase) in PAGE
     flags = dict(re.findall(r"(\d) (\w+)", SECTIONS["SeatFrame"].split("bits:")[1].split("|")[0]))

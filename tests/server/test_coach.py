@@ -13,10 +13,12 @@ from hypothesis import strategies as st
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot
 from lacoc_server.studio.coach.goal import Goal, score
-from lacoc_server.studio.coach.improve import Improved, Size, improve
+from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import CONFIRMED, STEP_DEG, what_matters
+from lacoc_server.studio.coach.search import Improved, Search
 from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.studio.coach.trials import Task, try_table
+from lacoc_server.studio.coach.undo import undo
 from lacoc_server.trial.figures import Figures
 from lacoc_shared.command import cli
 from lacoc_shared.gait.tables import LocomotionTable
@@ -42,8 +44,9 @@ def searched(size: Size, rounds: int = 40) -> Improved:
     left = iter(range(rounds))
     own = (0,) * len(BEST)
     matters = what_matters(own, RANGES, made_up, made_up)
-    found = improve(own, RANGES, size, matters, made_up, lambda: next(left, None) is None, seed=1)
-    *_, last = found
+    search = Search(own, RANGES, made_up)
+    found = improve(search, size, matters, lambda: next(left, None) is None, seed=1)
+    *_, last = [*found, *undo(search, matters, made_up)]
     return last
 
 
@@ -68,7 +71,8 @@ def test_a_number_is_turned_to_its_best_degree() -> None:
 
     own = (0,) * len(BEST)
     matters = what_matters(own, RANGES, one_number, one_number)
-    *_, last = improve(own, RANGES, Size.THREE, matters, one_number, lambda: False, seed=1)
+    search = Search(own, RANGES, one_number)
+    *_, last = improve(search, Size.THREE, matters, lambda: False, seed=1)
     assert last.angles_deg == (12, *own[1:])
 
 
@@ -86,7 +90,10 @@ def test_a_change_that_hardly_helps_is_undone() -> None:
     left = iter(range(60))
     matters = what_matters((0, 0), RANGES[:2], dull, dull)
     over = lambda: next(left, None) is None  # noqa: E731
-    *_, last = improve((0, 0), RANGES[:2], Size.TABLE, matters, dull, over, seed=3)
+    search = Search((0, 0), RANGES[:2], dull)
+    *_, found = improve(search, Size.TABLE, matters, over, seed=3)
+    assert found.angles_deg[1] != 0
+    *_, last = undo(search, matters, dull)
     assert last.angles_deg[1] == 0
     assert abs(last.angles_deg[0] - 20) <= 2
 
@@ -111,12 +118,14 @@ def test_what_matters_is_ranked() -> None:
 
 @given(st.data())
 def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
-    """A table has one row for equal postures; unchanged angles keep all their digits."""
+    """A digit is one row of the table however often it comes; unchanged angles stay exact."""
     posture = st.tuples(*[st.floats(-1, 1)] * 3)
     rows = data.draw(st.lists(posture, min_size=1, max_size=4))
     order = data.draw(st.lists(st.integers(0, len(rows) - 1), min_size=1, max_size=8))
     sequence = tuple(rows[index] for index in order)
-    table = KeyTable.of(sequence)
+    table = KeyTable.of(sequence, order)
+    assert len(table.rows) == len(set(order))
+    assert len(KeyTable.of(sequence).rows) == len(sequence)
     assert table.sequence(table.angles_deg) == sequence
     number = data.draw(st.integers(0, len(table.angles_deg) - 1))
     turned = list(table.angles_deg)

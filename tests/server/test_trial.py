@@ -223,8 +223,8 @@ def test_a_walk_that_fell_is_explained(courses: dict[str, Course]) -> None:
     figures = measure(walk)
     assert figures.cycles == 0
     assert figures.margin_mm is not None
-    said = explain(robot, walk, figures, press, (fallen,))
-    assert said[0].code in ("explain.belly", "explain.tipped", "explain.limit")
+    explained = explain(robot, walk, figures, press, (fallen,))
+    assert explained[0].said.code in ("explain.belly", "explain.tipped", "explain.limit")
 
 
 def test_a_robot_that_goes_backward_is_not_said_to_go_forward(sample: Walk) -> None:
@@ -236,7 +236,7 @@ def test_a_robot_that_goes_backward_is_not_said_to_go_forward(sample: Walk) -> N
 
     def codes(speed_mm_s: float) -> list[str]:
         figures = replace(measure(sample), speed_mm_s=speed_mm_s)
-        return [said.code for said in explain(robot, sample, figures, press, sequence)]
+        return [one.said.code for one in explain(robot, sample, figures, press, sequence)]
 
     assert "explain.walks" in codes(60.0)
     assert "explain.walks" not in codes(-60.0)

@@ -1,36 +1,44 @@
 """`lacoc coach`: find which numbers of a gait matter, and change few of them for a better walk."""
 
-import time
-from collections.abc import Sequence
+import signal
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from msgspec.structs import asdict
 from rich.table import Table
 from rich.text import Text
 
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.commands.trial import GaitFile, RobotName, read_robot_file, read_trial_gait
-from lacoc_server.studio.coach.goal import Goal, score
-from lacoc_server.studio.coach.improve import Improved, Size, improve
-from lacoc_server.studio.coach.matter import STEP_DEG, Matter, what_matters
+from lacoc_server.studio.coach.coach import coach, coached_key, place, reply_of, task_of
+from lacoc_server.studio.coach.goal import Goal
+from lacoc_server.studio.coach.improve import Size
+from lacoc_server.studio.coach.matter import STEP_DEG, Matter
+from lacoc_server.studio.coach.search import Improved
 from lacoc_server.studio.coach.table import Angles, KeyTable
-from lacoc_server.studio.coach.trials import Task, Trials, try_table
+from lacoc_server.studio.coach.trials import Task, Trials
+from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.figures import Figures
-from lacoc_server.trial.keys import forward_key
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
-from lacoc_shared.gait.tables import LEVEL_NAMES, Gait, Level, LocomotionTable
+from lacoc_shared.gait.tables import LEVEL_NAMES, SAMPLE_KEYS, Gait, LocomotionTable
 from lacoc_shared.gait.text import write_gait
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.studio import CoachReply, Progress
 from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer()
 
 _SHOWN = 10
 """How many of the numbers that matter are printed."""
-_TURNS = {Goal.LEFT: 1, Goal.RIGHT: 3}
-"""The sample's keys for turning (workshop Fig. 4-2)."""
+_STAGES = {
+    "matters": say("coach.matters"),
+    "search": say("coach.searches"),
+    "undo": say("coach.undoes"),
+}
 
 
 @app.command(name="coach")
@@ -87,66 +95,43 @@ def coach_command(
     """
     spec = read_robot_file(robot)
     gait = read_trial_gait(file, spec)
-    digit = _digit(gait, goal, key)
-    task = _task(spec, gait, digit, goal)
-    angles = task.table.angles_deg
-    ranges_deg = spec.ranges_deg * len(task.table.rows)
-    with screen.progress() as progress, Trials(task) as trials:
-        bar = progress.add_task(render(say("coach.matters")), total=None)
-        matters = what_matters(angles, ranges_deg, trials.quick, trials.exact)
-        best: Improved | None = None
-        if size is not None:
-            end_s = time.monotonic() + seconds
-            progress.update(bar, description=render(say("coach.searches")), total=seconds)
-            found = improve(
-                angles,
-                ranges_deg,
-                size,
-                matters,
-                trials.exact,
-                lambda: time.monotonic() > end_s,
-                seed,
-            )
-            try:
-                for better in found:
-                    best = better
-                    left_s = max(0.0, end_s - time.monotonic())
-                    progress.update(bar, completed=seconds - left_s)
-            except KeyboardInterrupt:
-                screen.warn(say("coach.stopped"))
-        count = trials.count
-    before = try_table(task, angles)
-    after = before if best is None else try_table(task, best.angles_deg)
+    digit = coached_key(gait, goal, key)
+    sequences = None if gait.postures is None else SAMPLE_KEYS
+    task = task_of(spec, gait, digit, goal, sequences)
+    with screen.progress() as progress, Workers() as workers, _stop_on_interrupt() as stop:
+        bar = progress.add_task(render(_STAGES["matters"]), total=1.0)
+
+        def tell(how_far: Progress) -> None:
+            stage = render(_STAGES[how_far.stage])
+            progress.update(bar, description=stage, completed=how_far.done)
+
+        found = coach(Trials(task, workers, stop), size, seconds, seed, tell)
+    if found.stopped:
+        if not found.matters:
+            raise KeyboardInterrupt
+        screen.warn(say("coach.stopped"))
+    best = found.best
     if out is not None and best is not None:
         save(out, _written(spec, gait, digit, task.table, best.angles_deg))
     if json:
-        screen.print_json(_as_json(task, digit, matters, best, before, after, count))
+        screen.print_json(_as_json(reply_of(task, digit, found)))
         return
-    screen.show(_matters_table(task, digit, matters))
+    screen.show(_matters_table(task, digit, found.matters))
     if best is not None:
-        screen.show(_improved_table(task, digit, best, before, after))
+        screen.show(_improved_table(task, digit, best, found.before, found.after))
         if out is not None:
             screen.note(say("coach.written", file=str(out)))
 
 
-def _digit(gait: Gait, goal: Goal, key: int | None) -> int:
-    """Choose the key to change.
-
-    Raises:
-        UserError: if the gait has no such key at level B.
-    """
-    if key is None:
-        level, found = forward_key(gait)
-        key = _TURNS.get(goal, found if level is Level.LOCOMOTION else 0)
-    if gait.sequence(Level.LOCOMOTION, key) is None:
-        there = [f"B{one}" for one in gait.keys(Level.LOCOMOTION)]
-        raise UserError(say("trial.no-key", key=f"B{key}", keys=there))
-    return key
-
-
-def _task(robot: RobotSpec, gait: Gait, digit: int, goal: Goal) -> Task:
-    stand = gait.sequence(Level.LOCOMOTION, 0) or (robot.start_posture,)
-    return Task(robot, stand, KeyTable.of(gait.sequence(Level.LOCOMOTION, digit) or ()), goal)
+@contextmanager
+def _stop_on_interrupt() -> Iterator[threading.Event]:
+    """Let Ctrl-C set an event, so that the search ends and what it has found is kept."""
+    stop = threading.Event()
+    before = signal.signal(signal.SIGINT, lambda *_: stop.set())
+    try:
+        yield stop
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _written(robot: RobotSpec, gait: Gait, digit: int, table: KeyTable, angles: Angles) -> bytes:
@@ -157,16 +142,16 @@ def _written(robot: RobotSpec, gait: Gait, digit: int, table: KeyTable, angles: 
 
 
 def _place(task: Task, digit: int, index: int) -> Phrase:
-    """Name a cell by its key, the first posture that has it, the leg and the joint's place."""
-    row, joint = task.table.cell(index)
+    """Name a cell as people find it."""
+    cell = place(task.table, index)
     legs = len(task.robot.legs)
     return say(
         "explain.cell",
         key=digit,
-        posture=task.table.order.index(row) + 1,
+        posture=cell.posture + 1,
         postures=len(task.table.order),
-        leg=task.robot.labels[joint % legs],
-        level=LEVEL_NAMES[joint // legs],
+        leg=task.robot.labels[cell.joint % legs],
+        level=LEVEL_NAMES[cell.joint // legs],
     )
 
 
@@ -207,32 +192,17 @@ def _improved_table(
     return table
 
 
-def _as_json(
-    task: Task,
-    digit: int,
-    matters: Sequence[Matter],
-    best: Improved | None,
-    before: Figures,
-    after: Figures,
-    count: int,
-) -> dict[str, Any]:
-    def cell(index: int) -> dict[str, Any]:
-        row, joint = task.table.cell(index)
-        return {"posture": task.table.order.index(row), "joint": joint}
-
-    own = task.table.angles_deg
-    changes = [] if best is None else task.table.changed(own, best.angles_deg)
+def _as_json(reply: CoachReply) -> dict[str, Any]:
     return {
-        "key": digit,
-        "matters": [{**cell(one.number), "up": one.up, "down": one.down} for one in matters],
+        "key": reply.key,
+        "matters": [{**asdict(one.cell), "up": one.up, "down": one.down} for one in reply.matters],
         "changes": [
-            {**cell(index), "from_deg": own[index], "to_deg": best.angles_deg[index]}
-            for index in changes
-            if best is not None
+            {**asdict(one.cell), "from_deg": one.from_deg, "to_deg": one.to_deg}
+            for one in reply.changes
         ],
-        "before": {"score": score(before, task.goal), "speed_mm_s": before.speed_mm_s},
-        "after": {"score": score(after, task.goal), "speed_mm_s": after.speed_mm_s},
-        "upright": after.upright,
-        "belly_share": after.belly_share,
-        "trials": count,
+        "before": {"score": reply.score_before, "speed_mm_s": reply.before["speed_mm_s"]},
+        "after": {"score": reply.score_after, "speed_mm_s": reply.after["speed_mm_s"]},
+        "upright": reply.after["upright"],
+        "belly_share": reply.after["belly_share"],
+        "trials": reply.trials,
     }

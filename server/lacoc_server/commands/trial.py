@@ -1,6 +1,5 @@
 """`lacoc trial`: let a robot walk with a gait, and print the figures of its walking."""
 
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -11,12 +10,11 @@ from rich.text import Text
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
+from lacoc_server.studio.answers import Trial, try_gait
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import SETTLE_TICKS
-from lacoc_server.trial.explain import explain
-from lacoc_server.trial.figures import Figures, measure
-from lacoc_server.trial.keys import forward_key, parse_keys
-from lacoc_server.trial.walk import Press, Walk
+from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.walk import Walk
 from lacoc_server.world.sensed import make_course
 from lacoc_shared.command import options, screen
 from lacoc_shared.gait.joining import sample_sequences
@@ -77,23 +75,18 @@ def trial_command(
     """
     spec = read_robot_file(robot)
     gait = read_trial_gait(file, spec)
-    if keys:
-        presses = parse_keys(keys, gait, SETTLE_TICKS)
-    else:
-        presses = [Press(SETTLE_TICKS, *forward_key(gait))]
-    walk = make_course(spec).walk(gait, presses, seconds)
-    figures, last = measure(walk), presses[-1]
-    explained = explain(spec, walk, figures, last, gait.sequence(last.level, last.digit) or ())
+    trial = try_gait(make_course(spec), gait, keys, seconds)
     if json:
-        screen.print_json(_as_json(walk, figures, explained))
+        screen.print_json(_as_json(trial))
         return
-    title = say("trial.title", robot=spec.name, level="AB"[last.level], key=last.digit)
-    screen.show(_table(figures, title))
-    for row in _bars(walk):
+    press = trial.press
+    title = say("trial.title", robot=spec.name, level="AB"[press.level], key=press.digit)
+    screen.show(_table(trial.figures, title))
+    for row in _bars(trial.walk):
         screen.show(Text(row))
-    for said in explained:
-        screen.show(said)
-    for note in _notes(walk, figures):
+    for sentence in trial.explained:
+        screen.show(sentence.said)
+    for note in trial.notes:
         screen.warn(note)
 
 
@@ -127,10 +120,11 @@ def read_trial_gait(file: Path, robot: RobotSpec) -> Gait:
     return gait
 
 
-def _as_json(walk: Walk, figures: Figures, explained: Sequence[Phrase]) -> dict[str, Any]:
-    fault = None if walk.fault is None else render(walk.fault)
-    sentences = [render(said) for said in explained]
-    return {"legs": walk.legs, **asdict(figures), "fault": fault, "explained": sentences}
+def _as_json(trial: Trial) -> dict[str, Any]:
+    fault = None if trial.walk.fault is None else render(trial.walk.fault)
+    sentences = [render(one.said) for one in trial.explained]
+    figures = asdict(trial.figures)
+    return {"legs": trial.walk.legs, **figures, "fault": fault, "explained": sentences}
 
 
 def _table(figures: Figures, title: Phrase) -> Any:
@@ -165,13 +159,3 @@ def _number(value: float | None, unit: str, digits: int = 1) -> str:
 
 def _bars(walk: Walk) -> list[str]:
     return foot_bars(walk.legs, walk.down, walk.starts, SETTLE_TICKS, _MOST_COLUMNS)
-
-
-def _notes(walk: Walk, figures: Figures) -> list[Phrase]:
-    """List warnings about the figures: physics stopped, or no cycle was complete."""
-    notes = []
-    if walk.fault is not None:
-        notes.append(say("trial.fault", why=walk.fault))
-    if not figures.cycles:
-        notes.append(say("trial.no-cycle", seconds=figures.seconds))
-    return notes

@@ -5,12 +5,15 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from lacoc_arenas import arena as arenas
+from lacoc_arenas.arena import Arena
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.match.drive import Drive, DriveState
 from lacoc_server.match.physics import Physics
 from lacoc_server.trial.feet import feet_down
 from lacoc_server.trial.walk import Floats, Press, Sensed, Span, Walk
 from lacoc_shared.gait.tables import Gait, Level
+from lacoc_shared.messages import Scene
 from lacoc_shared.seat import BEATS_PER_S
 
 SETTLE_TICKS = BEATS_PER_S // 2
@@ -19,7 +22,17 @@ CYCLES = 5
 """Whole cycles that are measured. The first cycle is not, because the robot gets going in it."""
 NO_CYCLE_S = 6.0
 """How long a key is measured if its sequence has one posture, and so never repeats [s]."""
-_MOST_S = 60.0
+LONGEST_TICKS = SETTLE_TICKS + 60 * BEATS_PER_S
+"""Longest trial, with all its keys."""
+
+_FIELD = {"game": {"size_m": [20.0, 20.0]}, "match": {"levels": ["B", "A"]}}
+"""Practice on a field so large that no robot reaches a wall; robots stand as in a contest, where
+level B is open."""
+
+
+def practice_field() -> Arena:
+    """Load the field of trials."""
+    return arenas.load("practice", _FIELD)
 
 
 class SensedPhysics(Physics, Protocol):
@@ -45,16 +58,22 @@ class Course:
     Args:
         world: the robot at its start place.
         robot: the robot.
-        level: level at which the robot stands before the first key, as the arena has it.
-        repeat: whether sequences repeat, as the arena has it.
+        arena: the field; its settings say at which level the robot stands before the first key,
+            and whether sequences repeat.
     """
 
-    def __init__(self, world: SensedPhysics, robot: RobotSpec, level: Level, repeat: bool) -> None:
+    def __init__(self, world: SensedPhysics, robot: RobotSpec, arena: Arena) -> None:
+        self.robot = robot
+        self.arena = arena
         self._world = world
-        self._robot = robot
-        self._level = level
-        self._repeat = repeat
+        self._level = arena.match.open_levels[0]
+        self._repeat = arena.match.repeat
         self._start = world.save()
+
+    @property
+    def scene(self) -> Scene:
+        """The robot on its field, for drawing."""
+        return self._world.scene
 
     def walk(
         self,
@@ -69,10 +88,11 @@ class Course:
             gait: the robot's gait.
             presses: at least one key, in the order of their ticks; the last one is measured.
             seconds: time from the last press to the end [s]; None: whole cycles after the first,
-                or `NO_CYCLE_S` if the key's sequence never begins again.
+                or `NO_CYCLE_S` if the key's sequence never begins again. No trial is longer than
+                `LONGEST_TICKS`.
             cycles: number of whole cycles to measure if `seconds` is None.
         """
-        robot = self._robot
+        robot = self.robot
         drive = Drive(
             gait,
             robot.start_posture,
@@ -139,7 +159,9 @@ def plan(
     """Let a drive run through a trial's keys; arguments as in `Course` and `Course.walk`."""
     last = presses[-1]
     due = {press.tick: press for press in presses}
-    most = last.tick + round((_MOST_S if seconds is None else seconds) * BEATS_PER_S)
+    most = LONGEST_TICKS
+    if seconds is not None:
+        most = min(most, last.tick + round(seconds * BEATS_PER_S))
     state = drive.begin(level)
     states: list[DriveState] = []
     starts: list[int] = []

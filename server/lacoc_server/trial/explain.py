@@ -17,6 +17,7 @@ from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.steps import Steps, steps_of
 from lacoc_server.trial.walk import Press, Walk
 from lacoc_shared.gait.tables import LEVEL_NAMES, Posture
+from lacoc_shared.studio import CellPlace, Sentence
 from lacoc_shared.words import Phrase, say
 
 MOST_SENTENCES = 3
@@ -46,6 +47,9 @@ class Finding(NamedTuple):
     rank: float
     """The highest rank is told first."""
     said: Phrase
+    leg: int = -1
+    """Index of the leg that it is about; -1: the whole robot."""
+    cell: CellPlace | None = None
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,10 @@ class Seen:
             level=LEVEL_NAMES[level],
         )
 
+    def place(self, posture: int, leg: int, level: int) -> CellPlace:
+        """Return the place of a cell in the key's sequence."""
+        return CellPlace(posture=posture, joint=leg + len(self.walk.legs) * level)
+
     def degrees(self, posture: int, leg: int, level: int) -> float:
         """Return the angle in a cell [deg]."""
         joint = leg + len(self.walk.legs) * level
@@ -79,7 +87,7 @@ class Seen:
 
 def explain(
     robot: RobotSpec, walk: Walk, figures: Figures, press: Press, sequence: Sequence[Posture]
-) -> list[Phrase]:
+) -> list[Sentence]:
     """Explain a walk.
 
     Args:
@@ -90,12 +98,15 @@ def explain(
         sequence: postures of the key [rad].
 
     Returns:
-        At most `MOST_SENTENCES` phrases (`explain.*`), the most useful first.
+        At most `MOST_SENTENCES`, the most useful first.
     """
     seen = Seen(robot, walk, figures, press, tuple(sequence))
     found = [finding for rule in _RULES for finding in rule(seen)]
     found.sort(key=lambda finding: -finding.rank)
-    return [finding.said for finding in found[:MOST_SENTENCES]]
+    return [
+        Sentence(said=finding.said, cell=finding.cell, leg=finding.leg)
+        for finding in found[:MOST_SENTENCES]
+    ]
 
 
 # Causes in the table.
@@ -111,8 +122,9 @@ def _limits(seen: Seen) -> Iterator[Finding]:
         if _at_limit(seen.degrees(posture, leg, level), spec.range_deg)
     ]
     if cells:
-        cell = seen.cell(*cells[0])
-        yield Finding(90, say("explain.limit", cell=cell, angle_deg=seen.degrees(*cells[0])))
+        first = cells[0]
+        said = say("explain.limit", cell=seen.cell(*first), angle_deg=seen.degrees(*first))
+        yield Finding(90, said, first[1], seen.place(*first))
 
 
 def _at_limit(angle_deg: float, range_deg: tuple[float, float]) -> bool:
@@ -134,8 +146,9 @@ def _seam(seen: Seen) -> Iterator[Finding]:
                 jumps.append((seam_deg - other_deg, seam_deg, leg, level))
     if jumps:
         _, seam_deg, leg, level = max(jumps)
-        cell = seen.cell(postures - 1, leg, level)
-        yield Finding(80, say("explain.seam", cell=cell, jump_deg=seam_deg))
+        last = postures - 1, leg, level
+        said = say("explain.seam", cell=seen.cell(*last), jump_deg=seam_deg)
+        yield Finding(80, said, leg, seen.place(*last))
 
 
 # Causes in the way a leg moves, as the table commands it.
@@ -151,24 +164,28 @@ def _legs(seen: Seen) -> Iterator[Finding]:
     usual_m, usual_m2 = statistics.median(highest_m), statistics.median(swing_m2)
     dragged = [leg for leg in legs if highest_m[leg] < _DRAGGED * usual_m and usual_m > _LIFT_M]
     for leg in dragged:
-        cell = seen.cell(steps.swings_to(leg), leg, 1)
+        at = steps.swings_to(leg), leg, 1
         slip_mm_s = seen.figures.slip_legs_mm_s[leg]
         yield Finding(
             70 + 1 - highest_m[leg] / usual_m,
-            say("explain.dragged", leg=labels[leg], cell=cell, slip_mm_s=slip_mm_s),
+            say("explain.dragged", leg=labels[leg], cell=seen.cell(*at), slip_mm_s=slip_mm_s),
+            leg,
+            seen.place(*at),
         )
     for leg in legs:
         against = -swing_m2[leg] * math.copysign(1, usual_m2)
         if against > _AGAINST * abs(usual_m2) > _AGAINST * _SWING_M2 and leg not in dragged:
-            ahead = steps.ahead_m[leg]
+            ahead, at = steps.ahead_m[leg], (steps.swings_to(leg), leg, 0)
             yield Finding(
                 72 + min(1.0, against / abs(usual_m2)),
                 say(
                     "explain.backward",
                     leg=labels[leg],
-                    cell=seen.cell(steps.swings_to(leg), leg, 0),
+                    cell=seen.cell(*at),
                     push_mm=1000 * (max(ahead) - min(ahead)),
                 ),
+                leg,
+                seen.place(*at),
             )
     yield from _out_of_step(seen, steps, [leg for leg in legs if leg not in dragged])
 
@@ -186,15 +203,18 @@ def _out_of_step(seen: Seen, steps: Steps, legs: Sequence[int]) -> Iterator[Find
     others = [gap for one, gap in gaps.items() if one != leg]
     if gaps[leg] > _APART and max(others) < _APART:
         cycle_s = seen.figures.cycle_s or 0.0
+        at = steps.swings_to(leg), leg, 1
         yield Finding(
             60 + gaps[leg],
             say(
                 "explain.out-of-step",
                 leg=seen.walk.legs[leg],
-                cell=seen.cell(steps.swings_to(leg), leg, 1),
+                cell=seen.cell(*at),
                 apart_s=gaps[leg] * cycle_s,
                 cycle_s=cycle_s,
             ),
+            leg,
+            seen.place(*at),
         )
 
 
@@ -248,6 +268,7 @@ def _way(seen: Seen) -> Iterator[Finding]:
                 leg=seen.walk.legs[leg],
                 leg_mm_s=legs[leg],
             ),
+            leg,
         )
     if figures.speed_mm_s > _SLOW_MM_S:
         yield Finding(20, say("explain.walks", speed_mm_s=figures.speed_mm_s))

@@ -7,11 +7,10 @@ without them.
 import mujoco
 import numpy as np
 
-from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.match.entry import Entry
-from lacoc_server.trial.course import Course
+from lacoc_server.trial.course import Course, practice_field
 from lacoc_server.trial.walk import Floats, Sensed
 from lacoc_server.world.world import SUBSTEPS, World
 from lacoc_shared.gait.tables import Gait
@@ -26,21 +25,11 @@ _NET_FORCE = 3
 """MuJoCo's reduction of all contacts of a pair to one: their net force, at its centre."""
 
 
-_FIELD = {"game": {"size_m": [20.0, 20.0]}, "match": {"levels": ["B", "A"]}}
-"""Practice on a field so large that no robot reaches a wall; robots stand as in a contest, where
-level B is open."""
-
-
-def practice_field() -> Arena:
-    """Load the field of trials."""
-    return arenas.load("practice", _FIELD)
-
-
 def make_course(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
     """Make the course for a robot's trials; `steps` as in `SensedWorld`."""
     arena = practice_field()
     world = SensedWorld(arena, Entry(robot, Gait()), steps)
-    return Course(world, robot, arena.match.open_levels[0], arena.match.repeat)
+    return Course(world, robot, arena)
 
 
 class SensedWorld(World):

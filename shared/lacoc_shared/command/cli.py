@@ -39,7 +39,7 @@ _PANELS: Panels = {
     "Play": ("demo", "practice", "play", "watch"),
     "Prepare your robot": ("gait", "trial", "coach", "robot"),
     "Run a contest": ("contest", "serve", "web", "referee", "doctor"),
-    "Study and develop": ("replay", "simulate", "bot"),
+    "Study and develop": ("replay", "simulate", "bot", "studio"),
 }
 _OTHERS = "Commands of other packages"
 _EXTRAS = {"cmaes": "server", "cryptography": "server", "mujoco": "server"}

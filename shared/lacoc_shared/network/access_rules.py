@@ -1,4 +1,4 @@
-"""Zenoh's access rules for a court, made from the court's users.
+"""Zenoh's access rules for a court, made from the court's users, and for a studio.
 
 Zenoh gives a court no trustworthy information about a sender, so the rules do the check:
 a message that a user may not send reaches neither the court nor anybody else.
@@ -73,16 +73,45 @@ def access_control(protection: Protection | None) -> dict[str, Any]:
     }
 
 
+def studio_access_control() -> dict[str, Any]:
+    """Make Zenoh's access control for a studio: anybody may ask it and hear how far a search is."""
+    rules = {
+        "studio-to-all": _to_all(),
+        "ask": _rule("ingress", ["lacoc/*/studio/ask/*"], ["query"]),
+        "progress": _rule("ingress", ["lacoc/*/studio/progress/*"], ["declare_subscriber"]),
+        "presence": _presence(),
+    }
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": [{"id": name, **rule} for name, rule in rules.items()],
+        "subjects": [{"id": "anyone"}],
+        "policies": [{"rules": list(rules), "subjects": ["anyone"]}],
+    }
+
+
+def _to_all() -> dict[str, Any]:
+    return _rule(
+        "egress",
+        ["lacoc/**"],
+        [
+            *("put", "delete", "reply", "query", "declare_subscriber", "declare_queryable"),
+            *("liveliness_token", "liveliness_query", "declare_liveliness_subscriber"),
+        ],
+    )
+
+
+def _presence() -> dict[str, Any]:
+    return _rule(
+        "ingress",
+        ["lacoc/*/live/**"],
+        ["liveliness_query", "declare_liveliness_subscriber"],
+    )
+
+
 def _watching() -> Rules:
     return {
-        "court-to-all": _rule(
-            "egress",
-            ["lacoc/**"],
-            [
-                *("put", "delete", "reply", "query", "declare_subscriber", "declare_queryable"),
-                *("liveliness_token", "liveliness_query", "declare_liveliness_subscriber"),
-            ],
-        ),
+        "court-to-all": _to_all(),
         "watch": _rule(
             "ingress",
             [f"lacoc/*/{what}" for what in ("frame", "event", "sheet", "health")],
@@ -93,11 +122,7 @@ def _watching() -> Rules:
             [f"lacoc/*/{what}" for what in ("sheet", "scene", "event")],
             ["query"],
         ),
-        "presence": _rule(
-            "ingress",
-            ["lacoc/*/live/**"],
-            ["liveliness_query", "declare_liveliness_subscriber"],
-        ),
+        "presence": _presence(),
     }
 
 

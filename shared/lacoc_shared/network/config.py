@@ -11,7 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from lacoc_shared.keyspace import COMMAND_MAX_BYTES, DECISION_MAX_BYTES, JOIN_MAX_BYTES
-from lacoc_shared.network.access_rules import Credentials, Protection, access_control
+from lacoc_shared.network.access_rules import (
+    Credentials,
+    Protection,
+    access_control,
+    studio_access_control,
+)
+from lacoc_shared.studio import TRIAL_REPLY_MAX_BYTES
 
 Config = dict[str, Any]
 
@@ -27,7 +33,10 @@ MAX_SESSIONS = 1100
 for seats, referees and gateways. More pages need gateways; each gateway is one session."""
 
 _HEADERS_BYTES = 2048
-_CLIENT_MAX_BYTES = 1 << 20  # clients receive scenes, which are larger than what a court receives
+# Clients receive scenes and trials, which are larger than what a court receives.
+_CLIENT_MAX_BYTES = TRIAL_REPLY_MAX_BYTES + _HEADERS_BYTES
+_ASKED_MAX_BYTES = 1 << 20
+"""Largest request that reaches a studio: much more than it reads, so that it can say so."""
 _LEASE_MS = 3000
 
 
@@ -56,14 +65,22 @@ def court_config(
         ],
         "transport": _transport(JOIN_MAX_BYTES + _HEADERS_BYTES, _court_tls(protection))
         | _court_users(users)
-        | {
-            # Connections that stay silent must not keep others waiting.
-            "unicast": {
-                "max_sessions": MAX_SESSIONS,
-                "accept_pending": 1000,
-                "accept_timeout": 3000,
-            }
-        },
+        | {"unicast": _unicast()},
+    }
+
+
+def studio_config(listen: Sequence[str]) -> Config:
+    """Make the configuration of a studio's own session; it has no keys, and nothing is encrypted.
+
+    Args:
+        listen: complete addresses.
+    """
+    return {
+        **_common("router"),
+        "listen": {"endpoints": list(listen)},
+        "adminspace": {"enabled": True, "permissions": {"read": True, "write": False}},
+        "access_control": studio_access_control(),
+        "transport": _transport(_ASKED_MAX_BYTES + _HEADERS_BYTES, {}) | {"unicast": _unicast()},
     }
 
 
@@ -96,6 +113,11 @@ def _common(mode: str) -> Config:
         # Nobody is searched for, so the delay of half a second for the search is not needed.
         "scouting": {"delay": 0, "multicast": {"enabled": False}, "gossip": {"enabled": False}},
     }
+
+
+def _unicast() -> Config:
+    # Connections that stay silent must not keep others waiting.
+    return {"max_sessions": MAX_SESSIONS, "accept_pending": 1000, "accept_timeout": 3000}
 
 
 def _court_tls(protection: Protection | None) -> Config:

@@ -231,6 +231,26 @@ class Session:
         channel: RingChannel[zenoh.Query] = RingChannel(depth)
         return Desk(self._session.declare_queryable(key, channel))
 
+    def answer(self, key: str, take: Callable[[Request], None]) -> None:
+        """Declare that this session answers requests, and get each of them as it comes.
+
+        Args:
+            key: key expression.
+            take: called on Zenoh's thread with each request; it must return at once. The request
+                can be answered later, from any thread.
+        """
+
+        def deliver(query: zenoh.Query) -> None:
+            request = Request(query)
+            if "*" not in request.key:
+                take(request)
+
+        self._session.declare_queryable(key, Callback(deliver, indirect=False))
+
+    def send(self, key: str, payload: bytes) -> None:
+        """Send one message under a key expression; never waits for a receiver."""
+        self._session.put(key, payload)
+
     def ask(self, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> bytes:
         """Send a request and wait for its answer.
 
@@ -289,6 +309,24 @@ def open_court(listen: Sequence[str], protection: Protection | None = None) -> S
         with _user_file(protection) as users:
             config = network_config.court_config(endpoints, protection, users)
             return Session(_open(config), endpoints)
+    except zenoh.ZError as error:
+        raise UserError(address.why_not_listening(endpoints, error)) from None
+
+
+def open_studio(listen: Sequence[str]) -> Session:
+    """Open a studio's session: the router to which those who ask it connect.
+
+    Args:
+        listen: addresses to listen on; port 0 takes a free one (see `Session.locators`).
+
+    Raises:
+        UserError: if it can't listen on one of them; the message says why.
+    """
+    _allow_files(network_config.MAX_SESSIONS + _OTHER_FILES)
+    endpoints = [address.endpoint(one) for one in listen]
+    address.check_protocols(endpoints, keys=False)
+    try:
+        return Session(_open(network_config.studio_config(endpoints)), endpoints)
     except zenoh.ZError as error:
         raise UserError(address.why_not_listening(endpoints, error)) from None
 

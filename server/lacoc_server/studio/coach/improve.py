@@ -1,22 +1,19 @@
 """Search for a better table; a size says how many of its numbers may change."""
 
-import math
 import random
 from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
-from typing import NamedTuple
 
 import numpy as np
 from cmaes import CMAwM  # type: ignore[import-untyped]
 
-from lacoc_server.studio.coach.matter import Matter, Score
+from lacoc_server.studio.coach.matter import Matter
+from lacoc_server.studio.coach.search import Improved, Search
 from lacoc_server.studio.coach.table import Angles
 
 _STEPS_DEG = (5, 10, 15, 20, 30)
 _SIGMA_DEG = 12.0
 _POPULATION = 16
-_GIVE_BACK = 0.02
-"""A change is undone if that lowers the score by at most this share."""
 _FEW = 16
 """For the size "three" only this many numbers are tried: those that matter most."""
 
@@ -32,78 +29,31 @@ class Size(StrEnum):
     """All numbers."""
 
 
-class Improved(NamedTuple):
-    """The best table so far, and its score."""
-
-    angles_deg: Angles
-    score: float
-
-
 IsOver = Callable[[], bool]
 """Returns whether the time for the search is over."""
 
 
 def improve(
-    table: Angles,
-    ranges_deg: Sequence[tuple[float, float]],
-    size: Size,
-    matters: Sequence[Matter],
-    score: Score,
-    is_over: IsOver,
-    seed: int,
+    search: Search, size: Size, matters: Sequence[Matter], is_over: IsOver, seed: int
 ) -> Iterator[Improved]:
     """Search for a better table; yield the best one so far, again and again.
 
-    At the end each change that hardly helps is undone.
-
     Args:
-        table: the student's own angles [deg].
-        ranges_deg: lowest and highest angle of each number.
+        search: the search, which has tried the student's own table.
         size: how many numbers may change.
         matters: the numbers of the table, those that matter most first.
-        score: tries tables and returns their scores.
-        is_over: asked after each round of trials; True ends the search.
+        is_over: called after each round of trials.
         seed: seed of all random numbers.
     """
-    search = _Search(table, ranges_deg, score)
     yield search.best
     if size is Size.TABLE:
         yield from _whole(search, is_over, seed)
     else:
         yield from _few(search, matters, 1 if size is Size.CELL else 3, is_over)
-    yield from _give_back(search)
-
-
-class _Search:
-    """Tries tables; keeps their scores and the best table so far."""
-
-    def __init__(
-        self, table: Angles, ranges_deg: Sequence[tuple[float, float]], score: Score
-    ) -> None:
-        self.own = table
-        self.ranges_deg = ranges_deg
-        self._score = score
-        self._known: dict[Angles, float] = {}
-        self.best = Improved(table, -math.inf)
-        self.tried([table])
-
-    def tried(self, tables: Sequence[Angles]) -> list[float]:
-        """Return the scores of tables; a table that was tried before is not tried again."""
-        new = list(dict.fromkeys(one for one in tables if one not in self._known))
-        self._known.update(zip(new, self._score(new), strict=True))
-        for one in new:
-            if self._known[one] > self.best.score:
-                self.best = Improved(one, self._known[one])
-        return [self._known[one] for one in tables]
-
-    def turned(self, table: Angles, index: int, to_deg: float) -> Angles:
-        """Return a table with another angle in one cell, within the joint's range."""
-        low, high = self.ranges_deg[index]
-        return (*table[:index], round(min(max(to_deg, low), high)), *table[index + 1 :])
 
 
 def _few(
-    search: _Search, matters: Sequence[Matter], most: int, is_over: IsOver
+    search: Search, matters: Sequence[Matter], most: int, is_over: IsOver
 ) -> Iterator[Improved]:
     """Change one number after another, always the one that helps most."""
     cells = [one.number for one in matters]
@@ -140,7 +90,7 @@ def _first_change(before: Angles, after: Angles) -> int:
     return next(i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b)
 
 
-def _whole(search: _Search, is_over: IsOver, seed: int) -> Iterator[Improved]:
+def _whole(search: Search, is_over: IsOver, seed: int) -> Iterator[Improved]:
     """Change all numbers with CMA-ES in whole degrees; each run starts at the best table so far."""
     bounds = np.array([(round(low), round(high)) for low, high in search.ranges_deg], float)
     restarts = random.Random(seed)
@@ -160,17 +110,3 @@ def _whole(search: _Search, is_over: IsOver, seed: int) -> Iterator[Improved]:
             scores = search.tried(tables)
             optimizer.tell([(told, -score) for (_, told), score in zip(asked, scores, strict=True)])
             yield search.best
-
-
-def _give_back(search: _Search) -> Iterator[Improved]:
-    """Undo each change that hardly helps, so that a student can understand those that are left."""
-    best = search.best
-    for index in range(len(search.own)):
-        own_deg = search.own[index]
-        if best.angles_deg[index] == own_deg:
-            continue
-        without = search.turned(best.angles_deg, index, own_deg)
-        score = search.tried([without])[0]
-        if score >= best.score - _GIVE_BACK * abs(best.score):
-            best = Improved(without, score)
-            yield best

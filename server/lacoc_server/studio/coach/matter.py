@@ -1,17 +1,15 @@
 """Find which numbers of a table matter: each number is changed a little, up and down."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
+from lacoc_server.studio.coach.search import Score
 from lacoc_server.studio.coach.table import Angles
 
 STEP_DEG = 10
 """How far each number is changed [deg]."""
 CONFIRMED = 12
 """How many of the numbers that matter most are tried again, with the contest's physics."""
-
-Score = Callable[[Sequence[Angles]], list[float]]
-"""Tries tables and returns the score of each."""
 
 
 class Matter(NamedTuple):

@@ -1,25 +1,32 @@
-"""Run many trials in several processes; each process keeps the course that its robot walks on."""
+"""Run many trials of one robot in several processes at the same time."""
 
-import os
-from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
-from functools import lru_cache
-from multiprocessing import get_context
-from typing import NamedTuple, Self
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as NotDone
+from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.studio.coach.goal import Goal, score
 from lacoc_server.studio.coach.table import Angles, KeyTable
-from lacoc_server.trial.course import SETTLE_TICKS, Course
+from lacoc_server.studio.floors import course_of
+from lacoc_server.studio.workers import Workers
+from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.walk import Press
-from lacoc_server.world.sensed import make_course
 from lacoc_server.world.world import SUBSTEPS
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
 
 _QUICK_STEPS, _QUICK_CYCLES = 4, 2
 """A quick trial has physics steps of 5 ms and measures two cycles of the sequence."""
 _CYCLES = 3
+_MOST_AT_ONCE = 4
+"""Most trials that a process gets at once; fewer would cost time, more would delay a stop."""
+_LOOK_S = 0.05
+
+
+class Stopped(Exception):
+    """Somebody stopped the search."""
 
 
 class Task(NamedTuple):
@@ -34,42 +41,66 @@ class Task(NamedTuple):
 
 
 class Trials:
-    """Tries tables in processes; used as a context manager.
+    """Tries tables in processes.
 
     Args:
         task: what is the same in all trials.
-        jobs: number of processes; None: one for each core.
+        workers: the processes.
+        stop: once it is set, nothing more is scored.
     """
 
-    def __init__(self, task: Task, jobs: int | None = None) -> None:
-        self._task = task
-        self._jobs = jobs or os.cpu_count() or 1
-        self._pool = ProcessPoolExecutor(self._jobs, mp_context=get_context("spawn"))
+    def __init__(self, task: Task, workers: Workers, stop: threading.Event) -> None:
+        self.task = task
+        self.on_done: Callable[[], None] = lambda: None
+        """Called several times a second while tables are tried."""
         self.count = 0
         """Number of trials so far."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self._pool.shutdown(cancel_futures=True)
+        self._workers = workers
+        self._stop = stop
 
     def exact(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables with the physics of the contest."""
+        """Score tables with the physics of the contest.
+
+        Raises:
+            Stopped: if the search was stopped.
+        """
         return self._score(tables, SUBSTEPS, _CYCLES)
 
     def quick(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables with longer physics steps and fewer cycles: good enough to rank them."""
+        """Score tables with longer physics steps and fewer cycles: good enough to rank them.
+
+        Raises:
+            Stopped: if the search was stopped.
+        """
         return self._score(tables, _QUICK_STEPS, _QUICK_CYCLES)
 
+    def figures(self, tables: Sequence[Angles]) -> list[Figures]:
+        """Return the figures of walks, with the physics of the contest; a stop changes nothing."""
+        jobs = [self._workers.submit(_figures, self.task, table) for table in tables]
+        return [job.result() for job in jobs]
+
     def _score(self, tables: Sequence[Angles], steps: int, cycles: int) -> list[float]:
-        self.count += len(tables)
-        size = max(1, -(-len(tables) // (4 * self._jobs)))
-        jobs = [
-            self._pool.submit(_scores, self._task, tables[first : first + size], steps, cycles)
-            for first in range(0, len(tables), size)
-        ]
-        return [found for job in jobs for found in job.result()]
+        size = min(_MOST_AT_ONCE, max(1, len(tables) // (4 * self._workers.count)))
+        parts = [tables[first : first + size] for first in range(0, len(tables), size)]
+        jobs = [self._workers.submit(_scores, self.task, part, steps, cycles) for part in parts]
+        try:
+            return [found for job in jobs for found in self._result(job)]
+        finally:
+            for job in jobs:
+                job.cancel()
+
+    def _result(self, job: "Future[list[float]]") -> list[float]:
+        while True:
+            if self._stop.is_set():
+                raise Stopped
+            try:
+                found = job.result(_LOOK_S)
+            except NotDone:
+                self.on_done()
+                continue
+            self.count += len(found)
+            self.on_done()
+            return found
 
 
 def try_table(
@@ -78,14 +109,13 @@ def try_table(
     """Let the robot walk with a table, in this process, and return the figures of its walk."""
     tables = (task.stand, task.table.sequence(angles_deg))
     press = Press(SETTLE_TICKS, Level.LOCOMOTION, 1)
-    course = _course(task.robot, steps)
+    course = course_of(task.robot, steps)
     return measure(course.walk(Gait(None, LocomotionTable(tables)), [press], cycles=cycles))
+
+
+def _figures(task: Task, angles_deg: Angles) -> Figures:
+    return try_table(task, angles_deg)
 
 
 def _scores(task: Task, tables: Sequence[Angles], steps: int, cycles: int) -> list[float]:
     return [score(try_table(task, table, steps, cycles), task.goal) for table in tables]
-
-
-@lru_cache(maxsize=4)
-def _course(robot: RobotSpec, steps: int) -> Course:
-    return make_course(robot, steps)

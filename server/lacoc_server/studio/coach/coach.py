@@ -1,0 +1,179 @@
+"""The coach at work: what matters, then a search, then fewer changes; and it says how far it is."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+from lacoc_robots.robot import RobotSpec
+from lacoc_server.studio.coach.goal import Goal, score
+from lacoc_server.studio.coach.improve import Size, improve
+from lacoc_server.studio.coach.matter import CONFIRMED, Matter, what_matters
+from lacoc_server.studio.coach.search import Improved, Search
+from lacoc_server.studio.coach.table import KeyTable
+from lacoc_server.studio.coach.trials import Stopped, Task, Trials
+from lacoc_server.studio.coach.undo import undo
+from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.keys import forward_key
+from lacoc_shared.gait.tables import Gait, Level
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.studio import CellPlace, Change, CoachReply, Progress, Weight
+from lacoc_shared.words import say
+
+_UNDO_TRIALS = 50
+"""About so many trials undo the changes that hardly help."""
+_TURNS = {Goal.LEFT: 1, Goal.RIGHT: 3}
+"""The sample's keys for turning (workshop Fig. 4-2)."""
+
+Tell = Callable[[Progress], None]
+"""Takes how far a search is; called several times a second."""
+
+
+class Found(NamedTuple):
+    """What the coach found."""
+
+    matters: list[Matter]
+    """All numbers of the key, those that matter most first; empty if it was stopped before."""
+    best: Improved | None
+    """None: nothing was searched for."""
+    before: Figures
+    after: Figures
+    """Figures of the own gait and of the best one."""
+    trials: int
+    stopped: bool
+
+
+def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
+    """Choose the key to change: the one that is given, or the sample's key for the goal.
+
+    Raises:
+        UserError: if the gait has no such key at level B.
+    """
+    if key is None:
+        level, found = forward_key(gait)
+        key = _TURNS.get(goal, found if level is Level.LOCOMOTION else 0)
+    if gait.sequence(Level.LOCOMOTION, key) is None:
+        there = [f"B{one}" for one in gait.keys(Level.LOCOMOTION)]
+        raise UserError(say("trial.no-key", key=f"B{key}", keys=there))
+    return key
+
+
+def task_of(
+    robot: RobotSpec, gait: Gait, key: int, goal: Goal, sequences: Sequence[Sequence[int]] | None
+) -> Task:
+    """Make the task to change a key of level B.
+
+    Args:
+        robot: the robot.
+        gait: its gait, which has the key.
+        key: the key's digit.
+        goal: what the key is for.
+        sequences: for each key the digits of its postures, if they are those of a Loco-data file.
+    """
+    stand = gait.sequence(Level.LOCOMOTION, 0) or (robot.start_posture,)
+    digits = None if sequences is None else sequences[key]
+    table = KeyTable.of(gait.sequence(Level.LOCOMOTION, key) or (), digits)
+    return Task(robot, stand, table, goal)
+
+
+def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Tell) -> Found:
+    """Find which numbers of a table matter, and a better table.
+
+    Args:
+        trials: tries tables for the task.
+        size: how many numbers may change; None: only say which numbers matter.
+        seconds: how long to search [s]; what comes before and after it is not counted.
+        seed: seed of all random numbers.
+        tell: is told how far the search is.
+
+    Raises:
+        WorkerDied: if a process for trials ended.
+    """
+    task = trials.task
+    own = task.table.angles_deg
+    ranges_deg = task.robot.ranges_deg * len(task.table.rows)
+    matters: list[Matter] = []
+    best: Improved | None = None
+    stopped = False
+    try:
+        _follow(trials, tell, "matters", 2 + 2 * len(own) + 2 * min(CONFIRMED, len(own)))
+        matters = what_matters(own, ranges_deg, trials.quick, trials.exact)
+        if size is not None:
+            for better in _better(trials, ranges_deg, matters, size, seconds, seed, tell):
+                best = better
+    except Stopped:
+        stopped = True
+    trials.on_done = lambda: None
+    tables = [own] if best is None else [own, best.angles_deg]
+    figures = trials.figures(tables)
+    return Found(matters, best, figures[0], figures[-1], trials.count, stopped)
+
+
+def reply_of(task: Task, key: int, found: Found) -> CoachReply:
+    """Describe what the coach found as a message."""
+    own = task.table.angles_deg
+    best = own if found.best is None else found.best.angles_deg
+    return CoachReply(
+        key=key,
+        matters=tuple(
+            Weight(cell=place(task.table, one.number), up=one.up, down=one.down)
+            for one in found.matters
+        ),
+        changes=tuple(
+            Change(cell=place(task.table, index), from_deg=own[index], to_deg=best[index])
+            for index in task.table.changed(own, best)
+        ),
+        before=vars(found.before),
+        after=vars(found.after),
+        score_before=score(found.before, task.goal),
+        score_after=score(found.after, task.goal),
+        trials=found.trials,
+        cancelled=found.stopped,
+    )
+
+
+def place(table: KeyTable, index: int) -> CellPlace:
+    """Return the place of a number: the first posture of the sequence that has it."""
+    row, joint = table.cell(index)
+    return CellPlace(posture=table.order.index(row), joint=joint)
+
+
+def _better(
+    trials: Trials,
+    ranges_deg: tuple[tuple[float, float], ...],
+    matters: list[Matter],
+    size: Size,
+    seconds: float,
+    seed: int,
+    tell: Tell,
+) -> Iterator[Improved]:
+    """Search, then undo what hardly helps; yield the table to show, again and again."""
+    begin_s = time.monotonic()
+
+    def passed_s() -> float:
+        return time.monotonic() - begin_s
+
+    search = Search(trials.task.table.angles_deg, ranges_deg, trials.exact)
+    trials.on_done = lambda: tell(
+        Progress(
+            stage="search",
+            done=min(1.0, passed_s() / max(seconds, 1e-9)),
+            trials=trials.count,
+            score=search.best.score,
+        )
+    )
+    yield from improve(search, size, matters, lambda: passed_s() >= seconds, seed)
+    _follow(trials, tell, "undo", _UNDO_TRIALS, search.best.score)
+    yield from undo(search, matters, trials.quick)
+
+
+def _follow(
+    trials: Trials, tell: Tell, stage: str, expected: int, best: float | None = None
+) -> None:
+    """Tell how far a stage is that has about so many trials."""
+    begin = trials.count
+
+    def on_done() -> None:
+        done = min(1.0, (trials.count - begin) / expected)
+        tell(Progress(stage=stage, done=done, trials=trials.count, score=best))
+
+    trials.on_done = on_done

@@ -1,0 +1,51 @@
+"""The best table that a search has found so far, and all tables that it has tried."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from lacoc_server.studio.coach.table import Angles
+
+Score = Callable[[Sequence[Angles]], list[float]]
+"""Tries tables and returns how good each is."""
+
+
+class Improved(NamedTuple):
+    """The best table so far, and its score."""
+
+    angles_deg: Angles
+    score: float
+
+
+class Search:
+    """A search that begins with a student's own table.
+
+    Args:
+        table: the student's own angles [deg].
+        ranges_deg: lowest and highest angle of each number.
+        score: tries tables and returns their scores.
+    """
+
+    def __init__(
+        self, table: Angles, ranges_deg: Sequence[tuple[float, float]], score: Score
+    ) -> None:
+        self.own = table
+        self.ranges_deg = ranges_deg
+        self._score = score
+        self._known: dict[Angles, float] = {}
+        self.best = Improved(table, -math.inf)
+        self.tried([table])
+
+    def tried(self, tables: Sequence[Angles]) -> list[float]:
+        """Try tables all at once and return their scores; none is tried twice."""
+        new = list(dict.fromkeys(one for one in tables if one not in self._known))
+        self._known.update(zip(new, self._score(new), strict=True))
+        for one in new:
+            if self._known[one] > self.best.score:
+                self.best = Improved(one, self._known[one])
+        return [self._known[one] for one in tables]
+
+    def turned(self, table: Angles, index: int, to_deg: float) -> Angles:
+        """Return a table with another angle in one cell, within the joint's range."""
+        low, high = self.ranges_deg[index]
+        return (*table[:index], round(min(max(to_deg, low), high)), *table[index + 1 :])

@@ -1,0 +1,82 @@
+"""Undo the changes that hardly help, so that what is left is small and can be understood.
+
+Changes are undone many at a time, those that help least first: that is much quicker than one after
+the other, and the trials of a round run at the same time. A first pass guesses from what mattered
+before the search which changes help least. Then there are few, and a second pass tries each.
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from lacoc_server.studio.coach.matter import Matter
+from lacoc_server.studio.coach.search import Improved, Score, Search
+from lacoc_server.studio.coach.table import Angles
+
+_EACH, _ALL = 0.02, 0.1
+"""Undoing a change may cost the first share of the score, and undoing all of them the second share
+of what the search has gained."""
+_AT_ONCE = 8
+"""Numbers of changes that are tried in one round."""
+
+
+def undo(search: Search, matters: Sequence[Matter], quick: Score) -> Iterator[Improved]:
+    """Undo changes of a search's best table; yield each table that has fewer of them.
+
+    Args:
+        search: the search.
+        matters: what a change of each number did to the student's own table.
+        quick: a score that is cheap, to find the changes that help least.
+    """
+    best = found = search.best
+    (own_score,) = search.tried([search.own])
+    each, most = _EACH * abs(best.score), _ALL * (best.score - own_score)
+    undone = 0
+    for least_first in (partial(_guessed, matters), partial(_tried, quick)):
+        order = least_first(search.own, found.angles_deg)
+        low, high = 0, len(order)
+        while low < high:
+            counts = _spread(low, high)
+            tables = [_back(search.own, found.angles_deg, order[:count]) for count in counts]
+            scores = search.tried(tables)
+            fits = [
+                (count, Improved(table, score))
+                for count, table, score in zip(counts, tables, scores, strict=True)
+                if score >= best.score - min(most, each * (undone + count))
+            ]
+            if fits:
+                low, better = fits[-1]
+                yield better
+            high = min((count for count in counts if count > low), default=low + 1) - 1
+        if low:
+            found = better
+            undone += low
+
+
+def _guessed(matters: Sequence[Matter], own: Angles, table: Angles) -> list[int]:
+    """List the numbers that differ, those first that probably help least."""
+    size = {one.number: one.size for one in matters}
+    changed = _changed(own, table)
+    return sorted(changed, key=lambda index: size[index] * abs(table[index] - own[index]))
+
+
+def _tried(quick: Score, own: Angles, table: Angles) -> list[int]:
+    """List the numbers that differ, those first without which the quick score is best."""
+    changed = _changed(own, table)
+    without = quick([_back(own, table, [index]) for index in changed])
+    return [index for _, index in sorted(zip(without, changed, strict=True), reverse=True)]
+
+
+def _changed(own: Angles, table: Angles) -> list[int]:
+    return [index for index, angle in enumerate(table) if angle != own[index]]
+
+
+def _back(own: Angles, table: Angles, numbers: Sequence[int]) -> Angles:
+    """Return a table with the student's own angles in some cells."""
+    mine = set(numbers)
+    return tuple(own[i] if i in mine else angle for i, angle in enumerate(table))
+
+
+def _spread(low: int, high: int) -> list[int]:
+    """Return up to `_AT_ONCE` numbers from above `low` to `high`, in equal steps."""
+    steps = min(_AT_ONCE, high - low)
+    return [low + (high - low) * step // steps for step in range(1, steps + 1)]

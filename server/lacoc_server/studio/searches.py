@@ -1,0 +1,181 @@
+"""The searches of a studio's coach: one at a time, the others wait in order."""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from enum import StrEnum
+from typing import NamedTuple, TypeVar
+
+from lacoc_server.studio.answers import Answer, Busy, read_files, refusal
+from lacoc_server.studio.coach.coach import coach, coached_key, reply_of, task_of
+from lacoc_server.studio.coach.goal import Goal
+from lacoc_server.studio.coach.improve import Size
+from lacoc_server.studio.coach.trials import Trials
+from lacoc_server.studio.workers import Workers
+from lacoc_shared.codec import encode
+from lacoc_shared.keyspace import check_name
+from lacoc_shared.messages import Refusal
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.studio import CoachRequest, Progress
+from lacoc_shared.words import say
+
+_MOST_S = 120.0
+"""Longest search."""
+_MOST_WAITING = 8
+_TELL_S = 0.2
+"""How often whoever asked is told how far a search is [s]."""
+_END_S = 10.0
+
+_Choice = TypeVar("_Choice", bound=StrEnum)
+Done = Callable[[Answer], None]
+"""Takes the answer of a search; called on any thread."""
+Tell = Callable[[str, Progress], None]
+"""Takes the name of a search, and how far it is."""
+
+
+class _Search(NamedTuple):
+    request: CoachRequest
+    done: Done
+    stop: threading.Event
+
+
+class Searches:
+    """Searches for better gaits in processes that give way to trials.
+
+    One search has all processes, because it should end soon. The processes start with the first
+    search, because many studios never have one.
+
+    Args:
+        jobs: number of processes; None: one for each core.
+        tell: is told how far each search is, several times a second.
+        failed: makes the answer to a search that ended with an error.
+    """
+
+    def __init__(self, jobs: int | None, tell: Tell, failed: Callable[[Exception], Answer]) -> None:
+        self._jobs = jobs
+        self._tell = tell
+        self._failed = failed
+        self._waiting: deque[_Search] = deque()
+        self._running: _Search | None = None
+        self._changed = threading.Condition()
+        self._closing = False
+        self._workers: Workers | None = None
+        self._thread = threading.Thread(target=self._run, name="searches", daemon=True)
+        self._thread.start()
+
+    def add(self, request: CoachRequest, done: Done) -> None:
+        """Begin a search, or let it wait for those before it.
+
+        Raises:
+            UserError: if its name is wrong or taken.
+            Busy: if too many wait.
+        """
+        check_name(request.job)
+        with self._changed:
+            if any(one.request.job == request.job for one in self._all()):
+                raise UserError(say("studio.job-taken", job=request.job))
+            if len(self._waiting) >= _MOST_WAITING:
+                raise Busy(say("studio.coach-busy"))
+            self._waiting.append(_Search(request, done, threading.Event()))
+            self._changed.notify()
+
+    def cancel(self, job: str) -> None:
+        """Let a search end soon, with what it has found; one that still waits is refused.
+
+        Raises:
+            UserError: if there is no such search.
+        """
+        with self._changed:
+            search = next((one for one in self._all() if one.request.job == job), None)
+            waits = search in self._waiting
+            if search is not None and waits:
+                self._waiting.remove(search)
+        if search is None:
+            raise UserError(say("studio.no-job", job=job[:40]))
+        search.stop.set()
+        if waits:
+            search.done(Answer(False, encode(Refusal(say("studio.cancelled")))))
+
+    def close(self) -> None:
+        """Stop all searches and end their processes."""
+        with self._changed:
+            self._closing = True
+            for search in self._all():
+                search.stop.set()
+            self._changed.notify()
+            workers = self._workers
+        if workers is not None:
+            workers.close()
+        self._thread.join(_END_S)
+
+    @property
+    def processes(self) -> tuple[int, ...]:
+        """The numbers of the processes that run now."""
+        return () if self._workers is None else self._workers.processes
+
+    def _all(self) -> list[_Search]:
+        return [*([self._running] if self._running else []), *self._waiting]
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._waiting or self._closing)
+                if self._closing:
+                    return
+                search = self._running = self._waiting.popleft()
+                if self._workers is None:
+                    self._workers = Workers(self._jobs, background=True, limit_s=600.0)
+            try:
+                answer = self._answer(search, self._workers)
+            except Exception as error:
+                answer = self._failed(error)
+            with self._changed:
+                self._running = None  # its name is free before its answer is there
+            search.done(answer)
+
+    def _answer(self, search: _Search, workers: Workers) -> Answer:
+        request = search.request
+        told_s = -_TELL_S
+
+        def tell(how_far: Progress) -> None:
+            nonlocal told_s
+            now_s = time.monotonic()
+            if now_s - told_s < _TELL_S:
+                return
+            told_s = now_s
+            self._tell(request.job, how_far)
+            with self._changed:
+                waiting = list(self._waiting)
+            for other in waiting:
+                self._tell(other.request.job, Progress(stage="waiting", done=0.0, trials=0))
+
+        try:
+            goal, size = _chosen("goal", request.goal, Goal), None
+            if request.size is not None:
+                size = _chosen("size", request.size, Size)
+            if not 0 <= request.seconds <= _MOST_S:
+                said = say("studio.coach-seconds", seconds=request.seconds, most_s=_MOST_S)
+                raise UserError(said)
+            files = read_files(request.files)
+            key = coached_key(files.gait, goal, request.key)
+            task = task_of(files.robot, files.gait, key, goal, files.sequences)
+            trials = Trials(task, workers, search.stop)
+            found = coach(trials, size, request.seconds, request.seed, tell)
+        except (FileRefused, UserError) as error:
+            return Answer(False, encode(refusal(error)))
+        return Answer(True, encode(reply_of(task, key, found)))
+
+
+def _chosen(field: str, text: str, kind: type[_Choice]) -> _Choice:
+    """Read one of a few words.
+
+    Raises:
+        UserError: if it is none of them.
+    """
+    try:
+        return kind(text)
+    except ValueError:
+        options = [str(one) for one in kind]
+        said = say("studio.coach-choice", field=field, found=text[:40], options=options)
+        raise UserError(said) from None

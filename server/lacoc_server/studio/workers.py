@@ -1,0 +1,181 @@
+"""Processes that work for this one. If one dies, only its own job is lost, and another starts."""
+
+import contextlib
+import os
+import signal
+import threading
+import traceback
+from collections.abc import Callable
+from concurrent.futures import Future
+from multiprocessing import get_context
+from multiprocessing.connection import Connection, wait
+from queue import SimpleQueue
+from typing import Any, NamedTuple, ParamSpec, Self, TypeVar
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+_SPAWN = get_context("spawn")
+_NICE = 10
+"""How much lower the priority of background work is, where the system has priorities."""
+_END_S = 5.0
+
+
+class WorkerDied(Exception):
+    """The process of a job ended before the job did, or took too long and was ended."""
+
+
+class WorkerFailed(Exception):
+    """A job raised an error, which is a bug; the text is its traceback."""
+
+
+class _Job(NamedTuple):
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    result: "Future[Any]"
+
+
+class Workers:
+    """Runs functions in processes, first come, first served; used as a context manager.
+
+    Processes start at once, so that the first job finds them ready.
+
+    Args:
+        jobs: number of processes; None: one for each core.
+        background: whether they give way to all others.
+        limit_s: longest time for a job [s]; then its process is ended.
+    """
+
+    def __init__(
+        self, jobs: int | None = None, *, background: bool = False, limit_s: float = 60.0
+    ) -> None:
+        self.count = jobs or os.cpu_count() or 1
+        self._background = background
+        self._limit_s = limit_s
+        self._jobs: SimpleQueue[_Job | None] = SimpleQueue()
+        self._closing = False
+        self._children: set[_Child] = set()
+        self._threads = [threading.Thread(target=self._run, daemon=True) for _ in range(self.count)]
+        for thread in self._threads:
+            thread.start()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def waiting(self) -> int:
+        """Number of jobs that no process has begun yet."""
+        return self._jobs.qsize()
+
+    @property
+    def processes(self) -> tuple[int, ...]:
+        """The numbers of the processes that run now."""
+        return tuple(pid for child in list(self._children) if (pid := child.process.pid))
+
+    def submit(
+        self, function: Callable[P, T], *arguments: P.args, **named: P.kwargs
+    ) -> "Future[T]":
+        """Run a function of a module in a process.
+
+        Returns:
+            Its result. It raises `WorkerDied` or `WorkerFailed`, or is cancelled by `close`.
+        """
+        assert not named, "a job has positional arguments only"
+        result: Future[T] = Future()
+        self._jobs.put(_Job(function, arguments, result))
+        return result
+
+    def close(self) -> None:
+        """End all processes; jobs that are not done are cancelled or fail."""
+        self._closing = True
+        for _ in self._threads:
+            self._jobs.put(None)
+        for child in list(self._children):
+            child.process.kill()
+        for thread in self._threads:
+            thread.join(_END_S)
+
+    def _run(self) -> None:
+        child = self._child()
+        while (job := self._jobs.get()) is not None:
+            if self._closing or not job.result.set_running_or_notify_cancel():
+                job.result.cancel()
+                continue
+            try:
+                if not child.process.is_alive():  # it died while it had nothing to do
+                    child = self._replaced(child)
+                right, found = child.call(job.function, job.arguments, self._limit_s)
+            except WorkerDied as error:
+                if not self._closing:
+                    child = self._replaced(child)
+                job.result.set_exception(error)
+                continue
+            if right:
+                job.result.set_result(found)
+            else:
+                job.result.set_exception(WorkerFailed(found))
+        self._children.discard(child)
+        child.end()
+
+    def _replaced(self, child: "_Child") -> "_Child":
+        self._children.discard(child)
+        child.end()
+        return self._child()
+
+    def _child(self) -> "_Child":
+        child = _Child(self._background)
+        self._children.add(child)
+        if self._closing:  # `close` may not have seen it
+            child.process.kill()
+        return child
+
+
+class _Child:
+    """A process, and the pipe to it."""
+
+    def __init__(self, background: bool) -> None:
+        self._connection, other = _SPAWN.Pipe()
+        self.process = _SPAWN.Process(target=_work, args=(other, background), daemon=True)
+        self.process.start()
+        other.close()  # so that the pipe ends with the process
+
+    def call(
+        self, function: Callable[..., Any], arguments: tuple[Any, ...], limit_s: float
+    ) -> tuple[bool, Any]:
+        """Run a function in the process; return whether it worked, and its result or traceback.
+
+        Raises:
+            WorkerDied: if the process ended, or the time is over.
+        """
+        try:
+            self._connection.send((function, arguments))
+            if self._connection not in wait([self._connection, self.process.sentinel], limit_s):
+                raise WorkerDied(f"{function.__name__}: no result in {limit_s:.0f} s, or it ended")
+            found: tuple[bool, Any] = self._connection.recv()
+        except (EOFError, OSError) as error:
+            raise WorkerDied(f"{function.__name__}: {error!r}") from None
+        return found
+
+    def end(self) -> None:
+        """End the process."""
+        self._connection.close()
+        self.process.kill()
+        self.process.join(_END_S)
+
+
+def _work(connection: "Connection[Any, Any]", background: bool) -> None:
+    """Do what comes through the pipe until the other end closes it, or dies."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that this one serves
+    if background and hasattr(os, "nice"):
+        os.nice(_NICE)
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            function, arguments = connection.recv()
+            try:
+                found = True, function(*arguments)
+            except Exception:
+                found = False, traceback.format_exc()
+            connection.send(found)

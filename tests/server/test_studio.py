@@ -1,0 +1,397 @@
+"""Tests of a studio: a real process, asked over a real network."""
+
+import json
+import os
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from typing import Any, cast
+
+import msgspec
+import numpy as np
+import psutil
+import pytest
+from benchmarks.trials import entry_of
+from lacoc_process import started
+
+from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_server.studio.answers import answer, read_files, try_gait
+from lacoc_server.studio.coach.coach import coach, reply_of, task_of
+from lacoc_server.studio.coach.goal import Goal
+from lacoc_server.studio.coach.improve import Size
+from lacoc_server.studio.coach.trials import Trials
+from lacoc_server.studio.workers import Workers
+from lacoc_server.trial.course import LONGEST_TICKS
+from lacoc_server.world.sensed import make_course
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.gait.tables import Level, LocomotionTable
+from lacoc_shared.gait.text import write_gait
+from lacoc_shared.messages import PROTOCOL, Done, Refusal, SentFile
+from lacoc_shared.network.session import Question, Refused, Session, open_client
+from lacoc_shared.studio import (
+    STUDIO_MAX_BYTES,
+    TRIAL_REPLY_MAX_BYTES,
+    CancelRequest,
+    CoachReply,
+    CoachRequest,
+    GaitFiles,
+    Progress,
+    RobotReply,
+    RobotRequest,
+    StudioKeys,
+    TrialReply,
+    TrialRequest,
+)
+
+pytestmark = pytest.mark.slow
+KEYS = StudioKeys("test")
+WAIT_S = 60.0
+QUADRUPED = SentFile(*find_robot("quadruped"))
+
+
+class Asker:
+    """Asks a studio, and reads its answers."""
+
+    def __init__(self, session: Session, process: subprocess.Popen[str]) -> None:
+        self.session = session
+        self.process = process
+
+    def begin(self, what: str, request: object) -> Question:
+        """Send a request; bytes are sent as they are."""
+        payload = request if isinstance(request, bytes) else encode(request)
+        return self.session.question(KEYS.request(what), payload, WAIT_S)
+
+    def robot(self, robot: SentFile | None = None) -> RobotReply:
+        """Ask what a robot file describes."""
+        payload = self.begin("robot", RobotRequest(protocol=PROTOCOL, robot=robot)).wait()
+        return decode(payload, RobotReply, TRIAL_REPLY_MAX_BYTES)
+
+    def trial(self, files: GaitFiles, keys: str = "", seconds: float | None = None) -> TrialReply:
+        """Ask for a trial."""
+        request = TrialRequest(protocol=PROTOCOL, files=files, keys=keys, seconds=seconds)
+        return decode(self.begin("trial", request).wait(), TrialReply, TRIAL_REPLY_MAX_BYTES)
+
+    def refusal(self, what: str, request: object) -> Refusal:
+        """Send a request that is refused."""
+        with pytest.raises(Refused) as refused:
+            self.begin(what, request).wait()
+        return decode(refused.value.payload, Refusal)
+
+    def workers(self) -> list[psutil.Process]:
+        """List the studio's processes for trials."""
+        children = psutil.Process(self.process.pid).children()
+        return [one for one in children if "spawn_main" in " ".join(one.cmdline())]
+
+
+@pytest.fixture(scope="module")
+def asker() -> Iterator[Asker]:
+    """Give a session that is connected to a studio with two processes."""
+    words = ("studio", "--json", "--name", "test", "--jobs", "2", "--listen", "tcp/127.0.0.1:0")
+    process = started(*words, stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        opened = json.loads(process.stdout.readline())
+        assert opened["studio"] == "test"
+        with open_client(opened["locators"]) as session:
+            yield Asker(session, process)
+    finally:
+        children = psutil.Process(process.pid).children(recursive=True)
+        process.terminate()
+        assert process.wait(WAIT_S) == 0
+        assert psutil.wait_procs(children, WAIT_S)[1] == []
+
+
+def until(true: Callable[[], bool]) -> None:
+    """Wait until a condition is true."""
+    end_s = time.monotonic() + WAIT_S
+    while not true():
+        assert time.monotonic() < end_s, "it did not come true"
+        time.sleep(0.01)
+
+
+def files_of(robot: str) -> GaitFiles:
+    """Return the files of a sample robot."""
+    postures, locomotion = sample_gait_files(robot)
+    return GaitFiles(robot=SentFile(*find_robot(robot)), postures=postures, locomotion=locomotion)
+
+
+def test_a_trial_is_that_of_the_command(asker: Asker) -> None:
+    """A studio's trial has the figures of `lacoc trial`, its arrays, and the same last state."""
+    reply = asker.trial(GaitFiles())
+    entry = entry_of("hexapod")
+    trial = try_gait(make_course(entry.robot), entry.gait)
+    assert reply.figures == vars(trial.figures)
+    assert reply.digest == trial.walk.digests[-1]
+    assert (reply.level, reply.key) == (Level.LOCOMOTION, 2)
+    assert list(reply.explained) == trial.explained
+    assert {one.leg for one in reply.explained} - {-1}
+    ticks, joints, legs = reply.ticks, entry.robot.joints, len(entry.robot.legs)
+    assert (reply.first, reply.end) == trial.walk.span[:2]
+    shapes = {
+        "poses": 7 + joints,
+        "commanded_rad": joints,
+        "contact_w_m": 2 * legs,
+        "centre_w_m": 2,
+        "margin_m": 1,
+        "slip_m_s": legs,
+        "tip_m": legs,
+    }
+    for name, width in shapes.items():
+        assert len(getattr(reply, name)) == 4 * ticks * width, name
+    down = np.frombuffer(reply.down, np.uint8)[:, None] >> np.arange(legs) & 1
+    assert (down == trial.walk.down).all()
+    assert (np.frombuffer(reply.posture, np.uint8) == trial.walk.posture).all()
+
+
+def test_a_sentence_has_its_place(asker: Asker) -> None:
+    """The page finds the cell and the leg of a sentence without reading its words."""
+    entry = entry_of("hexapod")
+    assert entry.gait.locomotion is not None
+    sequences = [list(map(list, one)) for one in entry.gait.locomotion.sequences]
+    sequences[2][3][7] = entry.robot.ranges_rad[7][1]
+    table = LocomotionTable(tuple(tuple(map(tuple, one)) for one in sequences))
+    sent = SentFile("LocoTra-data.txt", write_gait(table, entry.robot.labels))
+    said = asker.trial(GaitFiles(locomotion=sent)).explained
+    limit = next(one for one in said if one.said.code == "explain.limit")
+    assert limit.cell is not None
+    assert (limit.cell.posture, limit.cell.joint, limit.leg) == (3, 7, 1)
+
+
+@pytest.mark.parametrize("name", ["quadruped", "octopod"])
+def test_a_robot_is_described(asker: Asker, name: str) -> None:
+    """A robot has its table's columns, a drawable scene, and each limited fact keeps its limit."""
+    file = SentFile(*find_robot(name))
+    robot = asker.robot(file)
+    legs = len(robot.legs)
+    assert robot.facts["joints"] == 3 * legs == len(robot.ranges_deg) == len(robot.start_deg)
+    assert sorted(one.joint for one in robot.scene.bodies if one.joint >= 0) == [*range(3 * legs)]
+    assert robot.sheet.seats[0].legs == robot.legs
+    assert robot.limits.keys() <= robot.facts.keys()
+    for fact, (low, high) in robot.limits.items():
+        numbers = robot.facts[fact]
+        for number in numbers if isinstance(numbers, list) else [numbers]:
+            assert low is None or low <= number, fact
+            assert high is None or number <= high, fact
+    assert asker.trial(files_of(name)).ticks > 100
+
+
+def test_a_wrong_request_gets_one_refusal(asker: Asker) -> None:
+    """Whatever is wrong with a request, its sender is told, and the next request is answered."""
+    good = TrialRequest(protocol=PROTOCOL, files=GaitFiles())
+
+    def code(what: str, request: object) -> str:
+        return asker.refusal(what, request).why.code
+
+    assert code("trial", b"") == "refused.bad-request"
+    assert code("trial", os.urandom(1000)) == "refused.bad-request"
+    assert code("trial", bytes(STUDIO_MAX_BYTES + 1)) == "refused.bad-request"
+    assert code("coach", b"\xc1") == "refused.bad-request"
+    assert code("dance", b"") == "studio.unknown"
+    assert code("robot", {"protocol": PROTOCOL + 1}) == "studio.wrong-version"
+    assert code("robot", {"protocol": PROTOCOL, "more": 1}) == "refused.bad-request"
+    for keys in ("9", "x", "1:3"):
+        assert code("trial", msgspec.structs.replace(good, keys=keys)).startswith("trial.")
+    for seconds in (-1.0, 0.0, 61.0, 1e300, float("nan"), float("inf")):
+        request = msgspec.structs.replace(good, seconds=seconds)
+        assert code("trial", request) == "trial.length"
+    long = ", ".join(["1:20"] * 4 + ["2"])
+    assert code("trial", msgspec.structs.replace(good, keys=long)) == "trial.length"
+    alone = GaitFiles(robot=QUADRUPED)
+    assert code("trial", msgspec.structs.replace(good, files=alone)) == "studio.no-gait"
+    for name in ("", "a" * 101, "a\nb"):
+        files = GaitFiles(locomotion=SentFile(name, b""))
+        assert code("trial", msgspec.structs.replace(good, files=files)) == "refused.file-name"
+    assert asker.trial(GaitFiles(), seconds=0.1).ticks == 30
+
+
+def test_mistakes_in_files_are_listed(asker: Asker) -> None:
+    """A refusal names the mistakes of robot and gait files with their places."""
+    request = RobotRequest(protocol=PROTOCOL, robot=SentFile("my.toml", b"name = 3"))
+    refusal = asker.refusal("robot", request)
+    assert refusal.why.code == "refused.mistakes"
+    assert {one.file for one in refusal.mistakes} == {"my.toml"}
+    heavy = QUADRUPED.data.replace(b"mass_kg = 0.", b"mass_kg = 9.", 1)
+    assert heavy != QUADRUPED.data
+    request = RobotRequest(protocol=PROTOCOL, robot=SentFile("my.toml", heavy))
+    assert asker.refusal("robot", request).mistakes
+    postures, _ = sample_gait_files("hexapod")
+    assert postures is not None
+    files = GaitFiles(robot=QUADRUPED, postures=postures)
+    refusal = asker.refusal("trial", TrialRequest(protocol=PROTOCOL, files=files))
+    assert refusal.mistakes
+    assert refusal.mistakes[0].file == postures.name
+
+
+def test_a_worker_that_dies_is_replaced(asker: Asker) -> None:
+    """Its request is refused and may come again; those beside it are answered."""
+    asker.trial(GaitFiles(), seconds=0.1)
+    until(lambda: len(asker.workers()) == 2)
+    before = {one.pid for one in asker.workers()}
+    long = TrialRequest(protocol=PROTOCOL, files=GaitFiles(), seconds=60.0)
+    questions = [asker.begin("trial", long) for _ in range(2)]
+    busy = {one.pid: one for one in asker.workers()}
+    used = {pid: sum(one.cpu_times()[:2]) for pid, one in busy.items()}
+    until(lambda: all(sum(one.cpu_times()[:2]) > used[pid] + 0.1 for pid, one in busy.items()))
+    os.kill(next(iter(busy)), signal.SIGKILL)
+    replies, refusals = 0, 0
+    for question in questions:
+        try:
+            reply = decode(question.wait(), TrialReply, TRIAL_REPLY_MAX_BYTES)
+            assert reply.ticks == LONGEST_TICKS
+            replies += 1
+        except Refused as refused:
+            refusal = decode(refused.payload, Refusal)
+            assert (refusal.why.code, refusal.again) == ("studio.died", True)
+            refusals += 1
+    assert (replies, refusals) == (1, 1)
+    until(lambda: len(asker.workers()) == 2)
+    assert len({one.pid for one in asker.workers()} & before) == 1
+    assert asker.trial(GaitFiles(), seconds=0.1).ticks == 30
+
+
+def coach_request(job: str, **more: object) -> CoachRequest:
+    """Ask for a better gait of a quadruped with small steps, whose trials are short."""
+    entry = entry_of("quadruped")
+    assert entry.gait.postures is not None
+    one, other = (entry.gait.postures.postures[digit] for digit in (1, 3))
+    small = tuple((3 * a + b) / 4 for a, b in zip(one, other, strict=True))
+    large = tuple((a + 3 * b) / 4 for a, b in zip(one, other, strict=True))
+    start = entry.robot.start_posture
+    table = LocomotionTable(((start,), (start,), (small, large)))
+    sent = SentFile("LocoTra-data.txt", write_gait(table, entry.robot.labels))
+    files = GaitFiles(robot=QUADRUPED, locomotion=sent)
+    request = CoachRequest(protocol=PROTOCOL, job=job, files=files, key=2, size="cell", seconds=0)
+    return msgspec.structs.replace(request, **more)
+
+
+class Here:
+    """Runs jobs in this process, in the place of `Workers`."""
+
+    count = 1
+
+    def submit(self, function: Callable[..., Any], *arguments: object) -> Future[Any]:
+        """Run a job at once."""
+        done: Future[Any] = Future()
+        done.set_result(function(*arguments))
+        return done
+
+
+def test_a_search_can_be_repeated(asker: Asker) -> None:
+    """A search of one round has the same result in one process. It tells how far it is."""
+    progress = asker.session.mailbox(KEYS.progress("one"), 1000)
+    request = coach_request("one")
+    reply = decode(asker.begin("coach", request).wait(), CoachReply)
+    files = read_files(request.files)
+    task = task_of(files.robot, files.gait, 2, Goal.FORWARD, files.sequences)
+    trials = Trials(task, cast(Workers, Here()), threading.Event())
+    again = coach(trials, Size.CELL, 0.0, 0, lambda _: None)
+    assert reply == reply_of(task, 2, again)
+    assert len(reply.changes) == 1
+    assert reply.score_after > reply.score_before
+    assert len(reply.matters) == 24
+    assert not reply.cancelled
+    told = []
+    while (mail := progress.take()) is not None:
+        told.append(decode(mail.payload, Progress))
+    assert told
+    assert {one.stage for one in told} <= {"matters", "search", "undo"}
+    assert all(0 <= one.done <= 1 for one in told)
+    trials = [one.trials for one in told]
+    assert trials == sorted(trials)
+
+
+def test_a_search_can_be_cancelled(asker: Asker) -> None:
+    """A cancelled search replies with its best so far; trials never wait for it."""
+    progress = asker.session.mailbox(KEYS.progress("long"), 1000)
+    waiting = asker.session.mailbox(KEYS.progress("next"), 1000)
+    question = asker.begin("coach", coach_request("long", seconds=100.0, size="table"))
+    stages = set()
+
+    def searches() -> bool:
+        while (mail := progress.take()) is not None:
+            stages.add(decode(mail.payload, Progress).stage)
+        return "search" in stages
+
+    until(searches)
+    following = asker.begin("coach", coach_request("next", seconds=100.0, size="table"))
+    until(lambda: waiting.take() is not None)
+    assert asker.refusal("coach", coach_request("long")).why.code == "studio.job-taken"
+    assert asker.trial(GaitFiles(), seconds=0.1).ticks == 30
+    for job in ("next", "long"):
+        cancel = CancelRequest(protocol=PROTOCOL, job=job)
+        assert decode(asker.begin("cancel", cancel).wait(), Done)
+    with pytest.raises(Refused) as refused:
+        following.wait()
+    assert decode(refused.value.payload, Refusal).why.code == "studio.cancelled"
+    reply = decode(question.wait(), CoachReply)
+    assert reply.cancelled
+    assert reply.score_after >= reply.score_before
+    request = CancelRequest(protocol=PROTOCOL, job="long")
+    assert asker.refusal("cancel", request).why.code == "studio.no-job"
+
+
+def test_a_search_with_wrong_wishes_is_refused(asker: Asker) -> None:
+    """A search's goal, size, time, key and name are checked."""
+    for wrong, code in (
+        ({"goal": "up"}, "studio.coach-choice"),
+        ({"size": "all"}, "studio.coach-choice"),
+        ({"seconds": 1e9}, "studio.coach-seconds"),
+        ({"seconds": float("nan")}, "studio.coach-seconds"),
+        ({"key": 9}, "trial.no-key"),
+        ({"job": "*"}, "address.court-name"),
+    ):
+        request = coach_request(**{"job": "wrong", **wrong})
+        assert asker.refusal("coach", request).why.code == code
+
+
+def test_nobody_else_speaks_for_a_studio(asker: Asker) -> None:
+    """What a client sends in the place of the studio reaches nobody, and it gets no requests."""
+    (at,) = asker.session.endpoints
+    with open_client([at]) as other:
+        heard = asker.session.mailbox(KEYS.progress("mine"), 10)
+        desk = other.desk(KEYS.request("*"), 10)
+        other.send(KEYS.progress("mine"), b"forged")
+        assert asker.trial(GaitFiles(), seconds=0.1).ticks == 30
+        assert desk.take() is None
+        assert heard.take() is None
+
+
+def test_the_longest_trial_of_the_largest_robot(asker: Asker) -> None:
+    """A reply of its size passes the network; a trial can't be longer, nor a robot larger."""
+    reply = asker.trial(files_of("octopod"), seconds=60.0)
+    assert reply.ticks == LONGEST_TICKS
+
+
+def test_physics_that_stop_are_a_reply() -> None:
+    """A trial whose physics stop has a fault and the figures of what was seen."""
+    course = make_course(entry_of("hexapod").robot)
+    course._world.data.qvel[:] = 1e9  # type: ignore[attr-defined]
+    course._world._keep()  # type: ignore[attr-defined]
+    course._start = course._world.save()
+    found = answer(
+        "trial", encode(TrialRequest(protocol=PROTOCOL, files=GaitFiles())), lambda _: course
+    )
+    assert found.right
+    reply = decode(found.payload, TrialReply)
+    assert reply.fault is not None
+    assert reply.explained[0].said.code == "explain.fault"
+    assert (reply.ticks, reply.poses) == (0, b"")
+
+
+def test_no_process_is_left_when_a_studio_is_killed() -> None:
+    """The processes for trials end by themselves when their studio is killed."""
+    process = started(
+        "studio", "--json", "--jobs", "1", "--listen", "tcp/127.0.0.1:0",
+        stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert process.stdout is not None
+    process.stdout.readline()
+    parent = psutil.Process(process.pid)
+    until(lambda: bool(parent.children()))
+    children = parent.children(recursive=True)
+    process.kill()
+    process.wait()
+    assert psutil.wait_procs(children, WAIT_S)[1] == []
