@@ -5,13 +5,15 @@ import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
+import msgspec
 import psutil
 import pytest
 from design_client import DesignClient, Refused
 from lacoc_process import Lacoc
 
+from lacoc_client.design import requests
 from lacoc_robots.library import find_robot
 from lacoc_shared.studio import STUDIO_MAX_BYTES
 
@@ -80,6 +82,24 @@ def refused(page: DesignClient, do: str, **fields: Any) -> dict[str, Any]:
     with pytest.raises(Refused) as refusal:
         page.ask(do, **fields)
     return refusal.value.reply
+
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "gateway.md"
+
+
+def test_the_document_has_every_request_with_its_fields() -> None:
+    """docs/gateway.md has each request of /design with all its fields."""
+    text = DOCUMENT.read_text("utf-8").partition("\n## From /design to the gateway\n")[2]
+    rows = [line.split("|")[1:3] for line in text.splitlines() if line.startswith("| `")]
+    found = {
+        do.strip(" `"): set(re.findall(r"`(\w+)`", re.sub(r"\(.*?\)", "", fields)))
+        for do, fields in rows
+    }
+    assert found == {
+        str(kind.__struct_config__.tag): {field.name for field in msgspec.structs.fields(kind)}
+        - {"id"}
+        for kind in get_args(requests.Asked)
+    }
 
 
 def test_only_a_page_with_the_key_gets_anything(opens: Opens) -> None:
