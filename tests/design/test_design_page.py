@@ -103,17 +103,17 @@ def test_the_document_has_every_request_with_its_fields() -> None:
 
 
 def test_only_a_page_with_the_key_gets_anything(opens: Opens) -> None:
-    """Without the page key every request is refused, and nothing is told of the folder."""
-    page = opens(None)
+    """Without the page key every request is refused, and the connection is closed."""
     for do, fields in (
         ("hello", {"key": "wrong"}),
         ("read", {"name": "Loco-data.txt"}),
         ("trial", {}),
         ("sample", {}),
     ):
+        page = opens(None)
         assert refused(page, do, **fields)["error"]["code"] == "design.wrong-key"
-    assert page.folder == {}
-    assert page.studio == {}
+        assert page.code() == 1008
+        assert (page.folder, page.studio) == ({}, {})
 
 
 def test_a_page_is_told_of_the_folder_and_the_studio(page: DesignClient, gateway: Gateway) -> None:
