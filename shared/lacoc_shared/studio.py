@@ -186,7 +186,10 @@ class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """End a search early; the reply is `Done`, and the search's own reply has the best so far."""
+    """End a search early; the reply is `Done`, and the search's own reply has the best so far.
+
+    A search that still waits is refused.
+    """
 
     protocol: int
     job: str

@@ -317,15 +317,15 @@ def test_a_search_can_be_cancelled(asker: Asker) -> None:
     until(lambda: waiting.take() is not None)
     assert asker.refusal("coach", coach_request("long")).why.code == "studio.job-taken"
     assert asker.trial(GaitFiles(), seconds=0.1).ticks == 30
-    for job, asked in (("next", following), ("long", question)):
-        assert decode(asker.begin("cancel", CancelRequest(protocol=PROTOCOL, job=job)).wait(), Done)
-        if job == "long":
-            reply = decode(asked.wait(), CoachReply)
-            assert reply.cancelled
-            assert reply.score_after >= reply.score_before
-    reply = decode(following.wait(), CoachReply)
+    for job in ("next", "long"):
+        cancel = CancelRequest(protocol=PROTOCOL, job=job)
+        assert decode(asker.begin("cancel", cancel).wait(), Done)
+    with pytest.raises(Refused) as refused:
+        following.wait()
+    assert decode(refused.value.payload, Refusal).why.code == "studio.cancelled"
+    reply = decode(question.wait(), CoachReply)
     assert reply.cancelled
-    assert reply.changes == ()
+    assert reply.score_after >= reply.score_before
     request = CancelRequest(protocol=PROTOCOL, job="long")
     assert asker.refusal("cancel", request).why.code == "studio.no-job"
 
@@ -342,6 +342,24 @@ def test_a_search_with_wrong_wishes_is_refused(asker: Asker) -> None:
     ):
         request = coach_request(**{"job": "wrong", **wrong})
         assert asker.refusal("coach", request).why.code == code
+
+
+def test_nobody_else_speaks_for_a_studio(asker: Asker) -> None:
+    """What a client sends in the place of the studio reaches nobody, and it gets no requests."""
+    (at,) = asker.session.endpoints
+    with open_client([at]) as other:
+        heard = asker.session.mailbox(KEYS.progress("mine"), 10)
+        desk = other.desk(KEYS.request("*"), 10)
+        other.send(KEYS.progress("mine"), b"forged")
+        assert asker.trial(GaitFiles(), seconds=0.1).ticks == 30
+        assert desk.take() is None
+        assert heard.take() is None
+
+
+def test_the_longest_trial_of_the_largest_robot(asker: Asker) -> None:
+    """A reply of its size passes the network; a trial can't be longer, nor a robot larger."""
+    reply = asker.trial(files_of("octopod"), seconds=60.0)
+    assert reply.ticks == LONGEST_TICKS
 
 
 def test_physics_that_stop_are_a_reply() -> None:

@@ -15,6 +15,7 @@ from lacoc_server.studio.coach.trials import Trials
 from lacoc_server.studio.workers import Workers
 from lacoc_shared.codec import encode
 from lacoc_shared.keyspace import check_name
+from lacoc_shared.messages import Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.studio import CoachRequest, Progress
 from lacoc_shared.words import say
@@ -28,7 +29,7 @@ _END_S = 10.0
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 Done = Callable[[Answer], None]
-"""Takes the answer of a search, on the thread of the searches."""
+"""Takes the answer of a search; called on any thread."""
 Tell = Callable[[str, Progress], None]
 """Takes the name of a search, and how far it is."""
 
@@ -80,16 +81,21 @@ class Searches:
             self._changed.notify()
 
     def cancel(self, job: str) -> None:
-        """Let a search end soon, with what it has found.
+        """Let a search end soon, with what it has found; one that still waits is refused.
 
         Raises:
             UserError: if there is no such search.
         """
         with self._changed:
             search = next((one for one in self._all() if one.request.job == job), None)
+            waits = search in self._waiting
+            if search is not None and waits:
+                self._waiting.remove(search)
         if search is None:
             raise UserError(say("studio.no-job", job=job[:40]))
         search.stop.set()
+        if waits:
+            search.done(Answer(False, encode(Refusal(say("studio.cancelled")))))
 
     def close(self) -> None:
         """Stop all searches and end their processes."""

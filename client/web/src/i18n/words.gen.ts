@@ -490,6 +490,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "studio.failed": ["The studio could not answer this request because of a mistake in its own program; its log says more.", "スタジオのプログラム自身の誤りのため、この要求に答えられませんでした。詳しくはスタジオのログを見てください。"],
   "studio.job-taken": ["A search with the name {job} is already running at this studio. Choose another name.", "このスタジオではすでに {job} という名前の探索が動いています。別の名前にしてください。"],
   "studio.no-job": ["No search with the name {job} is running at this studio.", "このスタジオでは {job} という名前の探索は動いていません。"],
+  "studio.cancelled": ["The search was cancelled before it began.", "探索は始まる前に取り消されました。"],
   "studio.coach-busy": ["Too many searches are waiting at the studio. Try again in a minute.", "スタジオで順番を待つ探索が多すぎます。1 分後にもう一度試してください。"],
   "studio.coach-seconds": ["A search takes from 0 to {most_s:.0} s, and this one would take {seconds:.1} s.", "探索は 0～{most_s:.0} 秒です。この探索は {seconds:.1} 秒になります。"],
   "studio.coach-choice": ["The request's {field} is {found:quoted}. It can be {options:or}.", "要求の {field} が {found:quoted} です。使えるのは {options:or} です。"],
