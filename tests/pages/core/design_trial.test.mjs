@@ -289,6 +289,12 @@ each("a ray finds the link that it hits", ({ robot, legs }) => {
     }
   }
   assert.equal(found.size, start_deg.length);
+  // From outside, a leg hides the one on the other side.
+  for (const [leg, [, from, to]] of links.entries()) {
+    const eye = [20 * to[0], 20 * to[1], to[2]];
+    const middle = from.map((part, axis) => (part + to[axis]) / 2);
+    assert.equal(parts.pickJoint(scene, fk, eye, minus(middle, eye), 0) % legs, leg);
+  }
   assert.equal(parts.pickJoint(scene, fk, [0, 0, 1], [0, 0, 1]), null);
   const [x, y] = links[0].at(-1);
   const beside = [x + 0.02, y + 0.02, 1];
