@@ -26,8 +26,6 @@ export class History {
   private readonly versions = new Map<string, number>();
   private readonly rows = new Map<string, number>();
   private readonly rowNumbers = new WeakMap<Row, number>();
-  /** By version, from 1. */
-  private tables: Table[] = [];
 
   constructor(table: Table) {
     this.open(table);
@@ -48,34 +46,25 @@ export class History {
     });
   }
 
-  /** Take all steps over to another robot of as many legs; no step by itself. */
-  refit(columns: Columns): void {
-    const fitted = (table: Table) => refit(table, columns) ?? table;
-    this.tables = this.tables.map(fitted);
-    this.steps.value = this.steps.peek().map((step) => {
-      const table = fitted(step.table);
-      return { ...step, table, version: this.numberOf(table) };
-    });
-  }
-
   /**
-   * Edit the table: one step, unless the edit changes nothing.
+   * Edit the table: one step, unless the edit changes nothing. If the edited table has the columns
+   * of another robot, all steps get them, which is no step by itself.
    *
    * @param gesture Edits in a row with the same gesture, such as one drag of a slider, are one step.
    */
   apply(name: string, edit: (table: Table) => Table, gesture: string | null = null): void {
-    const before = this.steps.peek()[this.at.peek()]!;
-    const table = edit(before.table);
-    const version = this.numberOf(table);
-    if (version === before.version) return;
-    const goesOn = gesture !== null && before.gesture === gesture;
-    const kept = this.steps.peek().slice(0, this.at.peek() + (goesOn ? 0 : 1));
-    // A drag that ends where it began leaves no step.
-    const isBack = goesOn && kept.at(-1)?.version === version;
-    const steps = isBack ? kept : [...kept, { name, table, version, gesture }];
     batch(() => {
-      this.steps.value = steps;
-      this.at.value = steps.length - 1;
+      const table = edit(this.table.peek());
+      this.fit(table);
+      const before = this.steps.peek()[this.at.peek()]!;
+      const version = this.numberOf(table);
+      if (version === before.version) return;
+      const goesOn = gesture !== null && before.gesture === gesture;
+      const kept = this.steps.peek().slice(0, this.at.peek() + (goesOn ? 0 : 1));
+      // A drag that ends where it began leaves no step.
+      const isBack = goesOn && kept.at(-1)?.version === version;
+      this.steps.value = isBack ? kept : [...kept, { name, table, version, gesture }];
+      this.at.value = this.steps.peek().length - 1;
     });
   }
 
@@ -87,18 +76,21 @@ export class History {
     if (this.canRedo.peek()) this.at.value = this.at.peek() + 1;
   }
 
-  /** The table of a version. */
-  tableOf(version: number): Table | null {
-    return this.tables[version - 1] ?? null;
+  /** Take all steps over to a robot of as many legs. */
+  private fit({ legs, ranges }: Columns): void {
+    const now = this.table.peek();
+    if (now.legs === legs && now.ranges === ranges) return;
+    this.steps.value = this.steps.peek().map((step) => {
+      const table = refit(step.table, { legs, ranges }) ?? step.table;
+      return { ...step, table, version: this.numberOf(table) };
+    });
   }
 
   private numberOf(table: Table): number {
     const content = `${table.kind} ${table.rows.map((row) => this.rowNumber(row)).join(" ")}`;
-    const known = this.versions.get(content);
-    if (known !== undefined) return known;
-    this.tables.push(table);
-    this.versions.set(content, this.tables.length);
-    return this.tables.length;
+    const number = this.versions.get(content) ?? this.versions.size + 1;
+    this.versions.set(content, number);
+    return number;
   }
 
   /** The same number for the same row: a long table costs a short text for each version. */
