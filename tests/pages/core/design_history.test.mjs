@@ -117,14 +117,14 @@ test("another robot's columns apply to all steps, and are no step", () => {
   history.apply("up", turn(5));
   const version = history.version.value;
   const narrow = { legs: ["a", "b", "c", "d", "e", "f"], ranges: Array(18).fill([-40, 40]) };
-  history.apply("robot", (table) => t.refit(table, narrow));
+  history.refit(narrow);
   assert.deepEqual([history.undoName.value, history.table.value.legs], ["up", narrow.legs]);
   assert.equal(t.wrongOf(history.table.value.rows[0].cells[0]), "range");
   assert.notEqual(history.version.value, version);
   history.undo();
   assert.deepEqual(history.table.value.ranges[0], [-40, 40]);
   history.redo();
-  history.apply("robot", (table) => t.refit(table, COLUMNS));
+  history.refit(COLUMNS);
   assert.equal(history.version.value, version);
   assert.deepEqual(history.table.value.legs, COLUMNS.legs);
 });

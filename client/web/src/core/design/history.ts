@@ -46,25 +46,32 @@ export class History {
     });
   }
 
+  /** Take all steps over to another robot of as many legs; no step by itself. */
+  refit(columns: Columns): void {
+    this.steps.value = this.steps.peek().map((step) => {
+      const table = refit(step.table, columns) ?? step.table;
+      return { ...step, table, version: this.numberOf(table) };
+    });
+  }
+
   /**
-   * Edit the table: one step, unless the edit changes nothing. If the edited table has the columns
-   * of another robot, all steps get them, which is no step by itself.
+   * Edit the table: one step, unless the edit changes nothing.
    *
    * @param gesture Edits in a row with the same gesture, such as one drag of a slider, are one step.
    */
   apply(name: string, edit: (table: Table) => Table, gesture: string | null = null): void {
+    const before = this.steps.peek()[this.at.peek()]!;
+    const table = edit(before.table);
+    const version = this.numberOf(table);
+    if (version === before.version) return;
+    const goesOn = gesture !== null && before.gesture === gesture;
+    const kept = this.steps.peek().slice(0, this.at.peek() + (goesOn ? 0 : 1));
+    // A drag that ends where it began leaves no step.
+    const isBack = goesOn && kept.at(-1)?.version === version;
+    const steps = isBack ? kept : [...kept, { name, table, version, gesture }];
     batch(() => {
-      const table = edit(this.table.peek());
-      this.fit(table);
-      const before = this.steps.peek()[this.at.peek()]!;
-      const version = this.numberOf(table);
-      if (version === before.version) return;
-      const goesOn = gesture !== null && before.gesture === gesture;
-      const kept = this.steps.peek().slice(0, this.at.peek() + (goesOn ? 0 : 1));
-      // A drag that ends where it began leaves no step.
-      const isBack = goesOn && kept.at(-1)?.version === version;
-      this.steps.value = isBack ? kept : [...kept, { name, table, version, gesture }];
-      this.at.value = this.steps.peek().length - 1;
+      this.steps.value = steps;
+      this.at.value = steps.length - 1;
     });
   }
 
@@ -74,16 +81,6 @@ export class History {
 
   redo(): void {
     if (this.canRedo.peek()) this.at.value = this.at.peek() + 1;
-  }
-
-  /** Take all steps over to a robot of as many legs. */
-  private fit({ legs, ranges }: Columns): void {
-    const now = this.table.peek();
-    if (now.legs === legs && now.ranges === ranges) return;
-    this.steps.value = this.steps.peek().map((step) => {
-      const table = refit(step.table, { legs, ranges }) ?? step.table;
-      return { ...step, table, version: this.numberOf(table) };
-    });
   }
 
   private numberOf(table: Table): number {
