@@ -4,8 +4,9 @@ import json
 import os
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,8 @@ _OPEN_S = 60.0
 """Time for a process to be ready, also on a slow machine."""
 _CLOSE_S = 10.0
 _LOOK_S = 0.02
+_AGAIN_S = 1.0
+"""How soon a process that has ended is started again."""
 
 
 class Child:
@@ -102,6 +105,40 @@ def child(words: list[str], folder: Path, what: Phrase) -> Iterator[dict[str, An
         stack.callback(process.close)
         yield process.opened()
         process.show_crash()
+
+
+@contextmanager
+def kept_child(
+    words: list[str], folder: Path, what: Phrase, again: Callable[[dict[str, Any]], list[str]]
+) -> Iterator[dict[str, Any]]:
+    """Run a `lacoc` command as `child` does, and start it again whenever it ends.
+
+    Args:
+        words: the words of the command line after `lacoc`.
+        folder: folder for what it prints.
+        what: what it is, as the subject of a sentence (`child.*`).
+        again: makes the words for another start from the message that the first one printed.
+
+    Raises:
+        UserError: if it does not become ready at the first start.
+    """
+    process = Child(words, folder, what)
+    ending = threading.Event()
+
+    def keep(words: list[str]) -> None:
+        nonlocal process
+        while not ending.wait(_AGAIN_S):
+            if process.ended:
+                process = Child(words, folder, what)
+
+    with ExitStack() as stack:
+        stack.callback(lambda: process.close())
+        opened = process.opened()
+        keeper = threading.Thread(target=keep, args=(again(opened),), daemon=True)
+        keeper.start()
+        stack.callback(keeper.join)
+        stack.callback(ending.set)
+        yield opened
 
 
 def _without_heading(error: str) -> str:

@@ -61,13 +61,13 @@ def folder(tmp_path: Path) -> Folder:
 
 def test_gaits_and_robots_are_listed(folder: Folder) -> None:
     """The folder lists gait files and robot files with what they are for, and no other files."""
-    assert [(file.name, file.slot) for file in folder.files()] == [
+    assert [(file.name, file.slot) for file in folder.files] == [
         ("Loco-data-old.txt", "postures"),
         ("Loco-data.xlsx", "postures"),
         ("LocoTra-data2.txt", "locomotion"),
         ("my.toml", "robot"),
     ]
-    for file in folder.files():
+    for file in folder.files:
         assert folder.read(file.name).version == file.version
 
 
@@ -98,13 +98,14 @@ def test_a_mistake_is_told_with_its_place(folder: Folder) -> None:
 @pytest.mark.parametrize("name", ["Loco-data.xlsx", "Loco-data-old.txt", "Loco-new.txt"])
 def test_a_table_is_saved_and_read_back(folder: Folder, name: str) -> None:
     """A saved table is read back, under the version that the save returned."""
-    known = {file.name: file.version for file in folder.files()}
+    known = {file.name: file.version for file in folder.files}
     table = turned(sample(), 4, -12.25)
     saved = folder.save(name, table, known.get(name, ABSENT), force=False)
     assert isinstance(saved, Saved)
     again = folder.read(name)
     assert (again.table, again.version) == (table, saved.version)
-    assert saved.version in {file.version for file in folder.files()}
+    assert saved.version in {file.version for file in folder.files}
+    assert folder.look() == (name,)  # other pages are told
     assert not list(folder.path.glob(".lacoc-*"))
 
 

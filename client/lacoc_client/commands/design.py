@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from lacoc_client.child import child
+from lacoc_client.child import kept_child
 from lacoc_client.commands import pages
 from lacoc_client.design.asker import Asker
 from lacoc_client.design.designer import Designer
@@ -76,9 +76,18 @@ def _studio(connect: str | None) -> Iterator[str]:
     if connect is not None:
         yield connect
         return
-    words = ["studio", "--json", "--listen", "tcp/127.0.0.1:0"]
     with (
         tempfile.TemporaryDirectory(prefix="lacoc-design-") as folder,
-        child(words, Path(folder), say("child.studio")) as opened,
+        kept_child(
+            _words("tcp/127.0.0.1:0"),
+            Path(folder),
+            say("child.studio"),
+            # The page's way to it stays the same.
+            lambda opened: _words(opened["locators"][0]),
+        ) as opened,
     ):
         yield opened["locators"][0]
+
+
+def _words(listen: str) -> list[str]:
+    return ["studio", "--json", "--listen", listen]

@@ -72,24 +72,31 @@ class DesignPage:
                 return False
             self._answers.refuse(to, error)
             return True
+        if not self._is_greeted(asked):
+            self._answers.refuse(asked.id, UserError(say("design.wrong-key")))
+            await self._websocket.close(GARBAGE, "no page key")
+            return False
         try:
             self._answer(asked)
         except (UserError, FileRefused) as error:
             self._answers.refuse(asked.id, error)
         return True
 
+    def _is_greeted(self, asked: requests.Asked) -> bool:
+        """Return whether the page has shown the page key, now or before."""
+        if isinstance(asked, requests.Hello):
+            key = asked.key.encode("utf-8", "surrogatepass")
+            self._viewer.can_act = hmac.compare_digest(key, self._designer.key.encode())
+        return self._viewer.can_act
+
     def _answer(self, asked: requests.Asked) -> None:
         answers = self._answers
         match asked:
             case requests.Hello():
-                self._greet(asked)
-                return
+                answers.reply(asked.id, {"robot": self._designer.robot})
+                self._designer.add(self._viewer)
             case requests.Ping():
                 answers.reply(asked.id, {"t": asked.t})
-                return
-        if not self._viewer.can_act:
-            raise UserError(say("design.wrong-key"))
-        match asked:
             case requests.RobotAsk():
                 answers.later(asked.id, self._studio.robot(asked))
             case requests.TrialAsk():
@@ -100,14 +107,6 @@ class DesignPage:
                 answers.later(asked.id, self._studio.cancel(asked.job))
             case _:
                 answers.later(asked.id, asyncio.to_thread(self._with_files, asked))
-
-    def _greet(self, asked: requests.Hello) -> None:
-        key = asked.key.encode("utf-8", "surrogatepass")
-        if not hmac.compare_digest(key, self._designer.key.encode()):
-            raise UserError(say("design.wrong-key"))
-        self._viewer.can_act = True
-        self._answers.reply(asked.id, {"robot": self._designer.robot})
-        self._designer.add(self._viewer)
 
     def _with_files(self, asked: requests.Asked) -> Any:
         """Answer a request about files; runs on another thread."""

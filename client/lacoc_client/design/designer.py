@@ -92,7 +92,7 @@ class Designer:
     def _folder_message(self, changed: tuple[str, ...]) -> bytes:
         body = {
             "folder": str(self.folder.path),
-            "files": self.folder.files(),
+            "files": self.folder.files,
             "changed": changed,
         }
         return wire.map_message(Kind.FOLDER, body)

@@ -88,17 +88,17 @@ class Folder:
         self.path = path.resolve()
         self._lock = threading.Lock()
         self._known: dict[str, _Known] = {}
-        self._look()
-
-    def files(self) -> tuple[FolderFile, ...]:
-        """Return the files as `look` last saw them, by name."""
-        with self._lock:
-            return self._files()
+        self._changed: set[str] = set()
+        self.files: tuple[FolderFile, ...] = ()
+        """The files as they were last seen, by name."""
+        self.look()
 
     def look(self) -> tuple[str, ...]:
-        """Look at the folder again; return the names of files that came, went or changed."""
+        """Look at the folder; return the names of files that came, went or changed since."""
         with self._lock:
-            return self._look()
+            self._look()
+            changed, self._changed = self._changed, set()
+            return tuple(sorted(changed))
 
     def read(self, name: str) -> Read:
         """Read a file.
@@ -129,16 +129,19 @@ class Folder:
         """
         with self._lock:
             path = self._path(name)
-            before = self._data(path)
-            if not force and version_of(before) != version:
-                return Conflict(_conflicting(name, before))
-            data = file_bytes(name, content, before)
+            while True:
+                before = self._data(path)
+                if not force and version_of(before) != version:
+                    return Conflict(_conflicting(name, before))
+                data = file_bytes(name, content, before)
+                if self._data(path) == before:  # else somebody saved just now
+                    break
             if data != before:
                 replace_file(path, data)
             self._look()
             return Saved(version_of(data))
 
-    def _look(self) -> tuple[str, ...]:
+    def _look(self) -> None:
         now: dict[str, _Known] = {}
         for name, modified_ns, size in _listed(self.path):
             known = self._known.get(name)
@@ -146,15 +149,11 @@ class Folder:
                 data = self._seen(self.path / name)
                 known = _Known(modified_ns, size, None if data is None else _file(name, data))
             now[name] = known
-        before = {file.name: file for file in self._files()}
         self._known = now
-        after = {file.name: file for file in self._files()}
-        names = before.keys() | after.keys()
-        return tuple(sorted(name for name in names if before.get(name) != after.get(name)))
-
-    def _files(self) -> tuple[FolderFile, ...]:
-        found = [known.file for known in self._known.values() if known.file is not None]
-        return tuple(sorted(found, key=lambda file: file.name.casefold()))[:MOST_FILES]
+        files = [known.file for known in now.values() if known.file is not None]
+        before = self.files
+        self.files = tuple(sorted(files, key=lambda file: file.name.casefold()))[:MOST_FILES]
+        self._changed |= {file.name for file in {*before} ^ {*self.files}}
 
     def _path(self, name: str) -> Path:
         fits = _GAIT.fullmatch(name) or _ROBOT.fullmatch(name)

@@ -15,7 +15,7 @@ REQUEST_BYTES = STUDIO_MAX_BYTES
 """Longest request that has no file of another program in it; a longer one is refused."""
 PARSE_BYTES = MAX_BYTES + 4096
 """Longest `parse`: a workbook as large as any that is read."""
-MESSAGE_BYTES = 32 << 20
+MESSAGE_BYTES = 16 << 20
 """Longest message; only a longer one closes the connection."""
 
 _Name = Annotated[str, msgspec.Meta(max_length=200)]

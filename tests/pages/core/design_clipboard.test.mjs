@@ -150,6 +150,8 @@ test("what is on a clipboard is read", () => {
         ["", "c"],
       ],
     ],
+    ["", "<table><tr><td>two\n  words</table>", [["two words"]]],
+    ["", "<table><tr></tr><tr><td>1</table>", [["1"]]],
     ["", "<table><tr><td>&#45;&#x34;5&nbsp;&lt;</table>", [["-45 <"]]],
     ["", "<table><tr><td>1</table><table><tr><td>2</table>", [["1"]]],
   ];

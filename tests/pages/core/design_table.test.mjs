@@ -27,6 +27,8 @@ test("what is typed is an angle, or is kept with the reason", () => {
     "1e1": 10,
     150: 150,
     150.1: "range",
+    "-150": -150,
+    "-150.1": "range",
     "1e999": "range",
     "": "empty",
     "  ": "empty",
@@ -106,7 +108,7 @@ test("rows of postures come and go by their keys", () => {
 
 test("postures of locomotion are numbered within their key, and keys have no gaps", () => {
   assert.equal(names(rows.addRow(walking, 2)).slice(0, 27), "0.0 1.0 1.1 1.2 1.3 1.4 2.0");
-  assert.equal(names(rows.removeRow(walking, 1)).slice(0, 15), "0.0 1.0 1.1 1.2");
+  assert.equal(names(rows.removeRow(walking, 1)).slice(0, 19), "0.0 1.0 1.1 1.2 2.0");
   assert.ok(!rows.canRemove(walking, 0));
   const more = rows.addKey(walking, 0);
   assert.deepEqual(more.rows.at(-1), { key: 4, posture: 0, cells: walking.rows[0].cells });
@@ -141,6 +143,8 @@ test("linked halves follow each other in both directions", () => {
   assert.equal(followed.rows[3].cells[5], 30);
   const second = t.setCell(followed, 3, 5, "-10");
   assert.equal(tools.follow(followed, second, halves).rows[1].cells[0], -10);
+  const both = t.setCell(t.setCell(sample, 1, 0, "30"), 3, 5, "-10");
+  assert.equal(tools.follow(sample, both, halves).rows[3].cells[5], 30);
   for (const sequence of [
     [1, 2, 3],
     [1, 2, 1, 2],
@@ -169,5 +173,10 @@ test("only a joint that jumps at the seam is found", () => {
   assert.deepEqual(jumps(slow), [8]);
   assert.deepEqual(tools.seam(slow, sequence)[8], { stepDeg: 30, otherDeg: 10, jumps: true });
   assert.deepEqual(jumps(t.clear(slow, one(2, 8))), []);
+  const little = sequence.reduce(
+    (table, row, index) => t.setCell(table, row, 8, `${index}`),
+    sample,
+  );
+  assert.deepEqual(jumps(little), []);
   assert.deepEqual(tools.seam(sample, [1]), []);
 });

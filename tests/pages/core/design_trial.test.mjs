@@ -27,6 +27,20 @@ const robots = Object.entries(decode(new Uint8Array(written))).map(([name, repli
   };
 });
 
+/** For each leg its root hinge, its other hinges and its tip [m, world]. */
+function chains(scene, fk, legs) {
+  return Array.from({ length: legs }, (_, leg) => {
+    const bodies = parts.jointsOfLeg(leg, legs).map((id) => parts.bodyOf(scene, id));
+    const hinges = bodies.map((body) => [...fk.pos.slice(3 * body, 3 * body + 3)]);
+    // The shank hangs along -z of its frame, and its hinge is at one end of it.
+    const { pos, size } = scene.geoms.find(({ body }) => body === bodies[2]);
+    const [w, x, y, z] = fk.quat.slice(4 * bodies[2], 4 * bodies[2] + 4);
+    const down = [-2 * (x * z + w * y), -2 * (y * z - w * x), 2 * (x * x + y * y) - 1];
+    const length = -pos[2] + size[1] + size[0];
+    return [...hinges, hinges[2].map((part, axis) => part + length * down[axis])];
+  });
+}
+
 /** Runs a case for each robot. */
 function each(name, check) {
   for (const one of robots) test(`${name}: ${one.name}`, () => check(one));
@@ -149,7 +163,7 @@ each("a robot at rest is level and touches the floor", ({ robot, trial }) => {
     assert.deepEqual([...poses.slice(3, 7)], [1, 0, 0, 0]);
     fk.update(poses);
     assert.ok(Math.abs(lowestM(robot.scene, fk)) < 1e-6);
-    const tips = parts.chains(robot.scene, fk, trial.legs).flat();
+    const tips = chains(robot.scene, fk, trial.legs).flat();
     assert.ok(Math.min(...tips.map(([, , z]) => z)) > -1e-6);
   }
   // As it stands in physics before a key is pressed, but for what its servos yield.
@@ -223,16 +237,12 @@ each("each joint has its link, and turns what hangs on it", ({ robot, legs }) =>
   const fk = new ForwardKinematics(scene, [start_deg.length]);
   const at = (cells) => {
     fk.update([0, 0, 0, 1, 0, 0, 0, ...cells.map((deg) => (deg * Math.PI) / 180)]);
-    return parts.chains(scene, fk, legs).map((chain) => chain.flat());
+    return chains(scene, fk, legs).map((chain) => chain.flat());
   };
   const before = at(start_deg);
   for (const id of start_deg.keys()) {
     const body = parts.bodyOf(scene, id);
     assert.equal(parts.jointOf(scene, body), id);
-    assert.deepEqual(
-      parts.geomsOf(scene, id).map((geom) => scene.geoms[geom].body),
-      [body],
-    );
     const after = at(start_deg.with(id, start_deg[id] + 10));
     const moved = before.flatMap((chain, leg) => {
       const first = chain.findIndex((part, index) => Math.abs(part - after[leg][index]) > 1e-9);
@@ -267,9 +277,9 @@ each("a ray finds the link that it hits", ({ robot, legs }) => {
   const { scene, start_deg } = robot;
   const fk = new ForwardKinematics(scene, [start_deg.length]);
   fk.update(new Rest(robot).poses(start_deg));
-  const links = parts.chains(scene, fk, legs);
+  const links = chains(scene, fk, legs);
   const linkOf = (id) => links[id % legs].slice(Math.floor(id / legs), Math.floor(id / legs) + 2);
-  const radiusM = scene.geoms[parts.geomsOf(scene, 0)[0]].size[0];
+  const radiusM = scene.geoms.find(({ body }) => body === parts.bodyOf(scene, 0)).size[0];
   const chance = chanceOf(5);
   const random = (size) => [0, 1, 2].map(() => size * (2 * chance() - 1));
   const found = new Set();
@@ -289,6 +299,12 @@ each("a ray finds the link that it hits", ({ robot, legs }) => {
     }
   }
   assert.equal(found.size, start_deg.length);
+  // From outside, a leg hides the one on the other side.
+  for (const [leg, [, from, to]] of links.entries()) {
+    const eye = [20 * to[0], 20 * to[1], to[2]];
+    const middle = from.map((part, axis) => (part + to[axis]) / 2);
+    assert.equal(parts.pickJoint(scene, fk, eye, minus(middle, eye), 0) % legs, leg);
+  }
   assert.equal(parts.pickJoint(scene, fk, [0, 0, 1], [0, 0, 1]), null);
   const [x, y] = links[0].at(-1);
   const beside = [x + 0.02, y + 0.02, 1];

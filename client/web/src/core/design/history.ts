@@ -26,8 +26,6 @@ export class History {
   private readonly versions = new Map<string, number>();
   private readonly rows = new Map<string, number>();
   private readonly rowNumbers = new WeakMap<Row, number>();
-  /** By version, from 1. */
-  private tables: Table[] = [];
 
   constructor(table: Table) {
     this.open(table);
@@ -50,10 +48,8 @@ export class History {
 
   /** Take all steps over to another robot of as many legs; no step by itself. */
   refit(columns: Columns): void {
-    const fitted = (table: Table) => refit(table, columns) ?? table;
-    this.tables = this.tables.map(fitted);
     this.steps.value = this.steps.peek().map((step) => {
-      const table = fitted(step.table);
+      const table = refit(step.table, columns) ?? step.table;
       return { ...step, table, version: this.numberOf(table) };
     });
   }
@@ -87,18 +83,11 @@ export class History {
     if (this.canRedo.peek()) this.at.value = this.at.peek() + 1;
   }
 
-  /** The table of a version. */
-  tableOf(version: number): Table | null {
-    return this.tables[version - 1] ?? null;
-  }
-
   private numberOf(table: Table): number {
     const content = `${table.kind} ${table.rows.map((row) => this.rowNumber(row)).join(" ")}`;
-    const known = this.versions.get(content);
-    if (known !== undefined) return known;
-    this.tables.push(table);
-    this.versions.set(content, this.tables.length);
-    return this.tables.length;
+    const number = this.versions.get(content) ?? this.versions.size + 1;
+    this.versions.set(content, number);
+    return number;
   }
 
   /** The same number for the same row: a long table costs a short text for each version. */

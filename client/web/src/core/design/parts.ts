@@ -19,19 +19,13 @@ export function jointOf(scene: Scene, body: number): number | null {
   return found && found.seat < 0 && found.joint >= 0 ? found.joint : null;
 }
 
-/** The shapes that a joint turns itself, as indices of the scene. */
-export function geomsOf(scene: Scene, id: number, seat = 0): number[] {
-  const body = bodyOf(scene, id, seat);
-  return [...scene.geoms.keys()].filter((geom) => body >= 0 && scene.geoms[geom]!.body === body);
-}
-
 /** The joints of a leg, from the body outward. */
 export function jointsOfLeg(leg: number, legs: number): number[] {
   return LEVELS.map((_, level) => joint(leg, level, legs));
 }
 
 /** The seat of the robot that a body belongs to; -1: none. */
-export function seatOf(scene: Scene, body: number): number {
+function seatOf(scene: Scene, body: number): number {
   for (let at = body; at >= 0; at = scene.bodies[at]!.parent) {
     if (scene.bodies[at]!.seat >= 0) return scene.bodies[at]!.seat;
   }
@@ -73,25 +67,6 @@ export function pickJoint(
     }
   }
   return found;
-}
-
-/** For each leg its root hinge, its other hinges and its tip [m, world], for pictures of a robot. */
-export function chains(scene: Scene, fk: ForwardKinematics, legs: number): Three[][] {
-  return Array.from({ length: legs }, (_, leg) => {
-    const bodies = jointsOfLeg(leg, legs).map((id) => bodyOf(scene, id));
-    const hinges = bodies.map((body) => placed(fk, body, [0, 0, 0]));
-    const last = scene.geoms.find((geom) => geom.body === bodies.at(-1));
-    return last ? [...hinges, tipOf(fk, last)] : hinges;
-  });
-}
-
-/** The end of a link's shape that is farther from its hinge. */
-function tipOf(fk: ForwardKinematics, geom: Scene["geoms"][number]): Three {
-  const half = geom.type === "capsule" ? geom.size[1] : 0;
-  const along = turned(geom.quat, 0, [0, 0, half + geom.size[0]]);
-  const ends = [1, -1].map((sign) => geom.pos.map((at, axis) => at + sign * along[axis]!));
-  const [one, other] = ends as unknown as [Three, Three];
-  return placed(fk, geom.body, Math.hypot(...one) > Math.hypot(...other) ? one : other);
 }
 
 function placed(fk: ForwardKinematics, body: number, at: Three): Three {

@@ -1,7 +1,7 @@
-/** The rows of a table: add, remove and copy them, and find those of a key. */
+/** The rows of a table: add and remove them, and find those of a key. */
 
 import { MAX_KEYS, MAX_POSTURES_PER_KEY } from "../wire";
-import { mapRows, type Row, type Table, withCells } from "./table";
+import type { Row, Table } from "./table";
 
 /** Whether a row can be added after a row. */
 export function canAdd(table: Table, after: number): boolean {
@@ -44,13 +44,6 @@ export function canRemove(table: Table, row: number): boolean {
 export function removeRow(table: Table, row: number): Table {
   if (!canRemove(table, row)) return table;
   return numbered(table, table.rows.toSpliced(row, 1));
-}
-
-/** Give a row the cells of another one. */
-export function copyRow(table: Table, from: number, to: number): Table {
-  const cells = table.rows[from]?.cells;
-  if (!cells) return table;
-  return mapRows(table, (row, index) => (index === to ? withCells(row, (_, c) => cells[c]!) : row));
 }
 
 /** The digits of the keys, in ascending order. */

@@ -92,8 +92,8 @@ export function seam(table: Table, sequence: readonly number[]): Seam[] {
     const stepDeg = apart(first[id]!, last[id]!);
     const steps = rows.slice(1).map((cells, index) => apart(cells[id]!, rows[index]![id]!));
     const otherDeg = Math.max(...steps);
-    const isLarge = stepDeg > Math.max(otherDeg * SEAM_RATIO, otherDeg + SEAM_DEG);
-    return { stepDeg, otherDeg, jumps: rows.length > 2 && isLarge };
+    const jumps = stepDeg > Math.max(otherDeg * SEAM_RATIO, otherDeg + SEAM_DEG);
+    return { stepDeg, otherDeg, jumps };
   });
 }
 
