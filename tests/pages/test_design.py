@@ -52,6 +52,12 @@ class Designer(Contestant):
         self.press("Control+Enter")
         expect(self.find(".trials > li")).to_have_count(before + 1, timeout=TIMEOUT_MS)
 
+    def saves(self) -> None:
+        """Save the table, and wait until the page says that it is saved."""
+        expect(self.find(".bar .name small")).to_have_text("not saved")
+        self.press("Control+s")
+        expect(self.find(".bar .name small")).to_have_text("saved", timeout=TIMEOUT_MS)
+
     def figure(self, name: str) -> float:
         """Return a figure of the shown trial."""
         text = self.find(f".tiles [data-figure={name}] dd").inner_text().splitlines()[0]
@@ -163,6 +169,57 @@ def test_a_number_moves_the_leg_and_a_trial_explains_it(
     page.is_toasted("red cells have no angle")
 
 
+def test_a_beginner_s_first_gait(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """From standing legs, ten numbers and a tool make a gait that walks 100 mm in five cycles."""
+    page = designer(open_page, address)
+    actions = 0
+
+    def click(selector: str) -> None:
+        nonlocal actions
+        page.page.click(selector)
+        actions += 1
+
+    click(".bar .name")
+    click("dialog >> text=New table")
+    page.cell_is(1, 0, "45")  # as it stands
+    own = {
+        1: {0: "0", 3: "0", 12: "40", 14: "40", 16: "40"},
+        2: {2: "0", 5: "0", 12: "40", 14: "40", 16: "40"},
+    }
+    for row, cells in own.items():
+        for col, angle in cells.items():
+            click(f"#cell-{row}-{col}")
+            page.type(angle)
+            actions += 1
+    click(".strip >> text=Tools")
+    click("text=Make the other half")
+    page.cell_is(3, 13, "40")
+    click(".try")
+    page.sees(".result .tiles")
+    figures = page.page.evaluate("window.__studio.shown.value.trial.reply.figures")
+    assert figures["cycles"] == 5
+    assert figures["speed_mm_s"] * figures["seconds"] > 100
+    assert figures["upright"] > 0.9
+    assert actions <= 60
+
+
+def test_the_coach_works_and_can_be_stopped(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """The coach says how far it is, and ends when it is told to; another key's goal chooses it."""
+    page = designer(open_page, address)
+    page.page.click("#tab-coach")
+    page.find(".coach select").select_option("left")
+    expect(page.find(".chooser select")).to_have_value("1")
+    page.page.click("text=Which numbers matter?")
+    page.sees(".coach .working progress")
+    page.page.click("text=Stop")
+    page.misses(".coach .working")
+    page.sees(".coach >> text=Which numbers matter?")
+
+
 def test_predict_compare_and_the_way_back(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
@@ -224,8 +281,7 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     file = sample / "Loco-data.txt"
     page.go(1, 0)
     page.type("11")
-    page.press("Control+s")
-    page.is_toasted("Loco-data.txt is saved")
+    page.saves()
     assert "1 Key\t11\t" in file.read_text(encoding="utf-8")
 
     page.go(1, 0)
@@ -237,8 +293,7 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     page.cell_is(1, 0, "13")
     page.press("Control+z")
     page.cell_is(1, 0, "12")
-    page.press("Control+s")
-    page.is_toasted("Loco-data.txt is saved")
+    page.saves()
     assert "1 Key\t12\t" in file.read_text(encoding="utf-8")
 
     page.page.click(".bar .name")
