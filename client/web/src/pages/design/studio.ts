@@ -544,7 +544,9 @@ export class Studio {
   refuse(error: unknown): void {
     if (!(error instanceof Refused)) throw error;
     if (error.mistakes.length) {
-      this.trouble.value = { said: error.why, mistakes: error.mistakes };
+      // A robot and a gait may both have mistakes: neither list hides the other.
+      const before = this.trouble.peek()?.mistakes ?? [];
+      this.trouble.value = { said: error.why, mistakes: [...before, ...error.mistakes] };
     } else toast(said(error.why), "no");
   }
 
@@ -655,6 +657,13 @@ export class Studio {
     }
     const own = this.file.peek();
     const now = this.versionOf(name);
+    // The first gait of the folder, or one whose mistakes were corrected.
+    const isFree = own.name === "" && this.isSaved.peek() && !this.trials.peek().length;
+    if (isFree && now && /^loco/i.test(name)) {
+      this.trouble.value = null;
+      await this.open(name);
+      return;
+    }
     if (name !== own.name || now === own.version || !now) return;
     try {
       const read = await this.connection.ask<ReadReply>("read", { name });
