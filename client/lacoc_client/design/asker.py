@@ -13,6 +13,7 @@ import msgspec
 from lacoc_client.asking import NoAnswer, NotNow, refusal_of
 from lacoc_shared import codec
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network import address
 from lacoc_shared.network.session import (
     Mailbox,
     NoReply,
@@ -40,11 +41,15 @@ class Asker:
     A thread keeps looking for a studio, so one that comes later, or comes back, is found.
 
     Args:
-        connect: addresses of a studio, or of a router that leads to it.
+        connect: address of a studio, or of a router that leads to it.
+
+    Raises:
+        UserError: if the address is wrong.
     """
 
-    def __init__(self, connect: list[str]) -> None:
-        self._connect = connect
+    def __init__(self, connect: str) -> None:
+        self._connect = [address.endpoint(connect)]
+        address.check_protocols(self._connect, keys=False)
         self._session: Session | None = None
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._look, name="studio", daemon=True)
