@@ -201,6 +201,9 @@ def test_a_wrong_request_gets_one_refusal(asker: Asker) -> None:
     assert code("trial", msgspec.structs.replace(good, keys=long)) == "trial.length"
     alone = GaitFiles(robot=QUADRUPED)
     assert code("trial", msgspec.structs.replace(good, files=alone)) == "studio.no-gait"
+    for name in ("", "a" * 101, "a\nb"):
+        files = GaitFiles(locomotion=SentFile(name, b""))
+        assert code("trial", msgspec.structs.replace(good, files=files)) == "refused.file-name"
     assert asker.trial(GaitFiles(), seconds=0.1).ticks == 30
 
 
@@ -281,8 +284,8 @@ def test_a_search_can_be_repeated(asker: Asker) -> None:
     progress = asker.session.mailbox(KEYS.progress("one"), 1000)
     request = coach_request("one")
     reply = decode(asker.begin("coach", request).wait(), CoachReply)
-    robot, gait, _ = read_files(request.files)
-    task = task_of(robot, gait, 2, Goal.FORWARD)
+    files = read_files(request.files)
+    task = task_of(files.robot, files.gait, 2, Goal.FORWARD, files.sequences)
     trials = Trials(task, cast(Workers, Here()), threading.Event())
     again = coach(trials, Size.CELL, 0.0, 0, lambda _: None)
     assert reply == reply_of(task, 2, again)

@@ -25,7 +25,7 @@ from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.figures import Figures
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
-from lacoc_shared.gait.tables import LEVEL_NAMES, Gait, LocomotionTable
+from lacoc_shared.gait.tables import LEVEL_NAMES, SAMPLE_KEYS, Gait, LocomotionTable
 from lacoc_shared.gait.text import write_gait
 from lacoc_shared.studio import CoachReply, Progress
 from lacoc_shared.words import Phrase, render, say
@@ -96,7 +96,8 @@ def coach_command(
     spec = read_robot_file(robot)
     gait = read_trial_gait(file, spec)
     digit = coached_key(gait, goal, key)
-    task = task_of(spec, gait, digit, goal)
+    sequences = None if gait.postures is None else SAMPLE_KEYS
+    task = task_of(spec, gait, digit, goal, sequences)
     with screen.progress() as progress, Workers() as workers, _stop_on_interrupt() as stop:
         bar = progress.add_task(render(_STAGES["matters"]), total=1.0)
 

@@ -13,6 +13,7 @@ from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
+from lacoc_server.doors.inbox import FILE_NAME_MAX
 from lacoc_server.studio.facts import bounds, facts
 from lacoc_server.trial.course import LONGEST_TICKS, SETTLE_TICKS, Course
 from lacoc_server.trial.explain import explain
@@ -23,7 +24,7 @@ from lacoc_server.trial.walk import Floats, Press, Walk
 from lacoc_shared import __version__
 from lacoc_shared.codec import BadMessage, decode, encode, message_hash
 from lacoc_shared.gait.joining import join_postures, sample_sequences
-from lacoc_shared.gait.tables import Gait, LocomotionTable, PostureTable
+from lacoc_shared.gait.tables import SAMPLE_KEYS, Gait, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.messages import PROTOCOL, Refusal, SentFile, Sheet, SheetSeat
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
@@ -59,6 +60,17 @@ class Answer(NamedTuple):
     right: bool
     """Whether it is a reply."""
     payload: bytes
+
+
+class Files(NamedTuple):
+    """The files of a request, as they were read."""
+
+    robot: RobotSpec
+    gait: Gait
+    sequences: tuple[tuple[int, ...], ...] | None
+    """For each key of level B the digits of its postures, if they are those of a Loco-data file."""
+    notes: list[Phrase]
+    """Remarks on what is legal, but probably not meant."""
 
 
 class Trial(NamedTuple):
@@ -120,17 +132,16 @@ def refusal(error: BadMessage | FileRefused | UserError) -> Refusal:
     return Refusal(say("refused.bad-request", error=str(error)))
 
 
-def read_files(files: GaitFiles) -> tuple[RobotSpec, Gait, list[Phrase]]:
+def read_files(files: GaitFiles) -> Files:
     """Read a robot and its gait; postures get sequences if there is no locomotion file.
-
-    Returns:
-        The robot, the gait, and remarks on what is legal, but probably not meant.
 
     Raises:
         FileRefused: with every mistake of every file.
         UserError: if the postures can't be joined into the sequences.
     """
     robot = _robot_of(files.robot)
+    for one in (files.postures, files.locomotion):
+        _check_name(one)
     sent = [one for one in (files.postures, files.locomotion) if one is not None]
     if not sent and files.robot is None:
         sent = [one for one in sample_gait_files(WORKSHOPS_ROBOT) if one is not None]
@@ -154,9 +165,12 @@ def read_files(files: GaitFiles) -> tuple[RobotSpec, Gait, list[Phrase]]:
         raise FileRefused(mistakes)
     if postures is None and locomotion is None:
         raise UserError(say("studio.no-gait"))
-    if postures is not None and locomotion is None:
-        locomotion = _joined(postures, sent[0].name, files.sequences)
-    return robot, Gait(postures, locomotion), notes
+    if postures is None or locomotion is not None:
+        return Files(robot, Gait(postures, locomotion), None, notes)
+    if files.sequences is None:
+        return Files(robot, Gait(postures, sample_sequences(postures)), SAMPLE_KEYS, notes)
+    joined = join_postures(postures, sent[0].name, files.sequences)
+    return Files(robot, Gait(postures, joined), files.sequences, notes)
 
 
 def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None = None) -> Trial:
@@ -192,17 +206,20 @@ class _Version(msgspec.Struct):
     protocol: int
 
 
+def _check_name(file: SentFile | None) -> None:
+    """Check the name of a file, which mistakes quote.
+
+    Raises:
+        UserError: if it is too long or can't be shown.
+    """
+    if file is not None and not (0 < len(file.name) <= FILE_NAME_MAX and file.name.isprintable()):
+        raise UserError(say("refused.file-name", most=FILE_NAME_MAX))
+
+
 def _robot_of(file: SentFile | None) -> RobotSpec:
+    _check_name(file)
     name, data = find_robot(WORKSHOPS_ROBOT) if file is None else (file.name, file.data)
     return read_robot(data, name)
-
-
-def _joined(
-    table: PostureTable, name: str, sequences: tuple[tuple[int, ...], ...] | None
-) -> LocomotionTable | None:
-    if sequences is None:
-        return sample_sequences(table)
-    return join_postures(table, name, sequences)
 
 
 def _check_time(tick: int, seconds: float | None) -> None:
@@ -263,8 +280,8 @@ def _sheet(course: Course, scene_hash: bytes) -> Sheet:
 
 
 def _trial(request: TrialRequest, course_of: CourseOf) -> TrialReply:
-    robot, gait, notes = read_files(request.files)
-    trial = try_gait(course_of(robot), gait, request.keys, request.seconds)
+    files = read_files(request.files)
+    trial = try_gait(course_of(files.robot), files.gait, request.keys, request.seconds)
     walk = trial.walk
     ticks, legs = walk.down.shape
     return TrialReply(
@@ -272,7 +289,7 @@ def _trial(request: TrialRequest, course_of: CourseOf) -> TrialReply:
         key=trial.press.digit,
         figures=asdict(trial.figures),
         explained=tuple(trial.explained),
-        notes=(*notes, *trial.notes),
+        notes=(*files.notes, *trial.notes),
         fault=walk.fault,
         ticks=ticks,
         first=walk.span.first,

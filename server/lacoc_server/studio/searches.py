@@ -120,7 +120,6 @@ class Searches:
     def _run(self) -> None:
         while True:
             with self._changed:
-                self._running = None
                 self._changed.wait_for(lambda: self._waiting or self._closing)
                 if self._closing:
                     return
@@ -128,9 +127,12 @@ class Searches:
                 if self._workers is None:
                     self._workers = Workers(self._jobs, background=True, limit_s=600.0)
             try:
-                search.done(self._answer(search, self._workers))
+                answer = self._answer(search, self._workers)
             except Exception as error:
-                search.done(self._failed(error))
+                answer = self._failed(error)
+            with self._changed:
+                self._running = None  # its name is free before its answer is there
+            search.done(answer)
 
     def _answer(self, search: _Search, workers: Workers) -> Answer:
         request = search.request
@@ -155,9 +157,9 @@ class Searches:
             if not 0 <= request.seconds <= _MOST_S:
                 said = say("studio.coach-seconds", seconds=request.seconds, most_s=_MOST_S)
                 raise UserError(said)
-            robot, gait, _ = read_files(request.files)
-            key = coached_key(gait, goal, request.key)
-            task = task_of(robot, gait, key, goal)
+            files = read_files(request.files)
+            key = coached_key(files.gait, goal, request.key)
+            task = task_of(files.robot, files.gait, key, goal, files.sequences)
             trials = Trials(task, workers, search.stop)
             found = coach(trials, size, request.seconds, request.seed, tell)
         except (FileRefused, UserError) as error:

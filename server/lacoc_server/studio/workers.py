@@ -105,12 +105,12 @@ class Workers:
                 job.result.cancel()
                 continue
             try:
+                if not child.process.is_alive():  # it died while it had nothing to do
+                    child = self._replaced(child)
                 right, found = child.call(job.function, job.arguments, self._limit_s)
             except WorkerDied as error:
-                self._children.discard(child)
-                child.end()
                 if not self._closing:
-                    child = self._child()
+                    child = self._replaced(child)
                 job.result.set_exception(error)
                 continue
             if right:
@@ -119,6 +119,11 @@ class Workers:
                 job.result.set_exception(WorkerFailed(found))
         self._children.discard(child)
         child.end()
+
+    def _replaced(self, child: "_Child") -> "_Child":
+        self._children.discard(child)
+        child.end()
+        return self._child()
 
     def _child(self) -> "_Child":
         child = _Child(self._background)

@@ -1,7 +1,7 @@
 """The coach at work: what matters, then a search, then fewer changes; and it says how far it is."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from lacoc_robots.robot import RobotSpec
@@ -57,10 +57,22 @@ def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
     return key
 
 
-def task_of(robot: RobotSpec, gait: Gait, key: int, goal: Goal) -> Task:
-    """Make the task to change a key of level B, which the gait has."""
+def task_of(
+    robot: RobotSpec, gait: Gait, key: int, goal: Goal, sequences: Sequence[Sequence[int]] | None
+) -> Task:
+    """Make the task to change a key of level B.
+
+    Args:
+        robot: the robot.
+        gait: its gait, which has the key.
+        key: the key's digit.
+        goal: what the key is for.
+        sequences: for each key the digits of its postures, if they are those of a Loco-data file.
+    """
     stand = gait.sequence(Level.LOCOMOTION, 0) or (robot.start_posture,)
-    return Task(robot, stand, KeyTable.of(gait.sequence(Level.LOCOMOTION, key) or ()), goal)
+    digits = None if sequences is None else sequences[key]
+    table = KeyTable.of(gait.sequence(Level.LOCOMOTION, key) or (), digits)
+    return Task(robot, stand, table, goal)
 
 
 def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Tell) -> Found:
@@ -120,7 +132,7 @@ def reply_of(task: Task, key: int, found: Found) -> CoachReply:
 
 
 def place(table: KeyTable, index: int) -> CellPlace:
-    """Return the place of a number: the first posture of the key that has it."""
+    """Return the place of a number: the first posture of the sequence that has it."""
     row, joint = table.cell(index)
     return CellPlace(posture=table.order.index(row), joint=joint)
 

@@ -22,15 +22,18 @@ class Goal(StrEnum):
 
 
 def score(figures: Figures, goal: Goal) -> float:
-    """Return the score of a walk [mm/s]; negative if the robot rests on its body or tips over.
+    """Return the score of a walk [mm/s].
+
+    It is negative if the robot rests on its body or tips over, or if no cycle was complete, because
+    physics stopped or the sequence never begins again.
 
     Args:
         figures: figures of the walk.
         goal: what the key is for.
     """
     fallen = max(0.0, _UPRIGHT - figures.upright) + max(0.0, figures.belly_share - _BELLY)
-    if fallen:
-        return -100.0 * fallen
+    if fallen or not figures.cycles:
+        return -100.0 * (fallen or 1.0)
     if goal is Goal.FORWARD:
         drift_deg_s = max(0.0, abs(figures.drift_deg_s) - _DRIFT_FREE_DEG_S)
         return (

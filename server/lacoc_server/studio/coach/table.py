@@ -1,10 +1,12 @@
 """A key's sequence as cells with whole degrees, as the file has them.
 
-A sequence may have the same posture more than once. In a Loco-data file each posture is a row, and
-changing the row changes it everywhere. So a table has one row for each different posture.
+In a Loco-data file each posture is a row with a digit. A sequence may have the same digit more than
+once, and changing its row changes all of them. In a LocoTra-data file each posture of a sequence is
+a row of its own. Rows that are equal by chance stay different rows.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from lacoc_shared.gait.tables import Posture
@@ -21,18 +23,25 @@ class Cell(NamedTuple):
 
 
 class KeyTable(NamedTuple):
-    """The different postures of a key, and how the key runs through them."""
+    """The rows of a key, and how the key runs through them."""
 
     rows: tuple[Posture, ...]
-    """Different postures in order of first use [rad]."""
+    """Postures of the rows in order of first use [rad]."""
     order: tuple[int, ...]
     """Index of the row for each posture of the sequence."""
 
     @classmethod
-    def of(cls, sequence: tuple[Posture, ...]) -> "KeyTable":
-        """Make a table of a key's sequence."""
-        rows = tuple(dict.fromkeys(sequence))
-        return cls(rows, tuple(rows.index(posture) for posture in sequence))
+    def of(cls, sequence: tuple[Posture, ...], digits: Sequence[int] | None = None) -> "KeyTable":
+        """Make a table of a key's sequence.
+
+        Args:
+            sequence: the postures [rad].
+            digits: digits of the postures, if they are those of a Loco-data file.
+        """
+        names = range(len(sequence)) if digits is None else digits
+        rows = dict(zip(names, sequence, strict=True))
+        places = {name: row for row, name in enumerate(rows)}
+        return cls(tuple(rows.values()), tuple(places[name] for name in names))
 
     @property
     def joints(self) -> int:
