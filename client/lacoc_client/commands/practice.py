@@ -60,7 +60,7 @@ def practice_command(
 
 def _greeting(files: SeatFiles) -> Text:
     sample = files.postures is None and files.locomotion is None
-    return Text(render(say("practice.sample" if sample else "practice.own-gait")))
+    return Text(render(say("practice.sample") if sample else say("practice.own-gait")))
 
 
 @contextmanager
