@@ -52,6 +52,12 @@ class Designer(Contestant):
         self.press("Control+Enter")
         expect(self.find(".trials > li")).to_have_count(before + 1, timeout=TIMEOUT_MS)
 
+    def saves(self) -> None:
+        """Save the table, and wait until the page says that it is saved."""
+        expect(self.find(".bar .name small")).to_have_text("not saved")
+        self.press("Control+s")
+        expect(self.find(".bar .name small")).to_have_text("saved", timeout=TIMEOUT_MS)
+
     def figure(self, name: str) -> float:
         """Return a figure of the shown trial."""
         text = self.find(f".tiles [data-figure={name}] dd").inner_text().splitlines()[0]
@@ -85,10 +91,19 @@ class Designer(Contestant):
         )
 
 
+def write_sample(folder: Path) -> None:
+    """Write the sample's postures into a folder."""
+    postures = sample_gait_files("hexapod").postures
+    assert postures is not None
+    (folder / "Loco-data.txt").write_bytes(postures.data)
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give the folder that the module's page works in."""
-    return tmp_path_factory.mktemp("design")
+    folder = tmp_path_factory.mktemp("design")
+    write_sample(folder)
+    return folder
 
 
 @pytest.fixture(scope="module")
@@ -100,12 +115,8 @@ def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
 
 @pytest.fixture
 def sample(folder: Path) -> Path:
-    """Give the folder with nothing but the sample's workbook in it."""
-    postures = sample_gait_files("hexapod").postures
-    assert postures is not None
-    for path in folder.iterdir():
-        path.unlink()
-    (folder / "Loco-data.txt").write_bytes(postures.data)
+    """Give the folder, with the sample's postures as they were."""
+    write_sample(folder)
     return folder
 
 
@@ -133,14 +144,14 @@ def test_a_number_moves_the_leg_and_a_trial_explains_it(
 
     page.find(".cell-input").focus()
     page.press("Control+Home", "ArrowDown", *["ArrowRight"] * 4)  # key 1, root of L,C
-    assert page.page.evaluate("window.__lacoc.view.lit") == ["solo/leg4_0"]
-    page.page.wait_for_timeout(400)
+    page.until("window.__lacoc.view.lit.join() === 'solo/leg4_0'")
+    page.page.wait_for_timeout(400)  # the picture goes from the trial to the posture
     before = page.body()
     page.type("-40")
     page.moves(before)
     page.cell_is(1, 4, "-40")
     page.sees(".bar .name", "not saved")
-    page.press("ArrowUp", "Alt+ArrowUp", "Alt+Shift+ArrowUp")
+    page.press("Alt+ArrowUp", "Alt+Shift+ArrowUp")
     page.cell_is(1, 4, "-34")
     page.sees(".task", "The table has changed")
     page.tries()
@@ -153,10 +164,60 @@ def test_a_number_moves_the_leg_and_a_trial_explains_it(
     page.press("Control+y")
     page.cell_is(1, 4, "-40")
     page.type("200")
-    page.press("ArrowUp")
-    assert page.find("#cell-2-4").get_attribute("aria-invalid") == "true"
+    assert page.find("#cell-1-4").get_attribute("aria-invalid") == "true"
     page.press("Control+Enter")
     page.is_toasted("red cells have no angle")
+
+
+def test_a_beginner_s_first_gait(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """From standing legs, ten numbers and a tool make a gait that walks 100 mm in five cycles."""
+    page = designer(open_page, address)
+    actions = 0
+
+    def click(selector: str) -> None:
+        nonlocal actions
+        page.page.click(selector)
+        actions += 1
+
+    click(".bar .name")
+    click("dialog >> text=New table")
+    page.cell_is(1, 0, "45")  # as it stands
+    own = {
+        1: {0: "0", 3: "0", 12: "40", 14: "40", 16: "40"},
+        2: {2: "0", 5: "0", 12: "40", 14: "40", 16: "40"},
+    }
+    for row, cells in own.items():
+        for col, angle in cells.items():
+            click(f"#cell-{row}-{col}")
+            page.type(angle)
+            actions += 1
+    click(".strip >> text=Tools")
+    click("text=Make the other half")
+    page.cell_is(3, 13, "40")
+    click(".try")
+    page.sees(".result .tiles")
+    figures = page.page.evaluate("window.__studio.shown.value.trial.reply.figures")
+    assert figures["cycles"] == 5
+    assert figures["speed_mm_s"] * figures["seconds"] > 100
+    assert figures["upright"] > 0.9
+    assert actions <= 60
+
+
+def test_the_coach_works_and_can_be_stopped(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """The coach says how far it is, and ends when it is told to; another key's goal chooses it."""
+    page = designer(open_page, address)
+    page.page.click("#tab-coach")
+    page.find(".coach select").select_option("left")
+    expect(page.find(".chooser select")).to_have_value("1")
+    page.page.click("text=Which numbers matter?")
+    page.sees(".coach .working progress")
+    page.page.click("text=Stop")
+    page.misses(".coach .working")
+    page.sees(".coach >> text=Which numbers matter?")
 
 
 def test_predict_compare_and_the_way_back(
@@ -168,8 +229,8 @@ def test_predict_compare_and_the_way_back(
     page.go(1, 0)
     page.paste("10\t0\t-45\t10\t0\t45\r\n")
     page.page.click("text=Predict")
-    page.find(".foretell label", has_text="straight on").locator("input").check(force=True)
-    page.find(".foretell label", has_text="faster").locator("input").check(force=True)
+    page.page.locator(".foretell label", has_text="straight on").locator("input").check(force=True)
+    page.page.locator(".foretell label", has_text="faster").locator("input").check(force=True)
     page.page.click(".foretell .strong")
     expect(page.find(".result .verdict")).to_have_count(2, timeout=TIMEOUT_MS)
     page.page.click(".acts >> text=Compare")
@@ -220,8 +281,7 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     file = sample / "Loco-data.txt"
     page.go(1, 0)
     page.type("11")
-    page.press("Control+s")
-    page.is_toasted("Loco-data.txt is saved")
+    page.saves()
     assert "1 Key\t11\t" in file.read_text(encoding="utf-8")
 
     page.go(1, 0)
@@ -233,8 +293,7 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     page.cell_is(1, 0, "13")
     page.press("Control+z")
     page.cell_is(1, 0, "12")
-    page.press("Control+s")
-    page.is_toasted("Loco-data.txt is saved")
+    page.saves()
     assert "1 Key\t12\t" in file.read_text(encoding="utf-8")
 
     page.page.click(".bar .name")

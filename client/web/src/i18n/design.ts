@@ -356,5 +356,6 @@ export const design = {
     "表は {legs} 脚用で、{robot} と脚の数が違います。ロボットのファイルも開いてください。",
   ],
   "design.trouble": ["Please correct this first", "先に次を直してください"],
+  "design.loading": ["The studio is starting …", "スタジオを準備しています…"],
   "design.noStudio": ["Waiting for a studio …", "スタジオを待っています…"],
 } as const satisfies Record<string, readonly [string, string]>;

@@ -294,6 +294,7 @@ function Stage({ studio }: { studio: Studio }) {
         }}
         label={t("design.view")}
       />
+      {!studio.table.value && <p class="loading">{t("design.loading")}</p>}
       <p class="shows">
         <ShownName studio={studio} />
       </p>

@@ -238,9 +238,21 @@ function Matters({ studio, found: { reply, rows } }: FoundProps) {
   );
 }
 
+const GAINS = ["little", "half", "double"] as const;
+type Gain = (typeof GAINS)[number];
+/** From how many times the score on a gain is "half", and "double". */
+const HALF = 1.25;
+const DOUBLE = 1.75;
+
+function gainOf({ score_before, score_after }: CoachReply): Gain {
+  const times = score_before > 0 ? score_after / score_before : Number.POSITIVE_INFINITY;
+  return times >= DOUBLE ? "double" : times >= HALF ? "half" : "little";
+}
+
 /** A better gait: first how much better it will be, then its changes. */
 function Better({ studio, found: { reply, rows, size } }: FoundProps) {
   const table = studio.table.value!;
+  const guess = useSignal<Gain | null>(null);
   const gain = reply.score_after - reply.score_before;
   if (!reply.changes.length) return <p>{t("design.coach.nothing")}</p>;
   if (!revealed.value) {
@@ -248,12 +260,13 @@ function Better({ studio, found: { reply, rows, size } }: FoundProps) {
       <div class="guess">
         <p>{t("design.coach.guessGain", { size: t(`design.coach.${size ?? "cell"}`) })}</p>
         <div class="row">
-          {(["little", "half", "double"] as const).map((name) => (
+          {GAINS.map((name) => (
             <button
               key={name}
               class="button"
               type="button"
               onClick={() => {
+                guess.value = name;
                 revealed.value = true;
               }}
             >
@@ -272,10 +285,21 @@ function Better({ studio, found: { reply, rows, size } }: FoundProps) {
         return change(made, area, () => to_deg);
       }, now),
     );
+    found.value = null;
     void studio.tryIt();
   };
   return (
     <div class="better">
+      {guess.value && (
+        <p class={`verdict ${guess.value === gainOf(reply) ? "right" : "wrong"}`}>
+          {guess.value === gainOf(reply)
+            ? t("design.verdict.right", { was: t(`design.coach.gain.${guess.value}`) })
+            : t("design.verdict.wrong", {
+                guess: t(`design.coach.gain.${guess.value}`),
+                was: t(`design.coach.gain.${gainOf(reply)}`),
+              })}
+        </p>
+      )}
       <p class="verdict">
         {t("design.coach.gained", {
           before: unit(reply.score_before, 0),

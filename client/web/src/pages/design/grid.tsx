@@ -19,6 +19,7 @@ import {
   clear,
   LEVELS,
   nudge,
+  readCell,
   setCell,
   type Table,
   wrongOf,
@@ -52,9 +53,18 @@ class Typist {
     if (how === "edit") field.setSelectionRange(field.value.length, field.value.length);
   }
 
+  /** The text has changed: the picture shows what it would be. */
+  draw(): void {
+    const range = this.studio.table.peek()?.ranges[this.studio.active.peek().col];
+    const text = this.input.current?.value ?? "";
+    if (!this.typing.peek()) this.typing.value = "type";
+    if (range) this.studio.draft.value = readCell(text, range);
+  }
+
   commit(): void {
     if (!this.typing.peek()) return;
     this.typing.value = "";
+    this.studio.draft.value = null;
     const { row, col } = this.studio.active.peek();
     const text = this.input.current?.value ?? "";
     if (text === this.text()) return;
@@ -63,6 +73,7 @@ class Typist {
 
   cancel(): void {
     this.typing.value = "";
+    this.studio.draft.value = null;
     const field = this.input.current!;
     field.value = this.text();
     field.select();
@@ -92,7 +103,8 @@ class Typist {
       case "Escape":
         return () => this.cancel();
       case "Enter":
-        if (!wide) return then(event.shiftKey ? -1 : 1, 0);
+        // It stays where it is: the picture must show the posture that was changed.
+        if (!wide) return then(0, 0);
         this.commit(); // and the page lets the robot walk
         return null;
       case "Tab":
@@ -236,9 +248,7 @@ export function Grid({ studio }: { studio: Studio }) {
         spellcheck={false}
         inputMode={typing.value ? "text" : "none"}
         onKeyDown={(event) => keys.press(event)}
-        onInput={() => {
-          if (!typing.peek()) typing.value = "type";
-        }}
+        onInput={() => keys.draw()}
         onCompositionStart={() => {
           if (!typing.peek()) typing.value = "type";
         }}

@@ -11,6 +11,7 @@ import {
   type Area,
   areaOf,
   badCells,
+  type Cell,
   columnsOf,
   fromWire,
   legAndLevel,
@@ -115,6 +116,8 @@ export class Studio {
 
   readonly active = signal<Place>({ row: 0, col: 0 });
   readonly anchor = signal<Place>({ row: 0, col: 0 });
+  /** What is being typed into the active cell: the picture shows it already; null: nothing. */
+  readonly draft = signal<Cell | null>(null);
   readonly area = computed<Area>(() => areaOf(this.anchor.value, this.active.value));
   /** Joints that are pointed at; empty: those of the active cell are lit. */
   readonly pointed = signal<readonly number[]>([]);
@@ -159,8 +162,10 @@ export class Studio {
       if (watching.value && shown.value) {
         return { trial: shown.value.trial, tick: this.clock.tick.value };
       }
-      const row = table.value?.rows[this.active.value.row];
-      return row ? { cells: row.cells } : null;
+      const { row, col } = this.active.value;
+      const cells = table.value?.rows[row]?.cells;
+      const draft = this.draft.value;
+      return cells ? { cells: draft === null ? cells : cells.with(col, draft) } : null;
     }),
   );
   private robotText: string | null = null;
@@ -384,10 +389,15 @@ export class Studio {
 
   private begin(table: Table, file: OpenFile): void {
     batch(() => {
-      this.history.value = new History(table);
+      const isOther = this.table.peek()?.legs.length !== table.legs.length;
+      // Versions go on, so that trials stay with their tables.
+      if (this.history.peek()) this.history.peek()!.open(table);
+      else this.history.value = new History(table);
       this.file.value = { ...file, saved: this.version.peek() };
-      this.trials.value = [];
-      this.shown.value = this.other.value = null;
+      if (isOther) {
+        this.trials.value = [];
+        this.shown.value = this.other.value = null;
+      }
       this.watching.value = false;
       const forward = sequenceOf(table, FORWARD, sequences.peek());
       this.key.value = forward ? FORWARD : 0;
@@ -542,10 +552,11 @@ export class Studio {
   private digits(table: Table): number[][] | null {
     if (table.kind === "locomotion") return null;
     const keys = new Set(table.rows.map(({ key }) => key));
-    // A key that runs through a posture that is not there would be a mistake of the whole gait.
+    // Each key needs postures, also one that is not tried, and whose own are not all there.
+    const filler = [table.rows[0]!.key];
     return sequences.peek().map((digits) => {
       const found = [...digits].map(Number);
-      return found.every((digit) => keys.has(digit)) ? found : [];
+      return found.length && found.every((digit) => keys.has(digit)) ? found : filler;
     });
   }
 
