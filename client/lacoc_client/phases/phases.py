@@ -62,8 +62,9 @@ class Phase:
         """Return what a student reads before trying.
 
         Args:
-            explain_first: whether the teacher wants the explanation before the task. Older
-                students learn more if they try first, children of 7 to 10 if they read first.
+            explain_first: whether the teacher wants the explanation before the task. Students
+                usually learn more if they try first, children of grades 2 to 5 if they read first
+                (docs/studio.md 6).
         """
         return (self.explanation, self.task) if explain_first else (self.task, self.question)
 
