@@ -6,6 +6,7 @@ import sqlite3
 import subprocess
 import sys
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -55,6 +56,24 @@ def test_what_is_kept_can_be_read_again(path: Path) -> None:
         assert store.tables("りく") == [table("りく", "7")]
         assert store.trouble is None
     assert names(path) == {path.name}
+
+
+def test_a_class_at_once(path: Path) -> None:
+    """Evidence of many threads is all kept, each with a number of its own, in each one's order."""
+    students = [f"student {number}" for number in range(8)]
+
+    def work(student: str) -> list[int]:
+        return [store.add(student, EDIT, float(step)).result() for step in range(5)]
+
+    with ClassStore(path) as store, ThreadPoolExecutor(len(students)) as pool:
+        numbers = list(pool.map(work, students))
+        kept = store.evidence().result()
+
+    assert sorted(number for own in numbers for number in own) == list(range(1, 41))
+    for student, own in zip(students, numbers, strict=True):
+        mine = [one for one in kept if one.student == student]
+        assert [one.number for one in mine] == own
+        assert [one.at_s for one in mine] == [0, 1, 2, 3, 4]
 
 
 def test_a_student_votes_once_and_nobody_sees_for_what(path: Path) -> None:

@@ -526,7 +526,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "phases.creative-question": ["What must be the same in all keys, so that the robot can change from one to another at any time?", "いつでもキーを切り替えられるようにするには、すべてのキーで何をそろえればよいでしょう。"],
   "phases.creative-hint": ["Turning right played in the reverse order turns left. Try each key once with the file as it is at the end.", "右旋回の順番を逆にすると左旋回になります。完成したファイルで、どのキーも 1 回ずつ試してください。"],
   "phases.creative-explanation": ["A file for the contest has a key for each thing that the robot can do. A robot that stands, goes forward and turns both ways can reach every place.", "競技会のファイルには、ロボットの動作ごとにキーがあります。立つ、前進、左右の旋回ができれば、どこへでも行けます。"],
-  "phases.try": ["Press Try.", "「試す」を押してください。"],
+  "phases.try": ["Press Try.", "「歩かせる」を押してください。"],
   "phases.more-joints": ["Change {left} more of the three numbers of the same leg.", "同じ脚の 3 つの数値のうち、あと {left} 個を変えてください。"],
   "phases.more-leg-postures": ["Give the same leg {left} more {left:plural posture|postures}.", "同じ脚で、あと {left} 通りの姿勢を試してください。"],
   "phases.more-guesses": ["Guess {left} more {left:plural time|times} where the foot will go.", "足先がどちらへ動くか、あと {left} 回予想してください。"],
