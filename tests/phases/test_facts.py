@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.phases.facts import TrialFacts, differences, pace, trial_facts, way
-from lacoc_client.phases.foot import foot_ways
+from lacoc_client.phases.facts import TrialFacts, differences, foot_ways, pace, trial_facts, way
 from lacoc_robots.leg import LegSpec
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot

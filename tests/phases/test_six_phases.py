@@ -152,6 +152,8 @@ def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
     for key, name in enumerate(names):
         others = [one for index, one in enumerate(tries) if index != key]
         assert codes([checked, *others], 6) == {f"phases.key-{name}"}
+    posture = Tried(version="1", facts=try_gait(sample, "A2", 1.0))
+    assert len(CREATIVE.look([checked, posture]).missing) == 4  # each is told once
     assert codes([Checked(version="1", keys=4, mistakes=2), *tries], 6) == {"phases.check"}
     assert codes([Checked(version="2", keys=4, mistakes=0), *tries], 6) == {"phases.check"}
 

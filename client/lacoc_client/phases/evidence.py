@@ -65,7 +65,7 @@ class Guessed(_Kind, frozen=True, kw_only=True):
     """The student predicted something, and then saw it."""
 
     about: Literal["foot", "pace", "way"]
-    """Where a foot goes (`foot.FootWay`); whether a gait becomes faster (`facts.Pace`); where the
+    """Where a foot goes (`facts.FootWay`); whether a gait becomes faster (`facts.Pace`); where the
     robot turns (`facts.Way`)."""
     said: _Word
     was: tuple[_Word, ...]

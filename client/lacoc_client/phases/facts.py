@@ -1,6 +1,8 @@
-"""What a trial shows of a gait, as the few numbers that the phases ask for."""
+"""What a trial or an edit shows of a gait: the few numbers and words that the phases ask for."""
 
+import math
 import re
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -8,6 +10,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
+from lacoc_robots.leg import LegSpec
 from lacoc_shared.seat import BEAT_S
 from lacoc_shared.studio import TrialReply
 
@@ -16,11 +19,14 @@ TRIPOD_MARGIN_M = 0.010
 
 Pace = Literal["faster", "slower", "same"]
 Way = Literal["left", "right", "straight"]
+FootWay = Literal["forward", "back", "up", "down", "out", "in", "still"]
 Difference = Literal["speed", "period", "lift", "duty", "turning"]
 
 _SEAM = "explain.seam"
 _SAME_MM_S, _SAME_SHARE = 3.0, 0.05  # speeds that differ by less are the same, to the eye
 _STRAIGHT_DEG_S = 3.0  # a robot that turns by less goes straight (docs/studio.md 3)
+_STILL_M = 0.001  # a foot that moves less than this stays where it is
+_ALSO = 0.6  # a direction is right if the foot moves there by this part of its largest motion
 _KEY = re.compile(r"([AaBb]?)([0-9])(?::[0-9.]+)?", re.ASCII)
 
 
@@ -149,6 +155,34 @@ def differences(one: TrialFacts, other: TrialFacts) -> tuple[Difference, ...]:
     if _apart(one.drift_deg_s, other.drift_deg_s, least=2 * _STRAIGHT_DEG_S, share=0.2):
         found.append("turning")
     return tuple(found)
+
+
+def foot_ways(
+    leg: LegSpec, before_deg: Sequence[float], after_deg: Sequence[float]
+) -> tuple[FootWay, ...]:
+    """Say where the foot of a leg goes, seen from the body.
+
+    Args:
+        leg: the leg.
+        before_deg: (3,) angles of root, 1st and 2nd joint before the change.
+        after_deg: (3,) angles after it.
+
+    Returns:
+        All directions that are right answers, the strongest first. "out" is away from the body's
+        middle line. At an angle of 45 degrees two directions are right.
+    """
+    start = leg.points(*map(math.radians, before_deg))[-1]
+    end = leg.points(*map(math.radians, after_deg))[-1]
+    out_m, ahead_m, up_m = leg.side * (end.x - start.x), end.y - start.y, end.z - start.z
+    if math.hypot(out_m, ahead_m, up_m) < _STILL_M:
+        return ("still",)
+    moves: list[tuple[float, FootWay]] = [
+        (abs(ahead_m), "forward" if ahead_m > 0 else "back"),
+        (abs(up_m), "up" if up_m > 0 else "down"),
+        (abs(out_m), "out" if out_m > 0 else "in"),
+    ]
+    moves.sort(key=lambda move: -move[0])
+    return tuple(way for by_m, way in moves if by_m >= _ALSO * moves[0][0])
 
 
 def _apart(one: float, other: float, least: float, share: float) -> bool:

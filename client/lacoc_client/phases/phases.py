@@ -1,19 +1,22 @@
 """The six phases of workshop 4-2 as tasks with evidence (docs/studio.md 5 has the thresholds)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from lacoc_client.phases.evidence import (
-    SAMPLE,
-    Checked,
-    Compared,
-    Edited,
-    Evidence,
-    Guessed,
-    Named,
-    Voted,
+from lacoc_client.phases.conditions import (
+    IS_UPRIGHT,
+    NOT_STOPPED,
+    acts,
+    are_two_postures,
+    differs_from_sample,
+    foot_guess,
+    leg_joints,
+    leg_postures,
+    own_cells,
+    within,
 )
-from lacoc_client.phases.facts import TRIPOD_MARGIN_M, TrialFacts
+from lacoc_client.phases.evidence import Checked, Evidence, Named, Voted
+from lacoc_client.phases.facts import TRIPOD_MARGIN_M
 from lacoc_client.phases.predicates import (
     After,
     All,
@@ -29,11 +32,6 @@ from lacoc_client.phases.predicates import (
 )
 from lacoc_shared.words import Phrase, say
 
-_OWN = ("hand", "tool")
-_UPRIGHT = 0.8
-"""A robot has tipped over below this (docs/studio.md 3)."""
-_BELLY = 0.05
-"""A robot lies on its body if it rests on it for a larger share of time."""
 _STRAIGHT_DEG_S, _TURNS_DEG_S, _WALKS_MM_S, _STILL_MM = 3.0, 5.0, 15.0, 10.0
 
 
@@ -73,35 +71,6 @@ class Phase:
         return self.question if explain_first else self.explanation
 
 
-def _own_cells(cells: int) -> Different:
-    """Ask for a number of different cells that the student changed, not the coach or a paste."""
-    return Different(_cells, cells, lambda left: say("phases.more-cells", left=left))
-
-
-def _cells(one: Evidence) -> Iterator[tuple[None, tuple[int, ...]]]:
-    if isinstance(one, Edited) and one.by in _OWN:
-        for leg in one.legs:
-            for level in leg.changed:
-                yield None, (leg.key, leg.posture, leg.leg, level)
-
-
-def _leg_postures(one: Evidence) -> Iterator[tuple[int, tuple[float, ...]]]:
-    if isinstance(one, Edited) and one.by in _OWN:
-        for leg in one.legs:
-            yield leg.leg, leg.angles_deg
-
-
-def _leg_joints(one: Evidence) -> Iterator[tuple[int, int]]:
-    if isinstance(one, Edited) and one.by in _OWN:
-        for leg in one.legs:
-            for level in leg.changed:
-                yield leg.leg, level
-
-
-def _foot_guess(one: Evidence) -> bool | None:
-    return one.right if isinstance(one, Guessed) and one.about == "foot" else None
-
-
 ONE_LEG = Phase(
     number=1,
     id="one-leg",
@@ -111,24 +80,18 @@ ONE_LEG = Phase(
     hint=say("phases.one-leg-hint"),
     explanation=say("phases.one-leg-explanation"),
     shown=(
-        Different(_leg_joints, 3, lambda left: say("phases.more-joints", left=left)),
-        Different(_leg_postures, 6, lambda left: say("phases.more-leg-postures", left=left)),
+        Different(leg_joints, 3, lambda left: say("phases.more-joints", left=left)),
+        Different(leg_postures, 6, lambda left: say("phases.more-leg-postures", left=left)),
         Times(
-            lambda one: _foot_guess(one) is not None,
+            lambda one: foot_guess(one) is not None,
             3,
             lambda left: say("phases.more-guesses", left=left),
         ),
-        LastOf(_foot_guess, 2, 3, lambda left: say("phases.more-right-guesses")),
+        LastOf(foot_guess, 2, 3, lambda left: say("phases.more-right-guesses")),
     ),
 )
 
 
-_NOT_STOPPED = Bound(
-    lambda facts: float(facts.stopped), lambda stopped: say("phases.stopped"), most=0.0
-)
-_IS_UPRIGHT = Bound(
-    lambda facts: facts.upright, lambda upright: say("phases.tipped"), least=_UPRIGHT
-)
 _STANDS = 2.0
 
 THREE_LEGS = Phase(
@@ -141,7 +104,7 @@ THREE_LEGS = Phase(
     explanation=say("phases.three-legs-explanation"),
     shown=(
         After(
-            _own_cells(3),
+            own_cells(3),
             TriedWhere(
                 (
                     Bound(
@@ -159,7 +122,7 @@ THREE_LEGS = Phase(
                         lambda found: say("phases.belly", percent=100 * found),
                         most=0.0,
                     ),
-                    _NOT_STOPPED,
+                    NOT_STOPPED,
                 ),
                 say("phases.try"),
             ),
@@ -169,12 +132,6 @@ THREE_LEGS = Phase(
 
 _HALF_CYCLE_MM = 15.0
 _SAME_FEET = 0.9
-
-
-def _are_two_postures(facts: TrialFacts) -> float:
-    """Return 1 if the last two keys were two different postures of level A, else 0."""
-    last = facts.keys[-2:]
-    return float(len(set(last)) == 2 and all(key.startswith("A") for key in last))
 
 
 HALF_CYCLE = Phase(
@@ -187,10 +144,10 @@ HALF_CYCLE = Phase(
     explanation=say("phases.half-cycle-explanation"),
     shown=(
         After(
-            _own_cells(3),
+            own_cells(3),
             TriedWhere(
                 (
-                    Bound(_are_two_postures, lambda found: say("phases.two-postures"), least=1.0),
+                    Bound(are_two_postures, lambda found: say("phases.two-postures"), least=1.0),
                     Bound(
                         lambda facts: facts.forward_mm,
                         lambda found: say(
@@ -203,7 +160,7 @@ HALF_CYCLE = Phase(
                         lambda found: say("phases.same-feet", percent=100 * found),
                         least=_SAME_FEET,
                     ),
-                    _NOT_STOPPED,
+                    NOT_STOPPED,
                 ),
                 say("phases.try"),
             ),
@@ -223,7 +180,7 @@ A_CYCLE = Phase(
     explanation=say("phases.cycle-explanation"),
     shown=(
         After(
-            _own_cells(6),
+            own_cells(6),
             TriedWhere(
                 (
                     Bound(
@@ -236,7 +193,7 @@ A_CYCLE = Phase(
                         lambda found: say("phases.four-postures", found=found, least=_POSTURES),
                         least=_POSTURES,
                     ),
-                    _IS_UPRIGHT,
+                    IS_UPRIGHT,
                     Bound(
                         lambda facts: facts.forward_mm,
                         lambda found: say("phases.farther", found_mm=found, least_mm=_CYCLES_MM),
@@ -254,7 +211,7 @@ A_CYCLE = Phase(
                         lambda found: say("phases.seam", jump_deg=found),
                         most=0.0,
                     ),
-                    _NOT_STOPPED,
+                    NOT_STOPPED,
                 ),
                 say("phases.try"),
             ),
@@ -263,12 +220,6 @@ A_CYCLE = Phase(
 )
 
 _DIFFERENCES = 2
-
-
-def _differs(one: Evidence) -> Iterator[tuple[None, str]]:
-    if isinstance(one, Compared) and one.against == SAMPLE:
-        for difference in one.differs:
-            yield None, difference
 
 
 CONCEPT = Phase(
@@ -284,27 +235,16 @@ CONCEPT = Phase(
         OneVersion(
             All(
                 Different(
-                    _differs, _DIFFERENCES, lambda left: say("phases.more-different", left=left)
+                    differs_from_sample,
+                    _DIFFERENCES,
+                    lambda left: say("phases.more-different", left=left),
                 ),
-                TriedWhere((_IS_UPRIGHT, _NOT_STOPPED), say("phases.try")),
+                TriedWhere((IS_UPRIGHT, NOT_STOPPED), say("phases.try")),
             )
         ),
         once(lambda one: isinstance(one, Voted), say("phases.vote")),
     ),
 )
-
-
-def _acts(*bounds: Bound, lacks: Phrase) -> Predicate:
-    """Ask for a trial of a key of level B, in which the robot does something upright."""
-    level_b = Bound(lambda facts: float(facts.keys[-1].startswith("B")), lambda _: lacks, least=1)
-    belly = Bound(lambda facts: facts.belly_share, lambda _: lacks, most=_BELLY)
-    return TriedWhere((level_b, _IS_UPRIGHT, belly, _NOT_STOPPED, *bounds), lacks)
-
-
-def _within(
-    number: str, lacks: Phrase, least: float = -float("inf"), most: float = float("inf")
-) -> Bound:
-    return Bound(lambda facts: getattr(facts, number), lambda _: lacks, least, most)
 
 
 _STAND, _FORWARD = say("phases.key-stand"), say("phases.key-forward")
@@ -326,19 +266,26 @@ CREATIVE = Phase(
                     lambda one: isinstance(one, Checked) and not one.mistakes and one.keys >= _KEYS,
                     say("phases.check"),
                 ),
-                _acts(
-                    _within("forward_mm", _STAND, -_STILL_MM, _STILL_MM),
-                    _within("left_mm", _STAND, -_STILL_MM, _STILL_MM),
-                    _within("drift_deg_s", _STAND, -1.0, 1.0),
+                acts(
+                    within(lambda facts: facts.forward_mm, _STAND, -_STILL_MM, _STILL_MM),
+                    within(lambda facts: facts.left_mm, _STAND, -_STILL_MM, _STILL_MM),
+                    within(lambda facts: facts.drift_deg_s, _STAND, -1.0, 1.0),
                     lacks=_STAND,
                 ),
-                _acts(
-                    _within("speed_mm_s", _FORWARD, least=_WALKS_MM_S),
-                    _within("drift_deg_s", _FORWARD, -_STRAIGHT_DEG_S, _STRAIGHT_DEG_S),
+                acts(
+                    within(lambda facts: facts.speed_mm_s, _FORWARD, least=_WALKS_MM_S),
+                    within(
+                        lambda facts: facts.drift_deg_s, _FORWARD, -_STRAIGHT_DEG_S, _STRAIGHT_DEG_S
+                    ),
                     lacks=_FORWARD,
                 ),
-                _acts(_within("drift_deg_s", _RIGHT, most=-_TURNS_DEG_S), lacks=_RIGHT),
-                _acts(_within("drift_deg_s", _LEFT, least=_TURNS_DEG_S), lacks=_LEFT),
+                acts(
+                    within(lambda facts: facts.drift_deg_s, _RIGHT, most=-_TURNS_DEG_S),
+                    lacks=_RIGHT,
+                ),
+                acts(
+                    within(lambda facts: facts.drift_deg_s, _LEFT, least=_TURNS_DEG_S), lacks=_LEFT
+                ),
             )
         ),
     ),

@@ -220,7 +220,7 @@ def _counted(found: int, wanted: int, lacks: Lacks) -> Outcome:
 
 
 def _all(outcomes: Sequence[Outcome]) -> Outcome:
-    missing = tuple(phrase for outcome in outcomes for phrase in outcome.missing)
+    missing = tuple(dict.fromkeys(phrase for outcome in outcomes for phrase in outcome.missing))
     if not missing:
         return MET
     share = sum(outcome.share for outcome in outcomes) / len(outcomes)
