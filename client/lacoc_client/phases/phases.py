@@ -91,8 +91,7 @@ ONE_LEG = Phase(
     ),
 )
 
-
-_STANDS = 2.0
+_STAND_S = 2.0
 
 THREE_LEGS = Phase(
     number=2,
@@ -112,10 +111,10 @@ THREE_LEGS = Phase(
                         lambda found: say(
                             "phases.stand-longer",
                             found_s=found,
-                            least_s=_STANDS,
+                            least_s=_STAND_S,
                             margin_mm=1000 * TRIPOD_MARGIN_M,
                         ),
-                        least=_STANDS,
+                        least=_STAND_S,
                     ),
                     Bound(
                         lambda facts: facts.belly_share,
@@ -132,7 +131,6 @@ THREE_LEGS = Phase(
 
 _HALF_CYCLE_MM = 15.0
 _SAME_FEET = 0.9
-
 
 HALF_CYCLE = Phase(
     number=3,
@@ -221,7 +219,6 @@ A_CYCLE = Phase(
 
 _DIFFERENCES = 2
 
-
 CONCEPT = Phase(
     number=5,
     id="concept",
@@ -245,7 +242,6 @@ CONCEPT = Phase(
         once(lambda one: isinstance(one, Voted), say("phases.vote")),
     ),
 )
-
 
 _STAND, _FORWARD = say("phases.key-stand"), say("phases.key-forward")
 _RIGHT, _LEFT = say("phases.key-right"), say("phases.key-left")
