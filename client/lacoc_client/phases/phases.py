@@ -62,7 +62,7 @@ class Phase:
         Args:
             explain_first: whether the teacher wants the explanation before the task. Students
                 usually learn more if they try first, children of grades 2 to 5 if they read first
-                (docs/studio.md 6).
+                (docs/studio.md 7).
         """
         return (self.explanation, self.task) if explain_first else (self.task, self.question)
 

@@ -51,6 +51,7 @@ def what_matters(
 def changes_of(
     table: Angles, cells: Sequence[int], ranges_deg: Sequence[tuple[float, float]], score: Score
 ) -> list[Matter]:
+    """Find what changes of some cells do to a score; the cells that matter most come first."""
     tables = [table]
     for index in cells:
         low, high = ranges_deg[index]
