@@ -1,5 +1,6 @@
 """The connection of a /design page: a real gateway, a real studio, files of a real folder."""
 
+import contextlib
 import re
 import subprocess
 from collections.abc import Callable, Iterator
@@ -7,13 +8,18 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, get_args
 
+import msgpack
 import msgspec
 import psutil
 import pytest
 from design_client import DesignClient, Refused
-from lacoc_process import Lacoc
+from hypothesis import given
+from hypothesis import strategies as st
+from lacoc_process import Lacoc, run_lacoc
+from ports import free_port
 
 from lacoc_client.design import requests
+from lacoc_client.gateway.wire import Unreadable
 from lacoc_robots.library import find_robot
 from lacoc_shared.studio import STUDIO_MAX_BYTES
 
@@ -23,10 +29,10 @@ pytestmark = pytest.mark.slow
 class Gateway:
     """A running `lacoc design`."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *words: str) -> None:
         self.folder = folder
         self.process = Lacoc(
-            *("design", str(folder), "--no-open"),
+            *("design", str(folder), "--no-open", *words),
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             stdin=subprocess.DEVNULL,
@@ -227,3 +233,55 @@ def test_a_studio_that_dies_comes_back(page: DesignClient, gateway: Gateway) -> 
     page.until(lambda: not page.studio["present"])
     page.until(lambda: page.studio["present"])
     assert page.ask("trial", keys="2")["digest"] == before
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--connect", "http://x"), "is not an address"),
+        (("--robot", "nothing"), "There is no robot"),
+        (("none",), "There is no folder none"),
+    ],
+)
+def test_a_wrong_start_is_told(tmp_path: Path, words: tuple[str, ...], said: str) -> None:
+    """A wrong folder, robot or address ends the command with one sentence."""
+    ended = run_lacoc("design", *words, "--no-open", cwd=tmp_path)
+    assert ended.returncode == 2
+    assert said in ended.stderr
+
+
+def test_a_studio_elsewhere_may_come_later(tmp_path: Path) -> None:
+    """With --connect a page says why there is no studio, and goes on as soon as there is one."""
+    address = f"tcp/127.0.0.1:{free_port()}"
+    with ExitStack() as stack:
+        gateway = Gateway(tmp_path, "--connect", address, "--robot", "quadruped")
+        stack.callback(gateway.close)
+        page = DesignClient(gateway.url, gateway.key)
+        stack.callback(page.close)
+        page.until(lambda: page.studio["why"])
+        table = sample(page)
+        assert table["legs"] == 4
+        robot = page.ask("hello", key=gateway.key)["robot"]
+        reply = refused(page, "trial", table=table, robot=robot)
+        assert reply["again"]
+        studio = stack.enter_context(Lacoc("studio", "--listen", address, "--jobs", "1"))
+        stack.callback(studio.terminate)
+        page.until(lambda: page.studio["present"])
+        assert page.ask("trial", table=table, robot=robot)["figures"]["cycles"] > 0
+
+
+@given(st.binary(max_size=300))
+def test_no_bytes_break_the_reader(data: bytes) -> None:
+    """Any bytes from a page can be read or raise `Unreadable`, and no other exception."""
+    with contextlib.suppress(Unreadable):
+        requests.read(data)
+
+
+def test_whole_numbers_of_a_browser_are_angles() -> None:
+    """A browser sends 45.0 as a whole number; it is read as an angle."""
+    rows = [{"key": 1, "posture": 0, "angles_deg": [45, -1.5] * 9}]
+    body = {"id": 1, "do": "trial", "table": {"kind": "postures", "legs": 6, "rows": rows}}
+    asked = requests.read(msgpack.packb(body))
+    assert isinstance(asked, requests.TrialAsk)
+    assert asked.table is not None
+    assert asked.table.rows[0].angles_deg == (45.0, -1.5) * 9

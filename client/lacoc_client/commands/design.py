@@ -62,10 +62,10 @@ def design_command(
     opened, and asks first if another program changed the file. Nothing else has to run: a studio,
     which lets the robot walk, is started here unless --connect names one.
     """
-    pages.check_pages()
+    pages.check_pages(terminal=False)
     files = Folder(folder)
     with _studio(connect) as address:
-        designer = Designer(files, Asker([address]), robot)
+        designer = Designer(files, Asker(address), robot)
         site = design_site(designer, PageFiles())
         pages.show_app(site, f"{PATH}#key={designer.key}", browser, listen, MESSAGE_BYTES)
 

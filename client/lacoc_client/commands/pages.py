@@ -28,14 +28,17 @@ Terminal = Annotated[
 ]
 
 
-def check_pages() -> None:
+def check_pages(*, terminal: bool = True) -> None:
     """Check that there are pages to show.
+
+    Args:
+        terminal: whether the command has `--terminal` too.
 
     Raises:
         UserError: if they are not built.
     """
     if not PageFiles().built:
-        raise UserError(say("pages.not-built-for-play", why=NOT_BUILT))
+        raise UserError(say("pages.not-built-for-play", why=NOT_BUILT) if terminal else NOT_BUILT)
 
 
 def show_page(home: Home, path: str, browser: bool) -> None:

@@ -15,7 +15,7 @@ from lacoc_client.commands.play import Gaits, Robot, TeamName, own_files, play
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.contest.invitation import Access
-from lacoc_shared.words import say
+from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
@@ -60,13 +60,7 @@ def practice_command(
 
 def _greeting(files: SeatFiles) -> Text:
     sample = files.postures is None and files.locomotion is None
-    hint = (
-        "Slowly press 1 2 3 4, again and again: it walks forward. 4 3 2 1 walks back, 5 6 7 8 "
-        "turns right, 8 7 6 5 turns left, 0 stands. Tab, and one key does it all."
-        if sample
-        else "Your own gait is loaded: press its keys and see where it goes."
-    )
-    return Text.assemble(("Practice. ", "bold"), hint)
+    return Text(render(say("practice.sample") if sample else say("practice.own-gait")))
 
 
 @contextmanager

@@ -1,7 +1,6 @@
 """Asks a studio for a page: finds one, sends a request, tells how far a search is."""
 
 import asyncio
-import logging
 import threading
 import time
 from collections.abc import Callable
@@ -12,7 +11,9 @@ import msgspec
 
 from lacoc_client.asking import NoAnswer, NotNow, refusal_of
 from lacoc_shared import codec
+from lacoc_shared.command import log
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network import address
 from lacoc_shared.network.session import (
     Mailbox,
     NoReply,
@@ -30,6 +31,7 @@ T = TypeVar("T")
 _LOOK_S = 0.5
 _OPEN_S = 2.0
 _PATIENCE_S = 3.0
+_COMING_BACK_S, _AGAIN_S = 0.5, 0.05
 _FIRST_POLL_S, _LAST_POLL_S = 0.002, 0.02
 _SLOWER = 1.1
 
@@ -40,11 +42,15 @@ class Asker:
     A thread keeps looking for a studio, so one that comes later, or comes back, is found.
 
     Args:
-        connect: addresses of a studio, or of a router that leads to it.
+        connect: address of a studio, or of a router that leads to it.
+
+    Raises:
+        UserError: if the address is wrong.
     """
 
-    def __init__(self, connect: list[str]) -> None:
-        self._connect = connect
+    def __init__(self, connect: str) -> None:
+        self._connect = [address.endpoint(connect)]
+        address.check_protocols(self._connect, keys=False)
         self._session: Session | None = None
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._look, name="studio", daemon=True)
@@ -82,9 +88,7 @@ class Asker:
             NoAnswer: if it was asked, and does not answer.
             UserError: if it refuses for good.
         """
-        session, keys = await self._found()
-        question = session.question(keys.request(what), codec.encode(message), timeout_s)
-        payload = await self._answer(question)
+        payload = await self._answered(what, codec.encode(message), timeout_s)
         try:
             return codec.decode(payload, reply, TRIAL_REPLY_MAX_BYTES), payload
         except codec.BadMessage as error:
@@ -110,21 +114,25 @@ class Asker:
                 raise NotNow(self.why or say("design.no-studio"))
             await asyncio.sleep(_LAST_POLL_S)
 
-    async def _answer(self, question: Question) -> bytes:
-        pause_s = _FIRST_POLL_S
+    async def _answered(self, what: str, request: bytes, timeout_s: float) -> bytes:
+        """Send a request and wait for its answer.
+
+        A studio that has just come can't be asked for a moment after it is seen, so a request that
+        nobody has received is sent again.
+        """
+        end_s = time.monotonic() + _COMING_BACK_S
         while True:
+            session, keys = await self._found()
             try:
-                payload = question.take()
+                return await _wait(session.question(keys.request(what), request, timeout_s))
             except TooLate:
                 raise NoAnswer(say("design.studio-late")) from None
             except NoReply:
-                raise NotNow(say("design.studio-lost")) from None
+                if time.monotonic() >= end_s:
+                    raise NotNow(say("design.studio-lost")) from None
+                await asyncio.sleep(_AGAIN_S)
             except Refused as refused:
                 raise refusal_of(refused.payload) from None
-            if payload is not None:
-                return payload
-            await asyncio.sleep(pause_s)
-            pause_s = min(_LAST_POLL_S, pause_s * _SLOWER)
 
     def _look(self) -> None:
         """Connect, and keep looking which studios there are."""
@@ -135,11 +143,11 @@ class Asker:
                     if self._session is None:
                         self._session = stack.enter_context(open_client(self._connect, _OPEN_S))
                     self._choose(self._session)
-                except Exception as error:  # whatever it is, the next look may go better
-                    self.studio = None
-                    self.why = getattr(error, "phrase", None)
-                    if self.why is None:
-                        logging.getLogger(__name__).exception("looking for a studio")
+                except UserError as error:
+                    self.studio, self.why = None, error.phrase
+                except Exception as error:  # Zenoh's own, on a link that breaks: look again
+                    self.studio, self.why = None, say("design.no-studio")
+                    log.get().warning(str(error))
                 self._ending.wait(max(0.0, began_s + _LOOK_S - time.monotonic()))
             self._session = self.studio = None
 
@@ -148,6 +156,15 @@ class Asker:
         self.why = None if names else say("design.no-studio")
         if self.studio not in names:
             self.studio = names[0] if names else None
+
+
+async def _wait(question: Question) -> bytes:
+    """Wait for an answer; raises the same errors as `Question.take`."""
+    pause_s = _FIRST_POLL_S
+    while (payload := question.take()) is None:
+        await asyncio.sleep(pause_s)
+        pause_s = min(_LAST_POLL_S, pause_s * _SLOWER)
+    return payload
 
 
 class Listening:

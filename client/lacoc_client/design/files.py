@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from pathlib import PurePath
 
+from lacoc_client.design.saving.text_edit import edit_text
+from lacoc_client.design.saving.workbook_edit import edit_workbook, formulas_in
 from lacoc_client.design.table import FileTable, gait_of, page_table
-from lacoc_client.design.text_edit import edit_text
-from lacoc_client.design.workbook_edit import edit_workbook, formulas_in
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.tables import LocomotionTable
 from lacoc_shared.gait.text import read_gait, write_gait

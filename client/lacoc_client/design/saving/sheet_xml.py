@@ -199,6 +199,8 @@ class _Indexer:
         self._in_value = self._in_formula = False
         self._row = 0
         self._column = 0
+        self._alone: list[int | None] = []
+        """For each open element the end of its tag, if it has no end tag."""
         self._parser = parser = expat.ParserCreate()
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
@@ -211,21 +213,22 @@ class _Indexer:
         return match.end()
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
-        start = self._parser.CurrentByteIndex
+        start, tag_end = self._parser.CurrentByteIndex, self._tag_end()
+        self._alone.append(tag_end if self._data[tag_end - 2 : tag_end] == b"/>" else None)
         prefix, colon, local = name.rpartition(":")
         if local == "sheetData":
             self._sheet.prefix = prefix + colon
         elif local == "row" and self._line is None:
             self._row = int(attributes.get("r", self._row + 1))
             self._column = 0
-            self._line = _Line(self._row, start, self._tag_end())
+            self._line = _Line(self._row, start, tag_end)
             self._sheet._lines[self._row] = self._line
         elif local == "c" and self._line is not None:
             if "r" in attributes:
                 self._column = coordinate_to_tuple(attributes["r"])[1]
             else:
                 self._column += 1
-            self._cell = Cell((self._row, self._column), attributes, start, self._tag_end())
+            self._cell = Cell((self._row, self._column), attributes, start, tag_end)
             self._line.cells.append(self._cell)
         elif self._cell is not None and local == "f":
             self._cell.formula = Formula(attributes, start)
@@ -234,18 +237,19 @@ class _Indexer:
             self._in_value = True
 
     def _end(self, name: str) -> None:
-        start, end = self._parser.CurrentByteIndex, self._tag_end()
+        # For <a/> the parser is behind the tag already.
+        alone = self._alone.pop()
+        start = self._parser.CurrentByteIndex if alone is None else alone
+        end = self._tag_end() if alone is None else alone
         local = name.rpartition(":")[2]
         cell = self._cell
         if local == "sheetData":
-            self._sheet._data_end = start
-            if self._data[start : start + 2] != b"</":  # <sheetData/>
-                self._sheet._data_end = -1
+            self._sheet._data_end = start if alone is None else -1
         elif local == "row" and self._line is not None:
             self._line.end, self._line = end, None
         elif cell is not None and local == "c":
             cell.end = end
-            cell.inner_end = max(start, cell.inner_start)
+            cell.inner_end = start
             self._cell = None
         elif cell is not None and cell.formula is not None and local == "f":
             cell.formula.end = end

@@ -6,29 +6,24 @@ they may be old, so that every program calculates them anew.
 """
 
 import re
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from xml.sax.saxutils import escape
 
 from openpyxl.formula.translate import Translator
 from openpyxl.utils import get_column_letter, range_boundaries
 
-from lacoc_client.design.book_parts import BookParts
-from lacoc_client.design.sheet_xml import Cell, Content, NotEditable, Place, SheetXml
-from lacoc_shared.gait.cells import Row, angle_of, degrees_of, number_of, number_text
-from lacoc_shared.gait.legend import KEY, find_legend, trimmed
+from lacoc_client.design.saving.book_parts import BookParts
+from lacoc_client.design.saving.sheet_ranges import with_ranges
+from lacoc_client.design.saving.sheet_xml import Cell, Content, NotEditable, Place, SheetXml
+from lacoc_client.design.saving.workbook_layout import Layout, find_layout
+from lacoc_shared.gait.cells import angle_of, number_of, number_text
+from lacoc_shared.gait.legend import KEY
 from lacoc_shared.gait.sheets import INPUT_SHEET, MIRROR_SHEET
-from lacoc_shared.gait.tables import JOINTS_PER_LEG, PostureTable
+from lacoc_shared.gait.tables import PostureTable
 from lacoc_shared.gait.workbook import read_workbook, sheet_rows
-from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
-_RANGES = re.compile(
-    r'(<(?:\w+:)?(?:dataValidation|conditionalFormatting)\b[^>]*\ssqref=")([^"]*)"'
-)
-_MERGED = re.compile(r'(<(?:\w+:)?mergeCell\b[^>]*\sref=")([^"]*)"')
-_SIZE = re.compile(r'(<(?:\w+:)?dimension\b[^>]*\sref=")([^"]*)"')
 _TABLES = re.compile(rb"<(?:\w+:)?tablePart\b")
 _LONG_FORMULAS = ("array", "dataTable")
 
@@ -46,13 +41,11 @@ def edit_workbook(data: bytes, name: str, table: PostureTable) -> bytes:
         UserError: if it can't have these postures without losing something else.
     """
     title, rows = sheet_rows(data, name)
-    layout = _layout(rows, name, table)
+    layout = find_layout(rows, name, table)
     try:
         edited = _Edit(BookParts(data), title, layout).result() or data
         right = edited == data or read_workbook(edited, name) == table
-    except (NotEditable, FileRefused):
-        right = False
-    except Exception:  # a broken workbook may raise any exception
+    except Exception:  # a broken workbook may raise any; what can't be kept raises NotEditable
         right = False
     if not right:
         raise UserError(say("design.cannot-edit", name=name))
@@ -68,116 +61,12 @@ def formulas_in(data: bytes, name: str) -> int:
     """
     title, rows = sheet_rows(data, name)
     postures = {row.number for row in rows if KEY.fullmatch(row.cells[0].strip())}
-    book = BookParts(data)
     try:
+        book = BookParts(data)
         cells = SheetXml(book.part(book.sheets[title])).cells()
-    except NotEditable:
+    except Exception:  # the reader can read it, but it can't be edited here
         return 0
     return sum(cell.formula is not None and cell.place[0] in postures for cell in cells)
-
-
-@dataclass(frozen=True)
-class _Layout:
-    """Where the cells of a sheet's table are, and what they are to have."""
-
-    texts: Mapping[Place, str]
-    """What the cells have now, as text."""
-    columns: int
-    """Columns of the table."""
-    bottom: int
-    """Row of the last posture now."""
-    legend: tuple[int, int]
-    """First row of the legend, and the row after it."""
-    down: int
-    """Rows by which the legend moves down."""
-    wanted: Mapping[Place, str | float | None]
-    """Text, number or nothing of each cell of the table."""
-
-
-def _layout(rows: Sequence[Row], name: str, table: PostureTable) -> _Layout:
-    """Find where each posture goes.
-
-    Raises:
-        UserError: if the postures do not fit into the sheet.
-    """
-    filled = [Row(row.number, trimmed(row.cells)) for row in rows]
-    filled = [row for row in filled if row.cells]
-    if not filled:
-        raise UserError(say("design.cannot-edit", name=name))
-    header, *others = filled
-    body, legend, _ = find_legend(others)
-    row_of = {int(found[1]): row for row in body if (found := KEY.fullmatch(row.cells[0]))}
-    _check_robot(row_of.values(), name, table)
-    first = legend[0].number if legend else 0
-    stop = first
-    while stop in {row.number for row in legend}:  # words further below are a person's own
-        stop += 1
-    end = first or filled[-1].number + len(table.postures) + 1
-    used = {row.number for row in filled}
-    free = [number for number in range(header.number + 1, end) if number not in used]
-    free += [row.number for key, row in row_of.items() if key not in table.postures]
-    down = max(0, len(table.postures.keys() - row_of.keys()) - len(free))
-    if used & {*range(stop, stop + down)}:
-        raise UserError(say("design.no-room", name=name, rows=down, row=first))
-    free += range(first, first + down)
-    place_of = {key: row.number for key, row in row_of.items() if key in table.postures}
-    _place_new(place_of, table, free)
-    wanted: dict[Place, str | float | None] = {}
-    for key, row in row_of.items():
-        if key not in table.postures:
-            wanted |= {(row.number, column): None for column in range(1, table.joints + 2)}
-    for key, number in place_of.items():
-        if key not in row_of:
-            wanted[number, 1] = f"{key} Key"
-        for column, angle in enumerate(table.postures[key], start=2):
-            wanted[number, column] = degrees_of(angle)
-    if number_of([*header.cells, ""][1]) != len(table.postures):
-        wanted[header.number, 2] = float(len(table.postures))
-    return _Layout(
-        texts={
-            (row.number, column): cell
-            for row in filled
-            for column, cell in enumerate(row.cells, start=1)
-            if cell
-        },
-        columns=table.joints + 1,
-        bottom=max((row.number for row in row_of.values()), default=header.number),
-        legend=(first, stop),
-        down=down,
-        wanted=wanted,
-    )
-
-
-def _check_robot(rows: Iterable[Row], name: str, table: PostureTable) -> None:
-    """Check that the sheet has the columns of the table's robot.
-
-    Raises:
-        UserError: if it is for another number of legs.
-    """
-    counts = Counter(len(row.cells) - 1 for row in rows).most_common(1)
-    joints = counts[0][0] if counts else table.joints
-    if joints != table.joints and joints % JOINTS_PER_LEG == 0:
-        legs, wanted = joints // JOINTS_PER_LEG, table.joints // JOINTS_PER_LEG
-        raise UserError(say("design.other-robot", name=name, legs=legs, wanted=wanted))
-
-
-def _place_new(place_of: dict[int, int], table: PostureTable, free: list[int]) -> None:
-    """Give each posture without a row a free one, in the order of the keys where that is possible.
-
-    Args:
-        place_of: row of each posture; the new ones are added.
-        table: the postures.
-        free: rows that can be used; those that are taken are removed.
-    """
-    for key in sorted(table.postures.keys() - place_of.keys()):
-        row = min(free, key=lambda row: (_disorder(place_of, key, row), row))
-        free.remove(row)
-        place_of[key] = row
-
-
-def _disorder(place_of: Mapping[int, int], key: int, row: int) -> int:
-    """Count the postures that a key in this row would be out of order with."""
-    return sum((other < key) != (place < row) for other, place in place_of.items())
 
 
 class _Edit:
@@ -189,7 +78,7 @@ class _Edit:
         layout: what its cells are to have.
     """
 
-    def __init__(self, book: BookParts, title: str, layout: _Layout) -> None:
+    def __init__(self, book: BookParts, title: str, layout: Layout) -> None:
         self._book = book
         self._title = title
         self._layout = layout
@@ -222,7 +111,7 @@ class _Edit:
             if cells
         }
         part = self._book.sheets[self._title]
-        changed[part] = self._with_ranges(changed[part])
+        changed[part] = with_ranges(changed[part], self._layout)
         return self._book.packed(changed, formulas=has_formulas, chain=bool(had_formulas))
 
     def _formula(self, place: Place) -> bool:
@@ -357,26 +246,6 @@ class _Edit:
             if len(tokens) == before:
                 return depend
 
-    def _with_ranges(self, xml: bytes) -> bytes:
-        """Return a sheet whose ranges reach to the new last row of the table."""
-        layout, text = self._layout, xml.decode()
-        last = max(
-            (row for row, _ in layout.wanted if layout.wanted[row, 2] is not None), default=0
-        )
-        added = last - layout.bottom
-        if added > 0:
-
-            def longer(found: re.Match[str]) -> str:
-                ranges = (_longer(one, layout, last) for one in found[2].split(" "))
-                return f'{found[1]}{" ".join(ranges)}"'
-
-            text = _RANGES.sub(longer, text)
-            grown = layout.down if layout.legend[0] else added
-            text = _SIZE.sub(lambda found: f'{found[1]}{_grown(found[2], grown)}"', text)
-        if layout.down:
-            text = _MERGED.sub(lambda found: f'{found[1]}{_moved(found[2], layout)}"', text)
-        return text.encode()
-
 
 def _has(text: str, tokens: set[str]) -> bool:
     return any(token in text for token in tokens)
@@ -406,26 +275,3 @@ def _covers(reference: str | None, contents: Mapping[Place, Content]) -> bool:
     left, top, right, bottom = range_boundaries(reference)
     inside = [p for p in contents if top <= p[0] <= bottom and left <= p[1] <= right]
     return bool(inside) and (left, top) != (right, bottom)
-
-
-def _longer(one: str, layout: _Layout, last: int) -> str:
-    """Let a range that ends with the table's last row reach to another row."""
-    left, top, right, bottom = range_boundaries(one)
-    if bottom != layout.bottom or top >= bottom or right > layout.columns:
-        return one
-    return f"{get_column_letter(left)}{top}:{get_column_letter(right)}{last}"
-
-
-def _moved(reference: str, layout: _Layout) -> str:
-    """Move a range that lies in the legend."""
-    left, top, right, bottom = range_boundaries(reference)
-    first, stop = layout.legend
-    if not (first <= top and bottom < stop and right <= layout.columns):
-        return reference
-    top, bottom = top + layout.down, bottom + layout.down
-    return f"{get_column_letter(left)}{top}:{get_column_letter(right)}{bottom}"
-
-
-def _grown(reference: str, rows: int) -> str:
-    left, top, right, bottom = range_boundaries(reference)
-    return f"{get_column_letter(left)}{top}:{get_column_letter(right)}{bottom + rows}"

@@ -1,0 +1,89 @@
+"""Tests of the processes that work for a studio."""
+
+import os
+import signal
+import time
+from collections.abc import Iterator
+from concurrent.futures import CancelledError
+
+import psutil
+import pytest
+
+from lacoc_server.studio.workers import WorkerDied, WorkerFailed, Workers
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def workers() -> Iterator[Workers]:
+    """Give one process."""
+    with Workers(1) as workers:
+        yield workers
+
+
+def test_an_error_is_that_of_its_job(workers: Workers) -> None:
+    """A job that raises an error fails with its traceback, and the process goes on."""
+    first = workers.submit(os.getpid).result()
+    failed = workers.submit(int, "no number")
+    with pytest.raises(WorkerFailed, match=r"ValueError: .*no number"):
+        failed.result()
+    assert workers.submit(os.getpid).result() == first != os.getpid()
+
+
+def test_a_process_that_ends_is_replaced(workers: Workers) -> None:
+    """A job that ends its process fails; the job behind it has another process."""
+    first = workers.submit(os.getpid)
+    ends, following = workers.submit(os._exit, 3), workers.submit(os.getpid)
+    with pytest.raises(WorkerDied):
+        ends.result()
+    assert following.result() != first.result()
+
+
+def test_a_process_that_died_at_rest_costs_no_job(workers: Workers) -> None:
+    """A process that is killed between two jobs is replaced before the second."""
+    first = workers.submit(os.getpid).result()
+    os.kill(first, signal.SIGKILL)
+    while not _has_ended(first):
+        time.sleep(0.01)
+    assert workers.submit(os.getpid).result() != first
+
+
+def _has_ended(pid: int) -> bool:
+    try:
+        return psutil.Process(pid).status() == psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return True
+
+
+def test_a_job_has_a_time_limit() -> None:
+    """A job that takes too long fails, and its process is ended."""
+    with Workers(1, limit_s=1.0) as workers, pytest.raises(WorkerDied):
+        workers.submit(time.sleep, 60).result()
+
+
+def test_jobs_that_wait_can_be_cancelled(workers: Workers) -> None:
+    """A job that nobody wants any more is skipped."""
+    first = workers.submit(os.getpid)
+    slow, unwanted, last = (
+        workers.submit(time.sleep, 0.3),
+        workers.submit(os._exit, 3),
+        workers.submit(os.getpid),
+    )
+    assert unwanted.cancel()
+    assert last.result() == first.result()
+    assert slow.done()
+
+
+def test_the_end_ends_all() -> None:
+    """A close cancels what waits, fails what runs, and leaves no process."""
+    workers = Workers(2, background=True)
+    pids = {workers.submit(os.getpid).result() for _ in range(4)}
+    jobs = [workers.submit(time.sleep, 60) for _ in range(4)]
+    children = [psutil.Process(pid) for pid in workers.processes]
+    assert pids <= {one.pid for one in children}
+    time.sleep(0.2)
+    workers.close()
+    for job in jobs:
+        with pytest.raises((WorkerDied, CancelledError)):
+            job.result(timeout=10)
+    assert psutil.wait_procs(children, 10)[1] == []
