@@ -99,7 +99,15 @@ export default function Design() {
             }}
           />
         </div>
-        {asks.value && <Foretell studio={studio} onTry={tryIt} />}
+        {asks.value && (
+          <Foretell
+            studio={studio}
+            onTry={tryIt}
+            onClose={() => {
+              asks.value = false;
+            }}
+          />
+        )}
       </header>
       <div class="left">
         <Keys studio={studio} />

@@ -1,5 +1,6 @@
 /** What will happen? Foretold before the trial shows it. */
 
+import { useEffect } from "preact/hooks";
 import type { Guess } from "../../core/design/predict";
 import { t } from "../../i18n";
 import type { Studio } from "./studio";
@@ -15,9 +16,15 @@ export function guessName(is: Guess["is"]): string {
 interface Props {
   studio: Studio;
   onTry: () => void;
+  onClose: () => void;
 }
 
-export function Foretell({ studio, onTry }: Props) {
+export function Foretell({ studio, onTry, onClose }: Props) {
+  useEffect(() => {
+    const press = (event: KeyboardEvent) => event.key === "Escape" && onClose();
+    addEventListener("keydown", press);
+    return () => removeEventListener("keydown", press);
+  }, [onClose]);
   const before = studio.lastOf(studio.key.value);
   const guesses = studio.guesses.value;
   const choose = (guess: Guess) => {
