@@ -6,12 +6,13 @@ from lacoc_robots.robot import RobotSpec
 from lacoc_server.studio.answers import Answer, answer
 from lacoc_server.trial.course import Course
 from lacoc_server.world.sensed import make_course
+from lacoc_server.world.world import SUBSTEPS
 
 
 @lru_cache(maxsize=16)
-def course_of(robot: RobotSpec) -> Course:
-    """Give the floor for a robot's trials in this process."""
-    return make_course(robot)
+def course_of(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
+    """Give the floor for a robot's trials in this process; arguments as in `make_course`."""
+    return make_course(robot, steps)
 
 
 def answered(what: str, payload: bytes) -> Answer:

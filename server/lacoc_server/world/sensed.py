@@ -25,10 +25,10 @@ _NET_FORCE = 3
 """MuJoCo's reduction of all contacts of a pair to one: their net force, at its centre."""
 
 
-def make_course(robot: RobotSpec) -> Course:
-    """Make the course for a robot's trials."""
+def make_course(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
+    """Make the course for a robot's trials; `steps` as in `SensedWorld`."""
     arena = practice_field()
-    world = SensedWorld(arena, Entry(robot, Gait()))
+    world = SensedWorld(arena, Entry(robot, Gait()), steps)
     return Course(world, robot, arena)
 
 
@@ -38,10 +38,13 @@ class SensedWorld(World):
     Args:
         arena: a field of one seat, with the geom "floor".
         entry: the robot, weighed in.
+        steps: physics steps in a tick. With fewer than `SUBSTEPS` a trial is quicker, but the robot
+            no longer moves exactly as at a court.
     """
 
-    def __init__(self, arena: Arena, entry: Entry) -> None:
+    def __init__(self, arena: Arena, entry: Entry, steps: int = SUBSTEPS) -> None:
         self._legs = len(entry.robot.legs)
+        self._steps = steps
         self._prefix = f"{arena.seats[0].id}/"
         super().__init__(arena, [entry])
         model, legs = self.model, self._legs
@@ -53,9 +56,9 @@ class SensedWorld(World):
         self._radii_m, self._halves_m = sizes[:, 0], np.where(capsule, sizes[:, 1], 0.0)
         self._back_emf = entry.robot.back_emf
         self._root = model.body(f"{self._prefix}body").id
-        self._sensors = np.empty((SUBSTEPS, model.nsensordata))
-        self._torques = np.empty((SUBSTEPS, model.nu))
-        self._speeds = np.empty((SUBSTEPS, model.nu))
+        self._sensors = np.empty((steps, model.nsensordata))
+        self._torques = np.empty((steps, model.nu))
+        self._speeds = np.empty((steps, model.nu))
 
     @property
     def weight_n(self) -> float:
@@ -69,7 +72,7 @@ class SensedWorld(World):
     def sensed(self) -> Sensed:
         """Return what was measured in the last tick."""
         data, legs = self.data, self._legs
-        feet = self._sensors[:, : 6 * legs].reshape(SUBSTEPS, legs, 6)
+        feet = self._sensors[:, : 6 * legs].reshape(self._steps, legs, 6)
         load_n, at_w_m = np.abs(feet[:, :, 2]), feet[:, :, 3:]
         whole_n = load_n.sum(axis=0)
         centre_m = np.einsum("slx,sl->lx", at_w_m[:, :, :2], load_n)
@@ -92,6 +95,7 @@ class SensedWorld(World):
         )
 
     def _extend(self, spec: mujoco.MjSpec) -> None:
+        spec.option.timestep *= SUBSTEPS / self._steps
         shank = _FORCE | _POSITION
         for leg in range(self._legs):
             self._feel(spec, mujoco.mjtObj.mjOBJ_BODY, f"leg{leg}_2", shank)
@@ -111,7 +115,7 @@ class SensedWorld(World):
 
     def _advance(self) -> None:
         model, data = self.model, self.data
-        for step in range(SUBSTEPS):
+        for step in range(self._steps):
             mujoco.mj_step(model, data)
             self._sensors[step] = data.sensordata
             self._torques[step] = data.actuator_force

@@ -14,10 +14,12 @@ from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.course import SETTLE_TICKS
 from lacoc_server.trial.figures import Figures, measure
 from lacoc_server.trial.walk import Press
+from lacoc_server.world.world import SUBSTEPS
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
 
-_CYCLES, _QUICK_CYCLES = 3, 2
-"""Cycles of the sequence that a trial and a quick trial measure."""
+_QUICK_STEPS, _QUICK_CYCLES = 4, 2
+"""A quick trial has physics steps of 5 ms and measures two cycles of the sequence."""
+_CYCLES = 3
 _MOST_AT_ONCE = 4
 """Most trials that a process gets at once; fewer would cost time, more would delay a stop."""
 _LOOK_S = 0.05
@@ -57,30 +59,30 @@ class Trials:
         self._stop = stop
 
     def exact(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables.
+        """Score tables with the physics of the contest.
 
         Raises:
             Stopped: if the search was stopped.
         """
-        return self._score(tables, _CYCLES)
+        return self._score(tables, SUBSTEPS, _CYCLES)
 
     def quick(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables over fewer cycles: good enough to rank them.
+        """Score tables with longer physics steps and fewer cycles: good enough to rank them.
 
         Raises:
             Stopped: if the search was stopped.
         """
-        return self._score(tables, _QUICK_CYCLES)
+        return self._score(tables, _QUICK_STEPS, _QUICK_CYCLES)
 
     def figures(self, tables: Sequence[Angles]) -> list[Figures]:
-        """Return the figures of walks; a stop changes nothing."""
+        """Return the figures of walks, with the physics of the contest; a stop changes nothing."""
         jobs = [self._workers.submit(_figures, self.task, table) for table in tables]
         return [job.result() for job in jobs]
 
-    def _score(self, tables: Sequence[Angles], cycles: int) -> list[float]:
+    def _score(self, tables: Sequence[Angles], steps: int, cycles: int) -> list[float]:
         size = min(_MOST_AT_ONCE, max(1, len(tables) // (4 * self._workers.count)))
         parts = [tables[first : first + size] for first in range(0, len(tables), size)]
-        jobs = [self._workers.submit(_scores, self.task, part, cycles) for part in parts]
+        jobs = [self._workers.submit(_scores, self.task, part, steps, cycles) for part in parts]
         try:
             return [found for job in jobs for found in self._result(job)]
         finally:
@@ -101,11 +103,13 @@ class Trials:
             return found
 
 
-def try_table(task: Task, angles_deg: Angles, cycles: int = _CYCLES) -> Figures:
+def try_table(
+    task: Task, angles_deg: Angles, steps: int = SUBSTEPS, cycles: int = _CYCLES
+) -> Figures:
     """Let the robot walk with a table, in this process, and return the figures of its walk."""
     tables = (task.stand, task.table.sequence(angles_deg))
     press = Press(SETTLE_TICKS, Level.LOCOMOTION, 1)
-    course = course_of(task.robot)
+    course = course_of(task.robot, steps)
     return measure(course.walk(Gait(None, LocomotionTable(tables)), [press], cycles=cycles))
 
 
@@ -113,5 +117,5 @@ def _figures(task: Task, angles_deg: Angles) -> Figures:
     return try_table(task, angles_deg)
 
 
-def _scores(task: Task, tables: Sequence[Angles], cycles: int) -> list[float]:
-    return [score(try_table(task, table, cycles), task.goal) for table in tables]
+def _scores(task: Task, tables: Sequence[Angles], steps: int, cycles: int) -> list[float]:
+    return [score(try_table(task, table, steps, cycles), task.goal) for table in tables]
