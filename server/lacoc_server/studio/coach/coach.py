@@ -163,7 +163,7 @@ def _better(
     )
     yield from improve(search, size, matters, trials.rough, lambda: passed_s() >= seconds, seed)
     _follow(trials, tell, "undo", _UNDO_TRIALS, search.best.score)
-    yield from undo(search, matters, trials.quick)
+    yield from undo(search, matters, trials.rough)
 
 
 def _follow(
