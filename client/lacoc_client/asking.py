@@ -128,10 +128,23 @@ def fetch(
             if time.monotonic() >= end_s:
                 raise NoCourt(no_answer(session, keys.court)) from None
         except Refused as refused:
-            refusal = understand(refused.payload, Refusal)
-            if refusal.mistakes:
-                raise FileRefused(list(refusal.mistakes)) from None
-            raise (NotNow if refusal.again else UserError)(refusal.why) from None
+            raise refusal_of(refused.payload) from None
+
+
+def refusal_of(payload: bytes) -> FileRefused | UserError:
+    """Make an error from a refusal.
+
+    Returns:
+        `FileRefused` if it lists mistakes in files, `NotNow` if the same request may be accepted
+        later, else `UserError`.
+
+    Raises:
+        UserError: if the refusal can't be decoded.
+    """
+    refusal = understand(payload, Refusal)
+    if refusal.mistakes:
+        return FileRefused(list(refusal.mistakes))
+    return (NotNow if refusal.again else UserError)(refusal.why)
 
 
 def understand(payload: bytes, kind: type[T]) -> T:

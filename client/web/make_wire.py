@@ -17,12 +17,14 @@ from typing import Any
 
 import msgspec
 
+from lacoc_client.design import folder, requests
+from lacoc_client.design.table import FileRow, FileTable
 from lacoc_client.gateway.page import TRY_LATER
 from lacoc_client.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
 from lacoc_client.gateway.wire import Kind
 from lacoc_server.doors.inbox import NAME_MAX
 from lacoc_server.match.referee import MAX_CLOCK_S, MAX_FREEZE_S, MAX_POINTS
-from lacoc_shared import decisions, messages, mistakes
+from lacoc_shared import decisions, messages, mistakes, studio
 from lacoc_shared.codec import message_hash
 from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
 from lacoc_shared.gait.tables import Level
@@ -64,6 +66,17 @@ STRUCTS = (
     schema.Setup,
     schema.Header,
     schema.Result,
+    studio.RobotReply,
+    studio.CellPlace,
+    studio.Sentence,
+    studio.TrialReply,
+    studio.Progress,
+    studio.Weight,
+    studio.Change,
+    studio.CoachReply,
+    FileRow,
+    FileTable,
+    folder.FolderFile,
 )
 ENUMS: tuple[type[IntEnum] | type[SeatFlag], ...] = (Phase, SeatFlag, No, Level)
 CONSTANTS: dict[str, float | str] = {
@@ -89,6 +102,8 @@ CONSTANTS: dict[str, float | str] = {
     "USUAL_HZ": USUAL_HZ,
     "MOST_HZ": MOST_HZ,
     "TRY_LATER": TRY_LATER,
+    "DESIGN_MAX_BYTES": requests.REQUEST_BYTES,
+    "PARSE_MAX_BYTES": requests.PARSE_BYTES,
 }
 LIMITS: dict[str, float] = {
     "DEEPEST": DEEPEST,
@@ -203,6 +218,8 @@ def _type(hint: Any) -> str:
         return f"{_type(args[0])}[]"
     if origin is dict:
         return f"Record<{_type(args[0])}, {_type(args[1])}>"
+    if origin is typing.Literal:
+        return " | ".join(json.dumps(value) for value in args)
     if origin in (typing.Union, types.UnionType):
         return " | ".join("null" if one is type(None) else _type(one) for one in args)
     return "unknown"

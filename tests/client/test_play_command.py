@@ -186,7 +186,7 @@ def test_practice_walks_with_the_sample_keys(tmp_path: Path) -> None:
     assert middle_m > 0.08  # the sample walks 42 mm/s, more slowly at first
     assert float(rows[-1][2]) > middle_m + 0.06
     times_s = [float(row[0]) for row in rows]
-    assert times_s[-1] > 6
+    assert times_s[-1] > 5  # 6.7 s if no frame of a busy machine was late
     assert [*tmp_path.iterdir()] == [tmp_path / "Pos-data.txt"]  # nobody asked for a record
 
 

@@ -152,7 +152,14 @@ def test_what_is_no_number(cell):
         ),
         pytest.param(
             loco([posture(), posture("1 Key"), "Position\tR,F"], announced=1),
-            [(1, 2, "the number 1, but 2 postures below it", "as many rows as the file says above")],
+            [
+                (
+                    1,
+                    2,
+                    "the number 1, but 2 postures below it",
+                    "as many rows as the file says above",
+                )
+            ],
             id="more rows",
         ),
         pytest.param(
@@ -205,7 +212,12 @@ def test_what_is_no_number(cell):
         pytest.param(
             loco([posture()]) + "\nPosition\tR,F\n" + posture("1 Key"),
             [
-                (1, 2, "the number 1, but 3 postures below it", "as many rows as the file says above"),
+                (
+                    1,
+                    2,
+                    "the number 1, but 3 postures below it",
+                    "as many rows as the file says above",
+                ),
                 (3, None, "1 angle", "18 angles (3 for each of 6 legs)"),
                 (3, 1, '"Position"', 'a key from "0 Key" to "9 Key"'),
                 (3, 2, '"R,F"', ANGLE),
@@ -235,7 +247,12 @@ def test_what_is_no_number(cell):
         pytest.param(
             loco([posture(), posture("", j0="\t1").strip("\n")], announced=1),
             [
-                (1, 2, "the number 1, but 2 postures below it", "as many rows as the file says above"),
+                (
+                    1,
+                    2,
+                    "the number 1, but 2 postures below it",
+                    "as many rows as the file says above",
+                ),
                 (3, 1, "1", 'a key from "0 Key" to "9 Key"'),
                 (3, None, "17 angles", "18 angles (3 for each of 6 legs)"),
             ],
@@ -264,7 +281,14 @@ def test_mistakes_of_loco_data(text, expected):
         ),
         pytest.param(
             f"1\n2\n{posture('')}",
-            [(2, 1, "the number 2, but 1 row of angles below it", "as many rows as the file says for key [0]")],
+            [
+                (
+                    2,
+                    1,
+                    "the number 2, but 1 row of angles below it",
+                    "as many rows as the file says for key [0]",
+                )
+            ],
             id="fewer rows",
         ),
         pytest.param(

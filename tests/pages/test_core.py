@@ -1,5 +1,6 @@
 """Tests of the pages' source: its pure parts run in Node, and the linter checks its layers."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -30,6 +31,7 @@ def test_the_pure_parts_of_the_pages() -> None:
         text=True,
         encoding="utf-8",
         check=False,
+        env={**os.environ, "PYTHON": sys.executable},
     )
     assert done.returncode == 0, done.stdout + done.stderr
 

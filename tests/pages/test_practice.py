@@ -145,7 +145,7 @@ def test_own_files_change_while_it_runs(practise: Practise, tmp_path: Path) -> N
     page.find("dialog input[type=file]").set_input_files(book)
     page.sees("dialog .files li:has-text('Level A')", "Loco-data.xlsx")
     page.page.click("text=Use these files")
-    page.sees(".lesson", "Your own gait is loaded")
+    page.sees(".lesson", "The gait of your files is loaded")
     page.sees(".key.does[data-key='4']")
     page.sees(".key.none[data-key='1']")
     page.stands("seated")

@@ -87,6 +87,7 @@ CLIENT = "A client needs nothing of a court's"
         ("shared/lacoc_shared/codec.py", "import zenoh", {ZENOH, PURE}),
         ("server/lacoc_server/journal/replay.py", "from mujoco import mj_step", {MUJOCO}),
         ("server/lacoc_server/journal/replay.py", "import zenoh.ext", {ZENOH}),
+        ("client/lacoc_client/phases/predicates.py", "import time", {PURE}),
         ("client/lacoc_client/__init__.py", "import lacoc_robots.model", {CLIENT}),
         ("client/lacoc_client/__init__.py", "import lacoc_arenas.othello.field", {CLIENT}),
         ("client/lacoc_client/__init__.py", "import mujoco", {CLIENT, MUJOCO}),

@@ -113,7 +113,9 @@ def test_pos_data_of_a_record(record: Record) -> None:
     assert [float(row["x_m"]) for row in rows] == pytest.approx(
         [0.01 * beat for beat in range(40)], abs=1e-6
     )
-    with pytest.raises(UserError, match=r'no seat "middle" in this match\. Its seats are left and right'):
+    with pytest.raises(
+        UserError, match=r'no seat "middle" in this match\. Its seats are left and right'
+    ):
         export.pos_data(record, "middle")
 
 

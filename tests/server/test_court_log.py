@@ -88,4 +88,4 @@ def test_slow_beats_are_told_now_and_then() -> None:
             log.health("m-1", slow)
     told = [line for line in lines if line["kind"] == "slow"]
     assert [line["count"] for line in told] == [1, 30, 30, 30]
-    assert told[1]["event"].startswith("Slow beats: 30 more, 31 in all")
+    assert told[1]["event"].startswith("Slow beats: 30 new, 31 in all")

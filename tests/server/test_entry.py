@@ -110,5 +110,5 @@ def test_a_legend_that_contradicts_the_columns_is_told_with_the_join() -> None:
     assert HEXAPOD.postures is not None
     exchanged = HEXAPOD.postures.data.replace(b"R,F", b"x").replace(b"L,F", b"R,F")
     (note,) = weigh_in(HEXAPOD.robot, SentFile("mine.txt", exchanged), None).notes
-    assert "the legend says R,F, and joint 5 is a joint of leg L,F" in render(note)
+    assert "the legend says R,F, but joint 5 is a joint of leg L,F" in render(note)
     assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, HEXAPOD.locomotion).notes == ()

@@ -313,4 +313,4 @@ def test_a_simulated_match_has_none(tmp_path: Path) -> None:
     record = Record.read(tmp_path / "m.mcap")
     assert record.health is None
     assert json.loads(result_json(record))["health"] is None
-    assert "headless" in CliRunner().invoke(app, ["info", str(tmp_path / "m.mcap")]).output
+    assert "without a court" in CliRunner().invoke(app, ["info", str(tmp_path / "m.mcap")]).output

@@ -79,7 +79,7 @@ def test_another_arenas_match_is_not_gone_on_with(tmp_path: Path) -> None:
     done = run_lacoc(*serving(tmp_path, "practice"))
     assert (done.returncode, done.stdout) == (2, "")
     said = " ".join(done.stderr.split())
-    assert f"{first['match_id']}.000.live.mcap was not finished" in said
+    assert f"{first['match_id']}.000.live.mcap is not finished" in said
     assert 'played in arena "othello", and this court plays "practice"' in said
     assert "--fresh' opens a new match" in said
 

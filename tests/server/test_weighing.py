@@ -72,7 +72,7 @@ def test_a_robot_that_does_not_stay_is_refused() -> None:
     rowing = changed(legs, b"100, 100, 100, 100, 100, 100,  # root")
     with Weighing(admission()) as weighing:
         for _ in range(2):
-            with pytest.raises(FileRefused, match=r"goes 0\.\d+ m from its start within 2 s"):
+            with pytest.raises(FileRefused, match=r"moves 0\.\d+ m from its start within 2 s"):
                 known(weighing, rowing)
         assert known(weighing, WHOLE) == WHOLE
 

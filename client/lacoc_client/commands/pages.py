@@ -4,11 +4,14 @@ from contextlib import ExitStack
 from typing import Annotated
 
 import typer
+from starlette.types import ASGIApp
 
 from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser, unseen
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import Home
+from lacoc_client.gateway.site import site
+from lacoc_client.gateway.wire import JOIN_BYTES
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
@@ -25,18 +28,21 @@ Terminal = Annotated[
 ]
 
 
-def check_pages() -> None:
+def check_pages(*, terminal: bool = True) -> None:
     """Check that there are pages to show.
+
+    Args:
+        terminal: whether the command has `--terminal` too.
 
     Raises:
         UserError: if they are not built.
     """
     if not PageFiles().built:
-        raise UserError(say("pages.not-built-for-play", why=NOT_BUILT))
+        raise UserError(say("pages.not-built-for-play", why=NOT_BUILT) if terminal else NOT_BUILT)
 
 
 def show_page(home: Home, path: str, browser: bool) -> None:
-    """Serve a page to this person's browser until Ctrl-C.
+    """Serve a page of courts to this person's browser until Ctrl-C.
 
     Args:
         home: the gateway's settings.
@@ -47,7 +53,29 @@ def show_page(home: Home, path: str, browser: bool) -> None:
         UserError: if the pages are not built.
     """
     check_pages()
-    opened = server.listen(server.LOOPBACK)
+    show_app(site(home, PageFiles()), path, browser)
+
+
+def show_app(
+    app: ASGIApp,
+    path: str,
+    browser: bool,
+    listen: str = server.LOOPBACK,
+    most_bytes: int = JOIN_BYTES,
+) -> None:
+    """Serve an application to this person's browser until Ctrl-C.
+
+    Args:
+        app: a gateway's application.
+        path: path of the page to open, with its fragment.
+        browser: whether to open the page in the browser.
+        listen: "HOST:PORT"; see `server.listen`.
+        most_bytes: longest message of a page.
+
+    Raises:
+        UserError: if the address is wrong, or can't be listened on.
+    """
+    opened = server.listen(listen)
     address = f"{server.url(opened)}{path}"
     stack = ExitStack()
 
@@ -58,4 +86,4 @@ def show_page(home: Home, path: str, browser: bool) -> None:
         screen.note(say("web.keep-running"))
 
     with stack:
-        server.run(home, opened, ready)
+        server.run(app, opened, ready, most_bytes)

@@ -11,6 +11,7 @@ from lacoc_client.gateway import server
 from lacoc_client.gateway.browser import open_browser
 from lacoc_client.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.gateway.home import VIEWERS_MOST, Home, lasting_key, new_key
+from lacoc_client.gateway.site import site
 from lacoc_shared.command import log, options, screen
 from lacoc_shared.command.metrics import Exporter
 from lacoc_shared.contest import file as contests
@@ -113,7 +114,7 @@ def web_command(
         log.start(json)
 
     with exporter or nullcontext():
-        server.run(home, port, ready)
+        server.run(site(home, PageFiles()), port, ready)
 
 
 def _courts(

@@ -9,11 +9,9 @@ import socket
 from collections.abc import Callable, Iterator
 
 import uvicorn
+from starlette.types import ASGIApp
 
-from lacoc_client.gateway.files import PageFiles
-from lacoc_client.gateway.home import Home
 from lacoc_client.gateway.page_socket import PageSocket
-from lacoc_client.gateway.site import site
 from lacoc_client.gateway.wire import JOIN_BYTES
 from lacoc_client.stopping import stop_signals
 from lacoc_shared.mistakes import UserError
@@ -75,23 +73,28 @@ def url(opened: socket.socket) -> str:
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
 
 
-def serve(home: Home, opened: socket.socket, stopping: Callable[[], bool]) -> None:
+def serve(
+    app: ASGIApp, opened: socket.socket, stopping: Callable[[], bool], most_bytes: int = JOIN_BYTES
+) -> None:
     """Serve pages until `stopping` returns True.
 
     Args:
-        home: the gateway's settings.
+        app: the gateway's application.
         opened: the port; see `listen`.
         stopping: called several times a second.
+        most_bytes: longest message of a page; a longer one closes its connection.
     """
-    asyncio.run(_serve(home, opened, stopping))
+    asyncio.run(_serve(app, opened, stopping, most_bytes))
 
 
-async def _serve(home: Home, opened: socket.socket, stopping: Callable[[], bool]) -> None:
+async def _serve(
+    app: ASGIApp, opened: socket.socket, stopping: Callable[[], bool], most_bytes: int
+) -> None:
     config = uvicorn.Config(
-        site(home, PageFiles()),
+        app,
         http="h11",
         ws=PageSocket,
-        ws_max_size=JOIN_BYTES,
+        ws_max_size=most_bytes,
         ws_ping_interval=_PING_S,
         ws_ping_timeout=_GONE_S,
         ws_per_message_deflate=False,  # four times the work for a third of the bytes
@@ -124,14 +127,17 @@ class _Server(uvicorn.Server):
         yield
 
 
-def run(home: Home, opened: socket.socket, ready: Callable[[], None]) -> None:
+def run(
+    app: ASGIApp, opened: socket.socket, ready: Callable[[], None], most_bytes: int = JOIN_BYTES
+) -> None:
     """Serve until Ctrl-C.
 
     Args:
-        home: the gateway's settings.
+        app: the gateway's application.
         opened: the port; see `listen`.
         ready: called once signals are handled; it prints where the pages are.
+        most_bytes: longest message of a page; a longer one closes its connection.
     """
     with opened, stop_signals() as stopping:
         ready()
-        serve(home, opened, stopping)
+        serve(app, opened, stopping, most_bytes)

@@ -1,14 +1,14 @@
 """The gateway's paths: one page for all of them, its files, recordings, the WebSocket."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterable
 from contextlib import asynccontextmanager
 
 import msgspec
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
-from starlette.routing import Route, WebSocketRoute
+from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
@@ -49,6 +49,38 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         await courts.close()
         await asyncio.to_thread(shelf.close)
 
+    async def recordings(_: Request) -> Response:
+        found = await asyncio.to_thread(shelf.listed)
+        return Response(msgspec.json.encode(found), media_type="application/json")
+
+    async def one_recording(request: Request) -> Response:
+        name = request.path_params["name"]
+        path = await asyncio.to_thread(shelf.find, name)
+        return _not_found(request) if path is None else FileResponse(path, media_type=_MCAP)
+
+    async def page(websocket: WebSocket) -> None:
+        await Page(websocket, courts).serve()
+
+    others = [
+        Route("/recordings", recordings),
+        Route("/recordings/{name}", one_recording),
+        WebSocketRoute("/ws", page),
+    ]
+    routes = page_routes(files, PATHS, others)
+    return Guard(Starlette(routes=routes, lifespan=lifespan), home.names)
+
+
+def page_routes(
+    files: PageFiles, paths: Iterable[str], others: Iterable[BaseRoute]
+) -> list[BaseRoute]:
+    """Return the routes of a site with pages.
+
+    Args:
+        files: the built pages.
+        paths: paths of the pages.
+        others: routes of the site besides its pages and their parts.
+    """
+
     async def index(request: Request) -> Response:
         file = await asyncio.to_thread(files.find, "index.html")
         if file is None:
@@ -65,27 +97,12 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         file = await asyncio.to_thread(files.find, request.path_params["name"])
         return _not_found(request) if file is None else _response(request, file, "max-age=3600")
 
-    async def recordings(_: Request) -> Response:
-        found = await asyncio.to_thread(shelf.listed)
-        return Response(msgspec.json.encode(found), media_type="application/json")
-
-    async def one_recording(request: Request) -> Response:
-        name = request.path_params["name"]
-        path = await asyncio.to_thread(shelf.find, name)
-        return _not_found(request) if path is None else FileResponse(path, media_type=_MCAP)
-
-    async def page(websocket: WebSocket) -> None:
-        await Page(websocket, courts).serve()
-
-    routes = [
-        *(Route(path, index) for path in PATHS),
+    return [
+        *(Route(path, index) for path in paths),
         Route("/assets/{name:path}", asset),
-        Route("/recordings", recordings),
-        Route("/recordings/{name}", one_recording),
+        *others,
         Route("/{name}", top_file),
-        WebSocketRoute("/ws", page),
     ]
-    return Guard(Starlette(routes=routes, lifespan=lifespan), home.names)
 
 
 def _response(request: Request, file: PageFile, cache: str) -> Response:

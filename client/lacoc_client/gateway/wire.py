@@ -49,6 +49,9 @@ class Kind(IntEnum):
     REPLY = 9
     REFEREE = 10
     FILES = 11
+    FOLDER = 12
+    PROGRESS = 13
+    STUDIO = 14
 
 
 _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
@@ -57,11 +60,14 @@ _Digit = Annotated[int, msgspec.Meta(ge=0, le=9)]
 _Token = Annotated[str, msgspec.Meta(max_length=200)]
 
 
-class _Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
+class Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
+    """A request of a page."""
+
     id: _Id
+    """Names the request; its reply has the same id."""
 
 
-class Watch(_Ask, frozen=True, kw_only=True, tag="watch"):
+class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
     """The first message: which court, how many frames a second, and the page key."""
 
     court: _Short | None = None
@@ -69,19 +75,19 @@ class Watch(_Ask, frozen=True, kw_only=True, tag="watch"):
     key: _Token | None = None
 
 
-class Rate(_Ask, frozen=True, kw_only=True, tag="rate"):
+class Rate(Ask, frozen=True, kw_only=True, tag="rate"):
     """Set the frames a second."""
 
     hz: float
 
 
-class Ping(_Ask, frozen=True, kw_only=True, tag="ping"):
+class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
     """Ask for a reply, as a sign of life."""
 
     t: float | int | str | None = None
 
 
-class JoinAsk(_Ask, frozen=True, kw_only=True, tag="join"):
+class JoinAsk(Ask, frozen=True, kw_only=True, tag="join"):
     """Take a seat."""
 
     seat: _Short
@@ -96,35 +102,35 @@ class JoinAsk(_Ask, frozen=True, kw_only=True, tag="join"):
     """
 
 
-class ReadyAsk(_Ask, frozen=True, kw_only=True, tag="ready"):
+class ReadyAsk(Ask, frozen=True, kw_only=True, tag="ready"):
     """Tell the court that the team is ready, or no longer ready."""
 
     ready: bool = True
 
 
-class LeaveAsk(_Ask, frozen=True, kw_only=True, tag="leave"):
+class LeaveAsk(Ask, frozen=True, kw_only=True, tag="leave"):
     """Give the seat up."""
 
 
-class KeyAsk(_Ask, frozen=True, kw_only=True, tag="key"):
+class KeyAsk(Ask, frozen=True, kw_only=True, tag="key"):
     """Press a key."""
 
     level: Annotated[int, msgspec.Meta(ge=0, le=1)]
     key: Annotated[int, msgspec.Meta(ge=0, le=10)]
 
 
-class EnterAsk(_Ask, frozen=True, kw_only=True, tag="enter"):
+class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
     """Enter as a referee."""
 
     token: _Token
     by: _Short
 
 
-class TakeOver(_Ask, frozen=True, kw_only=True, tag="take_over"):
+class TakeOver(Ask, frozen=True, kw_only=True, tag="take_over"):
     """Act as referee from now on, in place of another page."""
 
 
-class DecideAsk(_Ask, frozen=True, kw_only=True, tag="decide"):
+class DecideAsk(Ask, frozen=True, kw_only=True, tag="decide"):
     """Decide as a referee."""
 
     decision: Decision
@@ -158,11 +164,17 @@ def read(data: bytes) -> Asked:
     """
     try:
         if len(data) > REQUEST_BYTES and _any_do.decode(data).do != "join":
-            too_long = say("gateway.too-long", bytes=len(data), most=REQUEST_BYTES)
-            raise Unreadable(say("gateway.bad-message", error=too_long))
+            raise too_long(len(data), REQUEST_BYTES)
         return _asked.decode(data)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise Unreadable(say("gateway.bad-message", error=str(error))) from None
+
+
+def too_long(size: int, most: int) -> Unreadable:
+    """Make the error for a request of more bytes than are read."""
+    return Unreadable(
+        say("gateway.bad-message", error=say("gateway.too-long", bytes=size, most=most))
+    )
 
 
 def read_id(data: bytes) -> int | None:

@@ -14,6 +14,7 @@ const PAGES: Record<string, () => Promise<{ default: ComponentType }>> = {
   "/referee": () => import("./pages/referee"),
   "/watch": () => import("./pages/watch"),
   "/overlay": () => import("./pages/overlay"),
+  "/design": () => import("./pages/design"),
   "/replay": () => import("./pages/replay"),
 };
 

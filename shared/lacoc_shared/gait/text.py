@@ -3,6 +3,7 @@
 import codecs
 import re
 from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 from lacoc_shared.gait.cells import (
     RANGE_DEG,
@@ -27,7 +28,7 @@ _BOMS = (
 )
 _PATH_BEGIN = b"time_s"
 """Beginning of the header row of Pos-data.txt (rules 2)."""
-_LINE_END = re.compile(r"\r\n|\r|\n")
+LINE_END = re.compile(r"\r\n|\r|\n")
 # Cells of a row without tabs: labels with spaces, quoted cells, and words between spaces.
 _SPACED_CELL = re.compile(
     r"(?i:^\s*(?:num of postures?|id of joint|\d+ *key))(?!\S)|\"(?:[^\"]|\"\")*\"|\S+"
@@ -58,12 +59,12 @@ def read_gait(
     # Checked first: Pos-data lies in the same folder, and soon exceeds the size limit of gaits.
     if data.startswith(_PATH_BEGIN):
         raise _refused(name, say("gait.path"), say("gait.gait"))
-    lines = _LINE_END.split(narrow(_text(data, name)))
+    lines = LINE_END.split(narrow(decoded(data, name).text))
     filled = [(number, line) for number, line in enumerate(lines, start=1) if line.strip()]
     if len(filled) > _MAX_ROWS:
         found = say("gait.rows", count=len(filled))
         raise _refused(name, found, say("gait.most-rows", most=_MAX_ROWS))
-    rows = [Row(number, _cells(line)) for number, line in filled]
+    rows = [Row(number, line_cells(line)) for number, line in filled]
     try:
         return read_cells(rows, name, legs=legs, range_deg=range_deg, notes=notes)
     except FileRefused:
@@ -94,22 +95,36 @@ def write_gait(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> by
     return "".join(f"{line.rstrip()}\n" for line in lines).encode()
 
 
-def _text(data: bytes, name: str) -> str:
-    """Decode a file: by its BOM, else UTF-16 if it has NULs, else strict UTF-8, else cp932."""
+class Decoded(NamedTuple):
+    """A text, and how its file has it."""
+
+    text: str
+    encoding: str
+    bom: bytes
+    """The file's first bytes, which are no text."""
+
+
+def decoded(data: bytes, name: str) -> Decoded:
+    """Decode a file: by its BOM, else UTF-16 if it has NULs, else strict UTF-8, else cp932.
+
+    Raises:
+        FileRefused: if it is too large, or no text in any of these encodings.
+    """
     if len(data) > MAX_BYTES:
         most_kib = say("gait.most-kib", most=MAX_BYTES // 1024)
         raise _refused(name, say("gait.bytes", count=len(data)), most_kib)
     for bom, encoding in _BOMS:
         if data.startswith(bom):
-            return _decoded(data[len(bom) :], encoding, name)
+            return Decoded(_decoded(data[len(bom) :], encoding, name), encoding, bom)
     if b"\0" in data:
         # In UTF-16 every other byte of a table is NUL: the high bytes of digits and tabs.
         little = data[1::2].count(0) >= data[0::2].count(0)
-        return _decoded(data, "utf-16-le" if little else "utf-16-be", name)
+        encoding = "utf-16-le" if little else "utf-16-be"
+        return Decoded(_decoded(data, encoding, name), encoding, b"")
     try:
-        return data.decode("utf-8")
+        return Decoded(data.decode("utf-8"), "utf-8", b"")
     except UnicodeDecodeError:
-        return _decoded(data, "cp932", name)
+        return Decoded(_decoded(data, "cp932", name), "cp932", b"")
 
 
 def _decoded(data: bytes, encoding: str, name: str) -> str:
@@ -121,7 +136,8 @@ def _decoded(data: bytes, encoding: str, name: str) -> str:
         raise _refused(name, found, say("gait.encodings")) from None
 
 
-def _cells(line: str) -> list[str]:
+def line_cells(line: str) -> list[str]:
+    """Split a line into its cells."""
     cells = line.split("\t") if "\t" in line else _SPACED_CELL.findall(line)
     return [_unquoted(cell.strip()) for cell in cells]
 
@@ -133,7 +149,7 @@ def _is_csv(lines: Iterable[str]) -> bool:
     """
     lines = list(lines)
     return not any("\t" in line for line in lines) and any(
-        line.count(",") + line.count(";") > len(_cells(line)) for line in lines
+        line.count(",") + line.count(";") > len(line_cells(line)) for line in lines
     )
 
 

@@ -94,14 +94,7 @@ def read_workbook(
     Raises:
         FileRefused: with every mistake in the file; each names its cell.
     """
-    _require_harmless(data, name)
-    try:
-        with warnings.catch_warnings(action="ignore"):  # openpyxl warns about unknown styles
-            sheet, rows = _sheet(data, name)
-    except FileRefused:
-        raise
-    except Exception:  # on a broken workbook openpyxl may raise any exception
-        raise _refused(name, say("gait.unreadable-workbook"), _WANTED) from None
+    sheet, rows = sheet_rows(data, name)
     try:
         table = read_cells(
             rows, name, legs=legs, range_deg=range_deg, headers=POSTURES_HEADER, notes=notes
@@ -111,6 +104,26 @@ def read_workbook(
     if isinstance(table, LocomotionTable):
         raise _refused(name, say("gait.sequences"), say("gait.workbook-header"))
     return table
+
+
+def sheet_rows(data: bytes, name: str) -> tuple[str, list[Row]]:
+    """Return the title of the sheet that is read from a workbook, and its rows.
+
+    Args:
+        data: the .xlsx file.
+        name: the file's name, for error messages.
+
+    Raises:
+        FileRefused: if the file is no such workbook, or needs too much memory or time.
+    """
+    _require_harmless(data, name)
+    try:
+        with warnings.catch_warnings(action="ignore"):  # openpyxl warns about unknown styles
+            return _sheet(data, name)
+    except FileRefused:
+        raise
+    except Exception:  # on a broken workbook openpyxl may raise any exception
+        raise _refused(name, say("gait.unreadable-workbook"), _WANTED) from None
 
 
 def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:

@@ -88,6 +88,13 @@ class Mailbox:
         self._mails: deque[Mail] = deque(maxlen=depth)
         self._arrived = threading.Event()
         self._notify = notify
+        self.subscriber: zenoh.Subscriber[None] | None = None
+
+    def close(self) -> None:
+        """End the subscription; messages that came before can still be taken."""
+        if self.subscriber is not None:
+            with suppress(zenoh.ZError):  # its session may be closed already
+                self.subscriber.undeclare()  # type: ignore[no-untyped-call]
 
     def deliver(self, sample: zenoh.Sample) -> None:
         """Store a message; runs on Zenoh's thread."""
@@ -223,7 +230,9 @@ class Session:
             notify: called on Zenoh's thread when a message has come; it must return at once.
         """
         mailbox = Mailbox(depth, notify)
-        self._session.declare_subscriber(key, Callback(mailbox.deliver, indirect=False))
+        mailbox.subscriber = self._session.declare_subscriber(
+            key, Callback(mailbox.deliver, indirect=False)
+        )
         return mailbox
 
     def desk(self, key: str, depth: int) -> Desk:

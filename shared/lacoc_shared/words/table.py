@@ -19,6 +19,7 @@ FILES = (
     "network",
     "gateway",
     "studio",
+    "phases",
     "commands",
 )
 ON_PAGES = FILES[:-1]

@@ -36,7 +36,7 @@ export function runKey(): string | null {
   return tab.read(KEY);
 }
 
-/** Where the gateway's WebSocket is. */
-export function socketUrl(): string {
-  return `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`;
+/** Where a WebSocket of the gateway is. */
+export function socketUrl(path = "/ws"): string {
+  return `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${path}`;
 }

@@ -24,6 +24,8 @@ export const LEAST_HZ = 1;
 export const USUAL_HZ = 25;
 export const MOST_HZ = 50;
 export const TRY_LATER = 1013;
+export const DESIGN_MAX_BYTES = 131072;
+export const PARSE_MAX_BYTES = 1052672;
 
 export const Phase = {
   CREATED: 0,
@@ -74,6 +76,9 @@ export const MESSAGE_KINDS = [
   "reply",
   "referee",
   "files",
+  "folder",
+  "progress",
+  "studio",
 ] as const;
 
 /** Why a key was refused, by its `No`: codes of the table. */
@@ -286,6 +291,101 @@ export interface Result {
   beats: number;
   digest: string;
   model: string;
+}
+
+export interface RobotReply {
+  name: string;
+  legs: string[];
+  ranges_deg: ([number, number])[];
+  start_deg: number[];
+  start_z_m: number;
+  facts: Record<string, unknown>;
+  limits: Record<string, [number | null, number | null]>;
+  sheet: Sheet;
+  scene: Scene;
+}
+
+export interface CellPlace {
+  posture: number;
+  joint: number;
+}
+
+export interface Sentence {
+  said: Phrase;
+  cell: CellPlace | null;
+  leg: number;
+}
+
+export interface TrialReply {
+  level: number;
+  key: number;
+  figures: Record<string, unknown>;
+  explained: Sentence[];
+  notes: Phrase[];
+  fault: Phrase | null;
+  ticks: number;
+  first: number;
+  end: number;
+  starts: number[];
+  posture: Uint8Array;
+  down: Uint8Array;
+  poses: Uint8Array;
+  commanded_rad: Uint8Array;
+  contact_w_m: Uint8Array;
+  centre_w_m: Uint8Array;
+  margin_m: Uint8Array;
+  slip_m_s: Uint8Array;
+  tip_m: Uint8Array;
+  digest: Uint8Array;
+}
+
+export interface Progress {
+  stage: string;
+  done: number;
+  trials: number;
+  score: number | null;
+}
+
+export interface Weight {
+  cell: CellPlace;
+  up: number;
+  down: number;
+}
+
+export interface Change {
+  cell: CellPlace;
+  from_deg: number;
+  to_deg: number;
+}
+
+export interface CoachReply {
+  key: number;
+  matters: Weight[];
+  changes: Change[];
+  before: Record<string, unknown>;
+  after: Record<string, unknown>;
+  score_before: number;
+  score_after: number;
+  trials: number;
+  cancelled: boolean;
+}
+
+export interface FileRow {
+  key: number;
+  posture: number;
+  angles_deg: number[];
+}
+
+export interface FileTable {
+  kind: "postures" | "locomotion";
+  legs: number;
+  rows: FileRow[];
+}
+
+export interface FolderFile {
+  name: string;
+  slot: "robot" | "postures" | "locomotion";
+  version: string;
 }
 
 /** `SeatFrame` is an array on the wire: the names of its places. */

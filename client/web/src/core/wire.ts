@@ -4,12 +4,14 @@ import { decode, encode } from "@msgpack/msgpack";
 import type { Phrase } from "./phrase";
 import {
   type Event,
+  type FolderFile,
   FRAME_FIELDS,
   type Frame,
   HASH_BYTES,
   type Health,
   MESSAGE_KINDS,
   type Mistake,
+  type Progress,
   type Scene,
   SEATFRAME_FIELDS,
   type SeatFrame,
@@ -82,6 +84,22 @@ export interface RefereeState {
   mine: boolean;
 }
 
+/** The gait and robot files of the folder that `lacoc design` was started with. */
+export interface Folder {
+  /** Its path. */
+  folder: string;
+  files: FolderFile[];
+  /** The files that came, went or changed since the last message. */
+  changed: string[];
+}
+
+/** Whether there is a studio to let robots walk. */
+export interface StudioState {
+  present: boolean;
+  /** Why there is none. */
+  why: Phrase | null;
+}
+
 interface GoodReply {
   id: number;
   ok: true;
@@ -113,7 +131,10 @@ export type Message =
   | { kind: "seat"; body: HeldSeat }
   | { kind: "reply"; body: GoodReply | BadReply }
   | { kind: "referee"; body: RefereeState }
-  | { kind: "files"; body: OwnFiles };
+  | { kind: "files"; body: OwnFiles }
+  | { kind: "folder"; body: Folder }
+  | { kind: "progress"; body: Progress & { job: string } }
+  | { kind: "studio"; body: StudioState };
 
 /** What a page asks for; each request is answered by a reply with its id. */
 export type Request =
@@ -126,7 +147,21 @@ export type Request =
   | "key"
   | "enter"
   | "take_over"
-  | "decide";
+  | "decide"
+  | DesignRequest;
+
+/** What a page of /design asks for. */
+type DesignRequest =
+  | "hello"
+  | "read"
+  | "sample"
+  | "parse"
+  | "save"
+  | "write"
+  | "robot"
+  | "trial"
+  | "coach"
+  | "cancel";
 
 /** A file on its way to the court. */
 export interface SentFile {

@@ -5,6 +5,7 @@ import { setting } from "../core/address";
 import type { Phrase } from "../core/phrase";
 import { remembered } from "../core/settings";
 import { common } from "./common";
+import { design } from "./design";
 import { play } from "./play";
 import { referee } from "./referee";
 import { render } from "./render";
@@ -15,7 +16,7 @@ export const LANGUAGES = { en: "English", ja: "日本語" } as const;
 export type Language = keyof typeof LANGUAGES;
 
 /** All messages by name: in the order of `LANGUAGES`. */
-export const catalogue = { ...common, ...play, ...referee, ...watch, ...replay };
+export const catalogue = { ...common, ...play, ...referee, ...watch, ...replay, ...design };
 export type MessageName = keyof typeof catalogue;
 
 /** What was chosen; "" follows the browser. */

@@ -322,8 +322,8 @@ export const play = {
     "自由に歩かせよう。x でスタート位置へ戻り、z で軌跡を保存します。",
   ],
   "coach.own": [
-    "Your own gait is loaded. Press its keys and see where the robot goes.",
-    "自分の歩容が読み込まれています。キーを押して動きを確かめよう。",
+    "The gait of your files is loaded. Press its keys and see where the robot goes.",
+    "ファイルの歩容を読み込みました。キーを押して動きを確かめよう。",
   ],
   "coach.pressed": ["Pressed", "押したキー"],
   "coach.skip": ["Skip", "とばす"],

@@ -5,12 +5,14 @@ import type { ReadonlySignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { Quality } from "../core/settings";
 import type { CameraName } from "./cameras";
+import type { FloorMarks } from "./marks";
 import type { Hit } from "./picking";
 import { type Inset, type Options, type Source, Viewer, type ViewHook } from "./viewer";
 import "./view.css";
 
 export type { CameraName } from "./cameras";
 export { CAMERAS } from "./cameras";
+export type { FloorMarks } from "./marks";
 export type { Hit } from "./picking";
 export type { Inset, Source } from "./viewer";
 
@@ -31,9 +33,19 @@ interface Props {
   inset?: Inset;
   /** A click on the field; with it, what can be clicked is marked under the pointer. */
   onPick?: (hit: Hit) => void;
+  /** The pointer came to the link of a joint, or left them all. With it, `onPick` tells joints. */
+  onJoint?: (joint: number | null) => void;
+  /** Bodies of robots that glow, and how strongly, from 0 to 1. */
+  lit?: ReadonlyMap<number, number>;
+  /** The same robots in another trial, drawn translucent. */
+  ghost?: Source["sample"] | null;
+  /** Marks on the floor, asked for with each picture. */
+  marks?: () => FloorMarks | null;
   /** The label for screen readers. */
   label?: string;
 }
+
+const NONE: ReadonlyMap<number, number> = new Map();
 
 /** All views of the page, the oldest first; `view` is the first of them. */
 interface Hooks {
@@ -86,6 +98,10 @@ function optionsOf(props: Props): Options {
     labels: props.labels ?? false,
     inset: props.inset ?? {},
     onPick: props.onPick ?? null,
+    onJoint: props.onJoint ?? null,
+    lit: props.lit ?? NONE,
+    ghost: props.ghost ?? null,
+    marks: props.marks ?? null,
   };
 }
 

@@ -40,6 +40,7 @@ export class BakedLayer implements Layer {
   constructor(
     private readonly parent: Object3D,
     private readonly order: number,
+    private readonly opacity = 1,
   ) {}
 
   reserve(shape: Shape, pattern: number, most: number): void {
@@ -79,6 +80,8 @@ export class BakedLayer implements Layer {
   private make({ corners, indices }: { corners: number; indices: number }, isPatterned: boolean) {
     const bake = new Bake(corners, indices, isPatterned);
     bake.mesh.renderOrder = this.order;
+    const { opacity } = this;
+    if (opacity < 1) Object.assign(bake.mesh.material, { transparent: true, opacity });
     this.parent.add(bake.mesh);
     return bake;
   }

@@ -29,6 +29,7 @@ export const CAMERAS = [
   "left",
   "right",
   "side",
+  "robot", // near one robot; keeps its direction
   "map", // not a camera: the drawing from above
 ] as const;
 
@@ -48,6 +49,7 @@ const WALL_M = 0.055;
 /** Beyond the floor's edge is the wall. */
 const RIM_M = 0.045;
 
+const NEAR = { distance: 0.62, elevation: 0.62, azimuth: -1.95, z: 0.035, place_ms: 90 };
 const CHASE = { distance: 1.35, elevation: 0.5, ahead_m: 0.16, place_ms: 220, turn_ms: 520 };
 
 /** The whole field, seen from a direction, as large as it fits. */
@@ -182,9 +184,33 @@ export class Chaser {
   }
 }
 
+/** Goes along with a robot, and shows it from the same side whatever it does. */
+class Companion {
+  private shot: Shot | null = null;
+  private lastMs = 0;
+
+  follow(robot: Robot, aspect: number, nowMs: number): Shot {
+    // In an upright picture the robot is as wide as the picture.
+    const distance = NEAR.distance * Math.max(1, 1.25 / aspect);
+    const { elevation, azimuth, z } = NEAR;
+    const goal = { x: robot.x, y: robot.y, z, azimuth, elevation, distance };
+    const part = 1 - Math.exp(-Math.min(200, nowMs - this.lastMs) / NEAR.place_ms);
+    this.lastMs = nowMs;
+    const shot = this.shot;
+    if (!shot || Math.hypot(goal.x - shot.x, goal.y - shot.y) > 0.2) this.shot = goal;
+    else {
+      shot.x += (goal.x - shot.x) * part;
+      shot.y += (goal.y - shot.y) * part;
+      shot.distance = distance;
+    }
+    return { ...this.shot! };
+  }
+}
+
 /** Aims the cameras with fixed names. */
 export class Rig {
   private readonly chasers = new Map<number, Chaser>();
+  private readonly companion = new Companion();
   private key = "";
   private from: Shot | null = null;
   private sinceMs = 0;
@@ -199,6 +225,12 @@ export class Rig {
         return this.whole(SOUTH, STRAIGHT_DOWN, model, aspect, frame);
       case "side":
         return this.whole(SOUTH, 0.3, model, aspect, frame);
+      case "robot": {
+        const robot = model.robots[seat];
+        if (robot) return this.companion.follow(robot, aspect, nowMs);
+        const { azimuth, elevation, distance, z } = NEAR;
+        return { x: 0, y: 0, z, azimuth, elevation, distance };
+      }
       case "chase":
       case "left":
       case "right": {

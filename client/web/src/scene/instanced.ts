@@ -97,15 +97,19 @@ export class InstancedLayer implements Layer {
     private readonly parent: Object3D,
     finish: Finish,
     private readonly order: number,
+    private readonly opacity = 1,
   ) {
     this.materials = instanced(finish);
+    if (opacity === 1) return;
+    for (const material of Object.values(this.materials) as Material[]) {
+      Object.assign(material, { transparent: true, opacity });
+    }
   }
 
   reserve(shape: Shape, pattern: number, most: number): void {
     const { plain, patterned } = this.materials;
     const batch = new Batch(shape.make(true), pattern ? patterned : plain, most);
-    batch.mesh.castShadow = true;
-    batch.mesh.receiveShadow = true;
+    batch.mesh.castShadow = batch.mesh.receiveShadow = this.opacity === 1;
     batch.mesh.renderOrder = this.order;
     this.batches.set(batchKey(shape, pattern), batch);
     this.parent.add(batch.mesh);

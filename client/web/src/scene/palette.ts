@@ -76,6 +76,14 @@ export function afflicted(colour: Rgb, flags: number): Rgb {
   return colour;
 }
 
+/** The colour of a part of a robot that is pointed at. */
+export const LIT: Rgb = [1, 0.86, 0.3];
+
+/** The colour of a part of a robot that walks as it did in another trial. */
+export function ghostly(colour: Rgb): Rgb {
+  return mix(colour, [0.9, 0.93, 1], 0.75);
+}
+
 /**
  * For each geom the seat whose colour it takes; -1: none.
  *

@@ -9,6 +9,8 @@ export interface Hit {
   marker?: number;
   /** Index of the seat whose robot it is. */
   seat?: number;
+  /** The joint of the robot's link, where links are looked for. */
+  joint?: number;
   x_m: number;
   y_m: number;
 }
@@ -39,10 +41,7 @@ export function pick(
   u: number,
   v: number,
 ): Hit | null {
-  const tan = Math.tan(FOV_RAD / 2);
-  const ray = [0, 1, 2].map(
-    (axis) => view.forward[axis]! + view.right[axis]! * u * tan * aspect + view.up[axis]! * v * tan,
-  ) as [number, number, number];
+  const ray = rayAt(view, aspect, u, v);
   const seat = nearestRobot(model, view.eye, ray);
   if (ray[2] >= 0) return null;
   const far = -view.eye[2] / ray[2];
@@ -60,6 +59,19 @@ export function pickFlat(model: Model, x_m: number, y_m: number): Hit {
   }
   const marker = markerAt(model, x_m, y_m, 0.045);
   return marker === null ? at : { ...at, marker };
+}
+
+/** The direction from the camera to a place in the picture [m, world]; of no certain length. */
+export function rayAt(
+  view: ViewAxes,
+  aspect: number,
+  u: number,
+  v: number,
+): [number, number, number] {
+  const tan = Math.tan(FOV_RAD / 2);
+  return [0, 1, 2].map(
+    (axis) => view.forward[axis]! + view.right[axis]! * u * tan * aspect + view.up[axis]! * v * tan,
+  ) as [number, number, number];
 }
 
 function nearestRobot(

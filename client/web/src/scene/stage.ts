@@ -29,9 +29,10 @@ import { FOV_RAD, type ViewAxes } from "./cameras";
 import { InstancedLayer } from "./instanced";
 import { type Layer, reserveAll } from "./layer";
 import { MarkerMotion } from "./markers";
+import { FloorLayer, type FloorMarks } from "./marks";
 import { type Finish, floor } from "./materials";
 import type { Model } from "./model";
-import { afflicted, evening, type Rgb, rgb } from "./palette";
+import { afflicted, evening, ghostly, LIT, mix, type Rgb, rgb } from "./palette";
 import { EYE, type Piece, piecesOf } from "./pieces";
 import { Pulses } from "./pulses";
 import type { Fineness } from "./quality";
@@ -43,6 +44,17 @@ export interface Ring {
   radius: number;
 }
 
+/** What is drawn besides the match. */
+export interface Extras {
+  /** Bodies of robots that glow, and how strongly, from 0 to 1. */
+  lit: ReadonlyMap<number, number>;
+  /** The same robots as they were in another trial. */
+  ghost: Model | null;
+  marks: FloorMarks | null;
+}
+
+const NO_EXTRAS: Extras = { lit: new Map(), ghost: null, marks: null };
+const GHOST = 0.34;
 const GROUND: Rgb = [0.055, 0.072, 0.1];
 const DARK = [0.066, 0.09, 0.13] as const;
 const SHADOW_MAP = 2048;
@@ -57,6 +69,8 @@ export class Stage {
   private model: Model | null = null;
   private motion: MarkerMotion | null = null;
   private layers: { still: Layer; markers: Layer; robots: Layer } | null = null;
+  private ghosts: Layer | null = null;
+  private floorLayer: FloorLayer | null = null;
   private markerPieces: Piece[] = [];
   private robotPieces: Piece[] = [];
   private markersDrawn = false;
@@ -64,6 +78,8 @@ export class Stage {
   private readonly ring: Mesh;
   private readonly pulses: Pulses;
   private readonly blobs: Mesh[] = [];
+  private readonly ghostColours = new Map<Rgb, Rgb>();
+  private readonly litColours = new Map<number, Map<Rgb, Rgb>>();
   private readonly matrix = new Matrix4();
   private readonly pose = new Matrix4();
 
@@ -178,10 +194,10 @@ export class Stage {
     this.markersDrawn = false;
   }
 
-  private layer(finish: Finish, order: number): Layer {
+  private layer(finish: Finish, order: number, opacity = 1): Layer {
     return this.fine
-      ? new InstancedLayer(this.world, finish, order)
-      : new BakedLayer(this.world, order);
+      ? new InstancedLayer(this.world, finish, order, opacity)
+      : new BakedLayer(this.world, order, opacity);
   }
 
   private plane(geom: SceneGeom): void {
@@ -253,7 +269,13 @@ export class Stage {
    * @param animate True: changed markers move; false: they change at once.
    * @returns Markers that changed.
    */
-  draw(view: ViewAxes, nowMs: number, animate: boolean, ring: Ring | null): number[] {
+  draw(
+    view: ViewAxes,
+    nowMs: number,
+    animate: boolean,
+    ring: Ring | null,
+    extras: Extras = NO_EXTRAS,
+  ): number[] {
     const { model, motion, layers } = this;
     let changed: number[] = [];
     if (model && motion && layers) {
@@ -265,7 +287,9 @@ export class Stage {
           if (seat) this.pulses.begin(model.sheet.markers[marker]!, rgb(seat.colour), nowMs);
         }
       }
-      this.drawRobots(layers.robots, model);
+      this.drawRobots(layers.robots, model, extras.lit);
+      this.drawGhost(extras.ghost);
+      this.drawMarks(extras.marks);
     }
     this.pulses.draw(nowMs);
     this.ring.visible = ring !== null;
@@ -295,12 +319,57 @@ export class Stage {
     this.markersDrawn = true;
   }
 
-  private drawRobots(layer: Layer, model: Model): void {
+  private drawGhost(ghost: Model | null): void {
+    if (!ghost && !this.ghosts) return;
+    if (!this.ghosts) {
+      this.ghosts = this.layer({ roughness: 0.6, metalness: 0 }, 6, GHOST);
+      const plain = this.robotPieces.map((piece) => ({ ...piece, pattern: 0 }));
+      reserveAll(this.ghosts, plain);
+    }
+    this.ghosts.clear();
+    if (ghost?.robots.length) {
+      for (const piece of this.robotPieces) {
+        this.matrix.multiplyMatrices(this.poseOf(piece.body, ghost), piece.local);
+        const colour = this.ghostColour(piece.colour);
+        this.ghosts.add(piece.shape, this.matrix, { colour, pattern: 0, period_m: 1 });
+      }
+    }
+    this.ghosts.done();
+  }
+
+  // The same object for the same colour: then it is not sent to the graphics card again.
+
+  private ghostColour(colour: Rgb): Rgb {
+    const made = this.ghostColours.get(colour) ?? ghostly(colour);
+    this.ghostColours.set(colour, made);
+    return made;
+  }
+
+  private litColour(colour: Rgb, strength: number): Rgb {
+    if (!strength) return colour;
+    const ofStrength = this.litColours.get(strength) ?? new Map<Rgb, Rgb>();
+    this.litColours.set(strength, ofStrength);
+    const made = ofStrength.get(colour) ?? mix(colour, LIT, strength);
+    ofStrength.set(colour, made);
+    return made;
+  }
+
+  private drawMarks(marks: FloorMarks | null): void {
+    if (!marks && !this.floorLayer) return;
+    if (!this.floorLayer) {
+      this.floorLayer = new FloorLayer();
+      this.world.add(this.floorLayer.mesh);
+    }
+    this.floorLayer.draw(marks);
+  }
+
+  private drawRobots(layer: Layer, model: Model, lit: ReadonlyMap<number, number>): void {
     layer.clear();
     if (model.robots.length) {
       for (const piece of this.robotPieces) {
         const flags = model.robots[model.fk.seats[piece.body]!]?.flags ?? 0;
-        const colour = piece.colour === EYE ? EYE : afflicted(piece.colour, flags);
+        const own = this.litColour(piece.colour, lit.get(piece.body) ?? 0);
+        const colour = piece.colour === EYE ? EYE : afflicted(own, flags);
         this.put(layer, piece, this.poseOf(piece.body), colour);
       }
     }
@@ -317,8 +386,8 @@ export class Stage {
     layer.add(piece.shape, this.matrix, colour === piece.colour ? piece : { ...piece, colour });
   }
 
-  private poseOf(body: number): Matrix4 {
-    const { pos, quat } = this.model!.fk;
+  private poseOf(body: number, model = this.model!): Matrix4 {
+    const { pos, quat } = model.fk;
     const q = 4 * body;
     turn.set(quat[q + 1]!, quat[q + 2]!, quat[q + 3]!, quat[q]!);
     place.set(pos[3 * body]!, pos[3 * body + 1]!, pos[3 * body + 2]!);
@@ -328,6 +397,10 @@ export class Stage {
   private clearModel(): void {
     if (this.layers) for (const layer of Object.values(this.layers)) layer.dispose();
     this.layers = null;
+    this.ghosts?.dispose();
+    this.ghosts = null;
+    this.ghostColours.clear();
+    this.litColours.clear();
     this.markerPieces = [];
     this.robotPieces = [];
     for (const mesh of [...this.world.children, ...this.blobs]) {
@@ -343,6 +416,7 @@ export class Stage {
 
   dispose(): void {
     this.clearModel();
+    this.floorLayer?.dispose();
     for (const { geometry, material } of this.extras) {
       geometry.dispose();
       material.dispose();

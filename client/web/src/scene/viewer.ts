@@ -1,11 +1,13 @@
 /** Draws a match into an element, frame by frame: picture, cameras, names, pointing. */
 
+import { pickJoint } from "../core/design/parts";
 import type { Match } from "../core/match";
 import type { Quality } from "../core/settings";
 import { type Aim, type CameraName, type Frame2d, Rig, type ViewAxes, viewOf } from "./cameras";
 import { type Action, Director } from "./director";
-import { Model } from "./model";
-import { type Hit, pick, pickFlat, project } from "./picking";
+import type { FloorMarks } from "./marks";
+import { type Field, Model } from "./model";
+import { type Hit, pick, pickFlat, project, rayAt } from "./picking";
 import { type Fineness, FrameTimes, firstFineness, rememberSlow, tooSlow } from "./quality";
 import type { Ring, Stage } from "./stage";
 import { Tags } from "./tags";
@@ -32,6 +34,14 @@ export interface Options {
   labels: boolean;
   inset: Inset;
   onPick: ((hit: Hit) => void) | null;
+  /** Called with the joint of the link that the pointer comes to; null: it left them all. */
+  onJoint: ((joint: number | null) => void) | null;
+  /** Bodies of robots that glow, and how strongly, from 0 to 1. */
+  lit: ReadonlyMap<number, number>;
+  /** The same robots in another trial, drawn translucent. */
+  ghost: Source["sample"] | null;
+  /** Marks on the floor, now. */
+  marks: (() => FloorMarks | null) | null;
 }
 
 /** Data for tests: `window.__lacoc.view`. */
@@ -49,6 +59,10 @@ export interface ViewHook {
   /** True while a disc turns over or a flag falls. */
   readonly moving: boolean;
   bodyPos(name: string): [number, number, number] | null;
+  /** Of the robot of another trial. */
+  ghostPos(name: string): [number, number, number] | null;
+  /** Names of the bodies that glow most. */
+  readonly lit: string[];
   marker(index: number): number;
   /** Where on the page a point of the world is [px]. */
   screen(x: number, y: number, z: number): [number, number] | null;
@@ -76,6 +90,8 @@ export class Viewer {
   private readonly tags: Tags;
   private readonly observer: ResizeObserver;
   private model: Model | null = null;
+  private ghost: Model | null = null;
+  private joint: number | null = null;
   private axes: ViewAxes | null = null;
   private plan: Plan | null = null;
   private pointer: { x: number; y: number } | null = null;
@@ -157,7 +173,13 @@ export class Viewer {
       get moving() {
         return viewer.stage?.moving ?? false;
       },
+      get lit() {
+        const { bodies } = viewer.model?.scene ?? { bodies: [] };
+        const glow = [...viewer.options.lit].filter(([, strength]) => strength === 1);
+        return glow.map(([body]) => bodies[body]?.name ?? "");
+      },
       bodyPos: (name) => viewer.model?.bodyPos(name) ?? null,
+      ghostPos: (name) => (viewer.options.ghost && viewer.ghost?.bodyPos(name)) || null,
       marker: (index) => viewer.model?.states[index] ?? -1,
       screen: (x, y, z) => {
         const box = viewer.host.getBoundingClientRect();
@@ -307,11 +329,14 @@ export class Viewer {
     this.drawn.frames++;
     const ring = this.point(model);
     if (this.map) {
-      this.plan = planOf(model.field, this.free());
+      this.plan = planOf(this.shownField(model), this.free());
       this.map.draw(model, this.plan, ring);
     } else if (this.stage) {
       this.axes = viewOf(this.shot(model, nowMs));
-      const changed = this.stage.draw(this.axes, nowMs, animate, ring);
+      const { lit, marks } = this.options;
+      const ghost = this.ghostAt(model, nowMs);
+      const extras = { lit, ghost, marks: marks?.() ?? null };
+      const changed = this.stage.draw(this.axes, nowMs, animate, ring, extras);
       this.actions = animate
         ? changed.flatMap((marker) => {
             const seat = (model.states[marker] ?? 0) - 1;
@@ -320,6 +345,23 @@ export class Viewer {
         : [];
     }
     this.tags.draw(this.options.labels ? model : null, (x, y, z) => this.place(x, y, z));
+  }
+
+  /** The robots of the other trial now; null without one, and where it belongs to another scene. */
+  private ghostAt(model: Model, nowMs: number): Model | null {
+    const moment = this.options.ghost?.(nowMs);
+    if (!moment) return null;
+    if (this.ghost?.sheet !== model.sheet || this.ghost.scene !== model.scene) {
+      this.ghost = new Model(model.scene, model.sheet);
+    }
+    return this.ghost.apply(moment) ? this.ghost : null;
+  }
+
+  /** The part of the field that the drawing from above has. */
+  private shownField(model: Model): Field {
+    const robot = model.robots[this.options.seat];
+    if (this.options.camera !== "robot" || !robot) return model.field;
+    return { x: robot.x, y: robot.y, halfX: 0.25, halfY: 0.2, height: 0 };
   }
 
   private shot(model: Model, nowMs: number) {
@@ -414,6 +456,10 @@ export class Viewer {
 
   /** The ring round what the pointer is on. */
   private point(model: Model): Ring | null {
+    if (this.options.onJoint) {
+      this.pointJoint(model, this.options.onJoint);
+      return null;
+    }
     const pickable = this.options.onPick !== null && this.pointer !== null;
     this.hovered = pickable ? this.hitAt(this.pointer!.x, this.pointer!.y) : null;
     const { marker, seat } = this.hovered ?? {};
@@ -425,6 +471,21 @@ export class Viewer {
     }
     const info = marker === undefined ? null : model.sheet.markers[marker];
     return info ? { x: info.x_m, y: info.y_m, radius: Math.max(0.05, 1.06 * info.radius_m) } : null;
+  }
+
+  private pointJoint(model: Model, tell: (joint: number | null) => void): void {
+    const joint = this.pointer && this.jointAt(model, this.pointer.x, this.pointer.y);
+    this.host.style.cursor = joint === null ? "" : "pointer";
+    if (joint === this.joint) return;
+    this.joint = joint;
+    tell(joint);
+  }
+
+  private jointAt({ scene, fk }: Model, x: number, y: number): number | null {
+    const { axes, size } = this;
+    if (!axes || this.map) return null;
+    const [u, v] = [(2 * x) / size.width - 1, 1 - (2 * y) / size.height];
+    return pickJoint(scene, fk, axes.eye, rayAt(axes, size.width / size.height, u, v));
   }
 
   private listen(): void {
@@ -474,7 +535,9 @@ export class Viewer {
       if (!onPick || moved >= DRAG_PX) return;
       const { x, y } = at(event);
       const hit = this.hitAt(x, y);
-      if (hit) onPick(hit);
+      const joint = this.options.onJoint && this.model ? this.jointAt(this.model, x, y) : null;
+      if (joint !== null) onPick({ x_m: 0, y_m: 0, ...hit, joint });
+      else if (hit) onPick(hit);
     });
     host.addEventListener("dblclick", () => this.options.orbit && this.rig.release());
     host.addEventListener(

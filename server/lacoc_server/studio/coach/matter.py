@@ -42,15 +42,16 @@ def what_matters(
     Returns:
         All numbers, those that matter most first.
     """
-    ranked = _changes(table, range(len(table)), ranges_deg, quick)
+    ranked = changes_of(table, range(len(table)), ranges_deg, quick)
     top = [found.number for found in ranked[:CONFIRMED]]
-    confirmed = _changes(table, top, ranges_deg, exact)
+    confirmed = changes_of(table, top, ranges_deg, exact)
     return [*confirmed, *ranked[CONFIRMED:]]
 
 
-def _changes(
+def changes_of(
     table: Angles, cells: Sequence[int], ranges_deg: Sequence[tuple[float, float]], score: Score
 ) -> list[Matter]:
+    """Find what changes of some cells do to a score; the cells that matter most come first."""
     tables = [table]
     for index in cells:
         low, high = ranges_deg[index]

@@ -1,0 +1,121 @@
+"""Kills a program that keeps a class, again and again, and counts what is lost.
+
+    python -m benchmarks.class_kills --kills 100
+
+A child keeps evidence and tables as fast as it can, and says what it was told is kept. It is killed
+at a random moment (SIGKILL). Then the file is opened: all evidence that was acknowledged must be
+there, and no table may be older than 2 s at the time of the kill, plus the time for which the
+machine let the child stand still.
+"""
+
+import argparse
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+from lacoc_client.phases.class_file import KeptTable
+from lacoc_client.phases.evidence import Guessed
+from lacoc_client.phases.store import ClassStore
+
+STUDENT, FILE = "Ada", "Loco-data.txt"
+OLDEST_S = 2.0
+"""How old a lost table may be."""
+_PAUSE_S = 0.005
+_LONGEST_S = 3.5  # longer than `OLDEST_S`, so that tables must have been written
+
+
+class Killed(NamedTuple):
+    """What one kill showed."""
+
+    acknowledged: int
+    """Number of the last evidence that was acknowledged; 0: none."""
+    kept: int
+    """Number of the last evidence in the file."""
+    holes: int
+    """How many numbers before it are missing."""
+    table_lost_s: float
+    """Age, at the kill, of the oldest change of the table that was lost; 0: none was."""
+    stalled_s: float
+    """Longest time between two lines of the child."""
+
+    @property
+    def lost(self) -> int:
+        """How much acknowledged evidence was lost."""
+        return self.holes + max(0, self.acknowledged - self.kept)
+
+
+def kill_once(path: Path, after_s: float) -> Killed:
+    """Start a child on a file, kill it some time after its first line, and look at the file."""
+    child = subprocess.Popen(
+        [sys.executable, "-m", "benchmarks.class_kills", "--child", str(path)],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert child.stdout is not None
+    with child, child.stdout as said:
+        lines = [said.readline()]
+        time.sleep(after_s)
+        child.kill()
+        killed_s = time.monotonic()
+        lines += [line for line in said if line.endswith("\n")]
+    # time.monotonic() is one clock for all processes of a machine.
+    seen = [(word, int(number), float(at_s)) for word, number, at_s in map(str.split, lines)]
+    acknowledged = max((number for word, number, _ in seen if word == "evidence"), default=0)
+    with ClassStore(path) as store:
+        numbers = [one.number for one in store.evidence().result()]
+        version = max((int(table.version) for table in store.tables()), default=0)
+    lost = [killed_s - at_s for word, number, at_s in seen if word == "table" and number > version]
+    times_s = [at_s for _, _, at_s in seen] + [killed_s]
+    return Killed(
+        acknowledged=acknowledged,
+        kept=max(numbers, default=0),
+        holes=max(numbers, default=0) - len(numbers),
+        table_lost_s=max(lost, default=0.0),
+        stalled_s=max(b - a for a, b in pairwise(times_s)),
+    )
+
+
+def keep_on(path: Path) -> None:
+    """Keep evidence and tables until somebody ends this process."""
+    store = ClassStore(path)
+    version = max((int(table.version) for table in store.tables()), default=0)
+    while True:
+        version += 1
+        content = b"x" * 5000
+        store.keep(KeptTable(STUDENT, FILE, str(version), time.time(), content))
+        print("table", version, time.monotonic(), flush=True)
+        guess = Guessed(about="foot", said="forward", was=("forward", "up"))
+        number = store.add(STUDENT, guess, time.time()).result()
+        print("evidence", number, time.monotonic(), flush=True)
+        time.sleep(_PAUSE_S)
+
+
+def main() -> None:
+    """Run the kills and print what was lost."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--kills", type=int, default=100)
+    parser.add_argument("--child", type=Path)
+    chosen = parser.parse_args()
+    if chosen.child is not None:
+        keep_on(chosen.child)
+    draw = random.Random(0)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "class.sqlite"
+        kills = [kill_once(path, draw.uniform(0, _LONGEST_S)) for _ in range(chosen.kills)]
+    too_old = sum(kill.table_lost_s > OLDEST_S + kill.stalled_s for kill in kills)
+    lost = sum(kill.lost for kill in kills)
+    print(f"{len(kills)} kills, {kills[-1].kept} pieces of evidence: {lost} lost")
+    oldest_s = max(kill.table_lost_s for kill in kills)
+    print(
+        f"oldest change of a table that was lost: {oldest_s:.2f} s; {too_old} older than it may be"
+    )
+    sys.exit(bool(lost or too_old))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,150 @@
+"""A `lacoc` process that a command starts for itself, and ends: a court, or a studio."""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+from lacoc_shared.command import screen
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase, render, say
+
+_OPEN_S = 60.0
+"""Time for a process to be ready, also on a slow machine."""
+_CLOSE_S = 10.0
+_LOOK_S = 0.02
+_AGAIN_S = 1.0
+"""How soon a process that has ended is started again."""
+
+
+class Child:
+    """A `lacoc` command in a process of its own, which prints a line of JSON when it is ready.
+
+    Args:
+        words: the words of the command line after `lacoc`.
+        folder: folder for what it prints.
+        what: what it is, as the subject of a sentence (`child.*`).
+    """
+
+    def __init__(self, words: list[str], folder: Path, what: Phrase) -> None:
+        self._what = what
+        # Its output goes into files: it would block on a pipe that nobody empties.
+        self._said = folder / "child.out"
+        self._complained = folder / "child.err"
+        environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
+        with self._said.open("wb") as out, self._complained.open("wb") as err:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "lacoc_shared", *words],
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=err,
+                start_new_session=True,  # keeps Ctrl-C from it: it ends after its command
+            )
+
+    def opened(self) -> dict[str, Any]:
+        """Wait until it is ready; return the message that it prints then.
+
+        Raises:
+            UserError: if it ends, or takes too long; the message is its own.
+        """
+        deadline_s = time.monotonic() + _OPEN_S
+        while time.monotonic() < deadline_s:
+            ended = self.ended
+            first, end, _ = _text(self._said).partition("\n")
+            if end:
+                opened: dict[str, Any] = json.loads(first)
+                return opened
+            if ended:
+                reason = _text(self._complained).strip()
+                reason = reason or f"its process ended with {self._process.returncode}."
+                raise UserError(say("child.closed", what=self._what, why=_without_heading(reason)))
+            time.sleep(_LOOK_S)
+        raise UserError(say("child.slow", what=self._what, seconds=_OPEN_S))
+
+    @property
+    def ended(self) -> bool:
+        """Whether the process has ended."""
+        return self._process.poll() is not None
+
+    def show_crash(self) -> None:
+        """Print what it complained about, if it has crashed: its files are deleted soon."""
+        if self._process.poll():
+            screen.note(_text(self._complained))
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.terminate()
+        try:
+            self._process.wait(_CLOSE_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+
+@contextmanager
+def child(words: list[str], folder: Path, what: Phrase) -> Iterator[dict[str, Any]]:
+    """Run a `lacoc` command until the block ends; give the message that it prints when ready.
+
+    Args:
+        words: the words of the command line after `lacoc`.
+        folder: folder for what it prints.
+        what: what it is, as the subject of a sentence (`child.*`).
+
+    Raises:
+        UserError: if it does not become ready.
+    """
+    process = Child(words, folder, what)
+    with ExitStack() as stack:
+        stack.callback(process.close)
+        yield process.opened()
+        process.show_crash()
+
+
+@contextmanager
+def kept_child(
+    words: list[str], folder: Path, what: Phrase, again: Callable[[dict[str, Any]], list[str]]
+) -> Iterator[dict[str, Any]]:
+    """Run a `lacoc` command as `child` does, and start it again whenever it ends.
+
+    Args:
+        words: the words of the command line after `lacoc`.
+        folder: folder for what it prints.
+        what: what it is, as the subject of a sentence (`child.*`).
+        again: makes the words for another start from the message that the first one printed.
+
+    Raises:
+        UserError: if it does not become ready at the first start.
+    """
+    process = Child(words, folder, what)
+    ending = threading.Event()
+
+    def keep(words: list[str]) -> None:
+        nonlocal process
+        while not ending.wait(_AGAIN_S):
+            if process.ended:
+                process = Child(words, folder, what)
+
+    with ExitStack() as stack:
+        stack.callback(lambda: process.close())
+        opened = process.opened()
+        keeper = threading.Thread(target=keep, args=(again(opened),), daemon=True)
+        keeper.start()
+        stack.callback(keeper.join)
+        stack.callback(ending.set)
+        yield opened
+
+
+def _without_heading(error: str) -> str:
+    """Remove the word that a command puts before an error, in its language."""
+    return error.removeprefix(render(say("command.error"))).strip()
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8", errors="replace")

@@ -1,0 +1,93 @@
+"""`lacoc design`: design a gait on a page (workshop 3-2, 4-2)."""
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lacoc_client.child import kept_child
+from lacoc_client.commands import pages
+from lacoc_client.design.asker import Asker
+from lacoc_client.design.designer import Designer
+from lacoc_client.design.folder import Folder
+from lacoc_client.design.requests import MESSAGE_BYTES
+from lacoc_client.design.site import PATH, design_site
+from lacoc_client.gateway import server
+from lacoc_client.gateway.files import PageFiles
+from lacoc_shared.words import say
+
+app = typer.Typer()
+
+
+@app.command(name="design")
+def design_command(
+    folder: Annotated[
+        Path,
+        typer.Argument(
+            metavar="[FOLDER]", help="The folder with the gait files; by default this one."
+        ),
+    ] = Path(),
+    robot: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE|NAME",
+            help="The robot to begin with: an installed one, a robot's folder, or a robot file "
+            "(.toml).",
+        ),
+    ] = None,
+    connect: Annotated[
+        str | None,
+        typer.Option(
+            envvar="LACOC_STUDIO",
+            metavar="ADDRESS",
+            help="Address of a studio that runs elsewhere, such as tcp/192.168.1.20:7448.",
+        ),
+    ] = None,
+    listen: Annotated[
+        str,
+        typer.Option(
+            metavar="HOST:PORT",
+            help="Where to serve the page; by default only this machine can open it. With "
+            "0.0.0.0:8080 a tablet in the room can too.",
+        ),
+    ] = server.LOOPBACK,
+    browser: pages.Browser = True,
+) -> None:
+    """Design a gait: change the table, let the robot walk, see why it walks as it does.
+
+    A page opens in your browser with the gait and robot files of the folder. It saves where you
+    opened, and asks first if another program changed the file. Nothing else has to run: a studio,
+    which lets the robot walk, is started here unless --connect names one.
+    """
+    pages.check_pages(terminal=False)
+    files = Folder(folder)
+    with _studio(connect) as address:
+        designer = Designer(files, Asker(address), robot)
+        site = design_site(designer, PageFiles())
+        pages.show_app(site, f"{PATH}#key={designer.key}", browser, listen, MESSAGE_BYTES)
+
+
+@contextmanager
+def _studio(connect: str | None) -> Iterator[str]:
+    """Give the address of a studio that runs elsewhere, or of one that ends with the block."""
+    if connect is not None:
+        yield connect
+        return
+    with (
+        tempfile.TemporaryDirectory(prefix="lacoc-design-") as folder,
+        kept_child(
+            _words("tcp/127.0.0.1:0"),
+            Path(folder),
+            say("child.studio"),
+            # The page's way to it stays the same.
+            lambda opened: _words(opened["locators"][0]),
+        ) as opened,
+    ):
+        yield opened["locators"][0]
+
+
+def _words(listen: str) -> list[str]:
+    return ["studio", "--json", "--listen", listen]

@@ -1,0 +1,135 @@
+"""One /design page's connection: the requests that it may make, and who answers them."""
+
+import asyncio
+import hmac
+import time
+from contextlib import suppress
+from typing import Any
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from lacoc_client.design import requests
+from lacoc_client.design.designer import Designer
+from lacoc_client.design.files import file_bytes, read_file
+from lacoc_client.design.studio_desk import StudioDesk
+from lacoc_client.gateway import wire
+from lacoc_client.gateway.answers import Answers
+from lacoc_client.gateway.page import GARBAGE
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.network.allowance import Allowance
+from lacoc_shared.words import say
+
+_ASKS_HZ, _ASKS_BURST = 50.0, 100
+_FIRST_S = 10.0
+
+
+class DesignPage:
+    """One page's connection.
+
+    Args:
+        websocket: the page's WebSocket, not accepted yet.
+        designer: what all pages share.
+    """
+
+    def __init__(self, websocket: WebSocket, designer: Designer) -> None:
+        self._websocket = websocket
+        self._designer = designer
+        self._viewer = Viewer(websocket.state.socket)
+        self._answers = Answers(self._viewer, lambda *_: None)
+        self._studio = StudioDesk(designer.asker, self._viewer.send_if_fast)
+        self._asks = Allowance(_ASKS_HZ, _ASKS_BURST)
+
+    async def serve(self) -> None:
+        """Answer the page until it goes."""
+        await self._websocket.accept()
+        try:
+            # A connection that never sends a request must not stay open.
+            first = await asyncio.wait_for(self._websocket.receive(), _FIRST_S)
+            while first["type"] == "websocket.receive":
+                if not await self._take(first.get("bytes") or b""):
+                    return
+                # A page that asks too much is not read for a while; no other page notices.
+                while not self._asks.take(1, time.monotonic()):
+                    await asyncio.sleep(1 / _ASKS_HZ)
+                first = await self._websocket.receive()
+        except (TimeoutError, WebSocketDisconnect):
+            pass
+        finally:
+            self._designer.remove(self._viewer)
+            self._answers.stop()
+            with suppress(UserError):
+                await asyncio.shield(self._studio.gone())
+
+    async def _take(self, data: bytes) -> bool:
+        """Answer one message; return False if the page is to be closed."""
+        try:
+            asked = requests.read(data)
+        except wire.Unreadable as error:
+            to = wire.read_id(data)
+            if to is None:
+                await self._websocket.close(GARBAGE, "not a message")
+                return False
+            self._answers.refuse(to, error)
+            return True
+        if not self._is_greeted(asked):
+            self._answers.refuse(asked.id, UserError(say("design.wrong-key")))
+            await self._websocket.close(GARBAGE, "no page key")
+            return False
+        try:
+            self._answer(asked)
+        except (UserError, FileRefused) as error:
+            self._answers.refuse(asked.id, error)
+        return True
+
+    def _is_greeted(self, asked: requests.Asked) -> bool:
+        """Return whether the page has shown the page key, now or before."""
+        if isinstance(asked, requests.Hello):
+            key = asked.key.encode("utf-8", "surrogatepass")
+            self._viewer.can_act = hmac.compare_digest(key, self._designer.key.encode())
+        return self._viewer.can_act
+
+    def _answer(self, asked: requests.Asked) -> None:
+        answers = self._answers
+        match asked:
+            case requests.Hello():
+                answers.reply(asked.id, {"robot": self._designer.robot})
+                self._designer.add(self._viewer)
+            case requests.Ping():
+                answers.reply(asked.id, {"t": asked.t})
+            case requests.RobotAsk():
+                answers.later(asked.id, self._studio.robot(asked))
+            case requests.TrialAsk():
+                answers.later(asked.id, self._studio.trial(asked))
+            case requests.CoachAsk():
+                answers.later(asked.id, self._studio.coach(asked))
+            case requests.CancelAsk():
+                answers.later(asked.id, self._studio.cancel(asked.job))
+            case _:
+                answers.later(asked.id, asyncio.to_thread(self._with_files, asked))
+
+    def _with_files(self, asked: requests.Asked) -> Any:
+        """Answer a request about files; runs on another thread."""
+        folder = self._designer.folder
+        match asked:
+            case requests.ReadAsk():
+                return folder.read(asked.name)
+            case requests.SampleAsk():
+                return self._designer.sample()
+            case requests.ParseAsk():
+                return _parsed(asked)
+            case requests.SaveAsk():
+                content = asked.robot if asked.table is None else asked.table
+                if content is None:
+                    raise UserError(say("design.nothing-to-save"))
+                return folder.save(asked.name, content, asked.version, asked.force)
+            case requests.WriteAsk():
+                return {"data": file_bytes(asked.name, asked.table)}
+        raise AssertionError(asked)
+
+
+def _parsed(asked: requests.ParseAsk) -> Any:
+    data = asked.data.encode() if isinstance(asked.data, str) else asked.data
+    if not isinstance(data, bytes):
+        raise UserError(say("gateway.bad-message", error=type(data).__name__))
+    return read_file(asked.name, data)

@@ -1,0 +1,150 @@
+"""What a page of /design asks (docs/gateway.md has it as a table)."""
+
+from typing import Annotated, Any
+
+import msgspec
+
+from lacoc_client.design.table import FileTable
+from lacoc_client.gateway.wire import Ask, Unreadable, too_long
+from lacoc_shared.gait.workbook import MAX_BYTES
+from lacoc_shared.messages import SentFile
+from lacoc_shared.studio import STUDIO_MAX_BYTES
+from lacoc_shared.words import say
+
+REQUEST_BYTES = STUDIO_MAX_BYTES
+"""Longest request that has no file of another program in it; a longer one is refused."""
+PARSE_BYTES = MAX_BYTES + 4096
+"""Longest `parse`: a workbook as large as any that is read."""
+MESSAGE_BYTES = 16 << 20
+"""Longest message; only a longer one closes the connection."""
+
+_Name = Annotated[str, msgspec.Meta(max_length=200)]
+_Job = Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,15}$")]
+_Sequences = tuple[tuple[Annotated[int, msgspec.Meta(ge=0, le=9)], ...], ...]
+
+
+class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
+    """The first message: it has the page key."""
+
+    key: _Name = ""
+
+
+class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
+    """Ask for a reply, as a sign of life."""
+
+    t: float | int | str | None = None
+
+
+class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
+    """Read a file of the folder."""
+
+    name: _Name
+
+
+class SampleAsk(Ask, frozen=True, kw_only=True, tag="sample"):
+    """Read the sample gait of the robot that the command was given, or of the workshop's."""
+
+
+class ParseAsk(Ask, frozen=True, kw_only=True, tag="parse"):
+    """Read a file that was dropped on the page, or a sheet that was pasted."""
+
+    name: _Name
+    data: Any
+    """Bytes, or text."""
+
+
+class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
+    """Save a table, or the text of a robot file."""
+
+    name: _Name
+    table: FileTable | None = None
+    robot: str | None = None
+    version: _Name = ""
+    """Version of the file that it was made from; "": there was no file of this name."""
+    force: bool = False
+    """Save even if the file has changed since."""
+
+
+class WriteAsk(Ask, frozen=True, kw_only=True, tag="write"):
+    """Make a file to download."""
+
+    name: _Name
+    table: FileTable
+
+
+class RobotAsk(Ask, frozen=True, kw_only=True, tag="robot"):
+    """Ask the studio what a robot file describes."""
+
+    robot: SentFile | None = None
+
+
+class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
+    """Let the robot walk."""
+
+    table: FileTable | None = None
+    """None: the sample gait of the robot."""
+    robot: SentFile | None = None
+    sequences: _Sequences | None = None
+    keys: _Name = ""
+    seconds: float | None = None
+
+
+class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
+    """Ask which numbers matter, and for better ones."""
+
+    job: _Job
+    """Name that the page chooses, for progress and for `cancel`."""
+    table: FileTable | None = None
+    robot: SentFile | None = None
+    sequences: _Sequences | None = None
+    key: int | None = None
+    goal: _Name = "forward"
+    size: _Name | None = None
+    seconds: float = 30.0
+    seed: int = 0
+
+
+class CancelAsk(Ask, frozen=True, kw_only=True, tag="cancel"):
+    """End a search of this page early."""
+
+    job: _Job
+
+
+Asked = (
+    Hello
+    | Ping
+    | ReadAsk
+    | SampleAsk
+    | ParseAsk
+    | SaveAsk
+    | WriteAsk
+    | RobotAsk
+    | TrialAsk
+    | CoachAsk
+    | CancelAsk
+)
+"""Every request of a page."""
+
+
+class _AnyDo(msgspec.Struct):
+    do: str
+
+
+_asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
+_any_do = msgspec.msgpack.Decoder(_AnyDo)
+
+
+def read(data: bytes) -> Asked:
+    """Decode a request of a page.
+
+    Raises:
+        Unreadable: if it is no known request, or too long for its kind.
+    """
+    try:
+        if len(data) > REQUEST_BYTES:
+            most = PARSE_BYTES if _any_do.decode(data).do == "parse" else REQUEST_BYTES
+            if len(data) > most:
+                raise too_long(len(data), most)
+        return _asked.decode(data)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise Unreadable(say("gateway.bad-message", error=str(error))) from None

@@ -1,0 +1,1 @@
+"""Saving into files that a person works with, so that nothing of theirs is lost."""

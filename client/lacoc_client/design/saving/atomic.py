@@ -1,0 +1,49 @@
+"""Replace a file as a whole: after a failure, or a power cut, the old file is still there."""
+
+import errno
+import os
+import secrets
+import shutil
+from contextlib import suppress
+from pathlib import Path
+
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Write a file, or replace it; if it is a link, replace what it points to.
+
+    Raises:
+        UserError: if it can't be written; the old file is as it was.
+    """
+    target = path.resolve()
+    written = target.with_name(f".lacoc-{secrets.token_hex(8)}.tmp")
+    try:
+        if target.exists() and not os.access(target, os.W_OK):  # a rename would not care
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+        with written.open("xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if target.exists():
+            shutil.copymode(target, written)
+        os.replace(written, target)
+    except OSError as error:
+        with suppress(OSError):
+            written.unlink()
+        why = error.strerror or str(error)
+        raise UserError(say("design.cannot-write", name=path.name, why=why)) from None
+    _sync_folder(target.parent)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Write the folder's list of files to the disk too, where the system can do that."""
+    if os.name != "posix":
+        return
+    with suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)

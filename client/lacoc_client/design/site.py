@@ -1,0 +1,42 @@
+"""The paths of /design."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp
+from starlette.websockets import WebSocket
+
+from lacoc_client.design.design_page import DesignPage
+from lacoc_client.design.designer import Designer
+from lacoc_client.gateway.files import PageFiles
+from lacoc_client.gateway.guard import Guard
+from lacoc_client.gateway.site import page_routes
+
+PATH = "/design"
+
+
+def design_site(designer: Designer, files: PageFiles) -> ASGIApp:
+    """Make the application of a gateway whose only page is /design.
+
+    Args:
+        designer: what its pages share.
+        files: the built pages.
+    """
+
+    @asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncIterator[None]:
+        async with designer.running():
+            yield
+
+    async def page(websocket: WebSocket) -> None:
+        await DesignPage(websocket, designer).serve()
+
+    async def start(_: Request) -> Response:
+        return RedirectResponse(PATH)
+
+    others = [Route("/", start), WebSocketRoute(f"{PATH}/ws", page)]
+    return Guard(Starlette(routes=page_routes(files, [PATH], others), lifespan=lifespan))

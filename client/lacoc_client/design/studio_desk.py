@@ -1,0 +1,130 @@
+"""A page's requests to a studio: tables become files, names of jobs become the page's own."""
+
+import asyncio
+import secrets
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+
+from lacoc_client.design import requests
+from lacoc_client.design.asker import Asker
+from lacoc_client.design.files import sent_gait
+from lacoc_client.design.table import FileTable
+from lacoc_client.gateway import wire
+from lacoc_client.gateway.answers import in_loop
+from lacoc_client.gateway.wire import Kind
+from lacoc_shared.messages import PROTOCOL, Done, SentFile
+from lacoc_shared.studio import (
+    CancelRequest,
+    CoachReply,
+    CoachRequest,
+    GaitFiles,
+    Progress,
+    RobotReply,
+    RobotRequest,
+    TrialReply,
+    TrialRequest,
+)
+
+_ROBOT_S = 20.0
+_TRIAL_S = 120.0
+_CANCEL_S = 5.0
+_COACH_MORE_S = 300.0
+"""How much longer than its search a coach may take: it may wait for another, and it undoes what
+hardly helps."""
+_TABLE_NAMES = {"postures": "Loco-data.txt", "locomotion": "LocoTra-data.txt"}
+
+
+class StudioDesk:
+    """What one page asks of the studio.
+
+    Args:
+        asker: the way to the studio.
+        send: sends a message to the page, if the page keeps up.
+    """
+
+    def __init__(self, asker: Asker, send: Callable[[bytes], None]) -> None:
+        self._asker = asker
+        self._send = send
+        self._page = secrets.token_hex(4)
+        self._trying = asyncio.Lock()
+        self._jobs: set[str] = set()
+
+    async def robot(self, asked: requests.RobotAsk) -> msgspec.Raw:
+        """Ask what a robot file describes; see `Asker.ask` for the errors of this class."""
+        request = RobotRequest(protocol=PROTOCOL, robot=asked.robot)
+        return msgspec.Raw((await self._asker.ask("robot", request, RobotReply, _ROBOT_S))[1])
+
+    async def trial(self, asked: requests.TrialAsk) -> msgspec.Raw:
+        """Let the robot walk; while one trial of the page runs, the next one waits."""
+        request = TrialRequest(
+            protocol=PROTOCOL,
+            files=_files(asked.table, asked.robot, asked.sequences),
+            keys=asked.keys,
+            seconds=asked.seconds,
+        )
+        async with self._trying:
+            return msgspec.Raw((await self._asker.ask("trial", request, TrialReply, _TRIAL_S))[1])
+
+    async def coach(self, asked: requests.CoachAsk) -> msgspec.Raw:
+        """Search, and tell the page how far it is; end the search if nobody waits any more."""
+        job = self._job(asked.job)
+        request = CoachRequest(
+            protocol=PROTOCOL,
+            job=job,
+            files=_files(asked.table, asked.robot, asked.sequences),
+            key=asked.key,
+            goal=asked.goal,
+            size=asked.size,
+            seconds=asked.seconds,
+            seed=asked.seed,
+        )
+        loop = asyncio.get_running_loop()
+
+        def tell(progress: Progress) -> None:
+            body = {"job": asked.job, **msgspec.structs.asdict(progress)}
+            in_loop(loop, lambda: self._send(wire.map_message(Kind.PROGRESS, body)))
+
+        listening = await self._asker.progress(job, tell)
+        self._jobs.add(job)
+        try:
+            timeout_s = asked.seconds + _COACH_MORE_S
+            return msgspec.Raw((await self._asker.ask("coach", request, CoachReply, timeout_s))[1])
+        finally:
+            self._jobs.discard(job)
+            await asyncio.shield(asyncio.to_thread(listening.close))
+
+    async def cancel(self, job: str) -> dict[str, Any]:
+        """End a search of this page early; its own reply has the best so far."""
+        await self._cancel(self._job(job))
+        return {}
+
+    async def gone(self) -> None:
+        """End the searches that the page has left running."""
+        for job in list(self._jobs):
+            await self._cancel(job)
+
+    async def _cancel(self, job: str) -> None:
+        request = CancelRequest(protocol=PROTOCOL, job=job)
+        await self._asker.ask("cancel", request, Done, _CANCEL_S)
+
+    def _job(self, name: str) -> str:
+        """Return a name that no other page's search has."""
+        return f"{self._page}-{name}"
+
+
+def _files(
+    table: FileTable | None, robot: SentFile | None, sequences: tuple[tuple[int, ...], ...] | None
+) -> GaitFiles:
+    """Turn a page's table into the files of a request.
+
+    Raises:
+        FileRefused: with every mistake of the table.
+    """
+    if table is None:
+        return GaitFiles(robot=robot, sequences=sequences)
+    sent = sent_gait(table, _TABLE_NAMES[table.kind])
+    if table.kind == "postures":
+        return GaitFiles(robot=robot, postures=sent, sequences=sequences)
+    return GaitFiles(robot=robot, locomotion=sent)

@@ -1,0 +1,88 @@
+"""A gait as a page has it: rows of angles in degrees, by key."""
+
+from itertools import groupby
+from typing import Annotated, Literal
+
+import msgspec
+
+from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY, Row, degrees_of, number_text
+from lacoc_shared.gait.reader import read_cells
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, LocomotionTable, Posture, PostureTable
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import say
+
+_Digit = Annotated[int, msgspec.Meta(ge=0, lt=MAX_KEYS)]
+_Index = Annotated[int, msgspec.Meta(ge=0, lt=MAX_POSTURES_PER_KEY)]
+
+
+class FileRow(msgspec.Struct, frozen=True, kw_only=True):
+    """One posture of a table."""
+
+    key: _Digit
+    posture: _Index = 0
+    """Index in the key's sequence; 0 in a table of postures."""
+    angles_deg: tuple[float, ...]
+    """(joints,) by joint id."""
+
+
+class FileTable(msgspec.Struct, frozen=True, kw_only=True):
+    """The table of a gait file."""
+
+    kind: Literal["postures", "locomotion"]
+    legs: int
+    rows: tuple[FileRow, ...]
+
+
+def page_table(gait: PostureTable | LocomotionTable) -> FileTable:
+    """Make the table of a page from a gait, in the order of its keys."""
+    legs = gait.joints // JOINTS_PER_LEG
+    if isinstance(gait, PostureTable):
+        rows = tuple(_row(key, 0, angles) for key, angles in sorted(gait.postures.items()))
+        return FileTable(kind="postures", legs=legs, rows=rows)
+    rows = tuple(
+        _row(key, index, angles)
+        for key, sequence in enumerate(gait.sequences)
+        for index, angles in enumerate(sequence)
+    )
+    return FileTable(kind="locomotion", legs=legs, rows=rows)
+
+
+def gait_of(table: FileTable, name: str) -> PostureTable | LocomotionTable:
+    """Make a gait from the table of a page.
+
+    Args:
+        table: the table.
+        name: name of its file, for messages.
+
+    Raises:
+        FileRefused: with every mistake; rows and columns are those of the file.
+        UserError: if a key of a locomotion table is missing.
+    """
+    cells = _posture_cells(table) if table.kind == "postures" else _locomotion_cells(table)
+    rows = [Row(number, row) for number, row in enumerate(cells, start=1)]
+    return read_cells(rows, name, legs=table.legs)
+
+
+def _row(key: int, index: int, angles: Posture) -> FileRow:
+    return FileRow(key=key, posture=index, angles_deg=tuple(map(degrees_of, angles)))
+
+
+def _posture_cells(table: FileTable) -> list[list[str]]:
+    header = ["Num of Posture", str(len(table.rows))]
+    return [header, *([f"{row.key} Key", *_texts(row)] for row in table.rows)]
+
+
+def _locomotion_cells(table: FileTable) -> list[list[str]]:
+    rows = sorted(table.rows, key=lambda row: (row.key, row.posture))
+    keys = {key: list(group) for key, group in groupby(rows, key=lambda row: row.key)}
+    missing = sorted({*range(max(keys, default=0) + 1)} - keys.keys())
+    if missing:
+        raise UserError(say("design.missing-key", key=missing[0]))
+    cells = [[str(len(keys))]]
+    for group in keys.values():
+        cells += [[str(len(group))], *map(_texts, group)]
+    return cells
+
+
+def _texts(row: FileRow) -> list[str]:
+    return [number_text(angle) for angle in row.angles_deg]

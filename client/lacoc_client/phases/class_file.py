@@ -1,0 +1,258 @@
+"""The SQLite file of a class: all evidence, and everyone's newest tables. For one thread."""
+
+import sqlite3
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from itertools import count
+from pathlib import Path
+from typing import NamedTuple
+
+from lacoc_client.phases.evidence import Evidence, Voted, from_json, to_json
+from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.words import say
+
+_APPLICATION, _VERSION = 0x4C41434F, 1
+"""What SQLite's header says: "LACO" in ASCII, and the version of the tables below."""
+_BESIDE = ("", "-wal", "-shm", "-journal")
+"""Ends of the names of the files that SQLite keeps for one database."""
+_TABLES = """
+CREATE TABLE evidence (
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    student TEXT NOT NULL, at_s REAL NOT NULL, kind TEXT NOT NULL, body TEXT NOT NULL
+);
+CREATE INDEX evidence_of_student ON evidence (student, number);
+CREATE TABLE tables (
+    student TEXT NOT NULL, name TEXT NOT NULL,
+    version TEXT NOT NULL, at_s REAL NOT NULL, content BLOB NOT NULL,
+    PRIMARY KEY (student, name)
+) WITHOUT ROWID;
+CREATE TABLE votes (
+    poll TEXT NOT NULL, choice TEXT NOT NULL, votes INTEGER NOT NULL,
+    PRIMARY KEY (poll, choice)
+) WITHOUT ROWID;
+"""
+
+
+class Damaged(Exception):
+    """A file is no whole database."""
+
+
+class Kept(NamedTuple):
+    """Evidence as the file has it."""
+
+    number: int
+    """Grows in the class, from 1."""
+    student: str
+    at_s: float
+    """Time when it happened, in seconds since 1970 (UTC)."""
+    evidence: Evidence
+
+
+class KeptTable(NamedTuple):
+    """The newest content of a student's file."""
+
+    student: str
+    name: str
+    """Name of the file, such as "Loco-data.txt"."""
+    version: str
+    at_s: float
+    content: bytes
+
+
+class ClassFile:
+    """The file of a class; no other program can open it meanwhile.
+
+    What a method has written is on the disk when it returns.
+
+    Args:
+        path: the file; it is made if there is none.
+
+    Raises:
+        Damaged: if it is no whole database.
+        UserError: if another program has it open, it is something else than a class, or it can't
+            be opened.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            self._db = sqlite3.connect(
+                path, timeout=0, isolation_level="IMMEDIATE", check_same_thread=False
+            )
+        except sqlite3.Error as error:
+            raise self.problem(error, opening=True) from None
+        try:
+            self._set_up()
+        except sqlite3.Error as error:
+            self._db.close()
+            raise self.problem(error, opening=True) from None
+        except Exception:
+            self._db.close()
+            raise
+
+    def add(self, student: str, evidence: Evidence, at_s: float) -> int:
+        """Write evidence; return its number.
+
+        Raises:
+            sqlite3.Error: if the file can't be written; `problem` says why.
+        """
+        with self._db:
+            return self._add(student, evidence, at_s)
+
+    def vote(self, student: str, poll: str, choice: str, at_s: float) -> bool:
+        """Count a vote, and write that the student voted, but not for what.
+
+        Returns:
+            False if the student has voted in this poll before; then nothing is counted.
+        """
+        voted = Voted(poll=poll)
+        before = "SELECT 1 FROM evidence WHERE student = ? AND kind = ? AND body = ?"
+        with self._db:
+            if self._db.execute(before, (student, *_row(voted))).fetchone():
+                return False
+            self._add(student, voted, at_s)
+            self._db.execute(
+                "INSERT INTO votes VALUES (?, ?, 1)"
+                " ON CONFLICT (poll, choice) DO UPDATE SET votes = votes + 1",
+                (poll, choice),
+            )
+        return True
+
+    def votes(self, poll: str) -> dict[str, int]:
+        """Return the votes of a poll by choice."""
+        rows = self._db.execute("SELECT choice, votes FROM votes WHERE poll = ?", (poll,))
+        return dict(rows.fetchall())
+
+    def write_tables(self, tables: Iterable[KeptTable]) -> None:
+        """Write the newest content of files; arguments and errors as in `add`."""
+        with self._db:
+            self._db.executemany("INSERT OR REPLACE INTO tables VALUES (?, ?, ?, ?, ?)", tables)
+
+    def evidence(self, student: str | None = None, after: int = 0) -> list[Kept]:
+        """Read evidence in the order in which it was written, without what can't be read.
+
+        Args:
+            student: whose; None: everybody's.
+            after: only evidence with a larger number.
+        """
+        rows = self._db.execute(
+            "SELECT number, student, at_s, body FROM evidence"
+            " WHERE number > ?1 AND (?2 IS NULL OR student = ?2) ORDER BY number",
+            (after, student),
+        )
+        return list(_readable(rows))
+
+    def tables(self) -> list[KeptTable]:
+        """Read everybody's newest tables."""
+        rows = self._db.execute("SELECT student, name, version, at_s, content FROM tables")
+        return [KeptTable(*row) for row in rows]
+
+    def close(self) -> None:
+        """Close the file."""
+        self._db.close()
+
+    def problem(self, error: sqlite3.Error, opening: bool = False) -> Damaged | UserError:
+        """Say what an error of SQLite means."""
+        file, why = text_of(self._path.name), str(error)
+        match getattr(error, "sqlite_errorcode", 0) & 0xFF:
+            case sqlite3.SQLITE_CORRUPT | sqlite3.SQLITE_NOTADB:
+                return Damaged(why)
+            case sqlite3.SQLITE_BUSY | sqlite3.SQLITE_LOCKED:
+                return UserError(say("class.in-use", file=file))
+        if opening:
+            return UserError(say("class.cannot-open", file=text_of(self._path), why=why))
+        return UserError(say("class.no-room", file=file, why=why))
+
+    def _add(self, student: str, evidence: Evidence, at_s: float) -> int:
+        added = self._db.execute(
+            "INSERT INTO evidence (student, at_s, kind, body) VALUES (?, ?, ?, ?)",
+            (student, at_s, *_row(evidence)),
+        )
+        return int(added.lastrowid or 0)
+
+    def _set_up(self) -> None:
+        db = self._db
+        db.execute("PRAGMA locking_mode = EXCLUSIVE")
+        application, version = self._number("application_id"), self._number("user_version")
+        if self._number("schema_version") and (application, version) != (_APPLICATION, _VERSION):
+            raise UserError(say("class.newer", file=text_of(self._path)))
+        db.execute("PRAGMA journal_mode = WAL")
+        db.execute("PRAGMA synchronous = FULL")  # a commit is on the disk, also if power fails
+        # Everything or nothing: a file without tables is a new one when it is opened again.
+        with db:
+            db.execute("BEGIN IMMEDIATE")  # takes the lock, which is held until the file is closed
+            if not application:
+                for statement in filter(str.strip, _TABLES.split(";")):
+                    db.execute(statement)
+                db.execute(f"PRAGMA application_id = {_APPLICATION}")
+                db.execute(f"PRAGMA user_version = {_VERSION}")
+        (found,) = db.execute("PRAGMA quick_check(1)").fetchone()
+        if found != "ok":
+            raise Damaged(found)
+
+    def _number(self, name: str) -> int:
+        (number,) = self._db.execute(f"PRAGMA {name}").fetchone()
+        return int(number)
+
+
+def set_aside(path: Path) -> Path:
+    """Give a damaged file another name, so that a fresh one can be made.
+
+    Returns:
+        The new path, such as `class.damaged-1.sqlite`.
+
+    Raises:
+        UserError: if the file can't be renamed.
+    """
+    free = (path.with_name(f"{path.stem}.damaged-{number}{path.suffix}") for number in count(1))
+    kept = next(name for name in free if not name.exists())
+    try:
+        for end in _BESIDE[1:]:  # the file itself last: until then it is still the damaged one
+            beside = Path(f"{path}{end}")
+            if beside.exists():
+                beside.rename(f"{kept}{end}")
+        path.rename(kept)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UserError(say("class.cannot-open", file=text_of(path), why=why)) from None
+    return kept
+
+
+def forget(path: Path) -> list[Path]:
+    """Delete a class with everything that was kept of it, also its damaged files.
+
+    Returns:
+        The deleted files.
+
+    Raises:
+        UserError: if a program has the class open, or a file can't be deleted.
+    """
+    if not path.exists():
+        raise UserError(say("class.none", file=text_of(path)))
+    with suppress(Damaged):  # it can't be read, but it can be deleted
+        ClassFile(path).close()
+    old = path.parent.glob(f"{_escaped(path.stem)}.damaged-*{_escaped(path.suffix)}")
+    found = [Path(f"{one}{end}") for one in (path, *old) for end in _BESIDE]
+    found = [one for one in found if one.exists()]
+    for one in found:
+        try:
+            one.unlink()
+        except OSError as error:
+            why = error.strerror or str(error)
+            raise UserError(say("class.not-deleted", file=text_of(one), why=why)) from None
+    return found
+
+
+def _readable(rows: Iterable[tuple[int, str, float, str]]) -> Iterator[Kept]:
+    for number, student, at_s, body in rows:
+        with suppress(ValueError):  # somebody has changed the file by hand
+            yield Kept(number, student, at_s, from_json(body))
+
+
+def _escaped(name: str) -> str:
+    return "".join(f"[{letter}]" if letter in "*?[" else letter for letter in name)
+
+
+def _row(evidence: Evidence) -> tuple[str, str]:
+    """Return kind and body of evidence, as the file has them."""
+    return type(evidence).__name__.lower(), to_json(evidence).decode()

@@ -1,0 +1,85 @@
+"""What the phases ask of evidence, in their own words; `predicates` has how it is counted."""
+
+import math
+from collections.abc import Callable, Iterator
+
+from lacoc_client.phases.evidence import SAMPLE, Compared, Edited, Evidence, Guessed
+from lacoc_client.phases.facts import TrialFacts
+from lacoc_client.phases.predicates import Bound, Different, Predicate, TriedWhere
+from lacoc_shared.words import Phrase, say
+
+_OWN = ("hand", "tool")
+_UPRIGHT = 0.8
+"""A robot has tipped over below this (docs/studio.md 3)."""
+_BELLY = 0.05
+"""A robot lies on its body if it rests on it for a larger share of time."""
+
+
+def own_cells(cells: int) -> Different:
+    """Ask for a number of different cells that the student changed, not the coach or a paste."""
+    return Different(_cells, cells, lambda left: say("phases.more-cells", left=left))
+
+
+def _cells(one: Evidence) -> Iterator[tuple[None, tuple[int, ...]]]:
+    if isinstance(one, Edited) and one.by in _OWN:
+        for leg in one.legs:
+            for level in leg.changed:
+                yield None, (leg.key, leg.posture, leg.leg, level)
+
+
+def leg_postures(one: Evidence) -> Iterator[tuple[int, tuple[float, ...]]]:
+    """Give legs with the angles that the student gave them."""
+    if isinstance(one, Edited) and one.by in _OWN:
+        for leg in one.legs:
+            yield leg.leg, leg.angles_deg
+
+
+def leg_joints(one: Evidence) -> Iterator[tuple[int, int]]:
+    """Give legs with the levels of the joints that the student changed."""
+    if isinstance(one, Edited) and one.by in _OWN:
+        for leg in one.legs:
+            for level in leg.changed:
+                yield leg.leg, level
+
+
+def foot_guess(one: Evidence) -> bool | None:
+    """Say whether a guess of a foot was right; None if it is no such guess."""
+    return one.right if isinstance(one, Guessed) and one.about == "foot" else None
+
+
+def differs_from_sample(one: Evidence) -> Iterator[tuple[None, str]]:
+    """Give in what a walk differs from the sample's."""
+    if isinstance(one, Compared) and one.against == SAMPLE:
+        for difference in one.differs:
+            yield None, difference
+
+
+def are_two_postures(facts: TrialFacts) -> float:
+    """Return 1 if the last two keys were two different postures of level A, else 0."""
+    last = facts.keys[-2:]
+    return float(len(set(last)) == 2 and all(key.startswith("A") for key in last))
+
+
+NOT_STOPPED = Bound(
+    lambda facts: float(facts.stopped), lambda stopped: say("phases.stopped"), most=0.0
+)
+IS_UPRIGHT = Bound(
+    lambda facts: facts.upright, lambda upright: say("phases.tipped"), least=_UPRIGHT
+)
+
+
+def acts(*bounds: Bound, lacks: Phrase) -> Predicate:
+    """Ask for a trial of a key of level B, in which the robot does something upright."""
+    level_b = Bound(lambda facts: float(facts.keys[-1].startswith("B")), lambda _: lacks, least=1)
+    belly = Bound(lambda facts: facts.belly_share, lambda _: lacks, most=_BELLY)
+    return TriedWhere((level_b, IS_UPRIGHT, belly, NOT_STOPPED, *bounds), lacks)
+
+
+def within(
+    number: Callable[[TrialFacts], float],
+    lacks: Phrase,
+    least: float = -math.inf,
+    most: float = math.inf,
+) -> Bound:
+    """Ask for a number within limits; what is missing is the same for each number."""
+    return Bound(number, lambda _: lacks, least, most)

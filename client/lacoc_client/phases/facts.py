@@ -1,0 +1,233 @@
+"""What a trial or an edit shows of a gait: the few numbers and words that the phases ask for."""
+
+import math
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any, Literal
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+
+from lacoc_robots.leg import LegSpec
+from lacoc_shared.seat import BEAT_S
+from lacoc_shared.studio import TrialReply
+
+TRIPOD_MARGIN_M = 0.010
+"""Smallest support margin with which a robot stands firmly."""
+
+Pace = Literal["faster", "slower", "same"]
+Way = Literal["left", "right", "straight"]
+FootWay = Literal["forward", "back", "up", "down", "out", "in", "still"]
+Difference = Literal["speed", "period", "lift", "duty", "turning"]
+
+_SEAM = "explain.seam"
+_SAME_MM_S, _SAME_SHARE = 3.0, 0.05  # speeds that differ by less are the same, to the eye
+_STRAIGHT_DEG_S = 3.0  # a robot that turns by less goes straight (docs/studio.md 3)
+_STILL_M = 0.001  # a foot that moves less than this stays where it is
+_ALSO = 0.6  # a direction is right if the foot moves there by this part of its largest motion
+_KEY = re.compile(r"([AaBb]?)([0-9])(?::[0-9.]+)?", re.ASCII)
+
+
+class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
+    """What a trial showed, in its measured time; definitions are in docs/studio.md 2 and 5."""
+
+    keys: tuple[str, ...]
+    """Level and digit of each key, in the order of presses: "A1". The last one was measured."""
+    postures: int
+    """Number of postures of the measured key that the robot was sent to."""
+    cycles: int
+    """Whole cycles that were measured."""
+    cycle_s: float | None
+    forward_mm: float
+    """Way in the direction that the robot looked at first."""
+    left_mm: float
+    """Way to the left of that direction."""
+    speed_mm_s: float
+    drift_deg_s: float
+    upright: float
+    belly_share: float
+    margin_mm: float | None
+    clearance_mm: float
+    duty: tuple[float, ...]
+    """For each leg, the share of time in which its foot is down."""
+    tripod_s: float
+    """Longest time on the same half of the feet (`feet_of_half`), with a support margin of at least
+    `TRIPOD_MARGIN_M`."""
+    same_feet_share: float
+    """Largest share of time on the same half of the feet, with any margin."""
+    seam_deg: float
+    """How far a joint jumps from the last posture to the first; 0: none jumps."""
+    stopped: bool
+    """Whether physics stopped before the end."""
+
+
+class _Figures(msgspec.Struct, frozen=True, kw_only=True):
+    """The figures that are needed."""
+
+    seconds: float
+    cycles: int
+    cycle_s: float | None
+    speed_mm_s: float
+    lateral_mm_s: float
+    drift_deg_s: float
+    upright: float
+    belly_share: float
+    margin_mm: float | None
+    clearance_mm: float
+    duty: tuple[float, ...]
+
+
+def trial_facts(reply: TrialReply, keys: str = "") -> TrialFacts:
+    """Find the facts in a studio's reply.
+
+    Args:
+        reply: the reply.
+        keys: keys of the request, as `TrialRequest.keys`.
+
+    Raises:
+        ValueError: if the reply's figures or arrays do not fit together.
+    """
+    figures = msgspec.convert(reply.figures, _Figures)
+    feet = _array(reply.down, "u1", reply.ticks)[reply.first : reply.end]
+    margins_m = _array(reply.margin_m, "<f4", reply.ticks)[reply.first : reply.end]
+    postures = _array(reply.posture, "u1", reply.ticks)[reply.first : reply.end]
+    tripod = np.where(_counts(feet) == feet_of_half(len(figures.duty)), feet, 0)
+    firm = np.where(margins_m >= TRIPOD_MARGIN_M, tripod, 0)  # no margin is NaN: not firm
+    jumps = [
+        said.said.values.get("jump_deg") for said in reply.explained if said.said.code == _SEAM
+    ]
+    return TrialFacts(
+        keys=_pressed(keys, reply),
+        postures=len(np.unique(postures)),
+        cycles=figures.cycles,
+        cycle_s=figures.cycle_s,
+        forward_mm=_short(figures.speed_mm_s * figures.seconds),
+        left_mm=_short(figures.lateral_mm_s * figures.seconds),
+        speed_mm_s=_short(figures.speed_mm_s),
+        drift_deg_s=_short(figures.drift_deg_s),
+        upright=_short(figures.upright),
+        belly_share=_short(figures.belly_share),
+        margin_mm=None if figures.margin_mm is None else _short(figures.margin_mm),
+        clearance_mm=_short(figures.clearance_mm),
+        duty=tuple(map(_short, figures.duty)),
+        tripod_s=round(_longest_run(firm) * BEAT_S, 2),
+        same_feet_share=_short(_most_common(tripod) / len(tripod) if len(tripod) else 0.0),
+        seam_deg=max(
+            (_short(jump) for jump in jumps if isinstance(jump, float | int)), default=0.0
+        ),
+        stopped=reply.fault is not None,
+    )
+
+
+def feet_of_half(legs: int) -> int:
+    """Return on how many feet half of a robot stands: three of six, and never fewer than three."""
+    return max(3, legs // 2)
+
+
+def pace(before: TrialFacts, after: TrialFacts) -> Pace:
+    """Say whether a gait became faster forward."""
+    by = after.speed_mm_s - before.speed_mm_s
+    if abs(by) < max(_SAME_MM_S, _SAME_SHARE * abs(before.speed_mm_s)):
+        return "same"
+    return "faster" if by > 0 else "slower"
+
+
+def way(facts: TrialFacts) -> Way:
+    """Say where a robot turns."""
+    if abs(facts.drift_deg_s) <= _STRAIGHT_DEG_S:
+        return "straight"
+    return "left" if facts.drift_deg_s > 0 else "right"
+
+
+def differences(one: TrialFacts, other: TrialFacts) -> tuple[Difference, ...]:
+    """Say in what two walks differ so much that people see it (docs/studio.md 5)."""
+    found: list[Difference] = []
+    if _apart(one.speed_mm_s, other.speed_mm_s, least=5.0, share=0.2):
+        found.append("speed")
+    if _apart(one.cycle_s or 0.0, other.cycle_s or 0.0, least=0.1, share=0.2):
+        found.append("period")
+    if _apart(one.clearance_mm, other.clearance_mm, least=3.0, share=0.2):
+        found.append("lift")
+    if _apart(_mean(one.duty), _mean(other.duty), least=0.08, share=0.0):
+        found.append("duty")
+    if _apart(one.drift_deg_s, other.drift_deg_s, least=2 * _STRAIGHT_DEG_S, share=0.2):
+        found.append("turning")
+    return tuple(found)
+
+
+def foot_ways(
+    leg: LegSpec, before_deg: Sequence[float], after_deg: Sequence[float]
+) -> tuple[FootWay, ...]:
+    """Say where the foot of a leg goes, seen from the body.
+
+    Args:
+        leg: the leg.
+        before_deg: (3,) angles of root, 1st and 2nd joint before the change.
+        after_deg: (3,) angles after it.
+
+    Returns:
+        All directions that are right answers, the strongest first. "out" is away from the body's
+        middle line. At an angle of 45 degrees two directions are right.
+    """
+    start = leg.points(*map(math.radians, before_deg))[-1]
+    end = leg.points(*map(math.radians, after_deg))[-1]
+    out_m, ahead_m, up_m = leg.side * (end.x - start.x), end.y - start.y, end.z - start.z
+    if math.hypot(out_m, ahead_m, up_m) < _STILL_M:
+        return ("still",)
+    moves: list[tuple[float, FootWay]] = [
+        (abs(ahead_m), "forward" if ahead_m > 0 else "back"),
+        (abs(up_m), "up" if up_m > 0 else "down"),
+        (abs(out_m), "out" if out_m > 0 else "in"),
+    ]
+    moves.sort(key=lambda move: -move[0])
+    return tuple(way for by_m, way in moves if by_m >= _ALSO * moves[0][0])
+
+
+def _apart(one: float, other: float, least: float, share: float) -> bool:
+    return abs(one - other) >= max(least, share * max(abs(one), abs(other)))
+
+
+def _mean(values: tuple[float, ...]) -> float:
+    return sum(values) / len(values) if values else 0.0
+
+
+def _array(data: bytes, kind: str, ticks: int) -> npt.NDArray[Any]:
+    values: npt.NDArray[Any] = np.frombuffer(data, kind)
+    if len(values) != ticks:
+        raise ValueError(f"{len(values)} values for {ticks} ticks")
+    return values
+
+
+def _counts(feet: npt.NDArray[np.uint8]) -> npt.NDArray[np.int64]:
+    """Return how many feet are down in each tick."""
+    counts: npt.NDArray[np.int64] = np.unpackbits(feet[:, np.newaxis], axis=1).sum(
+        axis=1, dtype=np.int64
+    )
+    return counts
+
+
+def _longest_run(values: npt.NDArray[Any]) -> int:
+    """Return the length of the longest run of one value; zeros do not count."""
+    ends = np.flatnonzero(np.diff(values, prepend=-1, append=-1))
+    runs = [int(b - a) for a, b in pairwise(ends) if values[a]]
+    return max(runs, default=0)
+
+
+def _most_common(values: npt.NDArray[Any]) -> int:
+    """Return how often the most common value occurs; zeros do not count."""
+    _, counts = np.unique(values[values != 0], return_counts=True)
+    return int(counts.max(initial=0))
+
+
+def _pressed(keys: str, reply: TrialReply) -> tuple[str, ...]:
+    """List the keys that were pressed. A key without a level is of level B, but for the last."""
+    found = [_KEY.fullmatch(word.strip()) for word in keys.split(",")]
+    before = [f"{(key[1] or 'B').upper()}{key[2]}" for key in found[:-1] if key]
+    return (*before, f"{'AB'[reply.level]}{reply.key}")
+
+
+def _short(value: float) -> float:
+    """Round a number, so that evidence stays small."""
+    return round(float(value), 3)

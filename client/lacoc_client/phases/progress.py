@@ -1,0 +1,53 @@
+"""How far a student is in the six phases."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from lacoc_client.phases.evidence import Coached, Evidence, Hand, Moved
+from lacoc_client.phases.phases import PHASES
+from lacoc_client.phases.predicates import Outcome
+
+State = Literal["open", "met", "skipped"]
+"""A phase is skipped if the student went on without doing its task. Nothing locks: the student can
+come back, and the task is met as soon as evidence shows it."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a student is."""
+
+    phase: int
+    """Number of the phase that the student is at, from 1."""
+    states: tuple[State, ...]
+    """State of each phase."""
+    outcomes: tuple[Outcome, ...]
+    """For each phase, how far it is and what is missing."""
+    hand_up: bool
+    """Whether the student asks for help."""
+    coached: bool
+    """Whether the student ever took over what the coach found."""
+
+
+def progress(evidence: Sequence[Evidence]) -> Progress:
+    """Say how far a student is; `evidence` is all that the student did, in order."""
+    visited = [one.phase for one in evidence if isinstance(one, Moved)]
+    visited = [number for number in visited if 1 <= number <= len(PHASES)]
+    hands = [one.up for one in evidence if isinstance(one, Hand)]
+    outcomes = tuple(phase.look(evidence) for phase in PHASES)
+    farthest = max(visited, default=1)
+    return Progress(
+        phase=visited[-1] if visited else 1,
+        states=tuple(
+            _state(outcome, number < farthest) for number, outcome in enumerate(outcomes, start=1)
+        ),
+        outcomes=outcomes,
+        hand_up=bool(hands) and hands[-1],
+        coached=any(isinstance(one, Coached) for one in evidence),
+    )
+
+
+def _state(outcome: Outcome, is_behind: bool) -> State:
+    if outcome.met:
+        return "met"
+    return "skipped" if is_behind else "open"

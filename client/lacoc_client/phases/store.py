@@ -1,0 +1,213 @@
+"""A class that is kept on disk while it happens (`class_file` has the file itself)."""
+
+import sqlite3
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from typing import Any, Generic, TypeVar
+
+from lacoc_client.phases.class_file import ClassFile, Damaged, Kept, KeptTable, set_aside
+from lacoc_client.phases.evidence import Evidence
+from lacoc_shared.mistakes import UserError, text_of
+from lacoc_shared.words import Phrase, say
+
+TABLE_S = 1.0
+"""Longest time that a table waits until it is written [s]."""
+
+_T = TypeVar("_T")
+
+
+class _Job(Generic[_T]):
+    """Work that waits for the store's thread."""
+
+    def __init__(self, work: Callable[[ClassFile], _T], writes: bool) -> None:
+        self.work = work
+        self.writes = writes
+        self.done: Future[_T] = Future()
+
+
+class ClassStore:
+    """A class on disk; may be used from any thread.
+
+    One thread works on the file, so that no event loop waits for a disk. A future is done when its
+    work is on disk (`asyncio.wrap_future` lets an event loop wait for it). A process that is killed
+    loses no evidence whose future was done, and no table older than `TABLE_S` and the time of a
+    write.
+
+    A damaged file is kept under another name, and the class goes on in a fresh one. While the disk
+    is full, futures fail with a `UserError`, and tables wait for room.
+
+    Args:
+        path: the file; it is made if there is none.
+
+    Raises:
+        UserError: if another program has it open, it is something else than a class, or it can't
+            be opened.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._damage: Phrase | None = None
+        self._no_room: Phrase | None = None
+        try:
+            self._file = ClassFile(path)
+        except Damaged:
+            self._file = self._fresh()
+        self._tables = {(one.student, one.name): one for one in self._file.tables()}
+        self._waiting: set[tuple[str, str]] = set()
+        """Which tables are not on disk yet."""
+        self._jobs: SimpleQueue[_Job[Any] | None] = SimpleQueue()
+        self._closed = False
+        self._lock = threading.Lock()
+        """Guards `_tables`, `_waiting` and `_closed`."""
+        self._thread = threading.Thread(target=self._run, name="class-store", daemon=True)
+        self._thread.start()
+
+    @property
+    def trouble(self) -> Phrase | None:
+        """What is wrong with the file, for the teacher; None: nothing.
+
+        A full disk is told until a write succeeds, a damaged file until the store is closed.
+        """
+        return self._no_room or self._damage
+
+    def add(self, student: str, evidence: Evidence, at_s: float) -> "Future[int]":
+        """Keep evidence.
+
+        Args:
+            student: whose it is.
+            evidence: what happened.
+            at_s: time when it happened, in seconds since 1970 (UTC).
+
+        Returns:
+            The number of the evidence.
+        """
+        return self._do(lambda file: file.add(student, evidence, at_s), writes=True)
+
+    def vote(self, student: str, poll: str, choice: str, at_s: float) -> "Future[bool]":
+        """Count a vote; as `ClassFile.vote`."""
+        return self._do(lambda file: file.vote(student, poll, choice, at_s), writes=True)
+
+    def votes(self, poll: str) -> "Future[dict[str, int]]":
+        """Read the votes of a poll by choice."""
+        return self._do(lambda file: file.votes(poll))
+
+    def evidence(self, student: str | None = None, after: int = 0) -> "Future[list[Kept]]":
+        """Read evidence; as `ClassFile.evidence`."""
+        return self._do(lambda file: file.evidence(student, after))
+
+    def keep(self, table: KeptTable) -> None:
+        """Keep the newest content of a student's file; it is written at most `TABLE_S` later.
+
+        Raises:
+            UserError: if the store is closed.
+            ValueError: if a name is no text that can be written.
+        """
+        f"{table.student}{table.name}{table.version}".encode()  # one bad name would stop all tables
+        with self._lock:
+            if self._closed:
+                raise UserError(say("class.closed"))
+            self._tables[table.student, table.name] = table
+            self._waiting.add((table.student, table.name))
+
+    def tables(self, student: str | None = None) -> list[KeptTable]:
+        """Return the newest tables of a student, or of everybody, by student and name."""
+        with self._lock:
+            tables = sorted(self._tables.items())
+        return [table for (who, _), table in tables if student in (None, who)]
+
+    def close(self) -> None:
+        """Write what waits, and close the file."""
+        with self._lock:
+            if not self._closed:
+                self._closed = True
+                self._jobs.put(None)
+        self._thread.join()
+
+    def __enter__(self) -> "ClassStore":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def _do(self, work: Callable[[ClassFile], _T], writes: bool = False) -> "Future[_T]":
+        job = _Job(work, writes)
+        with self._lock:
+            if self._closed:
+                job.done.set_exception(UserError(say("class.closed")))
+            else:
+                self._jobs.put(job)
+        return job.done
+
+    # What follows runs in the store's own thread.
+
+    def _run(self) -> None:
+        next_s = time.monotonic() + TABLE_S
+        going_on = True
+        while going_on:
+            try:
+                job = self._jobs.get(timeout=max(0.0, next_s - time.monotonic()))
+            except Empty:
+                pass
+            else:
+                if job is not None:
+                    self._work(job)
+                going_on = job is not None
+            if not going_on or time.monotonic() >= next_s:
+                self._write_tables()
+                next_s = time.monotonic() + TABLE_S
+        self._file.close()
+
+    def _work(self, job: _Job[Any]) -> None:
+        if not job.done.set_running_or_notify_cancel():
+            return  # whoever asked has gone
+        try:
+            try:
+                result = self._once(job)
+            except Damaged:
+                self._file.close()
+                self._file = self._fresh()
+                with self._lock:
+                    self._waiting |= self._tables.keys()
+                result = self._once(job)
+        except Exception as error:
+            if job.writes and isinstance(error, UserError):
+                self._no_room = error.phrase
+            job.done.set_exception(error)
+        else:
+            if job.writes:
+                self._no_room = None
+            job.done.set_result(result)
+
+    def _once(self, job: _Job[_T]) -> _T:
+        try:
+            return job.work(self._file)
+        except sqlite3.Error as error:
+            raise self._file.problem(error) from error
+
+    def _write_tables(self) -> None:
+        with self._lock:
+            tables = [self._tables[key] for key in sorted(self._waiting)]
+        if not tables:
+            return
+        job = _Job(lambda file: file.write_tables(tables), writes=True)
+        self._work(job)
+        if job.done.exception() is not None:
+            return  # `trouble` tells it; the tables wait for the next time
+        with self._lock:
+            # One that is newer than what was written goes on waiting.
+            written = {(one.student, one.name) for one in tables if self._is_newest(one)}
+            self._waiting -= written
+
+    def _is_newest(self, table: KeptTable) -> bool:
+        return self._tables[table.student, table.name] is table
+
+    def _fresh(self) -> ClassFile:
+        """Set the damaged file aside, and make a fresh one."""
+        kept = set_aside(self._path)
+        file, kept_name = text_of(self._path.name), text_of(kept.name)
+        self._damage = say("class.damaged", file=file, kept=kept_name)
+        return ClassFile(self._path)

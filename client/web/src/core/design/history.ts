@@ -1,0 +1,104 @@
+/** The table that is edited, with every step that led to it. */
+
+import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
+import { type Columns, type Row, refit, type Table } from "./table";
+
+interface Step {
+  /** What the step was, for the buttons; "" for the first table. */
+  readonly name: string;
+  readonly table: Table;
+  readonly version: number;
+  /** Names a movement of the hand that is one step, however often it edits. */
+  readonly gesture: string | null;
+}
+
+export class History {
+  readonly table: ReadonlySignal<Table>;
+  readonly canUndo: ReadonlySignal<boolean>;
+  readonly canRedo: ReadonlySignal<boolean>;
+  /** The names of the steps that would be undone and done again; "": none. */
+  readonly undoName: ReadonlySignal<string>;
+  readonly redoName: ReadonlySignal<string>;
+  /** The same number for the same content, so that trials belong to versions. */
+  readonly version: ReadonlySignal<number>;
+  private readonly steps = signal<readonly Step[]>([]);
+  private readonly at = signal(0);
+  private readonly versions = new Map<string, number>();
+  private readonly rows = new Map<string, number>();
+  private readonly rowNumbers = new WeakMap<Row, number>();
+
+  constructor(table: Table) {
+    this.open(table);
+    const now = computed(() => this.steps.value[this.at.value]!);
+    this.table = computed(() => now.value.table);
+    this.version = computed(() => now.value.version);
+    this.canUndo = computed(() => this.at.value > 0);
+    this.canRedo = computed(() => this.at.value < this.steps.value.length - 1);
+    this.undoName = computed(() => (this.canUndo.value ? now.value.name : ""));
+    this.redoName = computed(() => this.steps.value[this.at.value + 1]?.name ?? "");
+  }
+
+  /** Begin with another table, such as that of another file; versions go on. */
+  open(table: Table): void {
+    batch(() => {
+      this.steps.value = [{ name: "", table, version: this.numberOf(table), gesture: null }];
+      this.at.value = 0;
+    });
+  }
+
+  /** Take all steps over to another robot of as many legs; no step by itself. */
+  refit(columns: Columns): void {
+    this.steps.value = this.steps.peek().map((step) => {
+      const table = refit(step.table, columns) ?? step.table;
+      return { ...step, table, version: this.numberOf(table) };
+    });
+  }
+
+  /**
+   * Edit the table: one step, unless the edit changes nothing.
+   *
+   * @param gesture Edits in a row with the same gesture, such as one drag of a slider, are one step.
+   */
+  apply(name: string, edit: (table: Table) => Table, gesture: string | null = null): void {
+    const before = this.steps.peek()[this.at.peek()]!;
+    const table = edit(before.table);
+    const version = this.numberOf(table);
+    if (version === before.version) return;
+    const goesOn = gesture !== null && before.gesture === gesture;
+    const kept = this.steps.peek().slice(0, this.at.peek() + (goesOn ? 0 : 1));
+    // A drag that ends where it began leaves no step.
+    const isBack = goesOn && kept.at(-1)?.version === version;
+    const steps = isBack ? kept : [...kept, { name, table, version, gesture }];
+    batch(() => {
+      this.steps.value = steps;
+      this.at.value = steps.length - 1;
+    });
+  }
+
+  undo(): void {
+    if (this.canUndo.peek()) this.at.value = this.at.peek() - 1;
+  }
+
+  redo(): void {
+    if (this.canRedo.peek()) this.at.value = this.at.peek() + 1;
+  }
+
+  private numberOf(table: Table): number {
+    const content = `${table.kind} ${table.rows.map((row) => this.rowNumber(row)).join(" ")}`;
+    const number = this.versions.get(content) ?? this.versions.size + 1;
+    this.versions.set(content, number);
+    return number;
+  }
+
+  /** The same number for the same row: a long table costs a short text for each version. */
+  private rowNumber(row: Row): number {
+    let number = this.rowNumbers.get(row);
+    if (number === undefined) {
+      const content = JSON.stringify([row.key, row.posture, row.cells]);
+      number = this.rows.get(content) ?? this.rows.size;
+      this.rows.set(content, number);
+      this.rowNumbers.set(row, number);
+    }
+    return number;
+  }
+}

@@ -1,0 +1,49 @@
+/** Guesses before a trial, and what came of them. */
+
+import { figure } from "./trial";
+
+export type Pace = "faster" | "slower" | "same";
+export type Way = "left" | "right" | "straight";
+export type Guess = { about: "pace"; is: Pace } | { about: "way"; is: Way };
+
+export interface Verdict {
+  right: boolean;
+  /** What happened. */
+  was: Pace | Way;
+}
+
+type Figures = Record<string, unknown>;
+
+/** Speeds that differ by less are the same, to the eye. */
+const SAME_MM_S = 3;
+const SAME_SHARE = 0.05;
+/** A robot that turns by less goes straight (docs/studio.md 3). */
+const STRAIGHT_DEG_S = 3;
+
+/**
+ * Whether a gait became faster forward; null if a trial has no speed.
+ *
+ * @param before Figures of the trial before the change.
+ * @param after Figures of the trial after it.
+ */
+export function paceOf(before: Figures, after: Figures): Pace | null {
+  const [was, is] = [figure(before, "speed_mm_s"), figure(after, "speed_mm_s")];
+  if (was === null || is === null) return null;
+  const by = is - was;
+  if (Math.abs(by) < Math.max(SAME_MM_S, SAME_SHARE * Math.abs(was))) return "same";
+  return by > 0 ? "faster" : "slower";
+}
+
+/** Where a robot turns; null if the trial does not say. */
+export function wayOf(figures: Figures): Way | null {
+  const drift = figure(figures, "drift_deg_s");
+  if (drift === null) return null;
+  if (Math.abs(drift) <= STRAIGHT_DEG_S) return "straight";
+  return drift > 0 ? "left" : "right";
+}
+
+/** Compare a guess with what happened; null if the trials do not say. */
+export function verdict(guess: Guess, before: Figures | null, after: Figures): Verdict | null {
+  const was = guess.about === "way" ? wayOf(after) : before && paceOf(before, after);
+  return was && { right: was === guess.is, was };
+}

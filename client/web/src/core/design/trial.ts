@@ -1,0 +1,178 @@
+/** A trial, tick by tick: a tick is 20 ms. */
+
+import { ROOT_FLOATS, type Sentence, type TrialReply } from "../wire";
+import { LEVELS } from "./table";
+
+export interface Trial {
+  readonly reply: TrialReply;
+  readonly legs: number;
+  readonly ticks: number;
+  /** (ticks,) index of the target posture in the key's sequence. */
+  readonly posture: Uint8Array;
+  /** (ticks,) bit i: the foot of leg i is down. */
+  readonly down: Uint8Array;
+  /** (ticks, 7 + joints) as `Frame.poses`. */
+  readonly poses: Float32Array;
+  /** (ticks, joints) */
+  readonly commandedRad: Float32Array;
+  /** (ticks, legs, 2) where each shank touches the floor [m, world]; 0 without contact. */
+  readonly contactM: Float32Array;
+  /** (ticks, 2) centre of mass in the plane of the floor [m, world]. */
+  readonly centreM: Float32Array;
+  /** (ticks,) support margin; NaN while no foot is down. */
+  readonly marginM: Float32Array;
+  /** (ticks, legs) speed of each shank along the floor. */
+  readonly slipMS: Float32Array;
+  /** (ticks, legs) height of each foot's lowest point. */
+  readonly tipM: Float32Array;
+}
+
+/** Ticks from `from` to before `to`. */
+export interface Run {
+  readonly from: number;
+  readonly to: number;
+}
+
+export type Point = readonly [number, number];
+
+/** What carries the robot at a tick, in the plane of the floor [m, world]. */
+export interface Support {
+  /** Where the feet stand that are down; `leg` says whose they are. */
+  readonly feet: readonly { leg: number; at: Point }[];
+  /** Corners of their convex hull, counter-clockwise. */
+  readonly corners: readonly Point[];
+  readonly centre: Point;
+  /** Null while no foot is down. */
+  readonly marginM: number | null;
+}
+
+/**
+ * Read the reply to a trial.
+ *
+ * @throws RangeError If an array does not have as many numbers as the ticks and legs ask for.
+ */
+export function readTrial(reply: TrialReply, legs: number): Trial {
+  const { ticks } = reply;
+  const joints = LEVELS.length * legs;
+  const bytes = (data: Uint8Array) => sized(data, ticks, 1);
+  // The arrays may lie at any byte of the message, so each is copied.
+  const floats = (data: Uint8Array, each: number) =>
+    new Float32Array(new Uint8Array(sized(data, ticks * each, 4)).buffer);
+  return {
+    reply,
+    legs,
+    ticks,
+    posture: bytes(reply.posture),
+    down: bytes(reply.down),
+    poses: floats(reply.poses, ROOT_FLOATS + joints),
+    commandedRad: floats(reply.commanded_rad, joints),
+    contactM: floats(reply.contact_w_m, 2 * legs),
+    centreM: floats(reply.centre_w_m, 2),
+    marginM: floats(reply.margin_m, 1),
+    slipMS: floats(reply.slip_m_s, legs),
+    tipM: floats(reply.tip_m, legs),
+  };
+}
+
+/** Whether a foot is down at a tick. */
+export function isDown(trial: Trial, leg: number, tick: number): boolean {
+  return ((trial.down[tick]! >> leg) & 1) === 1;
+}
+
+/** For each leg, when its foot is down, among the ticks from `from` to before `to`. */
+export function footBars(trial: Trial, from = 0, to = trial.ticks): Run[][] {
+  return Array.from({ length: trial.legs }, (_, leg) =>
+    runsOf(from, to, (tick) => isDown(trial, leg, tick)),
+  );
+}
+
+/** For each part of the key's sequence, when it was the target: runs of equal `posture`. */
+export function postureRuns(trial: Trial): (Run & { posture: number })[] {
+  const found: (Run & { posture: number })[] = [];
+  for (let from = 0; from < trial.ticks; ) {
+    let to = from + 1;
+    const isStart = (tick: number) => trial.reply.starts.includes(tick);
+    while (to < trial.ticks && trial.posture[to] === trial.posture[from] && !isStart(to)) to++;
+    found.push({ from, to, posture: trial.posture[from]! });
+    from = to;
+  }
+  return found;
+}
+
+/** What carries the robot at a tick. */
+export function support(trial: Trial, tick: number): Support {
+  const feet = Array.from({ length: trial.legs }, (_, leg) => leg)
+    .filter((leg) => isDown(trial, leg, tick))
+    .map((leg) => ({ leg, at: pointOf(trial.contactM, tick * trial.legs + leg) }));
+  const marginM = trial.marginM[tick]!;
+  return {
+    feet,
+    corners: hull(feet.map(({ at }) => at)),
+    centre: pointOf(trial.centreM, tick),
+    marginM: Number.isNaN(marginM) ? null : marginM,
+  };
+}
+
+/** The way of the body seen from above, a point for each tick [m, world]. */
+export function pathOf(trial: Trial): Point[] {
+  const width = trial.poses.length / Math.max(1, trial.ticks);
+  return Array.from({ length: trial.ticks }, (_, tick) => [
+    trial.poses[tick * width]!,
+    trial.poses[tick * width + 1]!,
+  ]);
+}
+
+/** A number among the figures; null where the trial has none. */
+export function figure(figures: Record<string, unknown>, name: string): number | null {
+  const value = figures[name];
+  return typeof value === "number" && Number.isFinite(value) ? value : null;
+}
+
+/** The leg of a sentence; null: it is about the whole robot. */
+export function legOf({ leg }: Sentence): number | null {
+  return leg < 0 ? null : leg;
+}
+
+/** The corners of the convex hull, counter-clockwise; one or two if there are no more. */
+export function hull(points: readonly Point[]): Point[] {
+  const ordered = points
+    .toSorted((one, other) => one[0] - other[0] || one[1] - other[1])
+    .filter(([x, y], index, all) => x !== all[index - 1]?.[0] || y !== all[index - 1]?.[1]);
+  if (ordered.length < 3) return ordered;
+  return [ordered, ordered.toReversed()].flatMap((way) => {
+    const half: Point[] = [];
+    for (const point of way) {
+      while (half.length > 1 && leftOf(half.at(-2)!, half.at(-1)!, point) <= 0) half.pop();
+      half.push(point);
+    }
+    return half.slice(0, -1);
+  });
+}
+
+/** Twice the area of a triangle; positive if the point is left of the line. */
+function leftOf(start: Point, end: Point, point: Point): number {
+  const [x, y] = [end[0] - start[0], end[1] - start[1]];
+  return x * (point[1] - start[1]) - y * (point[0] - start[0]);
+}
+
+function runsOf(from: number, to: number, is: (tick: number) => boolean): Run[] {
+  const runs: Run[] = [];
+  let begin = -1;
+  for (let tick = from; tick <= to; tick++) {
+    const on = tick < to && is(tick);
+    if (on && begin < 0) begin = tick;
+    if (on || begin < 0) continue;
+    runs.push({ from: begin, to: tick });
+    begin = -1;
+  }
+  return runs;
+}
+
+function pointOf(numbers: Float32Array, index: number): Point {
+  return [numbers[2 * index]!, numbers[2 * index + 1]!];
+}
+
+function sized(data: Uint8Array, count: number, bytes: number): Uint8Array {
+  if (data.length === count * bytes) return data;
+  throw new RangeError(`${data.length} bytes instead of ${count * bytes}`);
+}

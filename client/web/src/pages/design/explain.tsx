@@ -1,0 +1,153 @@
+/** What a trial showed: figures, and at most three sentences that say why. */
+
+import { useComputed } from "@preact/signals";
+import { jointsOfLeg } from "../../core/design/parts";
+import { legOf } from "../../core/design/trial";
+import type { Sentence } from "../../core/wire";
+import { said, t } from "../../i18n";
+import { difference, FIGURES, TILES, titleOf, written } from "./figures";
+import { guessName } from "./guess";
+import { classes } from "./rows";
+import type { Studio, Tried } from "./studio";
+
+export function Result({ studio }: { studio: Studio }) {
+  const tried = studio.shown.value;
+  const before = useComputed(() => {
+    const [now, other] = [studio.shown.value, studio.other.value];
+    return other ?? studio.trials.value.findLast((one) => now && one.number < now.number) ?? null;
+  }).value;
+  if (!tried) return <First studio={studio} />;
+  const { figures, notes = [], fault } = tried.trial.reply;
+  const isOld = tried.version !== studio.version.value;
+  return (
+    <section class="result" aria-label={t("design.result")}>
+      <header>
+        <h2>{t("design.trialOf", { number: tried.number, key: tried.key })}</h2>
+        {isOld && <span class="badge old">{t("design.oldTable")}</span>}
+      </header>
+      <Verdicts tried={tried} />
+      <dl class="tiles">
+        {TILES.map((one) => {
+          const by = before && difference(one, before.trial.reply.figures, figures);
+          return (
+            <div key={one.name} data-figure={one.name}>
+              <dt>{t(titleOf(one))}</dt>
+              <dd>
+                {written(one, figures)}
+                <small>{one.unit}</small>
+                {by && by.is !== "same" && <i data-is={by.is}>{by.text}</i>}
+              </dd>
+            </div>
+          );
+        })}
+      </dl>
+      {fault && <p class="fault">{said(fault)}</p>}
+      <ol class="sentences" aria-label={t("design.explained")}>
+        {tried.trial.reply.explained.map((sentence, index) => (
+          <li key={index}>
+            <Explained studio={studio} tried={tried} sentence={sentence} />
+          </li>
+        ))}
+      </ol>
+      {notes.map((note, index) => (
+        <p key={index} class="muted note">
+          {said(note)}
+        </p>
+      ))}
+      {studio.other.value && <Differences tried={tried} other={studio.other.value} />}
+    </section>
+  );
+}
+
+/** How it is done, until something was tried. */
+function First({ studio }: { studio: Studio }) {
+  return (
+    <section class="result first" aria-label={t("design.result")}>
+      <h2>{t("design.first")}</h2>
+      <ol>
+        <li>{t("design.first.1")}</li>
+        <li>{t("design.first.2")}</li>
+        <li>{t("design.first.3")}</li>
+      </ol>
+      <button class="button strong" type="button" onClick={() => void studio.tryIt()}>
+        {t("design.try")}
+      </button>
+    </section>
+  );
+}
+
+interface ExplainedProps {
+  studio: Studio;
+  tried: Tried;
+  sentence: Sentence;
+}
+
+function Explained({ studio, tried, sentence }: ExplainedProps) {
+  const leg = legOf(sentence);
+  const legs = tried.robot.legs.length;
+  const joints = sentence.cell ? [sentence.cell.joint] : leg === null ? [] : jointsOfLeg(leg, legs);
+  const row = tried.rows[sentence.cell?.posture ?? 0];
+  const text = said(sentence.said);
+  if (!joints.length || row === undefined) return <p>{text}</p>;
+  return (
+    <button
+      type="button"
+      title={t("design.showCell")}
+      onPointerEnter={() => studio.point(joints)}
+      onPointerLeave={() => studio.point([])}
+      onFocus={() => studio.point(joints)}
+      onBlur={() => studio.point([])}
+      onClick={() => studio.select({ row, col: joints[0]! })}
+    >
+      {text}
+    </button>
+  );
+}
+
+function Verdicts({ tried }: { tried: Tried }) {
+  return (
+    <>
+      {tried.verdicts.map(({ guess, verdict }) => (
+        <p key={guess.about} class={classes("verdict", verdict.right ? "right" : "wrong")}>
+          {t(verdict.right ? "design.verdict.right" : "design.verdict.wrong", {
+            guess: guessName(guess.is),
+            was: guessName(verdict.was),
+          })}
+        </p>
+      ))}
+    </>
+  );
+}
+
+/** All figures of two trials side by side. */
+function Differences({ tried, other }: { tried: Tried; other: Tried }) {
+  const [now, was] = [tried.trial.reply.figures, other.trial.reply.figures];
+  return (
+    <table class="differences">
+      <caption>{t("design.compared", { one: tried.number, other: other.number })}</caption>
+      <thead>
+        <tr>
+          <th scope="col">{t("design.figure")}</th>
+          <th scope="col">{t("design.trial", { number: tried.number })}</th>
+          <th scope="col">{t("design.trial", { number: other.number })}</th>
+          <th scope="col">{t("design.difference")}</th>
+        </tr>
+      </thead>
+      <tbody>
+        {FIGURES.map((one) => {
+          const by = difference(one, was, now);
+          return (
+            <tr key={one.name}>
+              <th scope="row">
+                {t(titleOf(one))} {one.unit && <small>{one.unit}</small>}
+              </th>
+              <td>{written(one, now)}</td>
+              <td>{written(one, was)}</td>
+              <td data-is={by?.is}>{by?.text ?? "–"}</td>
+            </tr>
+          );
+        })}
+      </tbody>
+    </table>
+  );
+}

@@ -1,0 +1,287 @@
+"""The connection of a /design page: a real gateway, a real studio, files of a real folder."""
+
+import contextlib
+import re
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, get_args
+
+import msgpack
+import msgspec
+import psutil
+import pytest
+from design_client import DesignClient, Refused
+from hypothesis import given
+from hypothesis import strategies as st
+from lacoc_process import Lacoc, run_lacoc
+from ports import free_port
+
+from lacoc_client.design import requests
+from lacoc_client.gateway.wire import Unreadable
+from lacoc_robots.library import find_robot
+from lacoc_shared.studio import STUDIO_MAX_BYTES
+
+pytestmark = pytest.mark.slow
+
+
+class Gateway:
+    """A running `lacoc design`."""
+
+    def __init__(self, folder: Path, *words: str) -> None:
+        self.folder = folder
+        self.process = Lacoc(
+            *("design", str(folder), "--no-open", *words),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            stdin=subprocess.DEVNULL,
+            text=True,
+        )
+        assert self.process.stdout is not None
+        said = re.search(r"(http://[^/]+)/design#key=(\S+)", self.process.stdout.readline())
+        assert said is not None
+        self.url, self.key = said[1], said[2]
+
+    def close(self) -> None:
+        self.process.terminate()
+        self.process.communicate(timeout=30)
+
+
+@pytest.fixture(scope="module")
+def gateway(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gateway]:
+    """Give a gateway that all tests of this file share; its folder has no files at first."""
+    gateway = Gateway(tmp_path_factory.mktemp("design"))
+    yield gateway
+    gateway.close()
+
+
+Opens = Callable[..., DesignClient]
+
+
+@pytest.fixture
+def opens(gateway: Gateway) -> Iterator[Opens]:
+    """Give a function that opens a page; it closes with the test."""
+    with ExitStack() as stack:
+
+        def opened(key: str | None = gateway.key) -> DesignClient:
+            page = DesignClient(gateway.url, key)
+            stack.callback(page.close)
+            return page
+
+        yield opened
+
+
+@pytest.fixture
+def page(opens: Opens) -> DesignClient:
+    """Give a page that has said hello."""
+    return opens()
+
+
+def sample(page: DesignClient) -> dict[str, Any]:
+    table: dict[str, Any] = page.ask("sample")["table"]
+    return table
+
+
+def refused(page: DesignClient, do: str, **fields: Any) -> dict[str, Any]:
+    """Return the reply of a request that is refused."""
+    with pytest.raises(Refused) as refusal:
+        page.ask(do, **fields)
+    return refusal.value.reply
+
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "gateway.md"
+
+
+def test_the_document_has_every_request_with_its_fields() -> None:
+    """docs/gateway.md has each request of /design with all its fields."""
+    text = DOCUMENT.read_text("utf-8").partition("\n## From /design to the gateway\n")[2]
+    rows = [line.split("|")[1:3] for line in text.splitlines() if line.startswith("| `")]
+    found = {
+        do.strip(" `"): set(re.findall(r"`(\w+)`", re.sub(r"\(.*?\)", "", fields)))
+        for do, fields in rows
+    }
+    assert found == {
+        str(kind.__struct_config__.tag): {field.name for field in msgspec.structs.fields(kind)}
+        - {"id"}
+        for kind in get_args(requests.Asked)
+    }
+
+
+def test_only_a_page_with_the_key_gets_anything(opens: Opens) -> None:
+    """Without the page key every request is refused, and the connection is closed."""
+    for do, fields in (
+        ("hello", {"key": "wrong"}),
+        ("read", {"name": "Loco-data.txt"}),
+        ("trial", {}),
+        ("sample", {}),
+    ):
+        page = opens(None)
+        assert refused(page, do, **fields)["error"]["code"] == "design.wrong-key"
+        assert page.code() == 1008
+        assert (page.folder, page.studio) == ({}, {})
+
+
+def test_a_page_is_told_of_the_folder_and_the_studio(page: DesignClient, gateway: Gateway) -> None:
+    """After hello a page knows the folder; a sign of life says that the studio is there."""
+    page.until(lambda: page.studio.get("present"))
+    assert page.folder["folder"] == str(gateway.folder.resolve())
+    (gateway.folder / "LocoTra-data-x.txt").write_text("1\n1\n")
+    page.until(lambda: page.folder["changed"] == ["LocoTra-data-x.txt"])
+    assert {"name": "LocoTra-data-x.txt", "slot": "locomotion"}.items() <= next(
+        file for file in page.folder["files"] if file["name"] == "LocoTra-data-x.txt"
+    ).items()
+    reply = refused(page, "read", name="LocoTra-data-x.txt")
+    assert reply["mistakes"][0]["row"] == 2
+
+
+@pytest.mark.parametrize("name", ["Loco-data.xlsx", "Loco-data.txt"])
+def test_two_pages_never_overwrite_each_other(opens: Opens, name: str) -> None:
+    """The second of two pages that save gets a conflict, and may save over it if it wants."""
+    one, other = opens(), opens()
+    table = sample(one)
+    first = one.ask("save", name=name, table=table, version="")["version"]
+    other.until(lambda: name in [file["name"] for file in other.folder["files"]])
+    read = other.ask("read", name=name)
+    assert (read["version"], read["table"]) == (first, table)
+    table["rows"][0]["angles_deg"][0] = 12.5
+    second = one.ask("save", name=name, table=table, version=first)["version"]
+    mine = sample(other)
+    conflict = other.ask("save", name=name, table=mine, version=first)["conflict"]
+    assert (conflict["table"], conflict["version"]) == (table, second)
+    assert one.ask("read", name=name)["version"] == second
+    other.ask("save", name=name, table=mine, version=first, force=True)
+    assert one.ask("read", name=name)["table"] == mine
+
+
+def test_a_pasted_sheet_and_a_download(page: DesignClient) -> None:
+    """What was made for a download is read again as a dropped file, as bytes or pasted as text."""
+    table = sample(page)
+    for name in ("Loco-data.xlsx", "Loco-data.txt"):
+        data = page.ask("write", name=name, table=table)["data"]
+        assert page.ask("parse", name=name, data=data)["table"] == table
+    assert page.ask("parse", name="pasted", data=data.decode())["table"] == table
+    robot = find_robot("octopod")[1]
+    assert page.ask("parse", name="my.toml", data=robot)["robot"].encode() == robot
+    assert refused(page, "parse", name="x", data=[1])["error"]["code"] == "gateway.bad-message"
+
+
+def test_a_trial_and_its_robot(page: DesignClient) -> None:
+    """The studio's answers arrive whole; a second trial waits for the first."""
+    robot = {"name": "robot.toml", "data": find_robot("octopod")[1]}
+    assert len(page.ask("robot", robot=robot)["legs"]) == 8
+    told = page.ask("robot")
+    assert len(told["legs"]) == 6
+    asked = [page.send("trial", table=sample(page), keys=keys) for keys in ("", "1")]
+    forward, left = [page.reply(number) for number in asked]
+    assert forward["figures"]["speed_mm_s"] > 40
+    assert left["figures"]["drift_deg_s"] > 5
+    assert len(forward["poses"]) == forward["ticks"] * (7 + 18) * 4
+    sequences = [[0], [0], [2, 1, 4, 3]]
+    other = page.ask("trial", table=sample(page), sequences=sequences)
+    assert other["digest"] != forward["digest"]
+
+
+def test_mistakes_of_a_table_have_their_places(page: DesignClient) -> None:
+    """An angle that no file may have is refused with its place, before the studio is asked."""
+    table = sample(page)
+    table["rows"][2]["angles_deg"][3] = 151.0
+    (mistake,) = refused(page, "trial", table=table)["mistakes"]
+    assert (mistake["row"], mistake["column"], mistake["joint"]) == (4, 5, 3)
+    robot = {"name": "my.toml", "data": b"[body]\nmass_kg = -1\n"}
+    assert refused(page, "robot", robot=robot)["mistakes"]
+
+
+def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -> None:
+    """Progress comes under the page's own name of the search; after a cancel the reply comes."""
+    search = page.send("coach", job="search", table=sample(page), size="cell", seconds=60.0)
+    page.until(lambda: page.progress)
+    page.ask("cancel", job="search")
+    reply = page.reply(search)
+    assert reply["cancelled"]
+    assert {one["job"] for one in page.progress} == {"search"}
+
+
+def test_too_much_is_one_clear_answer(page: DesignClient) -> None:
+    """Ten megabytes are refused in a sentence, and the connection stays."""
+    pasted = "45\t" * (10_000_000 // 3)
+    for do, fields in (
+        ("parse", {"name": "x", "data": pasted}),
+        ("save", {"name": "my.toml", "robot": "#" * STUDIO_MAX_BYTES}),
+        ("hello", {"key": "k" * 300}),
+    ):
+        assert refused(page, do, **fields)["error"]["code"] == "gateway.bad-message"
+    assert page.ask("ping", t=1) == {"t": 1}
+
+
+@pytest.mark.parametrize("garbage", [b"", b"\xc1", b"\x93\x01\x02\x03", b"\x81\xa2do\xa4read"])
+def test_garbage_closes_the_connection(opens: Opens, garbage: bytes) -> None:
+    """A message without an id can't be answered, so the connection is closed."""
+    page = opens()
+    page.socket.send(garbage)
+    assert page.code() == 1008
+
+
+def test_a_studio_that_dies_comes_back(page: DesignClient, gateway: Gateway) -> None:
+    """Pages are told when the studio has gone; it is started again, and trials go on."""
+    page.until(lambda: page.studio.get("present"))
+    before = page.ask("trial", keys="2")["digest"]
+    children = psutil.Process(gateway.process.pid).children(recursive=True)
+    studio = next(one for one in children if "studio" in one.cmdline())
+    for process in (studio, *studio.children(recursive=True)):
+        process.kill()
+    page.until(lambda: not page.studio["present"])
+    page.until(lambda: page.studio["present"])
+    assert page.ask("trial", keys="2")["digest"] == before
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--connect", "http://x"), "is not an address"),
+        (("--robot", "nothing"), "There is no robot"),
+        (("none",), "There is no folder none"),
+    ],
+)
+def test_a_wrong_start_is_told(tmp_path: Path, words: tuple[str, ...], said: str) -> None:
+    """A wrong folder, robot or address ends the command with one sentence."""
+    ended = run_lacoc("design", *words, "--no-open", cwd=tmp_path)
+    assert ended.returncode == 2
+    assert said in ended.stderr
+
+
+def test_a_studio_elsewhere_may_come_later(tmp_path: Path) -> None:
+    """With --connect a page says why there is no studio, and goes on as soon as there is one."""
+    address = f"tcp/127.0.0.1:{free_port()}"
+    with ExitStack() as stack:
+        gateway = Gateway(tmp_path, "--connect", address, "--robot", "quadruped")
+        stack.callback(gateway.close)
+        page = DesignClient(gateway.url, gateway.key)
+        stack.callback(page.close)
+        page.until(lambda: page.studio["why"])
+        table = sample(page)
+        assert table["legs"] == 4
+        robot = page.ask("hello", key=gateway.key)["robot"]
+        reply = refused(page, "trial", table=table, robot=robot)
+        assert reply["again"]
+        studio = stack.enter_context(Lacoc("studio", "--listen", address, "--jobs", "1"))
+        stack.callback(studio.terminate)
+        page.until(lambda: page.studio["present"])
+        assert page.ask("trial", table=table, robot=robot)["figures"]["cycles"] > 0
+
+
+@given(st.binary(max_size=300))
+def test_no_bytes_break_the_reader(data: bytes) -> None:
+    """Any bytes from a page can be read or raise `Unreadable`, and no other exception."""
+    with contextlib.suppress(Unreadable):
+        requests.read(data)
+
+
+def test_whole_numbers_of_a_browser_are_angles() -> None:
+    """A browser sends 45.0 as a whole number; it is read as an angle."""
+    rows = [{"key": 1, "posture": 0, "angles_deg": [45, -1.5] * 9}]
+    body = {"id": 1, "do": "trial", "table": {"kind": "postures", "legs": 6, "rows": rows}}
+    asked = requests.read(msgpack.packb(body))
+    assert isinstance(asked, requests.TrialAsk)
+    assert asked.table is not None
+    assert asked.table.rows[0].angles_deg == (45.0, -1.5) * 9

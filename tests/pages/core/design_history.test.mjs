@@ -1,0 +1,139 @@
+// Tests of undo (client/web/src/core/design/history.ts).
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { paste } from "../../../client/web/src/core/design/clipboard.ts";
+import { History } from "../../../client/web/src/core/design/history.ts";
+import * as rows from "../../../client/web/src/core/design/rows.ts";
+import * as t from "../../../client/web/src/core/design/table.ts";
+import * as tools from "../../../client/web/src/core/design/tools.ts";
+import { COLUMNS, chanceOf, sample, walking } from "./design_sample.mjs";
+
+/** Makes a random edit of a table. */
+function editOf(chance) {
+  const below = (count) => Math.floor(chance() * count);
+  const numbers = Array.from({ length: 12 }, () => below(1000));
+  const pick = (index, count) => numbers[index] % count;
+  const text = ["17", "-22,5", "abc", "", "400", "１２"][below(6)];
+  const edits = [
+    (table, area) => t.setCell(table, area.top, area.left, text),
+    (table, area) => t.nudge(table, area, pick(4, 21) - 10),
+    (table, area) => t.clear(table, area),
+    (table, area) => rows.addRow(table, area.top),
+    (table, area) => rows.removeRow(table, area.bottom),
+    (table, area) => rows.addKey(table, area.top),
+    (table, area) => tools.mirrorRows(table, [area.top, area.bottom]),
+    (table, area) => tools.otherHalf(table, [{ from: area.top, to: area.bottom }]),
+    (table, area) => tools.copyLeg(table, [area.top], pick(4, 6), pick(5, 6)),
+    (table, area) => paste(table, area, [[text, "5"]]).table ?? table,
+  ];
+  const edit = edits[below(edits.length)];
+  return (table) => {
+    const cell = (at) => ({ row: pick(at, table.rows.length), col: pick(at + 1, 18) });
+    return edit(table, t.areaOf(cell(0), cell(2)));
+  };
+}
+
+for (const [name, first] of Object.entries({ postures: sample, locomotion: walking })) {
+  test(`1,000 random steps are undone and done again: ${name}`, () => {
+    const chance = chanceOf(11);
+    const history = new History(first);
+    const seen = () => JSON.stringify([history.table.value, history.version.value]);
+    const states = [seen()];
+    for (let tries = 0; states.length <= 1000; tries++) {
+      assert.ok(tries < 5000, "edits change nothing");
+      const before = history.version.value;
+      history.apply(String(states.length), editOf(chance));
+      if (history.version.value !== before) states.push(seen());
+    }
+    assert.ok(history.table.value.rows.length <= 1000);
+    for (let step = 1000; step >= 0; step--) {
+      assert.equal(seen(), states[step]);
+      assert.equal(history.undoName.value, step ? String(step) : "");
+      assert.equal(history.canUndo.value, step > 0);
+      history.undo();
+    }
+    for (let step = 0; step <= 1000; step++) {
+      assert.equal(seen(), states[step]);
+      assert.equal(history.redoName.value, step < 1000 ? String(step + 1) : "");
+      assert.equal(history.canRedo.value, step < 1000);
+      history.redo();
+    }
+    const versions = new Map();
+    for (const [table, version] of states.map((state) => JSON.parse(state))) {
+      const content = JSON.stringify(table.rows);
+      assert.equal(versions.get(content) ?? version, version);
+      versions.set(content, version);
+    }
+    assert.equal(new Set(versions.values()).size, versions.size);
+  });
+}
+
+const turn = (by) => (table) => t.nudge(table, t.areaOf({ row: 1, col: 0 }), by);
+
+test("the same content has the same version, however it came about", () => {
+  const history = new History(sample);
+  const first = history.version.value;
+  history.apply("up", turn(5));
+  const up = history.version.value;
+  history.apply("down", turn(-5));
+  assert.equal(history.version.value, first);
+  history.undo();
+  assert.equal(history.version.value, up);
+  history.apply("down", turn(-5));
+  assert.equal(history.canRedo.value, false);
+});
+
+test("an edit that changes nothing is no step and forgets no steps", () => {
+  const history = new History(sample);
+  history.apply("up", turn(5));
+  history.undo();
+  history.apply("nothing", (table) => ({ ...table }));
+  assert.deepEqual([history.canUndo.value, history.redoName.value], [false, "up"]);
+});
+
+test("one drag of a slider is one step", () => {
+  const history = new History(sample);
+  for (const by of [1, 1, 1]) history.apply("slide", turn(by), "first drag");
+  history.apply("slide", turn(1), "second drag");
+  assert.equal(history.table.value.rows[1].cells[0], 4);
+  history.undo();
+  assert.equal(history.table.value.rows[1].cells[0], 3);
+  history.undo();
+  assert.equal(history.table.value, sample);
+});
+
+test("a drag that ends where it began is no step", () => {
+  const history = new History(sample);
+  for (const by of [1, 1, -2]) history.apply("slide", turn(by), "drag");
+  assert.deepEqual([history.canUndo.value, history.canRedo.value], [false, false]);
+  history.apply("slide", turn(3), "drag");
+  history.undo();
+  assert.equal(history.table.value, sample);
+});
+
+test("another robot's columns apply to all steps, and are no step", () => {
+  const history = new History(sample);
+  history.apply("up", turn(5));
+  const version = history.version.value;
+  const narrow = { legs: ["a", "b", "c", "d", "e", "f"], ranges: Array(18).fill([-40, 40]) };
+  history.refit(narrow);
+  assert.deepEqual([history.undoName.value, history.table.value.legs], ["up", narrow.legs]);
+  assert.equal(t.wrongOf(history.table.value.rows[0].cells[0]), "range");
+  assert.notEqual(history.version.value, version);
+  history.undo();
+  assert.deepEqual(history.table.value.ranges[0], [-40, 40]);
+  history.redo();
+  history.refit(COLUMNS);
+  assert.equal(history.version.value, version);
+  assert.deepEqual(history.table.value.legs, COLUMNS.legs);
+});
+
+test("another file begins its own steps", () => {
+  const history = new History(sample);
+  history.apply("up", turn(5));
+  const version = history.version.value;
+  history.open(walking);
+  assert.equal(history.table.value, walking);
+  assert.ok(!history.canUndo.value && history.version.value !== version);
+});

@@ -1,0 +1,344 @@
+"""Tests of /design, the page that `lacoc design` opens (workshop 3-2, 4-1, 4-2)."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from chromium import OpenPage
+from contestant import Contestant, own_page
+from openpyxl import load_workbook
+from playwright.sync_api import expect
+from show import violations
+
+from lacoc_robots.library import sample_gait_files
+
+pytestmark = pytest.mark.slow
+
+BOOK = "Loco-data.xlsx"
+TIMEOUT_MS = 60_000
+TIP = "solo/leg4_2"
+"""The 2nd link of the left middle leg."""
+
+
+class Designer(Contestant):
+    """Somebody who designs a gait on the page."""
+
+    def begin(self, key: str) -> None:
+        """Open the page and wait until it has a table and a studio."""
+        self.open("/design", key)
+        self.sees("#gait-grid td")
+        expect(self.find(".try")).to_be_enabled(timeout=TIMEOUT_MS)
+
+    def go(self, row: int, col: int) -> None:
+        """Select a cell by a click."""
+        self.page.click(f"#cell-{row}-{col}")
+
+    def type(self, text: str) -> None:
+        """Type into the selected cell, as a keyboard without an input method does."""
+        self.page.keyboard.type(text)
+        self.press("Enter")
+
+    def cell(self, row: int, col: int) -> str:
+        return self.find(f"#cell-{row}-{col}").inner_text()
+
+    def cell_is(self, row: int, col: int, text: str) -> None:
+        expect(self.find(f"#cell-{row}-{col}")).to_have_text(text, timeout=TIMEOUT_MS)
+
+    def tries(self) -> None:
+        """Let the robot walk, and wait for the trial's figures."""
+        before = self.find(".trials > li").count()
+        self.press("Control+Enter")
+        expect(self.find(".trials > li")).to_have_count(before + 1, timeout=TIMEOUT_MS)
+
+    def saves(self) -> None:
+        """Save the table, and wait until the page says that it is saved."""
+        expect(self.find(".bar .name small")).to_have_text("not saved")
+        self.press("Control+s")
+        expect(self.find(".bar .name small")).to_have_text("saved", timeout=TIMEOUT_MS)
+
+    def figure(self, name: str) -> float:
+        """Return a figure of the shown trial."""
+        text = self.find(f".tiles [data-figure={name}] dd").inner_text().splitlines()[0]
+        return float(text.replace("\N{MINUS SIGN}", "-").split("mm")[0].split("°")[0].strip(" %"))
+
+    def body(self, name: str = TIP) -> list[float]:
+        """Return where a body is drawn [m, world]."""
+        found: list[float] = self.page.evaluate(
+            "name => window.__lacoc.view.bodyPos(name) ?? [0, 0, 0]", name
+        )
+        return found
+
+    def moves(self, before: list[float]) -> None:
+        """Wait until the drawn body is somewhere else."""
+        for _ in range(200):
+            if math.dist(before, self.body()) > 1e-3:
+                return
+            self.page.wait_for_timeout(50)
+        pytest.fail(f"the body stays at {before}")
+
+    def paste(self, text: str) -> None:
+        """Paste as a browser does, into what has the focus."""
+        self.page.evaluate(
+            """text => {
+              const clipboardData = new DataTransfer();
+              clipboardData.setData("text/plain", text);
+              const init = { clipboardData, bubbles: true, cancelable: true };
+              document.activeElement.dispatchEvent(new ClipboardEvent("paste", init));
+            }""",
+            text,
+        )
+
+
+def write_sample(folder: Path) -> None:
+    """Write the sample's postures into a folder."""
+    postures = sample_gait_files("hexapod").postures
+    assert postures is not None
+    (folder / "Loco-data.txt").write_bytes(postures.data)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the folder that the module's page works in."""
+    folder = tmp_path_factory.mktemp("design")
+    write_sample(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
+    """Give the address and page key of `lacoc design`, which runs during the module."""
+    with own_page(folder, "design") as address:
+        yield address
+
+
+@pytest.fixture
+def sample(folder: Path) -> Path:
+    """Give the folder, with the sample's postures as they were."""
+    write_sample(folder)
+    return folder
+
+
+def designer(open_page: OpenPage, address: tuple[str, str], **options: Any) -> Designer:
+    """Open the page in a browser profile of its own."""
+    settings = {"viewport": {"width": 1280, "height": 800}} | options
+    page = Designer(open_page, address[0], **settings)
+    page.begin(address[1])
+    return page
+
+
+def test_a_number_moves_the_leg_and_a_trial_explains_it(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """By keyboard alone: a cell changes the posture, Try shows figures, and undo takes it back."""
+    page = designer(open_page, address)
+    page.sees(".task", "Click a number")
+    page.tries()
+    assert page.figure("speed_mm_s") == pytest.approx(60, abs=3)
+    assert page.figure("stable_share") == 100
+    page.sees(".sentences", "slide")
+    assert page.find(".bars .bar").count() == 6
+    before = page.body()
+    page.moves(before)  # the trial plays
+
+    page.find(".cell-input").focus()
+    page.press("Control+Home", "ArrowDown", *["ArrowRight"] * 4)  # key 1, root of L,C
+    page.until("window.__lacoc.view.lit.join() === 'solo/leg4_0'")
+    page.page.wait_for_timeout(400)  # the picture goes from the trial to the posture
+    before = page.body()
+    page.type("-40")
+    page.moves(before)
+    page.cell_is(1, 4, "-40")
+    page.sees(".bar .name", "not saved")
+    page.press("Alt+ArrowUp", "Alt+Shift+ArrowUp")
+    page.cell_is(1, 4, "-34")
+    page.sees(".task", "The table has changed")
+    page.tries()
+    page.sees(".tiles [data-figure=speed_mm_s] i")  # how much it has changed
+
+    page.press("Control+z", "Control+z", "Control+z")
+    page.cell_is(1, 4, "0")
+    page.sees(".bar .name", "saved")
+    page.sees(".trials > li:last-child", "this table")  # trials belong to versions
+    page.press("Control+y")
+    page.cell_is(1, 4, "-40")
+    page.type("200")
+    assert page.find("#cell-1-4").get_attribute("aria-invalid") == "true"
+    page.press("Control+Enter")
+    page.is_toasted("red cells have no angle")
+
+
+def test_a_beginner_s_first_gait(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """From standing legs, ten numbers and a tool make a gait that walks 100 mm in five cycles."""
+    page = designer(open_page, address)
+    actions = 0
+
+    def click(selector: str) -> None:
+        nonlocal actions
+        page.page.click(selector)
+        actions += 1
+
+    click(".bar .name")
+    click("dialog >> text=New table")
+    page.cell_is(1, 0, "45")  # as it stands
+    own = {
+        1: {0: "0", 3: "0", 12: "40", 14: "40", 16: "40"},
+        2: {2: "0", 5: "0", 12: "40", 14: "40", 16: "40"},
+    }
+    for row, cells in own.items():
+        for col, angle in cells.items():
+            click(f"#cell-{row}-{col}")
+            page.type(angle)
+            actions += 1
+    click(".strip >> text=Tools")
+    click("text=Make the other half")
+    page.cell_is(3, 13, "40")
+    click(".try")
+    page.sees(".result .tiles")
+    figures = page.page.evaluate("window.__studio.shown.value.trial.reply.figures")
+    assert figures["cycles"] == 5
+    assert figures["speed_mm_s"] * figures["seconds"] > 100
+    assert figures["upright"] > 0.9
+    assert actions <= 60
+
+
+def test_the_coach_works_and_can_be_stopped(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """The coach says how far it is, and ends when it is told to; another key's goal chooses it."""
+    page = designer(open_page, address)
+    page.page.click("#tab-coach")
+    page.find(".coach select").select_option("left")
+    expect(page.find(".chooser select")).to_have_value("1")
+    page.page.click("text=Which numbers matter?")
+    page.sees(".coach .working progress")
+    page.page.click("text=Stop")
+    page.misses(".coach .working")
+    page.sees(".coach >> text=Which numbers matter?")
+
+
+def test_predict_compare_and_the_way_back(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """A prediction is judged, two trials are compared with a ghost, and an old table comes back."""
+    page = designer(open_page, address)
+    page.tries()
+    page.go(1, 0)
+    page.paste("10\t0\t-45\t10\t0\t45\r\n")
+    page.page.click("text=Predict")
+    page.page.locator(".foretell label", has_text="straight on").locator("input").check(force=True)
+    page.page.locator(".foretell label", has_text="faster").locator("input").check(force=True)
+    page.page.click(".foretell .strong")
+    expect(page.find(".result .verdict")).to_have_count(2, timeout=TIMEOUT_MS)
+    page.page.click(".acts >> text=Compare")
+    page.sees(".differences tbody tr", "Forward")
+    page.sees(".shows", "pale: trial 1")
+    page.until(f"window.__lacoc.view.ghostPos('{TIP}') !== null")
+    page.find("[aria-label='Take the table of Trial 1, key 2']").click()
+    page.cell_is(1, 0, "0")
+
+
+def test_what_is_pasted_dropped_and_composed(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """Blocks are pasted whole or not at all; a sheet is read; an input method types digits."""
+    page = designer(open_page, address)
+    page.go(1, 0)
+    page.paste("1\t２\r\n−3\t4,5\r\n")
+    assert [[page.cell(row, col) for col in (0, 1)] for row in (1, 2)] == [
+        ["1", "2"],
+        ["-3", "4.5"],
+    ]
+    page.paste("7\tseven\r\n")
+    page.is_toasted("Nothing was pasted")
+    assert page.cell(1, 0) == "1"
+    assert page.find("#cell-1-1").get_attribute("data-unpasted") == "true"
+
+    sheet = (sample / "Loco-data.txt").read_text(encoding="utf-8").replace("\t45", "\t44")
+    page.paste(sheet)
+    page.cell_is(0, 0, "44")
+    page.press("Control+z")  # one step
+    page.cell_is(0, 0, "45")
+
+    page.go(3, 2)
+    link = page.page.context.new_cdp_session(page.page)
+    link.send("Input.imeSetComposition", {"text": "１", "selectionStart": 1, "selectionEnd": 1})
+    link.send("Input.imeSetComposition", {"text": "１２", "selectionStart": 2, "selectionEnd": 2})
+    assert page.cell(3, 2) == "0"  # nothing is taken while it is being composed
+    link.send("Input.insertText", {"text": "１２"})
+    page.press("Enter")
+    page.cell_is(3, 2, "12")
+
+
+def test_a_file_that_changed_meanwhile_is_asked_about(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """What somebody else saved is never written over unasked, nor what is on the page lost."""
+    page = designer(open_page, address)
+    file = sample / "Loco-data.txt"
+    page.go(1, 0)
+    page.type("11")
+    page.saves()
+    assert "1 Key\t11\t" in file.read_text(encoding="utf-8")
+
+    page.go(1, 0)
+    page.type("12")
+    other = file.read_text(encoding="utf-8").replace("1 Key\t11\t", "1 Key\t13\t")
+    file.write_text(other, encoding="utf-8")
+    page.sees("dialog[open]", "was saved by another program")
+    page.page.click("dialog >> text=Take the file's table")
+    page.cell_is(1, 0, "13")
+    page.press("Control+z")
+    page.cell_is(1, 0, "12")
+    page.saves()
+    assert "1 Key\t12\t" in file.read_text(encoding="utf-8")
+
+    page.page.click(".bar .name")
+    with page.page.expect_download() as coming:
+        page.page.click("text=Download .xlsx")
+    coming.value.save_as(sample.parent / BOOK)
+    rows = load_workbook(sample.parent / BOOK).worksheets[0].iter_rows(values_only=True)
+    assert any(row[:2] == ("1 Key", 12) for row in rows)
+
+
+def test_a_phone_in_japanese_tries_and_compares(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """On a phone the strip turns a joint, two trials are compared, and all fits the width."""
+    page = designer(
+        open_page,
+        address,
+        viewport={"width": 390, "height": 844},
+        locale="ja-JP",
+        has_touch=True,
+        is_mobile=True,
+    )
+    page.sees(".try", "歩かせる")
+    page.page.tap(".try")
+    page.sees(".tiles", "前進")
+    page.page.tap("#cell-2-3")
+    page.page.tap(".strip .round >> nth=1")
+    page.cell_is(2, 3, "-40")
+    page.page.tap(".try")
+    expect(page.find(".trials > li")).to_have_count(2, timeout=TIMEOUT_MS)
+    page.page.tap(".bar >> text=比べる")
+    page.sees(".differences")
+    assert page.page.evaluate("document.scrollingElement.scrollWidth") == 390
+    assert violations(page.page) == []
+
+
+def test_axe_finds_nothing(open_page: OpenPage, address: tuple[str, str], sample: Path) -> None:
+    """No serious mistake of accessibility: before a trial, after it, in dialogs and in each tab."""
+    page = designer(open_page, address)
+    assert violations(page.page) == []
+    page.tries()
+    page.page.click("text=Predict")
+    for tab in ("coach", "robot", "trials"):
+        page.page.click(f"#tab-{tab}")
+        assert violations(page.page) == []
+    page.page.click(".bar .name")
+    page.sees("dialog[open]")
+    assert violations(page.page) == []

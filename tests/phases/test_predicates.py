@@ -1,0 +1,265 @@
+"""Predicates: what they count, in which order, and that nothing is ever taken back."""
+
+import math
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_client.phases.evidence import (
+    SAMPLE,
+    Checked,
+    Coached,
+    Compared,
+    Edited,
+    Evidence,
+    Guessed,
+    Hand,
+    Joined,
+    LegEdit,
+    Moved,
+    Named,
+    Tried,
+    Voted,
+    edited,
+    from_json,
+    to_json,
+)
+from lacoc_client.phases.facts import TrialFacts
+from lacoc_client.phases.phases import PHASES
+from lacoc_client.phases.predicates import (
+    MET,
+    After,
+    All,
+    Bound,
+    Either,
+    LastOf,
+    OneVersion,
+    Outcome,
+    Times,
+    TriedWhere,
+    once,
+)
+from lacoc_client.phases.progress import progress
+from lacoc_shared.words import Phrase, faults, render
+
+NUMBERS = st.floats(-1000, 1000) | st.sampled_from([0.0, 1.0, 2.0, 5.0, 15.0, 100.0, math.nan])
+SHORT = st.sampled_from(["1", "2", SAMPLE])
+
+
+@st.composite
+def facts(draw: st.DrawFn) -> TrialFacts:
+    """Draw facts that often are good enough for one phase or another."""
+    good = st.sampled_from
+    return TrialFacts(
+        keys=draw(good([("A1", "A2"), ("B2",), ("A1",), ("B0",)])),
+        postures=draw(good([1, 4])),
+        cycles=draw(good([0, 5])),
+        cycle_s=draw(good([None, 1.4])),
+        forward_mm=draw(good([0.0, 200.0]) | NUMBERS),
+        left_mm=draw(good([0.0]) | NUMBERS),
+        speed_mm_s=draw(good([0.0, 60.0]) | NUMBERS),
+        drift_deg_s=draw(good([0.0, 20.0, -20.0]) | NUMBERS),
+        upright=draw(good([1.0, 0.5, -1.0])),
+        belly_share=draw(good([0.0, 0.02, 0.5])),
+        margin_mm=draw(good([None, 20.0])),
+        clearance_mm=draw(good([20.0]) | NUMBERS),
+        duty=(0.5,) * 6,
+        tripod_s=draw(good([0.0, 2.5, 1.0])),
+        same_feet_share=draw(good([0.0, 0.5, 1.0])),
+        seam_deg=draw(good([0.0, 40.0])),
+        stopped=draw(good([False, False, True])),
+    )
+
+
+LEG_EDITS = st.builds(
+    LegEdit,
+    st.integers(0, 2),
+    st.just(0),
+    st.integers(0, 2),
+    st.sampled_from([(0,), (1, 2), (0, 1, 2)]),
+    st.tuples(*[st.integers(-3, 3).map(float)] * 3),
+)
+EVIDENCE = st.one_of(
+    st.builds(Joined),
+    st.builds(Moved, phase=st.integers(-1, 8)),
+    st.builds(
+        Edited,
+        version=SHORT,
+        by=st.sampled_from(["hand", "tool", "paste", "coach"]),
+        legs=st.lists(LEG_EDITS, max_size=6).map(tuple),
+    ),
+    st.builds(
+        Guessed,
+        about=st.sampled_from(["foot", "foot", "pace"]),
+        said=st.sampled_from(["up", "down"]),
+        was=st.just(("up",)),
+    ),
+    st.builds(Tried, version=SHORT, facts=facts()),
+    st.builds(
+        Checked, version=SHORT, keys=st.sampled_from([1, 4]), mistakes=st.sampled_from([0, 3])
+    ),
+    st.builds(
+        Compared,
+        version=SHORT,
+        against=SHORT,
+        differs=st.sampled_from([(), ("speed",), ("lift", "duty")]),
+    ),
+    st.builds(Named, word=st.just("shy")),
+    st.builds(Voted, poll=st.just("shy")),
+    st.builds(Coached, version=SHORT, size=st.sampled_from(["cell", "table"])),
+    st.builds(Hand, up=st.booleans()),
+)
+LISTS = st.lists(EVIDENCE, max_size=30)
+
+
+@given(LISTS)
+def test_evidence_takes_nothing_back(evidence: list[Evidence]) -> None:
+    """With each piece of evidence every phase is as far as before, or farther."""
+    for phase in PHASES:
+        shares = [phase.look(evidence[:count]).share for count in range(len(evidence) + 1)]
+        assert shares == sorted(shares)
+
+
+@given(LISTS)
+def test_every_outcome_is_whole(evidence: list[Evidence]) -> None:
+    """A share is from 0 to 1, 1 only if nothing is missing, and all that is missing has words."""
+    for phase in PHASES:
+        outcome = phase.look(evidence)
+        assert 0 <= outcome.share <= 1
+        assert outcome.met == (outcome.share == 1)
+        assert not [fault for phrase in outcome.missing for fault in faults(phrase)]
+        assert all(map(render, outcome.missing))
+
+
+@given(LISTS)
+def test_progress_never_locks(evidence: list[Evidence]) -> None:
+    """Progress names a phase that exists; a phase is skipped only if it is behind, and not met."""
+    now = progress(evidence)
+    visited = [one.phase for one in evidence if isinstance(one, Moved) and 1 <= one.phase <= 6]
+
+    assert now.phase == (visited[-1] if visited else 1)
+    for number, (state, outcome) in enumerate(zip(now.states, now.outcomes, strict=True), 1):
+        assert (state == "met") == outcome.met
+        assert state != "skipped" or number < max(visited)
+
+
+@given(EVIDENCE)
+def test_evidence_survives_json(evidence: Evidence) -> None:
+    """Evidence that was written as JSON is the same after it is read; NaN becomes null or fails."""
+    data = to_json(evidence)
+    if b"null" not in data:
+        assert from_json(data) == evidence
+
+
+def guess(said: str) -> Guessed:
+    return Guessed(about="foot", said=said, was=("up",))
+
+
+def lacks(count: int) -> Phrase:
+    return Phrase("phases.more-guesses", {"left": count})
+
+
+IS_HAND = Times(lambda one: isinstance(one, Hand), 2, lacks)
+IS_VOTE = once(lambda one: isinstance(one, Voted), Phrase("phases.vote"))
+HAND, VOTE = Hand(up=True), Voted(poll="x")
+
+
+def test_a_count_says_how_much_is_left() -> None:
+    """One of two gives half a share and says that one is missing."""
+    assert IS_HAND.look([HAND, VOTE]) == Outcome(0.5, (lacks(1),))
+    assert IS_HAND.look([HAND, VOTE, HAND]) == MET
+
+
+@pytest.mark.parametrize(
+    ("answers", "share"),
+    [("", 0), ("r", 0.5), ("rr", 1), ("rwr", 1), ("rwwr", 0.5), ("wwwrwwrr", 1), ("rrwww", 1)],
+)
+def test_two_of_the_last_three(answers: str, share: float) -> None:
+    """Two right answers count within three in a row, at any time."""
+    right = LastOf(lambda one: one.right if isinstance(one, Guessed) else None, 2, 3, lacks)
+    evidence = [guess("up" if answer == "r" else "down") for answer in answers]
+
+    assert right.look(evidence).share == share
+
+
+def test_order_matters_after_something() -> None:
+    """What came before the first thing was shown does not count; what came later does."""
+    ordered = After(IS_HAND, IS_VOTE)
+
+    assert not ordered.look([VOTE, HAND, HAND]).met
+    assert not ordered.look([HAND, VOTE, HAND]).met
+    assert ordered.look([VOTE, HAND, HAND, HAND, VOTE]).met
+    assert ordered.look([HAND]).share < ordered.look([HAND, HAND]).share < 1
+
+
+def test_all_and_either() -> None:
+    """All needs each part and lists what is missing; either takes the part that is nearest."""
+    assert All(IS_HAND, IS_VOTE).look([HAND]).missing == (lacks(1), Phrase("phases.vote"))
+    assert All(IS_HAND, IS_VOTE).look([HAND, HAND, VOTE]) == MET
+    assert Either(IS_HAND, IS_VOTE).look([HAND]).missing == (lacks(1),)
+    assert Either(IS_HAND, IS_VOTE).look([VOTE]) == MET
+
+
+def a_trial(version: str, **numbers: Any) -> Tried:
+    usual: dict[str, Any] = dict.fromkeys(
+        ("left_mm", "speed_mm_s", "drift_deg_s", "belly_share", "clearance_mm", "seam_deg"), 0.0
+    )
+    usual |= {"tripod_s": 0.0, "same_feet_share": 0.0, "forward_mm": 0.0, "upright": 1.0}
+    usual |= {"keys": ("B2",), "postures": 4, "cycles": 5, "cycle_s": 1.0, "margin_mm": None}
+    return Tried(version=version, facts=TrialFacts(**usual | numbers, duty=(), stopped=False))
+
+
+FORWARD = Bound(
+    lambda facts: facts.forward_mm,
+    lambda found: Phrase("phases.farther", {"found_mm": found, "least_mm": 100.0}),
+    least=100.0,
+)
+STRAIGHT = Bound(
+    lambda facts: facts.drift_deg_s,
+    lambda found: Phrase("phases.turns", {"found_deg_s": found, "most_deg_s": 3.0}),
+    most=3.0,
+)
+
+
+def test_the_best_trial_says_what_is_missing() -> None:
+    """One trial must keep all limits; the nearest one has its own number in what is missing."""
+    tried = TriedWhere((FORWARD, STRAIGHT), Phrase("phases.try"))
+    far = a_trial("1", forward_mm=150.0, drift_deg_s=9.0)
+    straight = a_trial("2", forward_mm=10.0)
+
+    assert tried.look([]).missing == (Phrase("phases.try"),)
+    assert [p.values["found_deg_s"] for p in tried.look([straight, far]).missing] == [9.0]
+    assert tried.look([far, straight, a_trial("3", forward_mm=100.0, drift_deg_s=3.0)]) == MET
+    assert not tried.look([a_trial("1", forward_mm=math.nan)]).met
+
+
+def test_one_version_must_show_everything() -> None:
+    """Two trials of two versions do not add up; two trials of one version do."""
+    turned = Bound(lambda facts: facts.drift_deg_s, lambda found: Phrase("phases.tipped"), least=5)
+    none = Phrase("phases.try")
+    both = OneVersion(All(TriedWhere((FORWARD,), none), TriedWhere((turned,), none)))
+    ahead, left = {"forward_mm": 200.0}, {"drift_deg_s": 20.0}
+
+    assert not both.look([a_trial("1", **ahead), a_trial("2", **left)]).met
+    assert both.look([a_trial("1", **ahead), a_trial("2"), a_trial("1", **left)]).met
+
+
+def test_an_edit_is_what_differs_between_two_tables() -> None:
+    """An edit has each leg that changed, with the levels that did, and all three of its angles."""
+    before = {(1, 0): tuple(map(float, range(18)))}
+    row = list(before[1, 0])
+    row[2], row[14] = 50.0, 60.0
+    after = {(1, 0): tuple(row)}
+
+    change = edited(before, after, "2", "hand")
+
+    assert change == Edited(
+        version="2", by="hand", legs=(LegEdit(1, 0, 2, (0, 2), (50.0, 8.0, 60.0)),)
+    )
+    assert edited(after, after, "2", "hand") is None
+    added = edited(before, {**before, (2, 0): (0.0,) * 12}, "3", "tool")
+    assert added is not None
+    assert [leg.leg for leg in added.legs] == [0, 1, 2, 3]
+    assert edited(after, {}, "4", "tool") is None

@@ -1,0 +1,184 @@
+"""A student goes through the six phases with real trials, from a table that only stands."""
+
+import math
+from collections.abc import Callable, Sequence
+
+import pytest
+
+from lacoc_client.phases.evidence import (
+    SAMPLE,
+    By,
+    Checked,
+    Coached,
+    Compared,
+    Evidence,
+    Guessed,
+    Hand,
+    Moved,
+    Named,
+    Rows,
+    Tried,
+    Voted,
+    edited,
+)
+from lacoc_client.phases.facts import TrialFacts, differences
+from lacoc_client.phases.phases import A_CYCLE, CONCEPT, CREATIVE, HALF_CYCLE, PHASES, THREE_LEGS
+from lacoc_client.phases.progress import progress
+from lacoc_shared.gait.tables import SAMPLE_KEYS, Posture, PostureTable, to_locomotion
+from lacoc_shared.words import faults, render
+
+Tries = Callable[..., TrialFacts]
+Sample = dict[int, Posture]
+
+pytestmark = pytest.mark.slow
+
+
+def rows(postures: dict[int, Posture]) -> Rows:
+    """Return postures as a table in degrees."""
+    return {(key, 0): tuple(map(math.degrees, angles)) for key, angles in postures.items()}
+
+
+def edit(before: dict[int, Posture], after: dict[int, Posture], by: By = "hand") -> Evidence:
+    """Return the edit from one table to another."""
+    change = edited(rows(before), rows(after), "v", by)
+    assert change is not None
+    return change
+
+
+def standing(sample: Sample, keys: Sequence[int]) -> dict[int, Posture]:
+    """Return a table in which all keys stand as key 0 does."""
+    return dict.fromkeys(keys, sample[0])
+
+
+def codes(evidence: Sequence[Evidence], phase: int) -> set[str]:
+    """Return what is missing in a phase, as codes."""
+    return {phrase.code for phrase in progress(evidence).outcomes[phase - 1].missing}
+
+
+def test_phase_1_needs_postures_of_one_leg_and_right_guesses(sample: Sample) -> None:
+    """Six postures of one leg with all its joints, three guesses, two of three of them right."""
+    table = {1: list(sample[0])}
+    evidence: list[Evidence] = []
+    for step in range(6):
+        before = {1: tuple(table[1])}
+        table[1][(0, 6, 12)[step % 3]] += math.radians(10)
+        evidence.append(edit(before, {1: tuple(table[1])}))
+        if step < 5:
+            assert "phases.more-leg-postures" in codes(evidence, 1)
+    assert codes(evidence, 1) == {"phases.more-guesses", "phases.more-right-guesses"}
+
+    evidence += [Guessed(about="foot", said="up", was=("forward",))] * 2
+    assert codes(evidence, 1) == {"phases.more-guesses", "phases.more-right-guesses"}
+    evidence += [Guessed(about="foot", said="up", was=("forward", "up"))] * 2
+    assert progress(evidence).states == ("met", *["open"] * 5)
+
+
+def test_phase_2_needs_an_own_tripod(try_gait: Tries, sample: Sample) -> None:
+    """Six legs are no tripod, and a tripod that the student did not make does not count."""
+    start = standing(sample, range(5))
+    own = start | {1: sample[1]}
+    on_six = Tried(version="1", facts=try_gait(start, "A1", 3.0))
+    on_three = Tried(version="2", facts=try_gait(own, "A1", 3.0))
+    made = edit(start, own)
+
+    assert codes([made, on_six], 2) == {"phases.stand-longer"}
+    assert codes([on_three], 2) == {"phases.more-cells"}
+    assert codes([edit(start, own, "paste"), on_three], 2) == {"phases.more-cells"}
+    assert codes([on_three, made], 2) == {"phases.try"}
+    assert THREE_LEGS.look([made, on_three]).met
+
+
+def test_phase_3_needs_two_postures_on_the_same_feet(try_gait: Tries, sample: Sample) -> None:
+    """From key 1 to key 2 the robot moves forward; back, and with other feet, does not count."""
+    table = {key: sample[key] for key in range(5)}
+    made = edit(standing(sample, range(5)), table)
+
+    def missing(keys: str) -> set[str]:
+        return codes([made, Tried(version="1", facts=try_gait(table, keys, 1.5))], 3)
+
+    assert missing("A1:1, A2") == set()
+    assert HALF_CYCLE.look([made, Tried(version="1", facts=try_gait(table, "A3:1, A4", 1.5))]).met
+    assert missing("A2:1, A1") == {"phases.farther"}
+    assert missing("A2:1, A3") == {"phases.farther", "phases.same-feet"}
+    assert missing("A2") == {"phases.two-postures"}
+
+
+def test_phase_4_needs_a_gait_that_goes_on_and_on(try_gait: Tries, sample: Sample) -> None:
+    """Standing is no gait, and a gait that turns does not go straight."""
+    start = standing(sample, range(5))
+    own = {key: sample[key] for key in range(5)}
+    turning = {0: sample[0], **{key: sample[key + 4] for key in range(1, 5)}}
+    made = edit(start, own)
+
+    def missing(table: dict[int, Posture]) -> set[str]:
+        return codes([made, Tried(version="1", facts=try_gait(table, "B1"))], 4)
+
+    assert missing(own) == set()
+    assert missing(start) == {"phases.farther"}
+    assert missing(turning) == {"phases.farther", "phases.turns"}
+    assert not A_CYCLE.look([Tried(version="1", facts=try_gait(own, "B1"))]).met
+
+
+def test_phase_5_needs_another_walk_a_word_and_a_vote(try_gait: Tries, sample: Sample) -> None:
+    """Half of all angles walk differently; without a word or a vote the phase is open."""
+    calm = {key: tuple(0.6 * angle for angle in angles) for key, angles in sample.items()}
+    walk, known = try_gait(calm, "B1"), try_gait(sample, "B1")
+    differs = differences(walk, known)
+    tried = [
+        Tried(version="1", facts=walk),
+        Compared(version="1", against=SAMPLE, differs=differs),
+    ]
+    agreed = [Named(word="calm"), Voted(poll="calm")]
+
+    assert len(differs) >= 2
+    assert CONCEPT.look([*agreed, *tried]).met
+    assert codes(tried, 5) == {"phases.name-word", "phases.vote"}
+    same = Compared(version="1", against=SAMPLE, differs=differences(known, known))
+    assert codes([*agreed, tried[0], same], 5) == {"phases.more-different"}
+    other = Compared(version="1", against="2", differs=differs)
+    assert codes([*agreed, tried[0], other], 5) == {"phases.more-different"}
+
+
+def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
+    try_gait: Tries, sample: Sample
+) -> None:
+    """The four keys of the sample act; each one that was not tried with this file is missing."""
+    file = to_locomotion(PostureTable(sample), SAMPLE_KEYS)
+    checked = Checked(version="1", keys=4, mistakes=0)
+    tries = [Tried(version="1", facts=try_gait(file, f"B{key}")) for key in range(4)]
+    names = ["stand", "left", "forward", "right"]
+
+    assert CREATIVE.look([checked, *tries]).met
+    for key, name in enumerate(names):
+        others = [one for index, one in enumerate(tries) if index != key]
+        assert codes([checked, *others], 6) == {f"phases.key-{name}"}
+    posture = Tried(version="1", facts=try_gait(sample, "A2", 1.0))
+    assert len(CREATIVE.look([checked, posture]).missing) == 4  # each is told once
+    assert codes([Checked(version="1", keys=4, mistakes=2), *tries], 6) == {"phases.check"}
+    assert codes([Checked(version="2", keys=4, mistakes=0), *tries], 6) == {"phases.check"}
+
+
+def test_a_student_may_skip_and_come_back() -> None:
+    """Who goes on has skipped the phases behind, also after coming back."""
+    evidence = [Moved(phase=4), Moved(phase=2), Hand(up=True)]
+    now = progress(evidence)
+
+    assert now.phase == 2
+    assert now.states == ("skipped", "skipped", "skipped", "open", "open", "open")
+    assert (now.hand_up, now.coached) == (True, False)
+    later = progress([*evidence, Hand(up=False), Coached(version="2", size="cell")])
+    assert (later.hand_up, later.coached) == (False, True)
+
+
+def test_a_teacher_chooses_whether_to_explain_first() -> None:
+    """Each text is read once: before the trial or afterwards; all are in both languages."""
+    for phase in PHASES:
+        texts = {phase.task.code, phase.question.code, phase.explanation.code}
+        for explain_first in (False, True):
+            first, then = phase.first(explain_first), phase.afterwards(explain_first)
+            assert {one.code for one in (*first, then)} == texts
+            assert (phase.explanation in first) == explain_first
+        for phrase in (phase.title, phase.task, phase.question, phase.hint, phase.explanation):
+            assert not faults(phrase)
+            assert render(phrase, "ja") != render(phrase, "en")
+    assert [phase.number for phase in PHASES] == [1, 2, 3, 4, 5, 6]

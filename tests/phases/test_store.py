@@ -1,0 +1,293 @@
+"""A class on disk: it survives kills, damage and a full disk, and can be exported and forgotten."""
+
+import csv
+import io
+import sqlite3
+import subprocess
+import sys
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from benchmarks.class_kills import OLDEST_S, kill_once
+
+from lacoc_client.phases.class_file import ClassFile, KeptTable, forget
+from lacoc_client.phases.evidence import Edited, Evidence, Guessed, Hand, Joined, LegEdit, Named
+from lacoc_client.phases.export import evidence_csv, tables_zip
+from lacoc_client.phases.store import ClassStore
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import render
+
+GUESS = Guessed(about="foot", said="up", was=("up", "out"))
+EDIT = Edited(version="2", by="hand", legs=(LegEdit(1, 0, 2, (0,), (10.0, 20.0, 30.0)),))
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """Give the path of a class that is not there yet."""
+    return tmp_path / "class [1].sqlite"  # a name that is also a pattern
+
+
+def table(student: str, version: str, name: str = "Loco-data.txt") -> KeptTable:
+    return KeptTable(student, name, version, 1_700_000_000.0, f"{student} {version}".encode())
+
+
+def names(path: Path) -> set[str]:
+    return {one.name for one in path.parent.iterdir()}
+
+
+def test_what_is_kept_can_be_read_again(path: Path) -> None:
+    """After the store is closed and opened, all evidence, tables and votes are there, in order."""
+    with ClassStore(path) as store:
+        numbers = [store.add("Ada", one, 1.5).result() for one in (Joined(), EDIT)]
+        numbers.append(store.add("りく", GUESS, 2.5).result())
+        for version in ("1", "2"):
+            store.keep(table("Ada", version))
+        store.keep(table("りく", "7"))
+    with ClassStore(path) as store:
+        kept = store.evidence().result()
+
+        assert numbers == [one.number for one in kept] == [1, 2, 3]
+        assert [(one.student, one.at_s) for one in kept] == [("Ada", 1.5)] * 2 + [("りく", 2.5)]
+        assert [one.evidence for one in kept] == [Joined(), EDIT, GUESS]
+        assert [one.number for one in store.evidence("Ada", after=1).result()] == [2]
+        assert store.tables() == [table("Ada", "2"), table("りく", "7")]
+        assert store.tables("りく") == [table("りく", "7")]
+        assert store.trouble is None
+    assert names(path) == {path.name}
+
+
+def test_a_class_at_once(path: Path) -> None:
+    """Evidence of many threads is all kept, each with a number of its own, in each one's order."""
+    students = [f"student {number}" for number in range(8)]
+
+    def work(student: str) -> list[int]:
+        return [store.add(student, EDIT, float(step)).result() for step in range(5)]
+
+    with ClassStore(path) as store, ThreadPoolExecutor(len(students)) as pool:
+        numbers = list(pool.map(work, students))
+        kept = store.evidence().result()
+
+    assert sorted(number for own in numbers for number in own) == list(range(1, 41))
+    for student, own in zip(students, numbers, strict=True):
+        mine = [one for one in kept if one.student == student]
+        assert [one.number for one in mine] == own
+        assert [one.at_s for one in mine] == [0, 1, 2, 3, 4]
+
+
+def test_a_student_votes_once_and_nobody_sees_for_what(path: Path) -> None:
+    """A second vote in a poll does not count, and no row has a student beside a choice."""
+    with ClassStore(path) as store:
+        counted = [
+            store.vote(who, "calm", choice, 1.0).result()
+            for who, choice in (("Ada", "A"), ("Bo", "B"), ("Ada", "B"), ("Cy", "B"))
+        ]
+        assert counted == [True, True, False, True]
+        assert store.votes("calm").result() == {"A": 1, "B": 2}
+        assert store.votes("shy").result() == {}
+        assert [one.student for one in store.evidence().result()] == ["Ada", "Bo", "Cy"]
+    with sqlite3.connect(path) as db:
+        rows = db.execute("SELECT * FROM evidence").fetchall()
+    assert all('"poll":"calm"' in row[-1] and "choice" not in row[-1] for row in rows)
+
+
+@pytest.mark.slow
+def test_a_killed_program_loses_nothing_that_was_acknowledged(path: Path) -> None:
+    """Kills at random moments lose no acknowledged evidence, and no table older than 2 s."""
+    kills = [kill_once(path, after_s) for after_s in (0.0, 0.02, 0.11, 0.3, 2.6)]
+
+    assert [kill.lost for kill in kills] == [0] * len(kills)
+    assert kills[-1].acknowledged > kills[0].acknowledged
+    assert all(kill.table_lost_s < OLDEST_S + kill.stalled_s for kill in kills)
+
+
+def test_one_program_at_a_time_has_a_class(path: Path) -> None:
+    """A second store on the same file, and forgetting it, are refused while it is open."""
+    with ClassStore(path) as store:
+        for again in (ClassStore, forget):
+            with pytest.raises(UserError) as refused:
+                again(path)
+            assert refused.value.phrase.code == "class.in-use"
+        assert store.add("Ada", GUESS, 1.0).result() == 1
+
+
+def test_a_closed_store_says_so(path: Path) -> None:
+    """After the end nothing is kept, and whoever tries is told; closing again is harmless."""
+    store = ClassStore(path)
+    store.close()
+    store.close()
+
+    with pytest.raises(UserError, match="closed"):
+        store.add("Ada", GUESS, 1.0).result()
+    with pytest.raises(UserError, match="closed"):
+        store.keep(table("Ada", "1"))
+
+
+@pytest.mark.parametrize("damage", ["no database", "cut in half", "zeros inside"])
+def test_a_damaged_file_is_kept_and_the_class_goes_on(path: Path, damage: str) -> None:
+    """A file that SQLite can't read is renamed, the teacher is told, and a fresh file is used."""
+    with ClassStore(path) as store:
+        for _ in range(200):
+            store.add("Ada", EDIT, 1.0)
+    whole = path.read_bytes()
+    bad = {
+        "no database": b"These are no numbers. " * 500,
+        "cut in half": whole[: len(whole) // 2],
+        "zeros inside": whole[:4096] + bytes(8192) + whole[12288:],
+    }[damage]
+    path.write_bytes(bad)
+
+    with ClassStore(path) as store:
+        assert store.trouble is not None
+        kept = path.with_name(str(store.trouble.values["kept"]))
+        assert kept.read_bytes() == bad
+        assert store.evidence().result() == []
+        assert store.add("Ada", GUESS, 2.0).result() == 1
+    with ClassStore(path) as store:
+        assert store.trouble is None
+        assert len(store.evidence().result()) == 1
+
+
+def test_damage_while_the_class_runs_keeps_everybodys_tables(path: Path) -> None:
+    """If the open file breaks, the work at hand is done in a fresh file, which has all tables."""
+    large = KeptTable("Ada", "Loco-data.txt", "1", 1.0, bytes(8 << 20))  # not held in memory
+    with ClassStore(path) as store:
+        for _ in range(300):
+            store.add("Ada", EDIT, 1.0)
+        store.keep(large)
+    with ClassStore(path) as store:
+        with path.open("r+b") as file:
+            file.seek(4096)
+            file.write(b"\xff" * (path.stat().st_size - 4096))
+        assert store.evidence().result() == []
+        assert store.trouble is not None
+        assert store.trouble.code == "class.damaged"
+        assert store.add("Ada", GUESS, 2.0).result() == 1
+    with ClassStore(path) as store:
+        assert [one.evidence for one in store.evidence().result()] == [GUESS]
+        assert store.tables() == [large]
+
+
+FULL = """
+import resource, sys
+from pathlib import Path
+from lacoc_client.phases.evidence import Hand
+from lacoc_client.phases.class_file import KeptTable
+from lacoc_client.phases.store import ClassStore
+from lacoc_shared.mistakes import UserError
+import signal
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+path = Path(sys.argv[1])
+store = ClassStore(path)
+store.add("Ada", Hand(up=True), 1.0).result()
+size = max(one.stat().st_size for one in path.parent.iterdir())
+_, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+resource.setrlimit(resource.RLIMIT_FSIZE, (size, most))
+try:
+    store.add("Ada", Hand(up=False), 2.0).result()
+    print("acknowledged")
+except UserError as error:
+    print(error.phrase.code, store.trouble.code)
+store.keep(KeptTable("Ada", "Loco-data.txt", "1", 3.0, b"x"))
+resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+print(store.add("Ada", Hand(up=True), 4.0).result(), store.trouble)
+store.close()
+"""
+
+
+@pytest.mark.slow
+def test_a_full_disk_is_told_and_loses_nothing(path: Path) -> None:
+    """While no file can grow, evidence is refused with one clear error; then the class goes on."""
+    done = subprocess.run(
+        [sys.executable, "-c", FULL, str(path)], capture_output=True, text=True, check=True
+    )
+
+    assert done.stdout.splitlines() == ["class.no-room class.no-room", "2 None"]
+    with ClassStore(path) as store:
+        hands = [one.evidence for one in store.evidence().result()]
+        assert hands == [Hand(up=True), Hand(up=True)]
+        assert [one.version for one in store.tables()] == ["1"]
+
+
+def test_another_programs_database_is_left_alone(path: Path) -> None:
+    """A database that is no class is neither used nor renamed nor deleted."""
+    with sqlite3.connect(path) as db:
+        db.execute("CREATE TABLE photos (name TEXT)")
+    db.close()
+    before = path.read_bytes()
+
+    for use in (ClassStore, ClassFile, forget):
+        with pytest.raises(UserError) as refused:
+            use(path)
+        assert refused.value.phrase.code == "class.newer"
+    assert path.read_bytes() == before
+    assert names(path) == {path.name}
+
+
+def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
+    """In a folder that does not exist no class is made, and no class is forgotten there."""
+    with pytest.raises(UserError, match="can't be opened"):
+        ClassStore(tmp_path / "nowhere" / "class.sqlite")
+    with pytest.raises(UserError, match="no class"):
+        forget(tmp_path / "nowhere" / "class.sqlite")
+
+
+def test_forgetting_deletes_everything_of_this_class_alone(path: Path) -> None:
+    """The class, its damaged files and what SQLite left beside them go; other files stay."""
+    path.write_bytes(b"damaged")
+    ClassStore(path).close()
+    beside = Path(f"{path}-wal")
+    beside.write_bytes(b"left by a kill")
+    other = path.with_name("class 1.sqlite")
+    ClassStore(other).close()
+
+    deleted = forget(path)
+
+    assert {one.name for one in deleted} >= {path.name, "class [1].damaged-1.sqlite"}
+    assert names(path) == {other.name}
+
+
+def test_evidence_as_a_table_for_a_spreadsheet(path: Path) -> None:
+    """The CSV has a line for each piece of evidence, and no text that Excel would compute."""
+    given: list[tuple[str, Evidence]] = [
+        ("Ada", GUESS),
+        ("=HYPERLINK(1)", Named(word="-calm, or so")),
+        ("りく", EDIT),
+    ]
+    with ClassStore(path) as store:
+        for student, one in given:
+            store.add(student, one, 1_700_000_000.25)
+        data = evidence_csv(store.evidence().result())
+
+    assert data.startswith(b"\xef\xbb\xbf")
+    lines = list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"))))
+    assert [line["number"] for line in lines] == ["1", "2", "3"]
+    assert [line["student"] for line in lines] == ["Ada", "'=HYPERLINK(1)", "りく"]
+    assert {line["time"] for line in lines} == {"2023-11-14T22:13:20.250+00:00"}
+    assert (lines[0]["kind"], lines[0]["was"], lines[0]["right"]) == ("guessed", "up out", "True")
+    assert lines[1]["word"] == "'-calm, or so"
+    assert lines[2]["legs"] == "[1,0,2,[0],[10.0,20.0,30.0]]"
+
+
+def test_tables_as_an_archive() -> None:
+    """Each student has a folder; names that no system takes, or that are alike, are changed."""
+    students = ("Ada", "ada", "../..", "a/b", "りく")
+    data = tables_zip(table(student, "1") for student in students)
+
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        assert archive.testzip() is None
+        assert archive.namelist() == [
+            f"{folder}/Loco-data.txt" for folder in ("Ada", "ada (2)", "_", "a_b", "りく")
+        ]
+        assert archive.read("りく/Loco-data.txt") == "りく 1".encode()
+    assert zipfile.ZipFile(io.BytesIO(tables_zip([]))).namelist() == []
+
+
+def test_troubles_have_words_in_both_languages(path: Path) -> None:
+    """What a teacher is told of a damaged file names the file and where it was kept."""
+    path.write_bytes(b"damaged")
+    with ClassStore(path) as store:
+        assert store.trouble is not None
+        said = render(store.trouble, "en"), render(store.trouble, "ja")
+    assert all("class [1].damaged-1.sqlite" in one for one in said)
