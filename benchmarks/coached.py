@@ -167,9 +167,7 @@ def _beginners_sequence(
     )
 
 
-def _searched(
-    workers: Workers, robot: RobotSpec, gait: Gait, size: Size, seconds: float
-) -> Found:
+def _searched(workers: Workers, robot: RobotSpec, gait: Gait, size: Size, seconds: float) -> Found:
     task: Task = task_of(robot, gait, _KEY, Goal.FORWARD, None)
     return coach(Trials(task, workers, threading.Event()), size, seconds, 0, lambda _: None)
 

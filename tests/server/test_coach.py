@@ -45,7 +45,7 @@ def searched(size: Size, rounds: int = 40) -> Improved:
     own = (0,) * len(BEST)
     matters = what_matters(own, RANGES, made_up, made_up)
     search = Search(own, RANGES, made_up)
-    found = improve(search, size, matters, lambda: next(left, None) is None, seed=1)
+    found = improve(search, size, matters, made_up, lambda: next(left, None) is None, seed=1)
     *_, last = [*found, *undo(search, matters, made_up)]
     return last
 
@@ -72,7 +72,7 @@ def test_a_number_is_turned_to_its_best_degree() -> None:
     own = (0,) * len(BEST)
     matters = what_matters(own, RANGES, one_number, one_number)
     search = Search(own, RANGES, one_number)
-    *_, last = improve(search, Size.THREE, matters, lambda: False, seed=1)
+    *_, last = improve(search, Size.THREE, matters, one_number, lambda: False, seed=1)
     assert last.angles_deg == (12, *own[1:])
 
 
@@ -91,7 +91,7 @@ def test_a_change_that_hardly_helps_is_undone() -> None:
     matters = what_matters((0, 0), RANGES[:2], dull, dull)
     over = lambda: next(left, None) is None  # noqa: E731
     search = Search((0, 0), RANGES[:2], dull)
-    *_, found = improve(search, Size.TABLE, matters, over, seed=3)
+    *_, found = improve(search, Size.TABLE, matters, dull, over, seed=3)
     assert found.angles_deg[1] != 0
     *_, last = undo(search, matters, dull)
     assert last.angles_deg[1] == 0

@@ -161,9 +161,9 @@ def _better(
             score=search.best.score,
         )
     )
-    yield from improve(search, size, matters, lambda: passed_s() >= seconds, seed)
+    yield from improve(search, size, matters, trials.rough, lambda: passed_s() >= seconds, seed)
     _follow(trials, tell, "undo", _UNDO_TRIALS, search.best.score)
-    yield from undo(search, matters, trials.quick)
+    yield from undo(search, matters, trials.rough)
 
 
 def _follow(

@@ -19,6 +19,8 @@ from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
 
 _QUICK_STEPS, _QUICK_CYCLES = 4, 2
 """A quick trial has physics steps of 5 ms and measures two cycles of the sequence."""
+_ROUGH_CYCLES = 1
+"""A rough trial has the same steps and measures one cycle."""
 _CYCLES = 3
 _MOST_AT_ONCE = 4
 """Most trials that a process gets at once; fewer would cost time, more would delay a stop."""
@@ -73,6 +75,14 @@ class Trials:
             Stopped: if the search was stopped.
         """
         return self._score(tables, _QUICK_STEPS, _QUICK_CYCLES)
+
+    def rough(self, tables: Sequence[Angles]) -> list[float]:
+        """Score tables even more cheaply: good enough to find those that may be better.
+
+        Raises:
+            Stopped: if the search was stopped.
+        """
+        return self._score(tables, _QUICK_STEPS, _ROUGH_CYCLES)
 
     def figures(self, tables: Sequence[Angles]) -> list[Figures]:
         """Return the figures of walks, with the physics of the contest; a stop changes nothing."""
