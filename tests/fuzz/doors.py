@@ -198,6 +198,7 @@ class Doors:
             1,
             self._match.match.beats + 1,
             [seat.silent for seat in self._match.match.seats],
+            [seat.coming or seat.join for seat in self._match.match.seats],
         )
         by_right = [item for item in arrivals if self._has_right(item)]
         if len(by_right) != len(arrivals):

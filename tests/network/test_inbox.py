@@ -35,7 +35,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.seat import RESTART_KEY
-from lacoc_shared.words import faults, say
+from lacoc_shared.words import Phrase, faults, say
 
 KEYS = Keys("main")
 SEATS = ("left", "right")
@@ -45,11 +45,13 @@ LEFT, RIGHT = 0, 1
 CONTEST_ROBOT = SentFile("hexapod.toml", b"the contest's robot")
 
 
-def check_files(join: Join) -> Join:
+def check_files(join: Join, held: JoinSeat | None) -> tuple[Join, tuple[Phrase, ...]]:
     if join.postures is not None and join.postures.data == b"wrong":
         mistake = Mistake(file=join.postures.name, found="wrong", expected="right", row=1)
         raise FileRefused([mistake, mistake])
-    return msgspec.structs.replace(join, robot=join.robot or CONTEST_ROBOT)
+    robot = join.robot or (held.robot if held is not None else CONTEST_ROBOT)
+    notes = () if held is None else (say("note.files-kept", files=[robot.name]),)
+    return msgspec.structs.replace(join, robot=robot), notes
 
 
 class Court(Inbox):
@@ -125,12 +127,9 @@ def test_a_join_gives_a_session_only_when_the_match_has_taken_it_in() -> None:
 
 def test_a_join_waits_while_its_files_are_weighed_in() -> None:
     """While files are weighed in, the inbox returns a function that gives the outcome later."""
-    answers: list[Join | None] = [
-        None,
-        None,
-        Join(protocol=PROTOCOL, token="", name="Blue", robot=CONTEST_ROBOT),
-    ]
-    inbox = Inbox(KEYS, SEATS, HASHES, lambda join: answers.pop(0), secrets.token_bytes)
+    whole = Join(protocol=PROTOCOL, token="", name="Blue", robot=CONTEST_ROBOT)
+    answers = [None, None, (whole, ())]
+    inbox = Inbox(KEYS, SEATS, HASHES, lambda *_: answers.pop(0), secrets.token_bytes)
     later = inbox.join(LEFT, join_bytes())
     assert callable(later)
     assert later() is None
@@ -143,10 +142,9 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
     """A robot whose stand test ends in a mistake is refused when the stand test is over."""
     known = False
 
-    def weigh(join: Join) -> Join | None:
+    def weigh(*_: object) -> None:
         if known:
             raise FileRefused([Mistake(file="robot.toml", found="a leap", expected="rest")])
-        return None
 
     inbox = Inbox(KEYS, SEATS, HASHES, weigh, secrets.token_bytes)
     later = inbox.join(LEFT, join_bytes())
@@ -157,6 +155,19 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
     assert isinstance(refused, Refusal)
     assert [mistake.found for mistake in refused.mistakes] == ["a leap"]
     assert refusals(inbox) == {"bad-files": 1}
+
+
+def test_a_join_is_weighed_in_with_what_the_seat_has() -> None:
+    """The files' check gets the seat's present join, and its notes come before the match's."""
+    inbox = make()
+    mine = SentFile("mine.toml", b"a robot of our own")
+    inbox.hold([JoinSeat(LEFT, "Blue", mine, None, None, HASHES["left"]), None])
+    taken = inbox.join(LEFT, join_bytes())
+    assert isinstance(taken, JoinSeat)
+    assert taken.robot == mine
+    notes = inbox.seated(LEFT, (WELCOME,)).notes
+    assert notes == (say("note.files-kept", files=["mine.toml"]), WELCOME)
+    assert take_seat(inbox, RIGHT).notes == ()
 
 
 @pytest.mark.parametrize(
