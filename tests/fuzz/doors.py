@@ -193,12 +193,13 @@ class Doors:
         before = self._state()
         self._now_s += 0.1
         self._beats += 1
+        match = self._match.match
+        self._network.hold([seat.coming or seat.join for seat in match.seats], match.has_begun)
         arrivals = self._network.poll(
             self._now_s,
             1,
             self._match.match.beats + 1,
             [seat.silent for seat in self._match.match.seats],
-            [seat.coming or seat.join for seat in self._match.match.seats],
         )
         by_right = [item for item in arrivals if self._has_right(item)]
         if len(by_right) != len(arrivals):

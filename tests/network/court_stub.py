@@ -155,7 +155,7 @@ class CourtStub:
             beat += 1
             now_s = time.monotonic()
             silent = [seat in self._silent for seat in range(2)]
-            arrivals = self.network.poll(now_s, 1, beat, silent, [None, None])
+            arrivals = self.network.poll(now_s, 1, beat, silent)
             outcomes = [self._apply(arrival.input, beat) for arrival in arrivals]
             for arrival, outcome in zip(arrivals, outcomes, strict=True):
                 if arrival.answer:

@@ -35,7 +35,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.seat import RESTART_KEY
-from lacoc_shared.words import Phrase, faults, say
+from lacoc_shared.words import Phrase, faults, render, say
 
 KEYS = Keys("main")
 SEATS = ("left", "right")
@@ -161,7 +161,7 @@ def test_a_join_is_weighed_in_with_what_the_seat_has() -> None:
     """The files' check gets the seat's present join, and its notes come before the match's."""
     inbox = make()
     mine = SentFile("mine.toml", b"a robot of our own")
-    inbox.hold([JoinSeat(LEFT, "Blue", mine, None, None, HASHES["left"]), None])
+    inbox.hold([JoinSeat(LEFT, "Blue", mine, None, None, HASHES["left"]), None], has_begun=False)
     taken = inbox.join(LEFT, join_bytes())
     assert isinstance(taken, JoinSeat)
     assert taken.robot == mine
@@ -197,6 +197,32 @@ def test_a_join_is_refused_with_its_reason(payload: bytes, code: str, why: str) 
     assert len(refusal.mistakes) == (2 if why == "bad-files" else 0)
     assert refusals(inbox) == {why: 1}
     assert inbox.beat(0.1, [[command(holder, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
+
+
+BROKEN = join_bytes(name="Blues", postures=SentFile("a.txt", b"wrong"))
+
+
+def test_a_broken_file_keeps_nobody_out_of_a_match_that_is_on() -> None:
+    """Bad files in a match that has begun: the seat keeps its files, and notes say why."""
+    inbox = make()
+    files = (SentFile("mine.toml", b"a robot"), SentFile("mine.txt", b"a gait"), None)
+    inbox.hold([JoinSeat(LEFT, "Blue", *files, "older hash"), None], has_begun=True)
+    assert inbox.join(LEFT, BROKEN) == JoinSeat(LEFT, "Blues", *files, HASHES["left"])
+    notes = inbox.seated(LEFT).notes
+    assert [note.code for note in notes] == ["note.files-refused", "mistake.line", "mistake.line"]
+    assert refusals(inbox) == {"bad-files": 1}
+    assert render(notes[0]).startswith("Your new files have 2 mistakes.")
+    assert render(notes[1]) == "a.txt, row 1: found wrong, expected right"
+
+
+def test_a_broken_file_is_refused_where_it_would_be_used() -> None:
+    """Bad files before a match, or for a seat that nobody has, are refused."""
+    inbox = make()
+    taken = JoinSeat(LEFT, "Blue", CONTEST_ROBOT, None, None, HASHES["left"])
+    inbox.hold([taken, None], has_begun=False)
+    assert isinstance(inbox.join(LEFT, BROKEN), Refusal)
+    inbox.hold([None, None], has_begun=True)
+    assert isinstance(inbox.join(LEFT, BROKEN), Refusal)
 
 
 def test_a_seat_without_a_token_is_closed() -> None:

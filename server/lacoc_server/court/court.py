@@ -156,7 +156,8 @@ class Court:
         # In its first beat a match takes the teams of the last one.
         coming = {item.seat: item for item in own if isinstance(item, JoinSeat)}
         held = [coming.get(seat.index) or seat.coming or seat.join for seat in match.seats]
-        arrivals = network.poll(now_s, match.setup.match, match.beats + 1, silent, held)
+        network.hold(held, match.has_begun)
+        arrivals = network.poll(now_s, match.setup.match, match.beats + 1, silent)
         beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
         return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])
 

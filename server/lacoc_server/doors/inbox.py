@@ -110,6 +110,7 @@ class _Version(msgspec.Struct):
 
 
 _MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one message
+_MISTAKES_NOTED = 3  # notes are read in passing; a join before the next match lists all mistakes
 
 
 class Inbox:
@@ -154,19 +155,21 @@ class Inbox:
         self._sessions = Sessions(random_bytes)
         self._now_s = 0.0
         self._held: Sequence[JoinSeat | None] = [None] * len(seats)
+        self._has_begun = False
 
     @property
     def seats(self) -> tuple[str, ...]:
         """The seats' names, in the arena's order."""
         return tuple(seat.name for seat in self._seats)
 
-    def hold(self, held: Sequence[JoinSeat | None]) -> None:
+    def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
         """Take note of what the match has, before the beat's joins are checked.
 
         Args:
             held: for each seat the newest join in the match; None: nobody has the seat.
+            has_begun: whether the match goes on with the files that it began with.
         """
-        self._held = held
+        self._held, self._has_begun = held, has_begun
 
     def commands(
         self, now_s: float, arrived: Sequence[Sequence[bytes]], silent: Sequence[bool]
@@ -222,12 +225,20 @@ class Inbox:
         )
 
     def _weighed(self, seat: _Seat, join: Join, token_hash: str) -> JoinSeat | Refusal | None:
-        """Check a join's files; return None while they are being weighed in."""
+        """Check a join's files; return None while they are being weighed in.
+
+        Bad files keep nobody out of a match that goes on without them.
+        """
+        held = self._held[seat.index]
         try:
-            checked = self._check_files(join, self._held[seat.index])
+            checked = self._check_files(join, held)
         except FileRefused as refused:
             seat.refused[Why.BAD_FILES.value] += 1
             mistakes = refused.mistakes
+            if held is not None and self._has_begun:
+                lines = (mistake.phrase for mistake in mistakes[:_MISTAKES_NOTED])
+                seat.notes = (say("note.files-refused", count=len(mistakes)), *lines)
+                return msgspec.structs.replace(held, team=join.name, token_hash=token_hash)
             first = _MISTAKES_TOLD if len(mistakes) > _MISTAKES_TOLD else None
             return Refusal(
                 say("refused.mistakes", count=len(mistakes), first=first),

@@ -110,14 +110,16 @@ class CourtNetwork:
         self._outbox.close()
         self._session.close()
 
-    def poll(
-        self,
-        now_s: float,
-        match: int,
-        beat: int,
-        silent: Sequence[bool],
-        held: Sequence[JoinSeat | None],
-    ) -> list[Arrival]:
+    def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
+        """Take note of what the match has, for the joins of the next `poll`.
+
+        Args:
+            held: for each seat the newest join in the match; None: nobody has the seat.
+            has_begun: whether the match goes on with the files that it began with.
+        """
+        self._inbox.hold(held, has_begun)
+
+    def poll(self, now_s: float, match: int, beat: int, silent: Sequence[bool]) -> list[Arrival]:
         """Take in what arrived since the last beat.
 
         A request that a door refuses is answered at once and is not among the arrivals.
@@ -127,9 +129,7 @@ class CourtNetwork:
             match: number of the match.
             beat: number of the beat that begins now.
             silent: for each seat, whether it is silent in the match.
-            held: for each seat the newest join in the match; None: nobody has the seat.
         """
-        self._inbox.hold(held)
         self._inbox.links.begin(now_s, match, beat)
         waiting = [_empty(ring) for ring in self._commands]
         inputs = self._inbox.commands(now_s, waiting, silent)

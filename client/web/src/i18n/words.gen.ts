@@ -207,6 +207,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "refused.not-yours": ["You do not hold the {seat:seat.*} seat now ({why}).", "{seat:seat.*}の席は今あなたのものではありません（{why}）。"],
   "note.next-match": ["This match is over. You play in the next one.", "この試合は終わっています。次の試合から参加できます。"],
   "note.files-kept": ["You sent no files. Your seat keeps the files that your team sent before: {files:and}.", "ファイルが選ばれていません。席にある、前に送ったファイルを使います：{files}"],
+  "note.files-refused": ["Your new files have {count} {count:plural mistake|mistakes}. The next match uses the files that your seat has, unless you send others.", "新しいファイルに誤りが {count} か所あります。正しいファイルを送るまで、次の試合でも席にあるファイルを使います。"],
   "note.files-sample": ["You sent no files. You play with the contest's robot and its sample gait.", "ファイルが選ばれていません。大会のロボットとそのサンプル歩容を使います。"],
   "note.files-next-match": ["This match goes on with the files that it began with. Your new files are used from the next match.", "この試合は開始時のファイルのまま続きます。新しいファイルは次の試合から使われます。"],
   "note.seat-stays": ["The seat stays yours.", "席はあなたのものとして残ります。"],
