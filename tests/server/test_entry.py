@@ -62,6 +62,11 @@ def test_the_files_are_not_swapped() -> None:
     ]
 
 
+def test_a_workbook_is_refused() -> None:
+    """A court reads text: a workbook is a mistake."""
+    assert mistakes_of(None, SentFile("Loco-data.xlsx", b"PK\x03\x04"))
+
+
 def test_a_gait_for_another_robot() -> None:
     """A gait with fewer angles than the robot has joints is a mistake in both files."""
     other = join(0, robot="quadruped")

@@ -110,7 +110,6 @@ class _Version(msgspec.Struct):
 
 
 _MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one message
-_MISTAKES_NOTED = 3  # notes are read in passing; a join before the next match lists all mistakes
 
 
 class Inbox:
@@ -236,8 +235,7 @@ class Inbox:
             seat.refused[Why.BAD_FILES.value] += 1
             mistakes = refused.mistakes
             if held is not None and self._has_begun:
-                lines = (mistake.phrase for mistake in mistakes[:_MISTAKES_NOTED])
-                seat.notes = (say("note.files-refused", count=len(mistakes)), *lines)
+                seat.notes = refused.notes()
                 return msgspec.structs.replace(held, team=join.name, token_hash=token_hash)
             first = _MISTAKES_TOLD if len(mistakes) > _MISTAKES_TOLD else None
             return Refusal(
