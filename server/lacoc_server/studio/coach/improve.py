@@ -1,4 +1,8 @@
-"""Search for a better table; a size says how many of its numbers may change."""
+"""Search for a better table; a size says how many of its numbers may change.
+
+A rough score finds the tables that may be better. Only those are tried exactly, and only an exact
+score makes a table the best.
+"""
 
 import random
 from collections.abc import Callable, Iterator, Sequence
@@ -8,14 +12,21 @@ import numpy as np
 from cmaes import CMAwM  # type: ignore[import-untyped]
 
 from lacoc_server.studio.coach.matter import Matter
-from lacoc_server.studio.coach.search import Improved, Search
+from lacoc_server.studio.coach.search import Improved, Score, Search
 from lacoc_server.studio.coach.table import Angles
 
 _STEPS_DEG = (5, 10, 15, 20, 30)
-_SIGMA_DEG = 12.0
+_SIGMA_DEG = 8.0
+"""Standard deviation of the first changes of a whole table."""
 _POPULATION = 16
-_FEW = 16
-"""For the size "three" only this many numbers are tried: those that matter most."""
+_FEW = 24
+"""For the sizes "cell" and "three" only so many numbers are tried: those that matter most."""
+_CONFIRMED = 8
+"""So many of the tables with one more change are tried exactly."""
+_HOPEFUL = 0.9
+"""Of a round of whole tables the best are tried exactly if their rough score is at least this share
+of the best score."""
+_HOPEFULS = 2
 
 
 class Size(StrEnum):
@@ -34,7 +45,12 @@ IsOver = Callable[[], bool]
 
 
 def improve(
-    search: Search, size: Size, matters: Sequence[Matter], is_over: IsOver, seed: int
+    search: Search,
+    size: Size,
+    matters: Sequence[Matter],
+    rough: Score,
+    is_over: IsOver,
+    seed: int,
 ) -> Iterator[Improved]:
     """Search for a better table; yield the best one so far, again and again.
 
@@ -42,35 +58,33 @@ def improve(
         search: the search, which has tried the student's own table.
         size: how many numbers may change.
         matters: the numbers of the table, those that matter most first.
+        rough: a score that is cheap, to find tables that may be better.
         is_over: called after each round of trials.
         seed: seed of all random numbers.
     """
     yield search.best
     if size is Size.TABLE:
-        yield from _whole(search, is_over, seed)
+        yield from _whole(search, rough, is_over, seed)
     else:
-        yield from _few(search, matters, 1 if size is Size.CELL else 3, is_over)
+        yield from _few(search, matters, rough, 1 if size is Size.CELL else 3, is_over)
 
 
 def _few(
-    search: Search, matters: Sequence[Matter], most: int, is_over: IsOver
+    search: Search, matters: Sequence[Matter], rough: Score, most: int, is_over: IsOver
 ) -> Iterator[Improved]:
     """Change one number after another, always the one that helps most."""
-    cells = [one.number for one in matters]
-    if most > 1:
-        cells = cells[:_FEW]
+    cells = [one.number for one in matters[:_FEW]]
     changed: list[int] = []
     while len(changed) < most:
         before = search.best
         for step in _STEPS_DEG:
-            search.tried(
-                [
-                    search.turned(before.angles_deg, index, before.angles_deg[index] + sign * step)
-                    for index in cells
-                    for sign in (1, -1)
-                    if index not in changed
-                ]
-            )
+            tables = [
+                search.turned(before.angles_deg, index, before.angles_deg[index] + sign * step)
+                for index in cells
+                for sign in (1, -1)
+                if index not in changed
+            ]
+            search.tried([table for _, table in _ranked(tables, rough)[:_CONFIRMED]])
             yield search.best
             if is_over():
                 break
@@ -86,11 +100,16 @@ def _few(
         yield search.best
 
 
+def _ranked(tables: Sequence[Angles], rough: Score) -> list[tuple[float, Angles]]:
+    """Return tables with their rough scores, the best first."""
+    return sorted(zip(rough(tables), tables, strict=True), reverse=True)
+
+
 def _first_change(before: Angles, after: Angles) -> int:
     return next(i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b)
 
 
-def _whole(search: Search, is_over: IsOver, seed: int) -> Iterator[Improved]:
+def _whole(search: Search, rough: Score, is_over: IsOver, seed: int) -> Iterator[Improved]:
     """Change all numbers with CMA-ES in whole degrees; each run starts at the best table so far."""
     bounds = np.array([(round(low), round(high)) for low, high in search.ranges_deg], float)
     restarts = random.Random(seed)
@@ -107,6 +126,9 @@ def _whole(search: Search, is_over: IsOver, seed: int) -> Iterator[Improved]:
         while not (is_over() or optimizer.should_stop()):
             asked = [optimizer.ask() for _ in range(_POPULATION)]
             tables = [tuple(round(float(angle)) for angle in x) for x, _ in asked]
-            scores = search.tried(tables)
+            scores = rough(tables)
             optimizer.tell([(told, -score) for (_, told), score in zip(asked, scores, strict=True)])
+            least = search.best.score - (1 - _HOPEFUL) * abs(search.best.score)
+            ranked = sorted(zip(scores, tables, strict=True), reverse=True)[:_HOPEFULS]
+            search.tried([table for score, table in ranked if score > least])
             yield search.best

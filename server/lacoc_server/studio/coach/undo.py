@@ -12,26 +12,26 @@ from lacoc_server.studio.coach.matter import Matter
 from lacoc_server.studio.coach.search import Improved, Score, Search
 from lacoc_server.studio.coach.table import Angles
 
-_EACH, _ALL = 0.02, 0.1
+_EACH, _ALL = 0.02, 0.2
 """Undoing a change may cost the first share of the score, and undoing all of them the second share
 of what the search has gained."""
 _AT_ONCE = 8
 """Numbers of changes that are tried in one round."""
 
 
-def undo(search: Search, matters: Sequence[Matter], quick: Score) -> Iterator[Improved]:
+def undo(search: Search, matters: Sequence[Matter], rough: Score) -> Iterator[Improved]:
     """Undo changes of a search's best table; yield each table that has fewer of them.
 
     Args:
         search: the search.
         matters: what a change of each number did to the student's own table.
-        quick: a score that is cheap, to find the changes that help least.
+        rough: a score that is cheap, to find the changes that help least.
     """
     best = found = search.best
     (own_score,) = search.tried([search.own])
     each, most = _EACH * abs(best.score), _ALL * (best.score - own_score)
     undone = 0
-    for least_first in (partial(_guessed, matters), partial(_tried, quick)):
+    for least_first in (partial(_guessed, matters), partial(_tried, rough)):
         order = least_first(search.own, found.angles_deg)
         low, high = 0, len(order)
         while low < high:
@@ -59,10 +59,10 @@ def _guessed(matters: Sequence[Matter], own: Angles, table: Angles) -> list[int]
     return sorted(changed, key=lambda index: size[index] * abs(table[index] - own[index]))
 
 
-def _tried(quick: Score, own: Angles, table: Angles) -> list[int]:
-    """List the numbers that differ, those first without which the quick score is best."""
+def _tried(rough: Score, own: Angles, table: Angles) -> list[int]:
+    """List the numbers that differ, those first without which the rough score is best."""
     changed = _changed(own, table)
-    without = quick([_back(own, table, [index]) for index in changed])
+    without = rough([_back(own, table, [index]) for index in changed])
     return [index for _, index in sorted(zip(without, changed, strict=True), reverse=True)]
 
 
