@@ -234,7 +234,7 @@ export const design = {
   "design.coach.three": ["up to three", "3 個まで"],
   "design.coach.three.hint": ["a small step", "小さな変更"],
   "design.coach.table": ["the table", "表全体"],
-  "design.coach.table.hint": ["takes 30 s", "30 秒かかります"],
+  "design.coach.table.hint": ["about a minute", "約 1 分"],
   "design.coach.stage.matters": ["Trying each number …", "数値を 1 つずつ試しています…"],
   "design.coach.stage.search": ["Searching …", "探索しています…"],
   "design.coach.stage.undo": ["Taking back what hardly helps …", "効果の小さい変更を戻しています…"],

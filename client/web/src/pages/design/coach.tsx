@@ -308,6 +308,9 @@ function Better({ studio, found: { reply, rows, size } }: FoundProps) {
         })}
         {reply.cancelled && <small class="muted"> {t("design.coach.stopped")}</small>}
       </p>
+      <button class="button strong" type="button" onClick={apply}>
+        {t("design.coach.apply")}
+      </button>
       <ul>
         {reply.changes.map(({ cell, from_deg, to_deg }) => {
           const row = rows[cell.posture] ?? 0;
@@ -326,18 +329,19 @@ function Better({ studio, found: { reply, rows, size } }: FoundProps) {
                   })}
                 </span>
                 <small>
-                  {unit(from_deg, 1)}° → <b>{unit(to_deg, 1)}°</b>
+                  {degrees(from_deg)} → <b>{degrees(to_deg)}</b>
                 </small>
               </button>
             </li>
           );
         })}
       </ul>
-      <button class="button strong" type="button" onClick={apply}>
-        {t("design.coach.apply")}
-      </button>
     </div>
   );
+}
+
+function degrees(angle: number): string {
+  return `${unit(angle, Number.isInteger(angle) ? 0 : 1)}°`;
 }
 
 function sizeOf(up: number, down: number): number {
