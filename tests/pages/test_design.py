@@ -297,11 +297,23 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     assert "1 Key\t12\t" in file.read_text(encoding="utf-8")
 
     page.page.click(".bar .name")
+    page.page.click("dialog >> text=New table")
+    page.cell_is(1, 0, "45")
+    page.press("Control+s")  # under the usual name, which another table has
+    page.sees("dialog[open]", "is in the folder already")
+    page.press("Escape")
+    assert "1 Key\t12\t" in file.read_text(encoding="utf-8")
+    page.press("Control+s")
+    page.page.click("dialog >> text=Save mine over it")
+    expect(page.find(".bar .name small")).to_have_text("saved", timeout=TIMEOUT_MS)
+    assert "1 Key\t45\t" in file.read_text(encoding="utf-8")
+
+    page.page.click(".bar .name")
     with page.page.expect_download() as coming:
         page.page.click("text=Download .xlsx")
     coming.value.save_as(sample.parent / BOOK)
     rows = load_workbook(sample.parent / BOOK).worksheets[0].iter_rows(values_only=True)
-    assert any(row[:2] == ("1 Key", 12) for row in rows)
+    assert any(row[:2] == ("1 Key", 45) for row in rows)
 
 
 def test_a_phone_in_japanese_tries_and_compares(

@@ -338,13 +338,18 @@ export const design = {
   "design.folder": ["In {folder}", "保存先：{folder}"],
   "design.download": ["Download {kind}", "{kind} をダウンロード"],
   "design.conflict": ["The file has changed", "ファイルが変更されています"],
-  "design.conflictSave": [
+  "design.conflict.saving": [
     "{name} was saved by another program since you opened it. Nothing has been written yet.",
     "{name} は、開いたあとに別のプログラムで保存されています。まだ何も書き込んでいません。",
   ],
-  "design.conflictOpen": [
+  "design.conflict.open": [
     "{name} was saved by another program. Your table has changes that are not saved.",
     "{name} が別のプログラムで保存されました。今の表には未保存の変更があります。",
+  ],
+  "design.exists": ["There is such a file already", "同じ名前のファイルがあります"],
+  "design.conflict.existing": [
+    "{name} is in the folder already. Nothing has been written yet.",
+    "{name} はすでにフォルダーにあります。まだ何も書き込んでいません。",
   ],
   "design.conflictGone": ["{name} is not there any more.", "{name} はなくなっています。"],
   "design.takeTheirs": ["Take the file's table", "ファイルの表を使う"],

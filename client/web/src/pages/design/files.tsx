@@ -150,13 +150,14 @@ async function give(studio: Studio, suffix: string): Promise<void> {
 export function ConflictDialog({ studio }: { studio: Studio }) {
   const conflict = studio.conflict.value;
   if (!conflict) return null;
-  const { name, saving, table, mistakes } = conflict;
+  const { name, when, table, mistakes } = conflict;
+  const saving = when !== "open";
   const close = () => {
     studio.conflict.value = null;
   };
   return (
-    <Dialog title={t("design.conflict")} onClose={close}>
-      <p>{t(saving ? "design.conflictSave" : "design.conflictOpen", { name })}</p>
+    <Dialog title={t(when === "existing" ? "design.exists" : "design.conflict")} onClose={close}>
+      <p>{t(`design.conflict.${when}`, { name })}</p>
       {mistakes.length > 0 && <Mistakes mistakes={mistakes} />}
       {!table && !mistakes.length && <p>{t("design.conflictGone", { name })}</p>}
       <div class="row end">

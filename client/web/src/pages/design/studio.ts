@@ -72,8 +72,8 @@ export interface Conflict {
   version: string;
   table: FileTable | null;
   mistakes: readonly Mistake[];
-  /** Whether somebody wants to save; else the file changed while it was open. */
-  saving: boolean;
+  /** Saving over a file that was opened or over another one, or the file changed while it is open. */
+  when: "saving" | "existing" | "open";
 }
 
 interface ReadReply {
@@ -309,7 +309,8 @@ export class Studio {
     }
     const version = this.version.peek();
     const own = this.file.peek();
-    const from = own.name === name ? own.version : this.versionOf(name);
+    // Over a file that was not opened here nothing is saved unasked.
+    const from = own.name === name ? own.version : "";
     try {
       const reply = await this.connection.ask<{
         version?: string;
@@ -317,7 +318,8 @@ export class Studio {
       }>("save", { name, table: wire, version: from, force });
       if (reply.conflict) {
         const { table: theirs, version: now, mistakes = [] } = reply.conflict;
-        this.conflict.value = { name, version: now, table: theirs, mistakes, saving: true };
+        const when = own.name === name ? "saving" : "existing";
+        this.conflict.value = { name, version: now, table: theirs, mistakes, when };
         return false;
       }
       this.file.value = { name, version: reply.version ?? "", saved: version };
@@ -669,7 +671,7 @@ export class Studio {
       const read = await this.connection.ask<ReadReply>("read", { name });
       if (!read.table || read.version === this.file.peek().version) return;
       const conflict = { name, version: read.version, table: read.table, mistakes: [] };
-      this.conflict.value = { ...conflict, saving: false };
+      this.conflict.value = { ...conflict, when: "open" };
       // Nothing of one's own would be lost.
       if (this.isSaved.peek()) {
         this.takeTheirs();
