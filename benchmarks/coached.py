@@ -29,7 +29,7 @@ from lacoc_robots.robot import RobotSpec
 from lacoc_server.studio.coach.coach import Found, coach, task_of
 from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
-from lacoc_server.studio.coach.matter import Matter, changes_of
+from lacoc_server.studio.coach.matter import Matter, what_matters
 from lacoc_server.studio.coach.trials import Task, Trials, try_table
 from lacoc_server.studio.workers import Workers
 from lacoc_shared.gait.tables import Gait, LocomotionTable, Posture
@@ -63,7 +63,7 @@ def main() -> None:
 
 
 def _matters(workers: Workers) -> tuple[dict[str, Any], bool]:
-    """Rank the sample's numbers as the coach does, and all of them with the contest's physics."""
+    """Rank the sample's numbers as the coach does, and again by longer trials."""
     entry = entry_of(_ROBOT)
     task = task_of(entry.robot, entry.gait, _KEY, Goal.FORWARD, None)
     trials = Trials(task, workers, threading.Event())
@@ -72,7 +72,7 @@ def _matters(workers: Workers) -> tuple[dict[str, Any], bool]:
     took_s = time.perf_counter() - begin_s
     own = task.table.angles_deg
     ranges_deg = entry.robot.ranges_deg * len(task.table.rows)
-    full = changes_of(own, range(len(own)), ranges_deg, trials.exact)
+    full = what_matters(own, ranges_deg, trials.exact)
     tau = kendalls_tau(_sizes(ranked), _sizes(full))
     found = {"matters_s": round(took_s, 2), "tau": round(tau, 3), "numbers": len(own)}
     return found, took_s <= _AIMS["matters_s"] and tau >= _AIMS["tau"]

@@ -5,6 +5,8 @@ from collections.abc import Callable
 from enum import Enum
 from typing import NamedTuple
 
+import msgspec
+
 from lacoc_client.asking import NoCourt, NotNow, ask
 from lacoc_client.spectator import Spectator
 from lacoc_shared import seal
@@ -22,7 +24,7 @@ from lacoc_shared.messages import (
     SeatRequest,
     SentFile,
 )
-from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.mistakes import FILES_REFUSED, FileRefused, UserError
 from lacoc_shared.network.session import Session
 from lacoc_shared.seat import REPEATS_HZ, RESTART_KEY, SILENT_AFTER_S, WHY_NO
 from lacoc_shared.words import Phrase, say
@@ -199,6 +201,11 @@ class Controller:
         self.hold, self.reason = Hold.HELD, None
         self._standing = (0, 0, 0)
         self._send()
+        if any(note.code == FILES_REFUSED for note in joined.notes):
+            # After a restart the court would refuse them. Without files the seat keeps its own.
+            self._join = msgspec.structs.replace(
+                self._join, robot=None, postures=None, locomotion=None
+            )
         return joined.notes
 
     def ready(self, ready: bool = True) -> Phrase | None:

@@ -78,6 +78,36 @@ def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
     return SeatFiles(files.robot, *texts)
 
 
+def to_send(
+    files: SeatFiles, sequences: Sequence[Sequence[int]] | None, notes: list[Phrase]
+) -> tuple[SeatFiles, FileRefused | None]:
+    """Turn the files of a page into those that a court reads.
+
+    Workbooks with mistakes are sent without their contents. The court then says whether it needs
+    the files now: in a match that is on, a seat may be taken again without them.
+
+    Args:
+        files: the files of a join.
+        sequences: those of level B (`with_level_b`).
+        notes: receives phrases about things in a workbook that are legal, but probably not meant.
+
+    Returns:
+        The files for the court, and the mistakes of the workbooks; None: there are none.
+
+    Raises:
+        UserError: if a sequence is empty, or uses a posture that does not exist.
+    """
+    try:
+        return with_level_b(as_text(files, notes), sequences), None
+    except FileRefused as refused:
+        return SeatFiles(*map(_emptied, files)), refused
+
+
+def _emptied(file: SentFile | None) -> SentFile | None:
+    is_workbook = file is not None and file.data.startswith(_ZIP)
+    return SentFile(file.name, _ZIP) if file is not None and is_workbook else file
+
+
 def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = None) -> SeatFiles:
     """Make level B from the postures if there is no locomotion file.
 

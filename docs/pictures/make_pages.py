@@ -15,13 +15,15 @@ from typing import Any
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
+sys.path.append(str(Path(__file__).parents[2] / "tests" / "common"))
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "pages"))
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "gateway"))
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "client"))
 
 from chromium import FLAGS, build_pages, find_chromium
 from contestant import Contestant, own_page
-from court_process import LACOC, environment
+from court_process import environment
+from lacoc_process import COMMAND
 from show import Show
 from venue import REFEREE, TOKENS, Venue
 
@@ -41,7 +43,7 @@ def main() -> None:
     build_pages()
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
-        for take in (practice, replay, contest, broadcast):
+        for take in (practice, design, replay, contest, broadcast):
             if sys.argv[1:] and take.__name__ not in sys.argv:
                 continue
             own = Path(folder) / take.__name__
@@ -76,6 +78,24 @@ def practice(folder: Path, open_page: Open) -> None:
             page.key_stands(int(digit))
             page.page.wait_for_timeout(600)
         picture(page.page, "practice")
+
+
+def design(folder: Path, open_page: Open) -> None:
+    """Take the picture of two trials that are compared."""
+    with own_page(folder, "design") as (url, key):
+        page = Contestant(open_page, url, viewport=LAPTOP)
+        page.page.goto(f"{url}/design#key={key}")
+        page.sees("#gait-grid td")
+        page.press("Control+Enter")
+        page.sees(".result .tiles")
+        page.page.click("#cell-1-4")
+        page.page.keyboard.type("-20")
+        page.press("Enter", "Control+Enter")
+        page.sees(".trials > li:nth-child(2)")
+        page.page.click(".bar .acts >> text=Compare")
+        page.page.wait_for_timeout(2500)
+        page.page.click("[aria-label=Pause]")
+        picture(page.page, "design")
 
 
 def replay(folder: Path, open_page: Open) -> None:
@@ -167,7 +187,7 @@ def venue(
         def bot(address: str, seat: str, name: str, team: str) -> None:
             where = ("--connect", address, "--seat", seat, "--token", TOKENS[seat])
             process = subprocess.Popen(
-                [*LACOC, "bot", name, "--name", team, *where],
+                [*COMMAND, "bot", name, "--name", team, *where],
                 stdout=subprocess.DEVNULL,
                 env=environment(),
             )

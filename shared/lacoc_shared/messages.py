@@ -110,7 +110,9 @@ class Join(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     postures: SentFile | None = None
     """A Loco-data file."""
     locomotion: SentFile | None = None
-    """A LocoTra-data file. With neither file: the sample gait of the contest's robot."""
+    """A LocoTra-data file. With no file at all: the files that the seat has, if the team of this
+    name has it, else the contest's robot with its sample gait.
+    """
 
 
 class Joined(msgspec.Struct, frozen=True, kw_only=True):

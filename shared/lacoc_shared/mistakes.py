@@ -24,6 +24,11 @@ name that is not UTF-8 becomes its number, such as `\x98`.
 """
 
 
+FILES_REFUSED = "note.files-refused"
+"""Code of the note that a join succeeded without its files."""
+_NOTED = 3  # notes are read in passing; a refused join lists all mistakes
+
+
 class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One mistake in a file, with its place."""
 
@@ -84,6 +89,11 @@ class FileRefused(ValueError):
     def __init__(self, mistakes: list[Mistake]) -> None:
         super().__init__("\n".join(map(str, mistakes)))
         self.mistakes = mistakes
+
+    def notes(self) -> tuple[Phrase, ...]:
+        """Return notes for a join that succeeds without these files: their first mistakes."""
+        first = (mistake.phrase for mistake in self.mistakes[:_NOTED])
+        return (say(FILES_REFUSED, count=len(self.mistakes)), *first)
 
 
 class UserError(Exception):

@@ -193,6 +193,8 @@ class Doors:
         before = self._state()
         self._now_s += 0.1
         self._beats += 1
+        match = self._match.match
+        self._network.hold([seat.coming or seat.join for seat in match.seats], match.has_begun)
         arrivals = self._network.poll(
             self._now_s,
             1,

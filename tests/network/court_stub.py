@@ -43,6 +43,8 @@ TOKENS = {"left": "token of left", "right": "token of right"}
 HASHES = {seat: tokens.hash_token(token) for seat, token in TOKENS.items()}
 WHISTLE = "the referee's whistle"
 WRONG = SentFile("mine.txt", b"wrong")
+BOOK = SentFile("mine.xlsx", b"PK\x03\x04")
+"""A workbook that nobody can read; it is refused as `WRONG` is."""
 SLOW = SentFile("slow.txt", b"20 20")
 """A file whose weighing in takes twenty beats."""
 
@@ -54,15 +56,15 @@ class Scales:
         self.asked = 0
         """How many times the answer to a join with `SLOW` was asked for."""
 
-    def __call__(self, join: Join) -> Join | None:
-        if join.postures == WRONG:
+    def __call__(self, join: Join, _: JoinSeat | None) -> tuple[Join, tuple[Phrase, ...]] | None:
+        if join.postures in (WRONG, BOOK):
             found = [Mistake(file="mine.txt", found=f, expected="20", row=3) for f in ("a", "b")]
             raise FileRefused(found)
         if join.postures == SLOW:
             self.asked += 1
             if self.asked < 20:
                 return None
-        return msgspec.structs.replace(join, robot=join.robot or SentFile("r.toml", b""))
+        return msgspec.structs.replace(join, robot=join.robot or SentFile("r.toml", b"")), ()
 
 
 def make_scene(name: str) -> Scene:
@@ -109,6 +111,8 @@ class CourtStub:
         self.inputs: list[Input] = []
         self.scene = make_scene("empty")
         self.silent = False
+        self.held: list[JoinSeat | None] = [None, None]
+        """The seats' joins; a match that has begun goes on with their files."""
         self._silent: set[int] = set()
         self._seats = {seat: SeatFrame(0, 0, 1, 0, 0, 0, 0, 0, 0, 0) for seat in range(2)}
         self._todo: list[Callable[[], None]] = []
@@ -155,6 +159,7 @@ class CourtStub:
             beat += 1
             now_s = time.monotonic()
             silent = [seat in self._silent for seat in range(2)]
+            self.network.hold(self.held, has_begun=True)
             arrivals = self.network.poll(now_s, 1, beat, silent)
             outcomes = [self._apply(arrival.input, beat) for arrival in arrivals]
             for arrival, outcome in zip(arrivals, outcomes, strict=True):

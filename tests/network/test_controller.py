@@ -6,21 +6,24 @@ from typing import Any
 
 import msgspec
 import pytest
-from court_stub import KEYS, SLOW, TOKENS, WRONG, CourtStub, until
+from court_stub import BOOK, KEYS, SLOW, TOKENS, WRONG, CourtStub, until
 from slow_link import SlowLink
 
 from lacoc_client.asking import NotNow
 from lacoc_client.controller import Controller, Hold
+from lacoc_client.gateway.seat_thread import SeatThread
+from lacoc_client.seat_files import SeatFiles, to_send
 from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
+from lacoc_shared.contest.invitation import Access
 from lacoc_shared.inputs import HeardSeat, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
 from lacoc_shared.keyspace import JOIN_MAX_BYTES
 from lacoc_shared.messages import Command, SentFile
-from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.mistakes import FILES_REFUSED, FileRefused, UserError
 from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import RESTART_KEY
-from lacoc_shared.words import say
+from lacoc_shared.words import render, say
 
 FULL_DISK = say("record.no-room", file="m.mcap", why="disk full")
 
@@ -69,6 +72,47 @@ def test_a_join_may_be_large_but_not_too_large(court: CourtStub, session: Sessio
     controller(session, postures=SentFile("a", bytes(room - small - 4))).join()
     with pytest.raises(UserError, match="too large: 63 KiB"):
         controller(session, postures=SentFile("a", bytes(room))).join()
+
+
+HELD = JoinSeat(0, "Blue", SentFile("r.toml", b""), SentFile("mine.txt", b"20"), None, "hash")
+
+
+def test_refused_files_are_not_sent_again(court: CourtStub, session: Session) -> None:
+    """A controller whose files were refused in a match comes back later without files."""
+    court.held[0] = HELD
+    one = controller(session, postures=WRONG)
+    assert one.join()[0].code == FILES_REFUSED
+    one.join()
+    first, second = (item for item in court.inputs if isinstance(item, JoinSeat))
+    assert first.postures == HELD.postures
+    assert second.postures is None
+
+
+@pytest.mark.parametrize("is_on", [True, False])
+def test_a_page_comes_back_with_a_broken_workbook(court: CourtStub, is_on: bool) -> None:
+    """A workbook's own mistakes reach the page: as notes in a match, else as a refusal."""
+    court.held[0] = HELD if is_on else None
+    answers: list[tuple[Any, Exception | None]] = []
+    thread = SeatThread(
+        Access(court="main", connect=court.address, seat="left", token=TOKENS["left"]),
+        "Blue",
+        lambda noted: to_send(SeatFiles(postures=BOOK), None, noted),
+        lambda: 0.0,
+        lambda _: None,
+        lambda value, error: answers.append((value, error)),
+    )
+    until(lambda: answers)
+    thread.end()
+    thread.join(10)
+    (value, error), *_ = answers
+    if is_on:
+        files, mistake, last = value["notes"]
+        assert (files.code, files.values["count"]) == (FILES_REFUSED, 1)
+        assert "mine.xlsx" in render(mistake)
+        assert last == say("note.next-match")
+    else:
+        assert isinstance(error, FileRefused)
+        assert [one.file for one in error.mistakes] == ["mine.xlsx"]
 
 
 def test_a_wrong_token_is_said_and_disturbs_nobody(

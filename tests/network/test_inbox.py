@@ -35,7 +35,7 @@ from lacoc_shared.messages import (
 )
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.seat import RESTART_KEY
-from lacoc_shared.words import faults, say
+from lacoc_shared.words import Phrase, faults, render, say
 
 KEYS = Keys("main")
 SEATS = ("left", "right")
@@ -45,11 +45,13 @@ LEFT, RIGHT = 0, 1
 CONTEST_ROBOT = SentFile("hexapod.toml", b"the contest's robot")
 
 
-def check_files(join: Join) -> Join:
+def check_files(join: Join, held: JoinSeat | None) -> tuple[Join, tuple[Phrase, ...]]:
     if join.postures is not None and join.postures.data == b"wrong":
         mistake = Mistake(file=join.postures.name, found="wrong", expected="right", row=1)
         raise FileRefused([mistake, mistake])
-    return msgspec.structs.replace(join, robot=join.robot or CONTEST_ROBOT)
+    robot = join.robot or (held.robot if held is not None else CONTEST_ROBOT)
+    notes = () if held is None else (say("note.files-kept", files=[robot.name]),)
+    return msgspec.structs.replace(join, robot=robot), notes
 
 
 class Court(Inbox):
@@ -125,12 +127,9 @@ def test_a_join_gives_a_session_only_when_the_match_has_taken_it_in() -> None:
 
 def test_a_join_waits_while_its_files_are_weighed_in() -> None:
     """While files are weighed in, the inbox returns a function that gives the outcome later."""
-    answers: list[Join | None] = [
-        None,
-        None,
-        Join(protocol=PROTOCOL, token="", name="Blue", robot=CONTEST_ROBOT),
-    ]
-    inbox = Inbox(KEYS, SEATS, HASHES, lambda join: answers.pop(0), secrets.token_bytes)
+    whole = Join(protocol=PROTOCOL, token="", name="Blue", robot=CONTEST_ROBOT)
+    answers = [None, None, (whole, ())]
+    inbox = Inbox(KEYS, SEATS, HASHES, lambda *_: answers.pop(0), secrets.token_bytes)
     later = inbox.join(LEFT, join_bytes())
     assert callable(later)
     assert later() is None
@@ -143,10 +142,9 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
     """A robot whose stand test ends in a mistake is refused when the stand test is over."""
     known = False
 
-    def weigh(join: Join) -> Join | None:
+    def weigh(*_: object) -> None:
         if known:
             raise FileRefused([Mistake(file="robot.toml", found="a leap", expected="rest")])
-        return None
 
     inbox = Inbox(KEYS, SEATS, HASHES, weigh, secrets.token_bytes)
     later = inbox.join(LEFT, join_bytes())
@@ -157,6 +155,19 @@ def test_a_mistake_that_takes_long_to_find_is_told() -> None:
     assert isinstance(refused, Refusal)
     assert [mistake.found for mistake in refused.mistakes] == ["a leap"]
     assert refusals(inbox) == {"bad-files": 1}
+
+
+def test_a_join_is_weighed_in_with_what_the_seat_has() -> None:
+    """The files' check gets the seat's present join, and its notes come before the match's."""
+    inbox = make()
+    mine = SentFile("mine.toml", b"a robot of our own")
+    inbox.hold([JoinSeat(LEFT, "Blue", mine, None, None, HASHES["left"]), None], has_begun=False)
+    taken = inbox.join(LEFT, join_bytes())
+    assert isinstance(taken, JoinSeat)
+    assert taken.robot == mine
+    notes = inbox.seated(LEFT, (WELCOME,)).notes
+    assert notes == (say("note.files-kept", files=["mine.toml"]), WELCOME)
+    assert take_seat(inbox, RIGHT).notes == ()
 
 
 @pytest.mark.parametrize(
@@ -186,6 +197,32 @@ def test_a_join_is_refused_with_its_reason(payload: bytes, code: str, why: str) 
     assert len(refusal.mistakes) == (2 if why == "bad-files" else 0)
     assert refusals(inbox) == {why: 1}
     assert inbox.beat(0.1, [[command(holder, 1)], []]) == [KeySeat(LEFT, 1, 1, 2)]
+
+
+BROKEN = join_bytes(name="Blues", postures=SentFile("a.txt", b"wrong"))
+
+
+def test_a_broken_file_keeps_nobody_out_of_a_match_that_is_on() -> None:
+    """Bad files in a match that has begun: the seat keeps its files, and notes say why."""
+    inbox = make()
+    files = (SentFile("mine.toml", b"a robot"), SentFile("mine.txt", b"a gait"), None)
+    inbox.hold([JoinSeat(LEFT, "Blue", *files, "older hash"), None], has_begun=True)
+    assert inbox.join(LEFT, BROKEN) == JoinSeat(LEFT, "Blues", *files, HASHES["left"])
+    notes = inbox.seated(LEFT).notes
+    assert [note.code for note in notes] == ["note.files-refused", "mistake.line", "mistake.line"]
+    assert refusals(inbox) == {"bad-files": 1}
+    assert render(notes[0]).startswith("Your new files have 2 mistakes.")
+    assert render(notes[1]) == "a.txt, row 1: found wrong, expected right"
+
+
+def test_a_broken_file_is_refused_where_it_would_be_used() -> None:
+    """Bad files before a match, or for a seat that nobody has, are refused."""
+    inbox = make()
+    taken = JoinSeat(LEFT, "Blue", CONTEST_ROBOT, None, None, HASHES["left"])
+    inbox.hold([taken, None], has_begun=False)
+    assert isinstance(inbox.join(LEFT, BROKEN), Refusal)
+    inbox.hold([None, None], has_begun=True)
+    assert isinstance(inbox.join(LEFT, BROKEN), Refusal)
 
 
 def test_a_seat_without_a_token_is_closed() -> None:

@@ -30,7 +30,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header, Result
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase
-from lacoc_shared.words import use
+from lacoc_shared.words import render, say, use
 
 MakeFrame = Callable[..., Frame]
 MakeHeader = Callable[..., Header]
@@ -143,7 +143,7 @@ def test_pos_data_starts_anew_with_another_robot(
 
 def test_events_as_csv(record: Record) -> None:
     """In the CSV file of events, quotes and commas are kept, and seat and team are names."""
-    rows = list(csv.DictReader(io.StringIO(export.events_csv(record).decode())))
+    rows = list(csv.DictReader(io.StringIO(export.events_csv(record).decode("utf-8-sig"))))
     assert rows[1] == {
         "number": "13",
         "beat": "13",
@@ -155,6 +155,20 @@ def test_events_as_csv(record: Record) -> None:
         "text": '"Ants" flip a disc, and more',
     }
     assert len(rows) == 4
+
+
+def test_events_as_csv_open_in_excel_in_their_language(record: Record) -> None:
+    """The CSV file begins with a byte order mark, and its texts are in the process's language."""
+    event = msgspec.structs.replace(record.events[0], said=say("event.team-ready", team="歩行"))
+    record.events[:] = [event]
+    use("ja")
+    try:
+        made = export.events_csv(record)
+        text = render(event.said, "ja")
+    finally:
+        use("en")
+    assert made.startswith(b"\xef\xbb\xbfnumber,")
+    assert text in made.decode()
 
 
 def test_the_result_as_json(record: Record, result: Result) -> None:

@@ -14,7 +14,7 @@ from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot
 from lacoc_server.studio.coach.goal import Goal, score
 from lacoc_server.studio.coach.improve import Size, improve
-from lacoc_server.studio.coach.matter import CONFIRMED, STEP_DEG, what_matters
+from lacoc_server.studio.coach.matter import STEP_DEG, what_matters
 from lacoc_server.studio.coach.search import Improved, Search
 from lacoc_server.studio.coach.table import Angles, KeyTable
 from lacoc_server.studio.coach.trials import Task, try_table
@@ -43,7 +43,7 @@ def searched(size: Size, rounds: int = 40) -> Improved:
     """Return the best table of a search that starts at zeros and lasts this many rounds."""
     left = iter(range(rounds))
     own = (0,) * len(BEST)
-    matters = what_matters(own, RANGES, made_up, made_up)
+    matters = what_matters(own, RANGES, made_up)
     search = Search(own, RANGES, made_up)
     found = improve(search, size, matters, made_up, lambda: next(left, None) is None, seed=1)
     *_, last = [*found, *undo(search, matters, made_up)]
@@ -70,7 +70,7 @@ def test_a_number_is_turned_to_its_best_degree() -> None:
         return [100.0 - (table[0] - 12) ** 2 for table in tables]
 
     own = (0,) * len(BEST)
-    matters = what_matters(own, RANGES, one_number, one_number)
+    matters = what_matters(own, RANGES, one_number)
     search = Search(own, RANGES, one_number)
     *_, last = improve(search, Size.THREE, matters, one_number, lambda: False, seed=1)
     assert last.angles_deg == (12, *own[1:])
@@ -88,7 +88,7 @@ def test_a_change_that_hardly_helps_is_undone() -> None:
         return [100 - abs(table[0] - 20) - 0.01 * abs(table[1] - 20) for table in tables]
 
     left = iter(range(60))
-    matters = what_matters((0, 0), RANGES[:2], dull, dull)
+    matters = what_matters((0, 0), RANGES[:2], dull)
     over = lambda: next(left, None) is None  # noqa: E731
     search = Search((0, 0), RANGES[:2], dull)
     *_, found = improve(search, Size.TABLE, matters, dull, over, seed=3)
@@ -99,17 +99,10 @@ def test_a_change_that_hardly_helps_is_undone() -> None:
 
 
 def test_what_matters_is_ranked() -> None:
-    """Changes are ranked by their effect, and the top ones are confirmed by the exact score."""
-    asked: list[int] = []
-
-    def exact(tables: Sequence[Angles]) -> list[float]:
-        asked.append(len(tables))
-        return made_up(tables)
-
-    found = what_matters((0,) * 6, RANGES, made_up, exact)
+    """Numbers are ranked by what a change of each does; both directions are told."""
+    found = what_matters((0,) * 6, RANGES, made_up)
     assert [one.size for one in found] == sorted((one.size for one in found), reverse=True)
     assert {one.number for one in found} == set(range(6))
-    assert asked == [1 + 2 * min(CONFIRMED, 6)]
     first = next(one for one in found if one.number == 0)
     up, down = made_up([(STEP_DEG, *(0,) * 5), (-STEP_DEG, *(0,) * 5)])
     now = made_up([(0,) * 6])[0]

@@ -4,10 +4,10 @@ import pytest
 from stage import join
 
 from lacoc_robots.limits import Limits
-from lacoc_server.match.entry import weigh_in
+from lacoc_server.match.entry import Admission, weigh_in
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
-from lacoc_shared.messages import SentFile
+from lacoc_shared.messages import PROTOCOL, Join, SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.words import render, say
 
@@ -62,6 +62,11 @@ def test_the_files_are_not_swapped() -> None:
     ]
 
 
+def test_a_workbook_is_refused() -> None:
+    """A court reads text: a workbook is a mistake."""
+    assert mistakes_of(None, SentFile("Loco-data.xlsx", b"PK\x03\x04"))
+
+
 def test_a_gait_for_another_robot() -> None:
     """A gait with fewer angles than the robot has joints is a mistake in both files."""
     other = join(0, robot="quadruped")
@@ -112,3 +117,46 @@ def test_a_legend_that_contradicts_the_columns_is_told_with_the_join() -> None:
     (note,) = weigh_in(HEXAPOD.robot, SentFile("mine.txt", exchanged), None).notes
     assert "the legend says R,F, but joint 5 is a joint of leg L,F" in render(note)
     assert weigh_in(HEXAPOD.robot, HEXAPOD.postures, HEXAPOD.locomotion).notes == ()
+
+
+def asks(team: str = "Ants", **files: SentFile | None) -> Join:
+    """Return a join as a controller sends it."""
+    return Join(protocol=PROTOCOL, token="", name=team, **files)
+
+
+CONTEST = Admission(
+    HEXAPOD.robot, HEXAPOD.postures, HEXAPOD.locomotion, Limits(), (Level.LOCOMOTION,)
+)
+SAMPLE = asks(robot=HEXAPOD.robot, postures=HEXAPOD.postures, locomotion=HEXAPOD.locomotion)
+OWN = join(0, team="Ants", robot="quadruped")
+
+
+def test_a_team_that_comes_back_without_files_keeps_its_own() -> None:
+    """The same team's join without files takes the files of the seat, and a note names them."""
+    whole, (note,) = CONTEST(asks(), OWN)
+    assert whole == asks(robot=OWN.robot, postures=OWN.postures, locomotion=OWN.locomotion)
+    assert note.code == "note.files-kept"
+    assert "robot.toml, Loco-data.txt and LocoTra-data.txt" in render(note)
+
+
+@pytest.mark.parametrize(
+    ("asked", "held"),
+    [
+        (asks(), None),
+        (asks("Bees"), OWN),
+        (asks(), join(0, team="Ants")),
+    ],
+)
+def test_without_files_a_team_gets_the_sample(asked: Join, held: JoinSeat | None) -> None:
+    """A new team without files gets the sample, and a note says so, also when it comes back."""
+    whole, notes = CONTEST(asked, held)
+    files = (whole.robot, whole.postures, whole.locomotion)
+    assert files == (SAMPLE.robot, SAMPLE.postures, SAMPLE.locomotion)
+    assert notes == (say("note.files-sample"),)
+
+
+def test_files_that_a_team_brings_are_used() -> None:
+    """A team that comes back with a file gets nothing of its former files."""
+    whole, notes = CONTEST(asks(locomotion=HEXAPOD.locomotion), OWN)
+    assert (whole.robot, whole.postures) == (HEXAPOD.robot, None)
+    assert notes == ()

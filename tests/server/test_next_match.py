@@ -44,18 +44,17 @@ class Room(NamedTuple):
     referee: RefereeClient
 
     def controller(self, seat: int, robot: str = "hexapod") -> Controller:
-        name = list(TOKENS)[seat]
         postures, locomotion = sample_gait_files(robot)
-        return Controller(
-            self.sessions[seat],
-            "main",
-            name,
-            TOKENS[name],
-            f"Team {name}",
+        return self.with_files(
+            seat,
             robot=SentFile(*find_robot(robot)),
             postures=postures,
             locomotion=locomotion,
         )
+
+    def with_files(self, seat: int, **files: SentFile | None) -> Controller:
+        name = list(TOKENS)[seat]
+        return Controller(self.sessions[seat], "main", name, TOKENS[name], f"Team {name}", **files)
 
     def decide(self, decision: Start | Abort | Next) -> None:
         self.referee.decide(decision, "a test", "Kubota")
@@ -121,6 +120,19 @@ def test_the_next_match_takes_the_files_that_were_sent_in_this_one(room: Room) -
     room.decide(Next())
     robots = [seat.robot for seat in sheet(left, 2).seats]
     assert robots == ["Quadruped", "Hexapod"]
+
+
+def test_a_team_that_comes_back_without_files_keeps_its_own(room: Room) -> None:
+    """A team that comes back without files keeps the files that it sent last."""
+    playing(room)
+    room.controller(0, "quadruped").join()
+    kept, _ = room.with_files(0).join()
+    assert kept.code == "note.files-kept"
+    room.decide(Abort())
+    room.decide(Next())
+    again = room.with_files(0)
+    assert [note.code for note in again.join()] == ["note.files-kept"]
+    assert [seat.robot for seat in sheet(again, 2).seats] == ["Quadruped", "Hexapod"]
 
 
 def test_who_joins_when_a_match_is_over_sits_in_the_next(room: Room) -> None:

@@ -32,10 +32,10 @@ def admission() -> Admission:
 
 def known(weighing: Weighing, join: Join, patience_s: float = 60.0) -> Join:
     until_s = time.monotonic() + patience_s
-    while (whole := weighing(join)) is None:
+    while (weighed := weighing(join)) is None:
         assert time.monotonic() < until_s
         time.sleep(0.005)
-    return whole
+    return weighed[0]
 
 
 def changed(old: bytes, new: bytes) -> Join:

@@ -224,11 +224,13 @@ def test_access_without_a_file(file: Path) -> None:
         court="main", connect="tcp/10.0.0.7:7447", role="seat", seat="left", token="t" * 20
     )
     assert entrances.spectator_access(None, None, None).connect == "tcp/127.0.0.1:7447"
-    with pytest.raises(UserError, match=r"left seat.*--token.*LACOC_TOKEN"):
+    with pytest.raises(
+        UserError, match=r"left seat.*--contest.*--token.*LACOC_CONTEST.*LACOC_TOKEN"
+    ):
         entrances.seat_access(None, None, None, "left", None)
     with pytest.raises(UserError, match="--seat"):
         entrances.seat_access(None, None, None, None, "t" * 20)
-    with pytest.raises(UserError, match="referee"):
+    with pytest.raises(UserError, match=r"referee.*--contest.*LACOC_CONTEST"):
         entrances.referee_access(None, None, None, None)
     with pytest.raises(UserError, match="not an address"):
         entrances.spectator_access(None, None, "http://x")

@@ -15,7 +15,7 @@ from lacoc_client.controller import REPEAT_S, Controller, Hold
 from lacoc_client.gateway.wire import FAULT
 from lacoc_client.seat_files import SeatFiles
 from lacoc_shared.contest.invitation import Access
-from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.mistakes import FILES_REFUSED, FileRefused, UserError
 from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
@@ -25,6 +25,10 @@ _TELL_S = 0.5
 
 Answer = Callable[[Any, UserError | FileRefused | None], None]
 """Takes the result of a job: its value, or the error."""
+
+
+_OF_FILES = (FILES_REFUSED, "mistake.line")
+"""Notes of a court on files that it refused."""
 
 
 class _Job(NamedTuple):
@@ -38,8 +42,8 @@ class SeatThread:
     Args:
         access: address, seat and token.
         team: the team's name.
-        files: returns the team's files as text, and adds notes about them; called on the thread,
-            because a workbook takes a while.
+        files: returns the team's files as a court reads them and the mistakes found in them, and
+            adds notes about them; called on the thread, because a workbook takes a while.
         unheard_s: returns how long the page has been silent [s].
         tell: receives the state of the seat (see docs/gateway.md, "seat"), on the thread.
         joined: receives the result of the join, on the thread.
@@ -49,7 +53,7 @@ class SeatThread:
         self,
         access: Access,
         team: str,
-        files: Callable[[list[Phrase]], SeatFiles],
+        files: Callable[[list[Phrase]], tuple[SeatFiles, FileRefused | None]],
         unheard_s: Callable[[], float],
         tell: Callable[[dict[str, Any]], None],
         joined: Answer,
@@ -87,7 +91,7 @@ class SeatThread:
         access = self._access
         try:
             noted: list[Phrase] = []
-            files = self._files(noted)
+            files, wrong = self._files(noted)
             with open_client([access.connect], credentials=access.credentials) as session:
                 controller = Controller(
                     session,
@@ -98,7 +102,7 @@ class SeatThread:
                     **files._asdict(),
                     notify=lambda: self._jobs.put(None),
                 )
-                notes = controller.join()
+                notes = _join(controller, wrong)
                 joined({"notes": (*noted, *notes), "index": controller.index}, None)
                 self._report(controller)
                 self._hold(controller)
@@ -162,3 +166,19 @@ class SeatThread:
                 why = self._told.get("reason") or hold.phrase
                 said = say("refused.not-yours", seat=self._access.seat, why=why)
                 job.answer(None, UserError(said))
+
+
+def _join(controller: Controller, wrong: FileRefused | None) -> tuple[Phrase, ...]:
+    """Join, and return the notes; `wrong` has the mistakes that were found before.
+
+    Raises:
+        FileRefused: if the court needs the files now and they have mistakes.
+        UserError: if the court refuses for another reason, or does not answer.
+    """
+    try:
+        notes = controller.join()
+    except FileRefused as refused:
+        raise wrong or refused from None
+    if wrong is None:
+        return notes
+    return (*wrong.notes(), *(note for note in notes if note.code not in _OF_FILES))

@@ -27,7 +27,7 @@ from lacoc_server.match.match import Beat, Match
 from lacoc_server.world.world import World
 from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.decisions import Halt
-from lacoc_shared.inputs import Advice, Decide, Input
+from lacoc_shared.inputs import Advice, Decide, Input, JoinSeat
 from lacoc_shared.messages import Health, HealthVerdict, Outcome
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import heap
@@ -153,6 +153,10 @@ class Court:
         own, self._inputs = self._inputs, []
         match, network = self._journal.match, self._network
         silent = [seat.silent for seat in match.seats]
+        # In its first beat a match takes the teams of the last one.
+        coming = {item.seat: item for item in own if isinstance(item, JoinSeat)}
+        held = [coming.get(seat.index) or seat.coming or seat.join for seat in match.seats]
+        network.hold(held, match.has_begun)
         arrivals = network.poll(now_s, match.setup.match, match.beats + 1, silent)
         beat, frame = self._journal.beat([*own, *(arrival.input for arrival in arrivals)])
         return _Made(beat, frame, arrivals, beat.outcomes[len(own) :])

@@ -7,8 +7,10 @@ from typing import Self
 from lacoc_robots.stand_test import try_standing
 from lacoc_robots.standing import standing_postures
 from lacoc_server.match.entry import Admission, weigh_in
+from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import Join
 from lacoc_shared.mistakes import FileRefused, Mistake
+from lacoc_shared.words import Phrase
 
 _REMEMBERED = 32
 """Number of stand tests whose results are kept; older ones are forgotten."""
@@ -36,19 +38,25 @@ class Weighing:
     def __exit__(self, *_: object) -> None:
         self._worker.shutdown(cancel_futures=True)
 
-    def __call__(self, join: Join) -> Join | None:
+    def __call__(
+        self, join: Join, held: JoinSeat | None = None
+    ) -> tuple[Join, tuple[Phrase, ...]] | None:
         """Weigh in the files of a join.
 
+        Args:
+            join: the join as it came.
+            held: the seat's present join; None: nobody has the seat.
+
         Returns:
-            The join with its robot file filled in; None while the robot is being tried: call again
-            in the next beat.
+            The join with its robot file filled in, and notes on which files it uses; None while the
+            robot is being tried: call again in the next beat.
 
         Raises:
             FileRefused: with every mistake of every file, or with what the robot did when it should
                 stand.
         """
         admission = self._admission
-        whole = admission(join)
+        whole, notes = admission(join, held)
         file = whole.robot
         assert file is not None, "an admission fills the robot file in"
         levels = admission.levels
@@ -60,7 +68,7 @@ class Weighing:
         )
         if mistakes:
             raise FileRefused(mistakes)
-        return None if mistakes is None else whole
+        return None if mistakes is None else (whole, notes)
 
     def _tried(self, key: object, test: Callable[[], list[Mistake]]) -> list[Mistake] | None:
         future = self._tests.pop(key, None) or self._worker.submit(test)

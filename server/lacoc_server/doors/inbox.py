@@ -65,6 +65,13 @@ _NO_SESSION = {
 
 Later = Callable[[], JoinSeat | Refusal | None]
 """A request that takes longer than a beat: called in each beat until it gives an answer."""
+CheckFiles = Callable[[Join, JoinSeat | None], tuple[Join, tuple[Phrase, ...]] | None]
+"""Weighs in the files of a join.
+
+It takes the join and the seat's present join, and returns the join with the robot file filled in
+and notes on which files it uses, or None while it needs more time. It raises `FileRefused` for bad
+files.
+"""
 
 
 class Door(NamedTuple):
@@ -86,6 +93,8 @@ class _Seat:
         self.refused: Counter[str] = Counter()
         self.heard = 0
         """Number of valid commands."""
+        self.notes: tuple[Phrase, ...] = ()
+        """Notes on the files of the newest join."""
         self.valid_s: deque[float] = deque(maxlen=int(2 * COMMANDS_HZ * _RATE_WINDOW_S))
         self.commands = Allowance(COMMANDS_HZ, COMMANDS_PER_BEAT)
         self.joins = Allowance(_JOINS_HZ, _JOINS_BURST)
@@ -111,8 +120,7 @@ class Inbox:
         seats: the seats' names, in the arena's order.
         token_hashes: hash of each seat's token, by the seat's name; a seat without one can't be
             joined.
-        check_files: weighs a join's files in. It returns the join with the robot file filled in, or
-            None while it needs more time; it raises `FileRefused` for bad files.
+        check_files: weighs a join's files in.
         random_bytes: returns as many random bytes as asked, for numbers and secrets of sessions.
         last_seqs: for a restarted court, the newest sequence numbers in its record, by seat.
         joined: for a restarted court, the seats that are held.
@@ -126,7 +134,7 @@ class Inbox:
         keys: Keys,
         seats: Sequence[str],
         token_hashes: Mapping[str, str],
-        check_files: Callable[[Join], Join | None],
+        check_files: CheckFiles,
         random_bytes: Callable[[int], bytes],
         *,
         last_seqs: Mapping[str, int] | None = None,
@@ -145,11 +153,22 @@ class Inbox:
         """Round trips of the seats' links, and commands that are held."""
         self._sessions = Sessions(random_bytes)
         self._now_s = 0.0
+        self._held: Sequence[JoinSeat | None] = [None] * len(seats)
+        self._has_begun = False
 
     @property
     def seats(self) -> tuple[str, ...]:
         """The seats' names, in the arena's order."""
         return tuple(seat.name for seat in self._seats)
+
+    def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
+        """Take note of what the match has, before the beat's joins are checked.
+
+        Args:
+            held: for each seat the newest join in the match; None: nobody has the seat.
+            has_begun: whether the match goes on with the files that it began with.
+        """
+        self._held, self._has_begun = held, has_begun
 
     def commands(
         self, now_s: float, arrived: Sequence[Sequence[bytes]], silent: Sequence[bool]
@@ -205,12 +224,19 @@ class Inbox:
         )
 
     def _weighed(self, seat: _Seat, join: Join, token_hash: str) -> JoinSeat | Refusal | None:
-        """Check a join's files; return None while they are being weighed in."""
+        """Check a join's files; return None while they are being weighed in.
+
+        Bad files keep nobody out of a match that goes on without them.
+        """
+        held = self._held[seat.index]
         try:
-            checked = self._check_files(join)
+            checked = self._check_files(join, held)
         except FileRefused as refused:
             seat.refused[Why.BAD_FILES.value] += 1
             mistakes = refused.mistakes
+            if held is not None and self._has_begun:
+                seat.notes = refused.notes()
+                return msgspec.structs.replace(held, team=join.name, token_hash=token_hash)
             first = _MISTAKES_TOLD if len(mistakes) > _MISTAKES_TOLD else None
             return Refusal(
                 say("refused.mistakes", count=len(mistakes), first=first),
@@ -218,23 +244,30 @@ class Inbox:
             )
         if checked is None:
             return None
-        assert checked.robot is not None, "check_files fills the robot file in"
+        whole, seat.notes = checked
+        assert whole.robot is not None, "check_files fills the robot file in"
         return JoinSeat(
             seat=seat.index,
             team=join.name,
-            robot=checked.robot,
-            postures=checked.postures,
-            locomotion=checked.locomotion,
+            robot=whole.robot,
+            postures=whole.postures,
+            locomotion=whole.locomotion,
             token_hash=token_hash,
         )
 
     def seated(self, index: int, notes: tuple[Phrase, ...] = ()) -> Joined:
-        """Give a seat to the sender of an accepted join; the seat's older session ends."""
+        """Give a seat to the sender of an accepted join; the seat's older session ends.
+
+        Args:
+            index: the seat.
+            notes: remarks of the match; they follow those on the files.
+        """
         seat = self._seats[index]
         number, secret = self._sessions.begin(index)
         seat.joined = True
         seat.heard_s = self._now_s
-        return Joined(session=number, secret=secret, last_seq=seat.last_seq, notes=notes)
+        told = (*seat.notes, *notes)
+        return Joined(session=number, secret=secret, last_seq=seat.last_seq, notes=told)
 
     def ready(self, index: int, payload: bytes) -> ReadySeat | Refusal:
         """Check a ready request."""

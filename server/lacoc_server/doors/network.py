@@ -110,6 +110,15 @@ class CourtNetwork:
         self._outbox.close()
         self._session.close()
 
+    def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
+        """Take note of what the match has, for the joins of the next `poll`.
+
+        Args:
+            held: for each seat the newest join in the match; None: nobody has the seat.
+            has_begun: whether the match goes on with the files that it began with.
+        """
+        self._inbox.hold(held, has_begun)
+
     def poll(self, now_s: float, match: int, beat: int, silent: Sequence[bool]) -> list[Arrival]:
         """Take in what arrived since the last beat.
 

@@ -17,7 +17,6 @@ from lacoc_shared.seat import BEATS_PER_S, RESTART_KEY, WHY_NO, No, Phase
 from lacoc_shared.words import Phrase, say
 
 _BEFORE = frozenset({Phase.LOBBY, Phase.READY})
-_AFTER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
 
 def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
@@ -25,7 +24,7 @@ def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
     seat = match.seats[item.seat]
     if match.phase in _BEFORE:
         return _sit_down(match, seat, item)
-    if seat.join is None and match.phase not in _AFTER:
+    if seat.join is None and match.has_begun:
         return Refusal(say("refused.match-on-join", phase=match.phase.word), again=True)
     seat.left = False
     seat.coming = item

@@ -9,6 +9,7 @@ import msgspec
 from lacoc_robots.robot_file import Limits, RobotSpec, read_robot
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import read_gait
+from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import Join, SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake
 from lacoc_shared.words import Phrase, say
@@ -101,8 +102,8 @@ def _weigh_in(
 class Admission:
     """Weighs in the files of a join, and fills in those that are missing.
 
-    A team without a robot file gets the contest's robot; without gait files too, that robot's
-    sample gait.
+    A team that comes back without files keeps those of its seat. Another team without a robot file
+    gets the contest's robot; without gait files too, that robot's sample gait.
     """
 
     robot: SentFile
@@ -114,22 +115,34 @@ class Admission:
     levels: Collection[Level]
     """Levels of control that the arena opens."""
 
-    def __call__(self, join: Join) -> Join:
+    def __call__(self, join: Join, held: JoinSeat | None = None) -> tuple[Join, tuple[Phrase, ...]]:
         """Weigh in a join's files, after filling in those that are missing.
 
+        Args:
+            join: the join as it came.
+            held: the seat's present join; None: nobody has the seat.
+
         Returns:
-            The join with a robot file.
+            The join with a robot file, and notes on which files it uses if it brought none.
 
         Raises:
             FileRefused: with every mistake of every file.
         """
-        robot, postures, locomotion = join.robot, join.postures, join.locomotion
-        if robot is None:
-            robot = self.robot
-            if postures is None and locomotion is None:
-                postures, locomotion = self.postures, self.locomotion
+        sample = (self.robot, self.postures, self.locomotion)
+        files = (join.robot, join.postures, join.locomotion)
+        notes: tuple[Phrase, ...] = ()
+        if not any(files):
+            files = sample
+            if held is not None and held.team == join.name:
+                files = (held.robot, held.postures, held.locomotion)
+            names = [file.name for file in files if file is not None]
+            kept = say("note.files-kept", files=names)
+            notes = (say("note.files-sample") if files == sample else kept,)
+        robot, postures, locomotion = files
+        robot = robot or self.robot
         weigh_in(robot, postures, locomotion, self.limits, self.levels)
-        return msgspec.structs.replace(join, robot=robot, postures=postures, locomotion=locomotion)
+        whole = msgspec.structs.replace(join, robot=robot, postures=postures, locomotion=locomotion)
+        return whole, notes
 
 
 def _read_gait(

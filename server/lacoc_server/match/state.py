@@ -45,6 +45,7 @@ _ENTERED = {
 }
 """Log text for each phase that is entered; for FINISHED see `enter`."""
 
+_BEGUN = frozenset({Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED, Phase.FINISHED})
 _ENDED = frozenset({Phase.FINISHED, Phase.OFFICIAL, Phase.VOID})
 """Phases in which a match has a result."""
 
@@ -113,6 +114,11 @@ class MatchState:
     def physics(self) -> Physics:
         """The robots on their field; before READY the field is empty."""
         return self.staging.physics
+
+    @property
+    def has_begun(self) -> bool:
+        """True from the countdown to the official result: new files wait for the next match."""
+        return self.phase in _BEGUN
 
     @property
     def clock_ticks(self) -> int:

@@ -1,6 +1,8 @@
 /** The field from straight above, drawn in two dimensions: needs no WebGL, and is easily read. */
 
 import { MARKER_STATES, type MarkerInfo, SeatFlag, type Sheet } from "../core/wire";
+import { drawLinks, drawMarks } from "./links";
+import type { FloorMarks } from "./marks";
 import type { Field, Model } from "./model";
 import { afflicted, css, evening, luma, mix, partner, type Rgb, rgb } from "./palette";
 
@@ -61,8 +63,18 @@ export class TopView {
     this.canvas.height = Math.round(height * ratio);
   }
 
-  /** Draw; `ring` is what is pointed at. */
-  draw(model: Model, plan: Plan, ring: { x: number; y: number; radius: number } | null): void {
+  /**
+   * Draw.
+   *
+   * @param ring What is pointed at.
+   * @param near What is drawn of robots that are looked at from near; null: arrows are enough.
+   */
+  draw(
+    model: Model,
+    plan: Plan,
+    ring: { x: number; y: number; radius: number } | null,
+    near: { lit: ReadonlyMap<number, number>; marks: FloorMarks | null } | null = null,
+  ): void {
     const { context } = this;
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -74,7 +86,10 @@ export class TopView {
     for (const [index, marker] of model.sheet.markers.entries()) {
       this.marker(marker, model.states[index] ?? 0, model, letters);
     }
-    for (const seat of model.robots.keys()) this.robot(seat, model, letters[seat] ?? "");
+    if (near?.marks) drawMarks(context, near.marks);
+    if (near) {
+      if (model.robots.length) drawLinks(context, model, near.lit);
+    } else for (const seat of model.robots.keys()) this.robot(seat, model, letters[seat] ?? "");
     if (ring) {
       context.lineWidth = 0.012;
       context.strokeStyle = LIGHT;

@@ -330,7 +330,9 @@ export class Viewer {
     const ring = this.point(model);
     if (this.map) {
       this.plan = planOf(this.shownField(model), this.free());
-      this.map.draw(model, this.plan, ring);
+      const { lit, marks, camera } = this.options;
+      const near = camera === "robot" ? { lit, marks: marks?.() ?? null } : null;
+      this.map.draw(model, this.plan, ring, near);
     } else if (this.stage) {
       this.axes = viewOf(this.shot(model, nowMs));
       const { lit, marks } = this.options;
@@ -361,7 +363,7 @@ export class Viewer {
   private shownField(model: Model): Field {
     const robot = model.robots[this.options.seat];
     if (this.options.camera !== "robot" || !robot) return model.field;
-    return { x: robot.x, y: robot.y, halfX: 0.25, halfY: 0.2, height: 0 };
+    return { x: robot.x, y: robot.y, halfX: 0.2, halfY: 0.15, height: 0 };
   }
 
   private shot(model: Model, nowMs: number) {

@@ -3,7 +3,21 @@
 import type { Mistake } from "../core/wire";
 import { said, t } from "../i18n";
 
-export function Mistakes({ mistakes }: { mistakes: readonly Mistake[] }) {
+interface Props {
+  mistakes: readonly Mistake[];
+  /** Called with the mistake that is pointed at; null: with none any more. */
+  onPoint?: (mistake: Mistake | null) => void;
+}
+
+export function Mistakes({ mistakes, onPoint }: Props) {
+  const pointed = (one: Mistake) =>
+    onPoint && {
+      tabIndex: 0,
+      onPointerEnter: () => onPoint(one),
+      onPointerLeave: () => onPoint(null),
+      onFocus: () => onPoint(one),
+      onBlur: () => onPoint(null),
+    };
   return (
     <table class="mistakes">
       <thead>
@@ -18,7 +32,7 @@ export function Mistakes({ mistakes }: { mistakes: readonly Mistake[] }) {
       </thead>
       <tbody>
         {mistakes.map((one, index) => (
-          <tr key={index}>
+          <tr key={index} {...pointed(one)}>
             <td>
               {one.file}
               {/* The sheet and the cell of a workbook. */}

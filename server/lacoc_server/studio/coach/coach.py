@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.studio.coach.goal import Goal, score
 from lacoc_server.studio.coach.improve import Size, improve
-from lacoc_server.studio.coach.matter import CONFIRMED, Matter, what_matters
+from lacoc_server.studio.coach.matter import Matter, what_matters
 from lacoc_server.studio.coach.search import Improved, Search
 from lacoc_server.studio.coach.table import KeyTable
 from lacoc_server.studio.coach.trials import Stopped, Task, Trials
@@ -95,8 +95,8 @@ def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Te
     best: Improved | None = None
     stopped = False
     try:
-        _follow(trials, tell, "matters", 2 + 2 * len(own) + 2 * min(CONFIRMED, len(own)))
-        matters = what_matters(own, ranges_deg, trials.quick, trials.exact)
+        _follow(trials, tell, "matters", 1 + 2 * len(own))
+        matters = what_matters(own, ranges_deg, trials.quick)
         if size is not None:
             for better in _better(trials, ranges_deg, matters, size, seconds, seed, tell):
                 best = better

@@ -8,8 +8,6 @@ from lacoc_server.studio.coach.table import Angles
 
 STEP_DEG = 10
 """How far each number is changed [deg]."""
-CONFIRMED = 12
-"""How many of the numbers that matter most are tried again, with the contest's physics."""
 
 
 class Matter(NamedTuple):
@@ -29,38 +27,27 @@ class Matter(NamedTuple):
 
 
 def what_matters(
-    table: Angles, ranges_deg: Sequence[tuple[float, float]], quick: Score, exact: Score
+    table: Angles, ranges_deg: Sequence[tuple[float, float]], score: Score
 ) -> list[Matter]:
     """Rank the numbers of a table by how much a small change of each alters the score.
 
     Args:
         table: the angles [deg].
         ranges_deg: lowest and highest angle of each number.
-        quick: returns rough scores; they rank all numbers.
-        exact: returns scores with the contest's physics; they rank the first `CONFIRMED` again.
+        score: returns the scores of tables.
 
     Returns:
         All numbers, those that matter most first.
     """
-    ranked = changes_of(table, range(len(table)), ranges_deg, quick)
-    top = [found.number for found in ranked[:CONFIRMED]]
-    confirmed = changes_of(table, top, ranges_deg, exact)
-    return [*confirmed, *ranked[CONFIRMED:]]
-
-
-def changes_of(
-    table: Angles, cells: Sequence[int], ranges_deg: Sequence[tuple[float, float]], score: Score
-) -> list[Matter]:
-    """Find what changes of some cells do to a score; the cells that matter most come first."""
     tables = [table]
-    for index in cells:
+    for index in range(len(table)):
         low, high = ranges_deg[index]
         for step in (STEP_DEG, -STEP_DEG):
             turned = round(min(max(table[index] + step, low), high))
             tables.append((*table[:index], turned, *table[index + 1 :]))
     now, *scores = score(tables)
     found = [
-        Matter(index, scores[2 * place] - now, scores[2 * place + 1] - now)
-        for place, index in enumerate(cells)
+        Matter(index, scores[2 * index] - now, scores[2 * index + 1] - now)
+        for index in range(len(table))
     ]
     return sorted(found, key=lambda one: -one.size)

@@ -17,11 +17,10 @@ from lacoc_server.trial.walk import Press
 from lacoc_server.world.world import SUBSTEPS
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, Posture
 
-_QUICK_STEPS, _QUICK_CYCLES = 4, 2
-"""A quick trial has physics steps of 5 ms and measures two cycles of the sequence."""
-_ROUGH_CYCLES = 1
-"""A rough trial has the same steps and measures one cycle."""
-_CYCLES = 3
+_CYCLES, _QUICK_CYCLES = 3, 2
+"""Cycles of the sequence that a trial and a quick trial measure."""
+_ROUGH_STEPS, _ROUGH_CYCLES = 4, 1
+"""A rough trial has physics steps of 5 ms and measures one cycle."""
 _MOST_AT_ONCE = 4
 """Most trials that a process gets at once; fewer would cost time, more would delay a stop."""
 _LOOK_S = 0.05
@@ -69,12 +68,12 @@ class Trials:
         return self._score(tables, SUBSTEPS, _CYCLES)
 
     def quick(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables with longer physics steps and fewer cycles: good enough to rank them.
+        """Score tables with the physics of the contest, over fewer cycles: good enough to rank.
 
         Raises:
             Stopped: if the search was stopped.
         """
-        return self._score(tables, _QUICK_STEPS, _QUICK_CYCLES)
+        return self._score(tables, SUBSTEPS, _QUICK_CYCLES)
 
     def rough(self, tables: Sequence[Angles]) -> list[float]:
         """Score tables even more cheaply: good enough to find those that may be better.
@@ -82,7 +81,7 @@ class Trials:
         Raises:
             Stopped: if the search was stopped.
         """
-        return self._score(tables, _QUICK_STEPS, _ROUGH_CYCLES)
+        return self._score(tables, _ROUGH_STEPS, _ROUGH_CYCLES)
 
     def figures(self, tables: Sequence[Angles]) -> list[Figures]:
         """Return the figures of walks, with the physics of the contest; a stop changes nothing."""

@@ -38,7 +38,10 @@ def pos_data(record: Record, seat: str) -> bytes:
 
 
 def events_csv(record: Record) -> bytes:
-    """Make a table of all events with one header row; the words are English."""
+    """Make a table of all events with one header row; the texts are in the process's language.
+
+    A byte order mark tells Excel that the file is UTF-8.
+    """
     file = io.StringIO()
     table = csv.writer(file, lineterminator="\n")
     table.writerow(("number", "beat", "clock_s", "kind", "seat", "team", "code", "text"))
@@ -54,10 +57,10 @@ def events_csv(record: Record) -> bytes:
                 seat.id if seat else "",
                 seat.team if seat else "",
                 event.said.code,
-                render(event.said, "en"),
+                render(event.said),
             )
         )
-    return file.getvalue().encode()
+    return file.getvalue().encode("utf-8-sig")
 
 
 def result_json(record: Record) -> bytes:

@@ -7,6 +7,7 @@ import { t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { Mistakes } from "../../ui/mistakes";
 import { toast } from "../../ui/toasts";
+import { LegPicture } from "./robot";
 import type { Studio } from "./studio";
 
 const POSTURES = "Loco-data.txt";
@@ -186,9 +187,14 @@ export function TroubleDialog({ studio }: { studio: Studio }) {
       title={t("design.trouble")}
       onClose={() => {
         studio.trouble.value = null;
+        studio.point([]);
       }}
     >
-      <Mistakes mistakes={trouble.mistakes} />
+      <Mistakes
+        mistakes={trouble.mistakes}
+        onPoint={(mistake) => studio.point(mistake?.joint == null ? [] : [mistake.joint])}
+      />
+      {trouble.mistakes.some(({ joint }) => joint != null) && <LegPicture studio={studio} />}
     </Dialog>
   );
 }

@@ -266,7 +266,7 @@ export class Studio {
     try {
       const read = await this.connection.ask<ReadReply>("read", { name });
       if (read.robot !== null || slot === "robot") await this.useRobot(name, read.robot ?? "");
-      else if (read.table) await this.show(read.table, name, read.version);
+      else if (read.table) this.show(read.table, name, read.version);
       this.tell(read.notes);
     } catch (error) {
       this.refuse(error);
@@ -277,7 +277,7 @@ export class Studio {
   async openSample(): Promise<void> {
     const { table } = await this.connection.ask<Parsed>("sample");
     const robot = this.robot.peek();
-    if (table && table.legs === robot?.legs.length) await this.show(table, "", "");
+    if (table && table.legs === robot?.legs.length) this.show(table, "", "");
   }
 
   /** Begin with a table in which all postures are that of the robot at its start. */
@@ -292,7 +292,7 @@ export class Studio {
       const parsed = await this.connection.ask<Parsed>("parse", { name, data });
       if (parsed.robot !== null && parsed.robot !== undefined) {
         await this.useRobot(name, parsed.robot);
-      } else if (parsed.table) await this.replace(parsed.table, name);
+      } else if (parsed.table) this.replace(parsed.table, name);
       this.tell(parsed.notes);
     } catch (error) {
       this.refuse(error);
@@ -369,9 +369,7 @@ export class Studio {
   async useRobot(name: string, text: string | null): Promise<void> {
     const robot = await this.ask(text === null ? null : { name, text });
     batch(() => {
-      this.robotText = text;
-      this.robotName.value = text === null ? "" : name;
-      this.robot.value = robot;
+      this.adopt(name, text, robot);
       const fits = this.table.peek()?.legs.length === robot.legs.length;
       if (!fits) this.begin(standing(robot), NO_FILE);
       else {
@@ -380,6 +378,12 @@ export class Studio {
         if (isSaved) this.file.value = { ...this.file.peek(), saved: this.version.peek() };
       }
     });
+  }
+
+  private adopt(name: string, text: string | null, robot: RobotReply): void {
+    this.robotText = text;
+    this.robotName.value = text === null ? "" : name;
+    this.robot.value = robot;
   }
 
   private async ask(file: { name: string; text: string } | null): Promise<RobotReply> {
@@ -406,7 +410,7 @@ export class Studio {
     });
   }
 
-  private async show(wire: FileTable, name: string, version: string): Promise<void> {
+  private show(wire: FileTable, name: string, version: string): void {
     const robot = this.robot.peek();
     if (!robot) return;
     if (wire.legs !== robot.legs.length) {
@@ -416,7 +420,7 @@ export class Studio {
   }
 
   /** Put a table in place of this one, in one step. */
-  private async replace(wire: FileTable, name: string): Promise<void> {
+  private replace(wire: FileTable, name: string): void {
     const robot = this.robot.peek();
     if (!robot) return;
     const table = fromWire(wire, columnsOf(robot));
@@ -540,7 +544,9 @@ export class Studio {
   refuse(error: unknown): void {
     if (!(error instanceof Refused)) throw error;
     if (error.mistakes.length) {
-      this.trouble.value = { said: error.why, mistakes: error.mistakes };
+      // A robot and a gait may both have mistakes: neither list hides the other.
+      const before = this.trouble.peek()?.mistakes ?? [];
+      this.trouble.value = { said: error.why, mistakes: [...before, ...error.mistakes] };
     } else toast(said(error.why), "no");
   }
 
@@ -592,25 +598,54 @@ export class Studio {
 
   /** The first thing to see: the robot, and the folder's first gait, else the sample. */
   private async openFirst(): Promise<void> {
-    const { files } = this.folder.peek();
     if (this.opened || !this.greeted || !this.present.peek()) return;
     this.opened = true;
     try {
-      const own = files.find(({ slot }) => slot === "robot");
-      if (this.first) {
-        await this.useRobot(this.first.name, new TextDecoder().decode(this.first.data));
-      } else if (own) {
-        const { robot } = await this.connection.ask<ReadReply>("read", { name: own.name });
-        await this.useRobot(own.name, robot);
-      } else await this.useRobot("", null);
+      const { name, text, robot } = await this.firstRobot();
+      const { files } = this.folder.peek();
       const gait =
         files.find(({ slot }) => slot === "postures") ??
         files.find(({ slot }) => slot === "locomotion");
-      if (gait) await this.open(gait.name);
-      else await this.openSample();
+      const read = await this.firstTable(gait?.name ?? "");
+      batch(() => {
+        this.adopt(name, text, robot);
+        if (read?.table?.legs !== robot.legs.length) this.begin(standing(robot), NO_FILE);
+        else this.show(read.table, read.version ? gait!.name : "", read.version);
+      });
+      this.tell(read?.notes);
     } catch (error) {
-      this.opened = this.robot.peek() !== null;
+      this.opened = false;
       this.refuse(error);
+    }
+  }
+
+  /** The robot of the command line, that of the folder, or the workshop's. */
+  private async firstRobot(): Promise<{ name: string; text: string | null; robot: RobotReply }> {
+    try {
+      let [name, text] = ["", null as string | null];
+      const own = this.folder.peek().files.find(({ slot }) => slot === "robot");
+      if (this.first) {
+        name = this.first.name;
+        text = new TextDecoder().decode(this.first.data);
+      } else if (own) {
+        name = own.name;
+        text = (await this.connection.ask<ReadReply>("read", { name })).robot;
+      }
+      return { name, text, robot: await this.ask(text === null ? null : { name, text }) };
+    } catch (error) {
+      this.refuse(error);
+      return { name: "", text: null, robot: await this.ask(null) };
+    }
+  }
+
+  /** The table of a file, or of the sample; null where there is none without mistakes. */
+  private async firstTable(name: string): Promise<(Parsed & { version: string }) | null> {
+    try {
+      if (name) return await this.connection.ask<ReadReply>("read", { name });
+      return { ...(await this.connection.ask<Parsed>("sample")), version: "" };
+    } catch (error) {
+      this.refuse(error);
+      return null;
     }
   }
 
@@ -622,6 +657,13 @@ export class Studio {
     }
     const own = this.file.peek();
     const now = this.versionOf(name);
+    // The first gait of the folder, or one whose mistakes were corrected.
+    const isFree = own.name === "" && this.isSaved.peek() && !this.trials.peek().length;
+    if (isFree && now && /^loco/i.test(name)) {
+      this.trouble.value = null;
+      await this.open(name);
+      return;
+    }
     if (name !== own.name || now === own.version || !now) return;
     try {
       const read = await this.connection.ask<ReadReply>("read", { name });
