@@ -286,7 +286,22 @@ def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
     assert "none: the match was never finished" in words.stdout
     assert "has no end:" in words.stderr
     found = json.loads(CliRunner().invoke(app, ["info", str(path), "--json"]).stdout)
-    assert (found["complete"], found["result"]) == (False, None)
+    assert (found["complete"], found["lost"], found["result"]) == (False, False, None)
+
+
+def test_info_of_a_damaged_record(tmp_path: Path, write_match: WriteMatch) -> None:
+    """`lacoc replay info` says that the result of a damaged record is lost, not that none was."""
+    path = write_match(tmp_path)
+    data = bytearray(path.read_bytes())
+    data[-2500] ^= 0xFF
+    data[-2492] ^= 0xFF
+    path.write_bytes(data)
+    words = CliRunner().invoke(app, ["info", str(path)])
+    assert "lost: it stood in the part of the record that can't be read" in words.stdout
+    assert "no: a part of the record is lost or damaged" in words.stdout
+    assert "never finished" not in words.stdout
+    with pytest.raises(UserError, match="The result of match m is lost"):
+        export.result_json(Record.read(path))
 
 
 def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> None:

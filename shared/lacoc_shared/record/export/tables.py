@@ -70,7 +70,8 @@ def result_json(record: Record) -> bytes:
         UserError: if the match has no result.
     """
     if record.result is None:
-        raise UserError(say("export.no-result", match=record.header.match_id))
+        why = "export.result-lost" if record.lost else "export.no-result"
+        raise UserError(say(why, match=record.header.match_id))
     found = msgspec.structs.asdict(record.result) | {"health": record.health}
     return msgspec.json.format(msgspec.json.encode(found), indent=2) + b"\n"
 
