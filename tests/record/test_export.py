@@ -268,7 +268,7 @@ def test_info(tmp_path: Path, write_match: WriteMatch) -> None:
     path = write_match(tmp_path)
     words = CliRunner().invoke(app, ["info", str(path)])
     assert words.exit_code == 0
-    assert "Ants 20, Bees, Inc 16; winner: left; time is up, after 180.00 s" in words.stdout
+    assert "Ants 20, Bees, Inc 16; winner: left; time is up, after 180.00 s of play" in words.stdout
     found = json.loads(CliRunner().invoke(app, ["info", str(path), "--json"]).stdout)
     assert found["teams"] == {"left": "Ants", "right": "Bees, Inc"}
     assert (found["frames"], found["inputs"], found["events"], found["snapshots"]) == (40, 10, 4, 2)
@@ -287,6 +287,15 @@ def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
     assert "has no end:" in words.stderr
     found = json.loads(CliRunner().invoke(app, ["info", str(path), "--json"]).stdout)
     assert (found["complete"], found["lost"], found["result"]) == (False, False, None)
+
+
+def test_info_tells_the_time_played(tmp_path: Path, write_match: WriteMatch) -> None:
+    """Time that the referee gave was played, although the clock does not count it."""
+    path = write_match(tmp_path, gives_s=10.0)
+    words = CliRunner().invoke(app, ["info", str(path)]).stdout
+    assert "after 190.00 s of play (the clock: 180.00 s)" in " ".join(words.split())
+    made = json.loads(export.result_json(Record.read(path)))
+    assert (made["played_s"], made["clock_s"]) == (190.0, 180.0)
 
 
 def test_info_of_a_damaged_record(tmp_path: Path, write_match: WriteMatch) -> None:
