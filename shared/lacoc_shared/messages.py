@@ -318,7 +318,8 @@ class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
     """Time since the seat's join or last valid command; None: nothing was heard of it."""
     commands_hz: float
     refused: dict[str, int]
-    """Number of refused messages by reason, a name of `count.*` such as "bad-seal"."""
+    """Number of refused messages by reason, a name of `count.*` such as "bad-seal", since another
+    team had the seat."""
     round_trip_p50_ms: float | None = None
     """Time from a frame to the beat that has the seat's answer to it, by the court's clock: the
     median of the last 10 s; None: not known."""

@@ -225,6 +225,21 @@ def test_a_broken_file_is_refused_where_it_would_be_used() -> None:
     assert isinstance(inbox.join(LEFT, BROKEN), Refusal)
 
 
+def test_the_counts_of_refusals_are_the_teams_own() -> None:
+    """Another team on the seat begins with no refusals; the same team that comes back does not."""
+    inbox = make()
+    take_seat(inbox)
+    inbox.join(LEFT, b"nonsense")
+    take_seat(inbox)
+    assert refusals(inbox) == {"bad-bytes": 1}
+    inbox.join(LEFT, join_bytes(name="Green"))
+    inbox.seated(LEFT)
+    assert refusals(inbox) == {}
+    inbox.join(LEFT, b"nonsense")
+    assert refusals(inbox) == {"bad-bytes": 1}
+    assert inbox.doors()[LEFT].refused == {"bad-bytes": 2}
+
+
 def test_a_seat_without_a_token_is_closed() -> None:
     """A seat that has no token in the contest can't be joined."""
     inbox = Inbox(KEYS, SEATS, {}, check_files, secrets.token_bytes)

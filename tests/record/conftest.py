@@ -161,11 +161,23 @@ def write_match(
 ) -> Callable[..., Path]:
     """Give a function that writes a match of 40 beats and returns its segment's path."""
 
-    def write(folder: Path, close: bool = True) -> Path:
+    def write(folder: Path, close: bool = True, gives_s: float = 0.0) -> Path:
         writer = RecordWriter(folder, header())
         writer.sheet(0, sheet)
         writer.scene(0, scene)
         writer.input(0, JoinSeat(0, "Ants", SentFile("robot.toml", b""), None, None, "hash"))
+        if gives_s:
+            writer.event(
+                Event(
+                    number=1,
+                    match=1,
+                    beat=0,
+                    clock_ticks=0,
+                    kind="decision",
+                    said=say("plain.text", text="time given"),
+                    data={"decision": "clock", "arguments": {"gives_s": gives_s}},
+                )
+            )
         for beat in range(40):
             phase = Phase.READY if beat < 10 else Phase.PLAYING
             if beat % 10 == 3:

@@ -268,7 +268,7 @@ def test_info(tmp_path: Path, write_match: WriteMatch) -> None:
     path = write_match(tmp_path)
     words = CliRunner().invoke(app, ["info", str(path)])
     assert words.exit_code == 0
-    assert "Ants 20, Bees, Inc 16; winner: left; time is up, after 180.00 s" in words.stdout
+    assert "Ants 20, Bees, Inc 16; winner: left; time is up, after 180.00 s of play" in words.stdout
     found = json.loads(CliRunner().invoke(app, ["info", str(path), "--json"]).stdout)
     assert found["teams"] == {"left": "Ants", "right": "Bees, Inc"}
     assert (found["frames"], found["inputs"], found["events"], found["snapshots"]) == (40, 10, 4, 2)
@@ -286,7 +286,31 @@ def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
     assert "none: the match was never finished" in words.stdout
     assert "has no end:" in words.stderr
     found = json.loads(CliRunner().invoke(app, ["info", str(path), "--json"]).stdout)
-    assert (found["complete"], found["result"]) == (False, None)
+    assert (found["complete"], found["lost"], found["result"]) == (False, False, None)
+
+
+def test_info_tells_the_time_played(tmp_path: Path, write_match: WriteMatch) -> None:
+    """Time that the referee gave was played, although the clock does not count it."""
+    path = write_match(tmp_path, gives_s=10.0)
+    words = CliRunner().invoke(app, ["info", str(path)]).stdout
+    assert "after 190.00 s of play (the clock: 180.00 s)" in " ".join(words.split())
+    made = json.loads(export.result_json(Record.read(path)))
+    assert (made["played_s"], made["clock_s"]) == (190.0, 180.0)
+
+
+def test_info_of_a_damaged_record(tmp_path: Path, write_match: WriteMatch) -> None:
+    """`lacoc replay info` says that the result of a damaged record is lost, not that none was."""
+    path = write_match(tmp_path)
+    data = bytearray(path.read_bytes())
+    data[-2500] ^= 0xFF
+    data[-2492] ^= 0xFF
+    path.write_bytes(data)
+    words = CliRunner().invoke(app, ["info", str(path)])
+    assert "lost: it stood in the part of the record that can't be read" in words.stdout
+    assert "no: a part of the record is lost or damaged" in words.stdout
+    assert "never finished" not in words.stdout
+    with pytest.raises(UserError, match="The result of match m is lost"):
+        export.result_json(Record.read(path))
 
 
 def test_export_writes_all_there_is(tmp_path: Path, write_match: WriteMatch) -> None:

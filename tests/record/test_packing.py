@@ -1,5 +1,6 @@
 """Packing: segments become one file, and are removed only if it has each of their messages."""
 
+import random
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
@@ -16,6 +17,7 @@ from lacoc_shared.record import files, pack
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header
 from lacoc_shared.record.writer import RecordWriter
+from lacoc_shared.seat import BEATS_PER_S
 
 WriteMatch = Callable[..., Path]
 WriteSegments = Callable[[Path], list[Path]]
@@ -49,6 +51,29 @@ def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) 
         summary = make_reader(file, validate_crcs=True).get_summary()
     assert summary is not None
     assert summary.chunk_indexes[0].compression == "zstd"
+
+
+def test_damage_loses_only_some_seconds_before_it(
+    tmp_path: Path, header: Callable[..., Header]
+) -> None:
+    """A packed match of a minute is readable up to a few seconds before a damaged byte."""
+    chance = random.Random(1)
+    writer = RecordWriter(tmp_path, header())
+    beats = 60 * BEATS_PER_S
+    for beat in range(beats):
+        writer.snapshot(beat, chance.randbytes(320))  # as many bytes as a frame
+    writer.close()
+    pack.pack([writer.path], tmp_path / "m.mcap")
+    with (tmp_path / "m.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    chunks = summary.chunk_indexes
+    data = bytearray((tmp_path / "m.mcap").read_bytes())
+    data[chunks[round(0.7 * len(chunks))].chunk_start_offset + 100] ^= 1
+    (tmp_path / "m.mcap").write_bytes(data)
+    record = Record.read(tmp_path / "m.mcap")
+    assert record.lost
+    assert 0.5 * beats < record.last_beat < 0.75 * beats
 
 
 def test_packing_that_was_interrupted_is_repeated(

@@ -476,6 +476,23 @@ def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: P
     assert words in words_of(record)
 
 
+def test_damage_beside_the_chunks_is_told(tmp_path: Path, packed: Path) -> None:
+    """Damage in the index or the footer of a packed file is told; the match is read whole."""
+    whole = packed.read_bytes()
+    places = {opcode: at for at, opcode in _records_of(whole)}
+    path = tmp_path / "m.mcap"
+    for opcode in (Opcode.MESSAGE_INDEX, Opcode.STATISTICS, Opcode.CHUNK_INDEX, Opcode.FOOTER):
+        data = bytearray(whole)
+        data[places[opcode] + 20] ^= 1
+        path.write_bytes(data)
+        record = Record.read(path)
+        assert record.lost, opcode
+        assert "not the file's index" in words_of(record)
+        assert len(record.frames) == 40
+    path.write_bytes(whole[:-1])
+    assert Record.read(path).lost
+
+
 def test_a_packed_file_that_was_not_copied_whole_is_lost(tmp_path: Path, packed: Path) -> None:
     """The first half of a packed file can't be read, and the message names the possible causes."""
     path = tmp_path / "part.mcap"

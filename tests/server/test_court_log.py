@@ -89,3 +89,13 @@ def test_slow_beats_are_told_now_and_then() -> None:
     told = [line for line in lines if line["kind"] == "slow"]
     assert [line["count"] for line in told] == [1, 30, 30, 30]
     assert told[1]["event"].startswith("Slow beats: 30 new, 31 in all")
+
+
+def test_refusals_of_the_next_team_are_logged() -> None:
+    """Counts that begin again for another team are logged from zero."""
+    after = msgspec.structs.replace(LEFT, refused={"flood": 1})
+    with capture_logs() as lines:
+        log = CourtLog("main")
+        for seat in (LEFT, after, after):
+            log.health("m-1", msgspec.structs.replace(HEALTH, seats=(seat,)))
+    assert [line["count"] for line in lines if line["kind"] == "refused"] == [2, 1]

@@ -94,16 +94,19 @@ def _told(record: Record, verdict: Verdict) -> dict[str, Any]:
 
 def _lines(record: Record, verdict: Verdict) -> list[str]:
     lines: list[Phrase | str | None] = [
+        # Whoever reads only the first line must not take a damaged record for a proven one.
+        say("verdict.lost", cut=record.cut) if record.lost else None,
         say(
             "verdict.line",
             verdict=verdict.said,
             beats=verdict.beats,
             frames=verdict.frames,
             sections=verdict.sections,
-        )
+        ),
     ]
     if verdict.kind is not Kind.SAME:
         there = record.headers[-1].arithmetic
         lines.append(other_arithmetic(there, arithmetic.here()))
-    lines.append(say("verdict.lost", cut=record.cut) if record.lost else record.cut)
+    if not record.lost:
+        lines.append(record.cut)
     return [render(line) for line in lines if line]

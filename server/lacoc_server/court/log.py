@@ -15,6 +15,9 @@ _TROUBLE = frozenset({"advice", "fault", "silent"})
 _SLOW_BEATS = 30 * BEATS_PER_S
 """Fewest beats between two reports of slow beats; a busy machine has some every second."""
 
+_Refused = tuple[str, str]
+"""A seat ("": the referee's desk) and why its messages were refused."""
+
 
 class CourtLog:
     """The log of one court.
@@ -25,7 +28,7 @@ class CourtLog:
 
     def __init__(self, court: str) -> None:
         self._log = log.get(court=court)
-        self._refused: Counter[tuple[str, str]] = Counter()
+        self._refused: Counter[_Refused] = Counter()
         self._slow_beats = 0
         self._slow_told = (0, 0)
         """Match and beat of the last report of slow beats."""
@@ -43,7 +46,7 @@ class CourtLog:
         """Log what went wrong since the last call: refusals, slow beats, the disk."""
         write = self._log.bind(match_id=match_id, match=health.match, beat=health.beat).warning
         refused = Counter(dict(_refused(health)))
-        for (seat, why), count in (refused - self._refused).items():
+        for (seat, why), count in _grown(refused, self._refused).items():
             said = say("log.refused", seat=seat, why=why, count=count)
             if not seat:
                 said = say("log.refused-at-desk", why=why, count=count)
@@ -80,7 +83,12 @@ def _write(write: Callable[..., object], said: Phrase, **fields: object) -> None
     write(render(said), code=said.code, **fields)
 
 
-def _refused(health: Health) -> Iterator[tuple[tuple[str, str], int]]:
+def _grown(now: Counter[_Refused], before: Counter[_Refused]) -> Counter[_Refused]:
+    """Return by how much counts have grown; one that is smaller began again for another team."""
+    return now - Counter({which: count for which, count in before.items() if now[which] >= count})
+
+
+def _refused(health: Health) -> Iterator[tuple[_Refused, int]]:
     for seat in health.seats:
         yield from (((seat.id, why), count) for why, count in seat.refused.items())
     yield from ((("", why), count) for why, count in health.dropped.items())

@@ -127,7 +127,7 @@ class CourtMetrics(Collector):
             for quantile, ms in (("0.5", seat.round_trip_p50_ms), ("0.95", seat.round_trip_p95_ms)):
                 if ms is not None:
                     trip.add_metric([*where, quantile], ms / 1000)
-            for why, count in seat.refused.items():
+            for why, count in door.refused.items():
                 refused.add_metric([*where, why], count)
         for why, count in health.dropped.items():
             refused.add_metric([self._court, "", why], count)

@@ -91,6 +91,13 @@ class _Seat:
         self.joined = joined
         self.heard_s: float | None = None
         self.refused: Counter[str] = Counter()
+        """Number of refusals by `Why`, since the court was started."""
+        self.former: Counter[str] = Counter()
+        """What `refused` was when the present team took the seat from another one."""
+        self.team = ""
+        """The team whose join the match accepted last; "": none since the court was started."""
+        self.asking = ""
+        """The team of the newest join."""
         self.heard = 0
         """Number of valid commands."""
         self.notes: tuple[Phrase, ...] = ()
@@ -229,6 +236,7 @@ class Inbox:
         Bad files keep nobody out of a match that goes on without them.
         """
         held = self._held[seat.index]
+        seat.asking = join.name
         try:
             checked = self._check_files(join, held)
         except FileRefused as refused:
@@ -264,6 +272,9 @@ class Inbox:
         """
         seat = self._seats[index]
         number, secret = self._sessions.begin(index)
+        if seat.team not in ("", seat.asking):
+            seat.former = Counter(seat.refused)
+        seat.team = seat.asking
         seat.joined = True
         seat.heard_s = self._now_s
         told = (*seat.notes, *notes)
@@ -309,7 +320,7 @@ class Inbox:
             session=self._sessions.holder(seat.index),
             heard_ms=None if seat.heard_s is None else (now_s - seat.heard_s) * 1000,
             commands_hz=recent / _RATE_WINDOW_S,
-            refused=dict(seat.refused),
+            refused=dict(seat.refused - seat.former),
             round_trip_p50_ms=trip and trip.p50_s * 1000,
             round_trip_p95_ms=trip and trip.p95_s * 1000,
             late=self.links.late(seat.index),

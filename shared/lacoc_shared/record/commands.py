@@ -19,7 +19,6 @@ from lacoc_shared.messages import HealthVerdict, LinkVerdict
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.export import tables as exports
 from lacoc_shared.record.reader import Record
-from lacoc_shared.record.schema import Result
 from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase, render, say
 
@@ -162,8 +161,10 @@ def _summary(record: Record) -> dict[str, Any]:
         "events": len(record.events),
         "snapshots": len(record.snapshots),
         "complete": not record.cut,
+        "lost": record.lost,
         "cut": render(record.cut) if record.cut else "",
         "result": msgspec.to_builtins(record.result),
+        "given_s": record.given_s,
         "health": msgspec.to_builtins(record.health),
     }
 
@@ -179,10 +180,10 @@ def _keys(record: Record, seat: int) -> dict[str, int]:
     }
 
 
-def _how_it_ran(health: HealthVerdict | None) -> Phrase:
+def _how_it_ran(health: HealthVerdict | None, lost: bool) -> Phrase:
     """Say how well the match ran."""
     if health is None:
-        return say("info.not-measured")
+        return say("info.result-lost" if lost else "info.not-measured")
     measured = say(
         "info.measured",
         factor=health.real_time_factor,
@@ -210,20 +211,20 @@ def _link(seat: LinkVerdict) -> Phrase:
     )
 
 
-def _result(result: Result | None) -> Phrase:
+def _result(record: Record) -> Phrase:
+    result = record.result
     if result is None:
-        return say("info.no-result")
+        return say("info.result-lost" if record.lost else "info.no-result")
     pairs = zip(result.teams, result.scores, strict=False)
     scores = [say("info.score", team=team, score=score) for team, score in pairs]
-    why, clock_s = result.reason, result.clock_s
-    if result.official:
-        return say("info.result", scores=scores, winner=result.official, why=why, clock_s=clock_s)
+    given_s = record.given_s
     return say(
-        "info.result-not-official",
+        "info.result" if result.official else "info.result-not-official",
         scores=scores,
-        winner=result.computed,
-        why=why,
-        clock_s=clock_s,
+        winner=result.official or result.computed,
+        why=result.reason,
+        played_s=result.clock_s + given_s,
+        clock_s=result.clock_s if given_s else None,
     )
 
 
@@ -255,13 +256,15 @@ def _lines(record: Record, found: dict[str, Any]) -> list[tuple[Phrase, Phrase |
     )
     versions = ", ".join(f"{name} {version}" for name, version in found["versions"].items())
     complete = say("word.yes") if found["complete"] else say("word.no")
+    if record.lost:
+        complete = say("info.part-lost")
     return [
         (say("info-name.match"), match),
         (say("info-name.court"), found["court"]),
         (say("info-name.begun"), found["started"]),
         (say("info-name.teams"), say("plain.sentences", sentences=teams)),
-        (say("info-name.result"), _result(record.result)),
-        (say("info-name.ran"), _how_it_ran(record.health)),
+        (say("info-name.result"), _result(record)),
+        (say("info-name.ran"), _how_it_ran(record.health, record.lost)),
         (say("info-name.keys"), say("plain.sentences", sentences=keys)),
         (say("info-name.length"), say("info.length", seconds=beats * BEAT_S, beats=beats)),
         (say("info-name.holds"), holds),

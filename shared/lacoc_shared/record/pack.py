@@ -21,6 +21,11 @@ from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE
 from lacoc_shared.record.stream import Stop, walk_bytes
 from lacoc_shared.words import say
 
+CHUNK_BYTES = 1 << 17
+"""Size of a chunk, unpacked: seven seconds of play. Damage loses the match from the damaged chunk
+on. Chunks of this size make a file 1 % larger than those of 1 MiB; with 64 KiB it is 6 %.
+"""
+
 _Message = tuple[str, int, bytes]
 """Topic, beat and bytes."""
 
@@ -133,7 +138,8 @@ def _messages(paths: Sequence[Path]) -> tuple[list[_Message], Stop | None]:
 
 def _write(messages: Sequence[_Message], path: Path) -> None:
     with path.open("wb") as file:
-        writer = Writer(file)
+        # The checksum of all data finds damage between the chunks, each of which has its own.
+        writer = Writer(file, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
         writer.start(profile=PROFILE, library=f"lacoc {__version__}")
         channels = {
             topic: writer.register_channel(topic, "msgpack" if kind else "", 0)

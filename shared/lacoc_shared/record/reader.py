@@ -67,6 +67,19 @@ class Record:
         """The first segment's header."""
         return self.headers[0]
 
+    @property
+    def given_s(self) -> float:
+        """How many seconds the referee gave on the clock; a negative number took time away."""
+        given_s = 0.0
+        for event in self.events:
+            arguments = event.data.get("arguments")
+            if event.data.get("decision") == "clock" and isinstance(arguments, dict):
+                # Records of protocol 1 have `seconds`, which took time away.
+                for name, sign in (("gives_s", 1), ("seconds", -1)):
+                    value = arguments.get(name)
+                    given_s += sign * value if isinstance(value, int | float) else 0.0
+        return given_s
+
     def sheet_at(self, beat: int) -> Sheet | None:
         """Return the sheet that was valid at a beat; None before the first."""
         return _newest(beat, self.sheets)

@@ -1,6 +1,7 @@
 """Read one file of a record, message by message, in the order in which they were written."""
 
 import struct
+import zlib
 from collections.abc import Callable, Iterator
 from io import BytesIO
 from pathlib import Path
@@ -12,7 +13,7 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, DataEnd, McapRecord, Message
 from mcap.records import Header as FileHeader
-from mcap.stream_reader import StreamReader, breakup_chunk
+from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import codec
@@ -37,9 +38,13 @@ DAMAGE = (
 
 _MAX_BYTES = 1 << 26
 """Largest message or chunk of a record. The largest that courts write are a scene of about 30 kB
-and a chunk of 1 MiB."""
+and a chunk of 128 KiB."""
 _RECORD_HEAD_BYTES = 9
 """Size of an MCAP record's opcode and length."""
+_CRC_BYTES = 4
+_ENDING_BYTES = _RECORD_HEAD_BYTES + 16 + _CRC_BYTES + len(MCAP0_MAGIC)
+"""Size of the footer, whose last field is the checksum of the summary, and of the magic after it.
+"""
 _UNPACKED_BYTES, _UNPACKED_RATIO = 1 << 22, 50
 """A file may unpack to at most this many bytes plus this many times its own size. Real matches
 unpack to three or four times their size, even if nothing happens at the court."""
@@ -85,7 +90,7 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
     """Pass the bytes of every whole message of a file to `take`, without decoding them.
 
     A packed file's messages are in chunks, each with a checksum: nothing in a damaged chunk
-    is passed on.
+    is passed on. Other checksums find damage in the index of the chunks.
 
     Args:
         path: a segment, or a packed file.
@@ -117,11 +122,13 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
             elif isinstance(record, Channel):
                 topics[record.id] = record.topic
             elif isinstance(record, DataEnd):
-                return None
+                return _damaged_index() if _is_index_damaged(data, file.tell()) else None
             elif isinstance(record, FileHeader) and record.profile != PROFILE:
                 raise UserError(say("recording.other-mcap", file=str(path)))
             whole = file.tell()
     except DAMAGE as error:
+        if isinstance(error, CRCValidationError) and isinstance(error.record, DataEnd):
+            return _damaged_index()
         if not _is_cut(data, whole):
             lost, told = len(data) - whole, printable(str(error), 200)
             fault = say("cut.damaged", byte=whole, bytes=len(data), error=told, lost=lost)
@@ -130,6 +137,26 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
         say("cut.no-end", lost=max(0, len(data) - whole) or None),
         damaged=_is_packed(data),  # a file is packed whole before it gets its name
     )
+
+
+def _damaged_index() -> Stop:
+    return Stop(say("cut.index"), damaged=True)
+
+
+def _is_index_damaged(data: bytes, at: int) -> bool:
+    """Say whether the summary, which begins at a byte, is damaged or cut.
+
+    Only a packed file has an index and a checksum there.
+    """
+    if not _is_packed(data):
+        return False
+    if len(data) < at + _ENDING_BYTES or not data.endswith(MCAP0_MAGIC):
+        return True
+    end = len(data) - len(MCAP0_MAGIC) - _CRC_BYTES
+    if data[len(data) - _ENDING_BYTES] != Opcode.FOOTER:
+        return True
+    checksum = int.from_bytes(data[end : end + _CRC_BYTES], "little")
+    return checksum not in (0, zlib.crc32(data[at:end]))
 
 
 def _is_packed(data: bytes) -> bool:

@@ -64,14 +64,21 @@ def events_csv(record: Record) -> bytes:
 
 
 def result_json(record: Record) -> bytes:
-    """Return the result as JSON; `health` says how well the match ran, and is null if headless.
+    """Return the result as JSON.
+
+    It has two more entries: `played_s` is `clock_s` and the time that the referee gave; `health`
+    says how well the match ran, and is null if headless.
 
     Raises:
         UserError: if the match has no result.
     """
     if record.result is None:
-        raise UserError(say("export.no-result", match=record.header.match_id))
-    found = msgspec.structs.asdict(record.result) | {"health": record.health}
+        why = "export.result-lost" if record.lost else "export.no-result"
+        raise UserError(say(why, match=record.header.match_id))
+    found = msgspec.structs.asdict(record.result) | {
+        "played_s": record.result.clock_s + record.given_s,
+        "health": record.health,
+    }
     return msgspec.json.format(msgspec.json.encode(found), indent=2) + b"\n"
 
 
