@@ -136,7 +136,10 @@ function SlotRow({ slot, files }: { slot: Slot; files: FilesNow }) {
   );
 }
 
-/** The keys of a level B that is made here: which postures each runs through. */
+/**
+ * The keys of a level B that is made here: which postures each runs through. All keys are always
+ * there: a row that came or went as a field loses the focus would move the button under a click.
+ */
 function Sequences() {
   const keys = sequences.value;
   const change = (digit: number, digits: string) => {
@@ -147,40 +150,36 @@ function Sequences() {
     while (changed.length > 1 && !changed.at(-1)) changed.pop();
     sequences.value = changed;
   };
-  // One more than there are, to add a key.
-  const shown = keys.length < MAX_KEYS ? [...keys, ""] : keys;
   return (
     <fieldset class="sequences">
       <legend>{t("files.sequences")}</legend>
       <p class="muted">{t("files.sequencesHint")}</p>
       <div>
-        {shown.map((digits, digit) => (
+        {Array.from({ length: MAX_KEYS }, (_, digit) => (
           <Sequence
             key={digit}
             digit={digit}
-            digits={digits}
-            isNew={digit === keys.length}
+            digits={keys[digit] ?? ""}
             onChange={(typed) => change(digit, typed)}
           />
         ))}
       </div>
-      {keys.join() !== SAMPLE_SEQUENCES.join() && (
-        <button
-          class="button quiet small"
-          type="button"
-          onClick={() => {
-            sequences.value = SAMPLE_SEQUENCES;
-          }}
-        >
-          {t("files.sampleSequences")}
-        </button>
-      )}
+      <button
+        class="button quiet small"
+        type="button"
+        disabled={keys.join() === SAMPLE_SEQUENCES.join()}
+        onClick={() => {
+          sequences.value = SAMPLE_SEQUENCES;
+        }}
+      >
+        {t("files.sampleSequences")}
+      </button>
     </fieldset>
   );
 }
 
 /** One key's postures. What is being typed stays, also when the page is drawn again meanwhile. */
-function Sequence({ digit, digits, isNew, onChange }: SequenceProps) {
+function Sequence({ digit, digits, onChange }: SequenceProps) {
   const draft = useSignal<string | null>(null);
   return (
     <label>
@@ -192,7 +191,7 @@ function Sequence({ digit, digits, isNew, onChange }: SequenceProps) {
         inputMode="numeric"
         autocomplete="off"
         aria-label={t("files.sequence", { digit })}
-        placeholder={isNew ? t("files.newKey") : ""}
+        placeholder="–"
         onInput={(event) => {
           draft.value = event.currentTarget.value;
         }}
@@ -208,7 +207,6 @@ function Sequence({ digit, digits, isNew, onChange }: SequenceProps) {
 interface SequenceProps {
   digit: number;
   digits: string;
-  isNew: boolean;
   onChange: (digits: string) => void;
 }
 
