@@ -17,6 +17,8 @@ import {
 import type { Player } from "../../core/player";
 import { Level, MAX_KEYS, Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
+import { Mistakes } from "../../ui/mistakes";
+import { isRoomy } from "../../ui/screen";
 import { toast } from "../../ui/toasts";
 import { ARROW_OF } from "./pad";
 
@@ -215,37 +217,47 @@ export function FilesChanged({ court, player, alone }: ChangedProps) {
   const own = court.ownFiles.value;
   const isOpen = useComputed(() => alone || canChange(court)).value;
   const chosen = chosenNames.value;
+  /** The version that was put away. */
+  const putAway = useSignal<number | null>(null);
   const isNew = own && own.version > (own.used ?? own.version);
   if (!isNew || !isOpen || chosen.postures || chosen.locomotion) return null;
+  if (own.version === putAway.value) return null;
   const names = own.changed.join(", ");
-  if (own.error) {
-    return (
-      <section class="changed wrong" role="alert">
+  const count = own.mistakes.length;
+  return (
+    <section class={`changed${own.error ? " wrong" : ""}`} role={own.error ? "alert" : "status"}>
+      <button
+        class="button quiet small close"
+        type="button"
+        aria-label={t("common.close")}
+        title={t("common.close")}
+        onClick={() => {
+          putAway.value = own.version;
+        }}
+      >
+        ×
+      </button>
+      {!own.error && (
+        <>
+          <p>{t("files.changed", { names })}</p>
+          {alone && <p class="muted">{t("files.beginsAnew")}</p>}
+          <button class="button strong" type="button" onClick={() => void player.rejoin()}>
+            {t("files.useNew")}
+          </button>
+        </>
+      )}
+      {own.error && count === 0 && (
         <p>
           {t("files.changedWrong", { names })} {said(own.error)}
         </p>
-        <ul>
-          {own.mistakes.map((one, index) => (
-            <li key={index}>
-              {t("files.mistake", {
-                file: one.file,
-                row: one.row ?? one.field ?? "–",
-                column: one.column ?? "–",
-                found: said(one.found),
-                expected: said(one.expected),
-              })}
-            </li>
-          ))}
-        </ul>
-      </section>
-    );
-  }
-  return (
-    <section class="changed" role="status">
-      <p>{t("files.changed", { names })}</p>
-      <button class="button strong" type="button" onClick={() => void player.rejoin()}>
-        {t("files.useNew")}
-      </button>
+      )}
+      {own.error && count > 0 && (
+        <details key={own.version} open={isRoomy.value}>
+          <summary>{t("files.mistakes", { names, count })}</summary>
+          <p class="muted">{t("files.changedWrong", { names })}</p>
+          <Mistakes mistakes={own.mistakes} />
+        </details>
+      )}
     </section>
   );
 }
