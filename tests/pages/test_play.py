@@ -77,17 +77,19 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
     page.sees(".files li:nth-child(2)", "LocoTra-data-new.txt")
     page.join(TOKENS["left"])
     page.sees(".refusal", "Your files have 2 mistakes.")
-    rows = page.find(".mistakes tbody tr")
-    assert rows.nth(0).inner_text().split("\t") == [
-        *("LocoTra-data-new.txt", "3", "17", "16 (L,C)", '"x"', "an angle from -150 to 150 degrees")
+    rows = page.find(".mistakes li")
+    assert rows.nth(0).locator("p").all_inner_texts() == [
+        "LocoTra-data-new.txt · row 3 · column 17 · joint 16 (L,C)",
+        '"x" expected: an angle from -150 to 150 degrees',
     ]
-    assert "17 (L,F)" in rows.nth(1).inner_text()
+    assert "joint 17 (L,F)" in rows.nth(1).inner_text()
     page.sees("main[data-standing=outside]")
 
     sample = sample_gait_files("hexapod").locomotion
     assert sample is not None
     bad.write_bytes(sample.data)
     page.find("input[type=file]").set_input_files(bad)
+    page.misses(".refusal")
     page.page.click("button[type=submit]")
     page.stands("seated")
     page.is_told("Press Ready when you are ready")

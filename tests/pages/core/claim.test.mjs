@@ -34,7 +34,7 @@ const kept = { is: "kept" };
 
 const EVENTS = [join, change, renew, leave, forget, open, granted, broke, rested, taken, released]
   .concat([kept, ...[busy, no, wrongToken, badFile].map(failed)])
-  .concat({ is: "join", wish: other });
+  .concat({ is: "mended" }, { is: "join", wish: other });
 
 /** Returns the claim after some events, with the effects of the last event. */
 function after(claim, ...events) {
@@ -66,6 +66,14 @@ function reachable() {
   }
   return steps;
 }
+
+test("what was wrong with files is old as soon as other files are chosen", () => {
+  const refused = after(fresh, join, open, failed(badFile));
+  assert.equal(refused.refusal, badFile);
+  assert.equal(after(refused, { is: "mended" }).refusal, null);
+  const unknown = after(fresh, join, open, failed(wrongToken));
+  assert.equal(after(unknown, { is: "mended" }).refusal, wrongToken);
+});
 
 test("whatever happens, the claim makes sense", () => {
   const steps = reachable();

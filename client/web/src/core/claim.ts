@@ -35,6 +35,8 @@ export type ClaimEvent =
   | { is: "leave" }
   /** The person goes back to the card. */
   | { is: "forget" }
+  /** The files are others than those that were sent: what was wrong in those is old. */
+  | { is: "mended" }
   /** There is a court that can be asked for the seat, and the page does not hold it. */
   | { is: "open" }
   /** The court grants what was asked for. `index`: of the seat. */
@@ -91,7 +93,7 @@ const FINAL: ReadonlySet<string> = new Set([...ABOUT_TOKEN, "refused.files-too-l
 
 /** Events as the table has them: a failed join is one of three. */
 type Trigger =
-  | Exclude<ClaimEvent["is"], "failed" | "rested" | "change">
+  | Exclude<ClaimEvent["is"], "failed" | "rested" | "mended" | "change">
   | "change"
   | "renew"
   /** The connection broke. */
@@ -214,6 +216,7 @@ function answer(claim: Claim, event: ClaimEvent): Claim {
 function triggerOf(claim: Claim, event: ClaimEvent): Trigger | null {
   switch (event.is) {
     case "rested":
+    case "mended":
       return null;
     case "change":
       return event.renews ? "renew" : "change";
@@ -231,6 +234,7 @@ function triggerOf(claim: Claim, event: ClaimEvent): Trigger | null {
 /** The data of the claim after an event that leads to `state`. */
 function remembered(claim: Claim, event: ClaimEvent, state: ClaimState): Partial<Claim> {
   if (event.is === "join") return { wish: event.wish, tries: 0, refusal: null, why: null };
+  if (event.is === "mended") return claim.refusal?.mistakes.length ? { refusal: null } : {};
   if (WANTS.has(state)) return event.is === "granted" ? { wish: event.wish, why: null } : {};
   const ended = claim.wish;
   return {

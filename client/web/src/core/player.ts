@@ -13,7 +13,7 @@ import {
 } from "./claim";
 import type { Refused } from "./connection";
 import type { Court } from "./court";
-import { checkSizes, chosenFiles, chosenSequences } from "./files";
+import { checkSizes, chosenFiles, chosenNames, chosenSequences } from "./files";
 import type { Phrase } from "./phrase";
 import { type PosData, PosDataLog } from "./posdata";
 import { type RefusedKey, SentKeys } from "./sent_keys";
@@ -209,6 +209,12 @@ export class Player {
     });
     const keeps = computed(() => keptWish(this.claim.value));
     effect(() => tab.write(KEPT_AS, keeps.value && JSON.stringify(keeps.value)));
+    const version = computed(() => court.ownFiles.value?.version);
+    effect(() => {
+      chosenNames.value; // changes also when a file is replaced by one of the same name
+      version.value;
+      untracked(() => this.tell({ is: "mended" }));
+    });
     effect(() => this.heed());
     effect(() => {
       const frame = court.frame.value;

@@ -84,11 +84,12 @@ export const play = {
     "On your disk, {names} has changed and can't be used.",
     "{names} が変更されましたが、このままでは使えません。",
   ],
-  "files.mistake": [
-    "{file}, row {row}, column {column}: {found}; expected: {expected}",
-    "{file}・{row} 行 {column} 列：{found}（正しい値：{expected}）",
-  ],
+  "files.mistakes": ["Mistakes in {names}: {count}", "{names} の誤り：{count} か所"],
   "files.useNew": ["Use it now", "今すぐ使う"],
+  "files.beginsAnew": [
+    "Practice then starts again: place, clock, distance and Pos-data.txt begin at zero.",
+    "使うと練習は最初からになり、位置・時計・距離・Pos-data.txt も新しくなります。",
+  ],
   "files.remove": ["Remove {name}", "{name} を外す"],
   "files.tooLarge": [
     "{name} is too large for a gait or a robot.",

@@ -1,4 +1,4 @@
-/** Mistakes of a student's file as a table. */
+/** Mistakes of a student's file as a list: where each is, what was found and what was expected. */
 
 import type { Mistake } from "../core/wire";
 import { said, t } from "../i18n";
@@ -19,33 +19,28 @@ export function Mistakes({ mistakes, onPoint }: Props) {
       onBlur: () => onPoint(null),
     };
   return (
-    <table class="mistakes">
-      <thead>
-        <tr>
-          <th>{t("common.file")}</th>
-          <th>{t("common.row")}</th>
-          <th>{t("common.column")}</th>
-          <th>{t("common.joint")}</th>
-          <th>{t("common.found")}</th>
-          <th>{t("common.expected")}</th>
-        </tr>
-      </thead>
-      <tbody>
-        {mistakes.map((one, index) => (
-          <tr key={index} {...pointed(one)}>
-            <td>
-              {one.file}
-              {/* The sheet and the cell of a workbook. */}
-              {one.row != null && one.field && <small>{one.field}</small>}
-            </td>
-            <td>{one.row ?? one.field ?? ""}</td>
-            <td>{one.column ?? ""}</td>
-            <td>{one.joint == null ? "" : `${one.joint}${one.leg ? ` (${one.leg})` : ""}`}</td>
-            <td>{said(one.found)}</td>
-            <td>{said(one.expected)}</td>
-          </tr>
-        ))}
-      </tbody>
-    </table>
+    <ul class="mistakes">
+      {mistakes.map((one, index) => (
+        <li key={index} {...pointed(one)}>
+          <p>{placeOf(one)}</p>
+          <p>
+            <strong>{said(one.found)}</strong>{" "}
+            <span class="muted">{t("mistake.expected", { expected: said(one.expected) })}</span>
+          </p>
+        </li>
+      ))}
+    </ul>
   );
+}
+
+/** The file, the sheet and cell of a workbook or the entry of a robot file, the row and so on. */
+function placeOf({ file, field, row, column, joint, leg }: Mistake): string {
+  const parts = [
+    file,
+    field,
+    row != null && t("mistake.row", { row }),
+    column != null && t("mistake.column", { column }),
+    joint != null && t("mistake.joint", { joint: leg ? `${joint} (${leg})` : joint }),
+  ];
+  return parts.filter(Boolean).join(" · ");
 }

@@ -17,6 +17,8 @@ import {
 import type { Player } from "../../core/player";
 import { Level, MAX_KEYS, Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
+import { Mistakes } from "../../ui/mistakes";
+import { isRoomy } from "../../ui/screen";
 import { toast } from "../../ui/toasts";
 import { ARROW_OF } from "./pad";
 
@@ -136,7 +138,10 @@ function SlotRow({ slot, files }: { slot: Slot; files: FilesNow }) {
   );
 }
 
-/** The keys of a level B that is made here: which postures each runs through. */
+/**
+ * The keys of a level B that is made here: which postures each runs through. All keys are always
+ * there: a row that came or went as a field loses the focus would move the button under a click.
+ */
 function Sequences() {
   const keys = sequences.value;
   const change = (digit: number, digits: string) => {
@@ -147,40 +152,36 @@ function Sequences() {
     while (changed.length > 1 && !changed.at(-1)) changed.pop();
     sequences.value = changed;
   };
-  // One more than there are, to add a key.
-  const shown = keys.length < MAX_KEYS ? [...keys, ""] : keys;
   return (
     <fieldset class="sequences">
       <legend>{t("files.sequences")}</legend>
       <p class="muted">{t("files.sequencesHint")}</p>
       <div>
-        {shown.map((digits, digit) => (
+        {Array.from({ length: MAX_KEYS }, (_, digit) => (
           <Sequence
             key={digit}
             digit={digit}
-            digits={digits}
-            isNew={digit === keys.length}
+            digits={keys[digit] ?? ""}
             onChange={(typed) => change(digit, typed)}
           />
         ))}
       </div>
-      {keys.join() !== SAMPLE_SEQUENCES.join() && (
-        <button
-          class="button quiet small"
-          type="button"
-          onClick={() => {
-            sequences.value = SAMPLE_SEQUENCES;
-          }}
-        >
-          {t("files.sampleSequences")}
-        </button>
-      )}
+      <button
+        class="button quiet small"
+        type="button"
+        disabled={keys.join() === SAMPLE_SEQUENCES.join()}
+        onClick={() => {
+          sequences.value = SAMPLE_SEQUENCES;
+        }}
+      >
+        {t("files.sampleSequences")}
+      </button>
     </fieldset>
   );
 }
 
 /** One key's postures. What is being typed stays, also when the page is drawn again meanwhile. */
-function Sequence({ digit, digits, isNew, onChange }: SequenceProps) {
+function Sequence({ digit, digits, onChange }: SequenceProps) {
   const draft = useSignal<string | null>(null);
   return (
     <label>
@@ -192,7 +193,7 @@ function Sequence({ digit, digits, isNew, onChange }: SequenceProps) {
         inputMode="numeric"
         autocomplete="off"
         aria-label={t("files.sequence", { digit })}
-        placeholder={isNew ? t("files.newKey") : ""}
+        placeholder="–"
         onInput={(event) => {
           draft.value = event.currentTarget.value;
         }}
@@ -208,7 +209,6 @@ function Sequence({ digit, digits, isNew, onChange }: SequenceProps) {
 interface SequenceProps {
   digit: number;
   digits: string;
-  isNew: boolean;
   onChange: (digits: string) => void;
 }
 
@@ -217,37 +217,47 @@ export function FilesChanged({ court, player, alone }: ChangedProps) {
   const own = court.ownFiles.value;
   const isOpen = useComputed(() => alone || canChange(court)).value;
   const chosen = chosenNames.value;
+  /** The version that was put away. */
+  const putAway = useSignal<number | null>(null);
   const isNew = own && own.version > (own.used ?? own.version);
   if (!isNew || !isOpen || chosen.postures || chosen.locomotion) return null;
+  if (own.version === putAway.value) return null;
   const names = own.changed.join(", ");
-  if (own.error) {
-    return (
-      <section class="changed wrong" role="alert">
+  const count = own.mistakes.length;
+  return (
+    <section class={`changed${own.error ? " wrong" : ""}`} role={own.error ? "alert" : "status"}>
+      <button
+        class="button quiet small close"
+        type="button"
+        aria-label={t("common.close")}
+        title={t("common.close")}
+        onClick={() => {
+          putAway.value = own.version;
+        }}
+      >
+        ×
+      </button>
+      {!own.error && (
+        <>
+          <p>{t("files.changed", { names })}</p>
+          {alone && <p class="muted">{t("files.beginsAnew")}</p>}
+          <button class="button strong" type="button" onClick={() => void player.rejoin()}>
+            {t("files.useNew")}
+          </button>
+        </>
+      )}
+      {own.error && count === 0 && (
         <p>
           {t("files.changedWrong", { names })} {said(own.error)}
         </p>
-        <ul>
-          {own.mistakes.map((one, index) => (
-            <li key={index}>
-              {t("files.mistake", {
-                file: one.file,
-                row: one.row ?? one.field ?? "–",
-                column: one.column ?? "–",
-                found: said(one.found),
-                expected: said(one.expected),
-              })}
-            </li>
-          ))}
-        </ul>
-      </section>
-    );
-  }
-  return (
-    <section class="changed" role="status">
-      <p>{t("files.changed", { names })}</p>
-      <button class="button strong" type="button" onClick={() => void player.rejoin()}>
-        {t("files.useNew")}
-      </button>
+      )}
+      {own.error && count > 0 && (
+        <details key={own.version} open={isRoomy.value}>
+          <summary>{t("files.mistakes", { names, count })}</summary>
+          <p class="muted">{t("files.changedWrong", { names })}</p>
+          <Mistakes mistakes={own.mistakes} />
+        </details>
+      )}
     </section>
   );
 }
