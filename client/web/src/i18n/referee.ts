@@ -193,6 +193,7 @@ export const referee = {
     "不良：試合が実時間より遅れています",
   ],
   "courtHealth.advice": ["Rematch advised", "再試合を推奨"],
+  "courtHealth.adviceCount": ["Rematch advised ({count})", "再試合を推奨（{count} 件）"],
   "courtHealth.unknown": ["no news from the court", "コートの情報がありません"],
   "courtHealth.factor": ["Real-time factor", "実時間比"],
   "courtHealth.slow": ["Slow beats", "遅れた回数"],
