@@ -9,6 +9,7 @@ export const common = {
   "phase.6": ["Finished", "試合終了"],
   "phase.7": ["Official", "結果確定"],
   "phase.8": ["Void", "無効試合"],
+  "phase.practice": ["Practice", "練習中"],
   "hint.opens": ["The court is opening", "コートを準備しています"],
   "hint.joining": ["Waiting for {seat} to join", "{seat} の参加を待っています"],
   "hint.notReady": ["{team} has not said ready yet", "{team} がまだ準備完了していません"],

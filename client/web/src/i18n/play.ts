@@ -88,7 +88,7 @@ export const play = {
   "files.useNew": ["Use it now", "今すぐ使う"],
   "files.beginsAnew": [
     "Practice then starts again: place, clock, distance and Pos-data.txt begin at zero.",
-    "使うと練習は最初からになり、位置・時計・距離・Pos-data.txt も新しくなります。",
+    "使うと練習は最初から（位置・時計・距離・Pos-data.txt）やり直しになります。",
   ],
   "files.remove": ["Remove {name}", "{name} を外す"],
   "files.tooLarge": [

@@ -106,8 +106,8 @@ export const referee = {
     "次の結果を確定します：{result}。以後、取り消しはできません。",
   ],
   "ask.next": [
-    "This match closes, and the next one opens with the same teams.",
-    "この試合を終え、同じチームで次の試合を始めます。",
+    "This match closes, and the next one opens. The teams stay, unless they leave.",
+    "この試合を終え、次の試合に移ります。退出しないチームはそのまま参加します。",
   ],
   "ask.abort": [
     "The match ends without a winner. This can't be undone.",
@@ -144,6 +144,7 @@ export const referee = {
     "The match is judged again without this event:",
     "この記録を除いて試合を判定し直すと、次のようになります：",
   ],
+  "ask.takeBackGo": ["Take back", "この記録を取り消す"],
   "ask.trying": ["Asking the court what would change …", "変化をコートに問い合わせています…"],
   "ask.scoreNow": ["Score now", "現在の得点"],
   "ask.scoreThen": ["Score after that", "取り消し後の得点"],
@@ -192,6 +193,7 @@ export const referee = {
     "不良：試合が実時間より遅れています",
   ],
   "courtHealth.advice": ["Rematch advised", "再試合を推奨"],
+  "courtHealth.adviceCount": ["Rematch advised ({count})", "再試合を推奨（{count} 件）"],
   "courtHealth.unknown": ["no news from the court", "コートの情報がありません"],
   "courtHealth.factor": ["Real-time factor", "実時間比"],
   "courtHealth.slow": ["Slow beats", "遅れた回数"],

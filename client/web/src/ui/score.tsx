@@ -63,7 +63,7 @@ function Team({ match, index, points }: TeamProps) {
     >
       <SeatMark sheet={sheet} index={index} />
       <span class="name">
-        {team(sheet, index)}
+        <span class="called">{team(sheet, index)}</span>
         {state && <span class="state">{state}</span>}
       </span>
       {points && <span class="points">{seat.score}</span>}
@@ -96,9 +96,12 @@ function Middle({ match }: { match: Match }) {
 /** The phase in a word. */
 export function PhaseWord({ match }: { match: Match }) {
   const phase = useMemo(() => phaseOf(match), [match]).value;
+  const sheet = match.sheet.value;
+  // Practice: one seat, and no end.
+  const isPractice = phase === Phase.PLAYING && sheet?.seats.length === 1 && !sheet.duration_s;
   return (
     <span class="phase" data-phase={phase}>
-      {t(`phase.${phase}` as "phase.0")}
+      {t(isPractice ? "phase.practice" : (`phase.${phase}` as "phase.0"))}
     </span>
   );
 }

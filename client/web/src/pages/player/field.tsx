@@ -82,17 +82,17 @@ export function Field(props: Props) {
       {/* biome-ignore-end lint/a11y/noNoninteractiveTabindex: see above */}
       {isIn && (
         <>
-          <div class="over-top">
+          <div class="over">
             <ScoreBug match={court} />
             <NextStep {...props} />
+            {!alone && <Countdown court={court} />}
+            {!alone && <ResultCard {...props} />}
           </div>
           <button class="badge" type="button" onClick={onView}>
             {t("views.badge", { number: VIEWS.indexOf(view.value) + 1 })}
             <span>{t(`views.${view.value}`)}</span>
           </button>
           {!alone && <Thirds match={court} />}
-          {!alone && <Countdown court={court} />}
-          {!alone && <ResultCard {...props} />}
           <InputMethodHint {...props} />
           <Curtain {...props} />
         </>
@@ -181,13 +181,14 @@ function ResultCard({ court, player, onSave }: Props) {
         <span data-seat="1">{team(sheet, 1)}</span>
       </p>
       <Explained match={court} />
-      <p class="muted">{t(phase === Phase.FINISHED ? "next.finished" : "next.official")}</p>
-      <ReplayLink match={court} />
-      {player.data && player.data.length > 0 && (
-        <button class="button" type="button" onClick={onSave}>
-          {t("end.save")}
-        </button>
-      )}
+      <div class="acts">
+        <ReplayLink match={court} />
+        {player.data && player.data.length > 0 && (
+          <button class="button" type="button" onClick={onSave}>
+            {t("end.save")}
+          </button>
+        )}
+      </div>
     </section>
   );
 }

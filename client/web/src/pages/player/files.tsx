@@ -18,7 +18,6 @@ import type { Player } from "../../core/player";
 import { Level, MAX_KEYS, Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Mistakes } from "../../ui/mistakes";
-import { isRoomy } from "../../ui/screen";
 import { toast } from "../../ui/toasts";
 import { ARROW_OF } from "./pad";
 
@@ -252,7 +251,7 @@ export function FilesChanged({ court, player, alone }: ChangedProps) {
         </p>
       )}
       {own.error && count > 0 && (
-        <details key={own.version} open={isRoomy.value}>
+        <details>
           <summary>{t("files.mistakes", { names, count })}</summary>
           <p class="muted">{t("files.changedWrong", { names })}</p>
           <Mistakes mistakes={own.mistakes} />

@@ -190,7 +190,7 @@ export function takeBack(event: number): Draft {
     name: "take-back",
     title: t("ask.takeBackTitle", { event }),
     text: t("ask.takeBack"),
-    confirm: t("decide.takeBack"),
+    confirm: t("ask.takeBackGo"),
     event,
     build: () => ({ type: "take-back", event }),
   };

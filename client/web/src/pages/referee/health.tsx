@@ -35,7 +35,7 @@ export function HealthCard({ desk }: { desk: Desk }) {
       <h2 id="health-title">{t("courtHealth.title")}</h2>
       <Verdict name={name} text={t(`courtHealth.${name}`)} />
       {health?.record_trouble && <p class="refused">{said(health.record_trouble)}</p>}
-      {health?.verdict && <Advice advice={health.verdict.advice} />}
+      {health?.verdict && <FoldedAdvice advice={health.verdict.advice} />}
       {health && (
         <dl class="facts">
           <dt>{t("courtHealth.factor")}</dt>
@@ -63,18 +63,39 @@ export function HealthCard({ desk }: { desk: Desk }) {
   );
 }
 
+interface AdviceProps {
+  advice: readonly (Phrase | string)[];
+}
+
 /** What the contest's limits say of this match so far; nothing while all is within them. */
-export function Advice({ advice }: { advice: readonly (Phrase | string)[] }) {
+export function Advice({ advice }: AdviceProps) {
   if (!advice.length) return null;
   return (
     <div class="advice" role="status">
       <h3>{t("courtHealth.advice")}</h3>
-      <ul>
-        {advice.map(said).map((reason) => (
-          <li key={reason}>{reason}</li>
-        ))}
-      </ul>
+      <Reasons advice={advice} />
     </div>
+  );
+}
+
+/** The same in one line that opens: the log below it needs the room. */
+function FoldedAdvice({ advice }: AdviceProps) {
+  if (!advice.length) return null;
+  return (
+    <details class="advice">
+      <summary>{t("courtHealth.adviceCount", { count: advice.length })}</summary>
+      <Reasons advice={advice} />
+    </details>
+  );
+}
+
+function Reasons({ advice }: AdviceProps) {
+  return (
+    <ul>
+      {advice.map(said).map((reason) => (
+        <li key={reason}>{reason}</li>
+      ))}
+    </ul>
   );
 }
 
