@@ -12,7 +12,8 @@ from lacoc_robots.library import find_robot, installed_robots, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
-from lacoc_robots.trying import tried
+from lacoc_robots.standing import STAND_TEST_S
+from lacoc_robots.trying import NOT_TRIED, tried
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import file as contests
@@ -54,7 +55,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
     for note in notes:
         screen.warn(note)
     if json:
-        screen.print_json({**facts, "mistakes": []})
+        screen.print_json({**facts, "stands": NOT_TRIED not in notes or None, "mistakes": []})
         return
     width_m, length_m, height_m = facts["footprint_m"]
     table = Table(
@@ -62,6 +63,9 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
         title_justify="left",
         show_header=False,
     )
+    stands = say("robot-command.stands", seconds=STAND_TEST_S)
+    if NOT_TRIED in notes:
+        stands = NOT_TRIED
     size = say("robot-command.size", width_m=width_m, length_m=length_m, height_m=height_m)
     for what, value in (
         (say("fact.legs"), f"{facts['legs']} ({'  '.join(facts['labels'])})"),
@@ -70,6 +74,7 @@ def check(robot: _Robot, contest: options.ContestFile = None, json: options.Json
         (say("fact.footprint"), size),
         ("AngMin", say("robot-command.ang-min", deg_s=facts["ang_min_deg_s"])),
         (say("fact.next-posture"), _advance(spec)),
+        (say("fact.stands"), stands),
     ):
         table.add_row(render(what), Text(render(value)))
     screen.show(table)

@@ -7,6 +7,9 @@ from lacoc_shared.gait.tables import Gait, Level
 from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import Phrase, say
 
+NOT_TRIED = say("robot.not-tried")
+"""Note that the robot was not tried, because MuJoCo is missing."""
+
 
 def tried(
     robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str, notes: list[Phrase]
@@ -17,6 +20,6 @@ def tried(
     except ModuleNotFoundError as error:
         if error.name != "mujoco":
             raise
-        notes.append(say("robot.not-tried"))
+        notes.append(NOT_TRIED)
         return []
     return try_standing(robot, gait, levels, file)

@@ -52,7 +52,7 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     @property
     def place(self) -> str:
         """The place in words: "row 3, column 7, joint 5 (L,F)"."""
-        return ", ".join(map(render, self._places()))
+        return render(say("plain.sentences", sentences=self._places()))
 
     def _places(self) -> list[Phrase | str]:
         places: list[Phrase | str | None] = [
@@ -93,7 +93,7 @@ class FileRefused(ValueError):
     def notes(self) -> tuple[Phrase, ...]:
         """Return notes for a join that succeeds without these files: their first mistakes."""
         first = (mistake.phrase for mistake in self.mistakes[:_NOTED])
-        return (say(FILES_REFUSED, count=len(self.mistakes)), *first)
+        return (say("note.files-refused", count=len(self.mistakes)), *first)
 
 
 class UserError(Exception):

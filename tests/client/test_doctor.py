@@ -78,6 +78,7 @@ def test_words_for_a_person(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
     out = capsys.readouterr().out
     assert "what to do" in out
     assert "chrome://gpu" in out
+    assert max(map(len, out.splitlines())) <= 100
 
 
 def packages_beside(folder: Path, metadata: dict[str, str]) -> list[list[str]]:

@@ -14,8 +14,9 @@ from lacoc_client.terminal.board_picture import BoardPicture, Field, Grid, seat_
 from lacoc_client.terminal.plain import event_dict, frame_dict
 from lacoc_shared.codec import pack_states
 from lacoc_shared.messages import Event, Frame, Scene, SceneGeom, SeatFrame, Sheet, SheetSeat
+from lacoc_shared.mistakes import Mistake
 from lacoc_shared.seat import Phase, SeatFlag
-from lacoc_shared.words import say
+from lacoc_shared.words import say, use
 
 LABELS = ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F")
 SCENE = bytes(range(8))
@@ -150,6 +151,34 @@ def test_the_lobby_says_who_is_missing() -> None:
     assert words.phase_hint(frame, sheet) == (
         "waiting for the left seat to join; Team right has not said ready"
     )
+    use("ja")
+    try:
+        assert "; " not in words.phase_hint(frame, sheet)
+    finally:
+        use("en")
+
+
+def test_before_ready_no_robot_does_anything() -> None:
+    """Without robots on the field there is no key to show; with them it is the drive's."""
+    sheet = make_sheet("othello")
+    assert words.standing_key(make_frame(sheet), sheet, 0) == ""
+    on_field = make_frame(sheet, poses=pose(0.0, 0.0, 0.0) * 2)
+    assert "key" in words.standing_key(on_field, sheet, 0)
+
+
+def test_lists_are_joined_in_the_language() -> None:
+    """Lists of refusals and of places have the language's own comma."""
+    refused = {"wrong-token": 1, "flood": 2}
+    mistake = Mistake(file="a.txt", found="1", expected="2", row=3, column=4)
+    assert words.refusals(refused) == "1 (wrong token), 2 (too many at once)"
+    assert mistake.place == "row 3, column 4"
+    use("ja")
+    try:
+        assert ", " not in words.refusals(refused) + mistake.place
+        assert "、" in words.refusals(refused)
+        assert "、" in mistake.place
+    finally:
+        use("en")
 
 
 def draw(frame: Frame, sheet: Sheet, field: Field, rows: int, **options: Any) -> list[str]:

@@ -19,7 +19,7 @@ def lacoc(*words: str) -> int:
 
 
 def test_check_weighs_in(capsys: pytest.CaptureFixture[str]) -> None:
-    """`robot check` prints the legs, joints, mass, size and AngMin of a correct robot."""
+    """`robot check` prints a correct robot's facts, and that it stands."""
     assert lacoc("robot", "check", "hexapod") == 0
     out = capsys.readouterr().out
     for fact in (
@@ -28,6 +28,7 @@ def test_check_weighs_in(capsys: pytest.CaptureFixture[str]) -> None:
         "1.115 kg",
         "0.300 x 0.120 x 0.105 m",
         "120",
+        "yes, tried in physics for 2 s",
     ):
         assert fact in out
 
@@ -37,6 +38,7 @@ def test_check_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
     assert lacoc("robot", "check", "quadruped", "--json") == 0
     facts = json.loads(capsys.readouterr().out)
     assert (facts["legs"], facts["joints"], facts["mass_kg"]) == (4, 12, 0.76)
+    assert facts["stands"] is True
 
 
 def test_check_names_every_mistake(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -113,6 +113,8 @@ def _host_port(address: str) -> tuple[str, int]:
     return match["host"].strip("[]"), int(match["port"])
 
 
+_WIDTH = 100
+"""Width of the table where there is no terminal [characters]."""
 _STATUS_WORDS = {
     Status.OK: say("status.ok"),
     Status.NOTE: say("status.note"),
@@ -121,7 +123,10 @@ _STATUS_WORDS = {
 
 
 def _table(findings: list[Finding]) -> Table:
-    table = Table("", render(say("fact.what")), render(say("fact.found-and-todo")))
+    # A person reads this table, also from a file; programs take --json.
+    width = None if screen.stdout.is_terminal else _WIDTH
+    titles = ("", render(say("fact.what")), render(say("fact.found-and-todo")))
+    table = Table(*titles, width=width)
     for finding in (one.in_words() for one in findings):
         what = Text(str(finding.found))
         if finding.todo:

@@ -30,7 +30,7 @@ from lacoc_shared.messages import DecisionReply, Event, Frame, Health, SeatHealt
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import Phase, SeatFlag
-from lacoc_shared.words import Phrase, counted, render, say
+from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer(
     help="Referee a match: decide, read the log, see how well the court runs.\n\n"
@@ -417,8 +417,8 @@ def _show_status(frame: Frame, sheet: Sheet, health: Health) -> None:
         ready = yes if seat.flags & SeatFlag.READY else no
         team = Text(names[index] if sheet.seats[index].team else "-")
         row = (link.id, team, str(seat.score), ready)
-        refused = ", ".join(f"{count} {counted(why)}" for why, count in link.refused.items())
-        seats.add_row(*row, words.standing_key(seat, sheet, index), _link(link), refused)
+        key, refused = words.standing_key(frame, sheet, index) or "-", words.refusals(link.refused)
+        seats.add_row(*row, key, _link(link), refused)
     screen.show(seats)
     decisions = screen.table(say("fact.decision"), say("fact.legal"), say("fact.why-not"))
     for name, why_not in health.decisions.items():

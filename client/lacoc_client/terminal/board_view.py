@@ -104,7 +104,7 @@ def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
                 names[index],
             )
         )
-        state = words.seat_state(seat) or words.standing_key(seat, sheet, index)
+        state = words.seat_state(seat) or words.standing_key(frame, sheet, index)
         lines.append(Text(f"          {state}", style="dim"))
     for line in lines:
         line.no_wrap, line.overflow = True, "ellipsis"

@@ -194,15 +194,15 @@ class TerminalPlay:
         controller, frame, sheet = self._controller, self._view.frame, self._view.sheet
         if frame is None:
             return Text(render(say("terminal.waiting")), style="dim")
-        seat = frame.seats[controller.index]
         second = Text()
         for level in map(Level, sheet.levels):
             style = "bold reverse" if level is self._level else "dim"
             second.append(
                 f" {render(say('terminal.level-name', level=_LEVEL_NAMES[level]))} ", style
             )
-        if frame.poses:
-            second.append(f"  {words.standing_key(seat, sheet, controller.index)}", "bold")
+        key = words.standing_key(frame, sheet, controller.index)
+        if key:
+            second.append(f"  {key}", "bold")
         if controller.round_trip_ms is not None:
             trip = say("terminal.round-trip", ms=controller.round_trip_ms)
             second.append(f"  {render(trip)}", "dim")

@@ -1,5 +1,7 @@
 """Clocks, scores, keys and links as texts, the same on every screen of the terminal."""
 
+from collections.abc import Mapping
+
 from lacoc_client.terminal.plain import poses
 from lacoc_shared.command.log import log_clock
 from lacoc_shared.gait.tables import Level
@@ -39,7 +41,7 @@ def phase_hint(frame: Frame, sheet: Sheet) -> str:
     """Say what a phase other than PLAYING means, and in the lobby who is missing."""
     if frame.phase == Phase.LOBBY:
         missing = map(render, _missing(frame, sheet))
-        return "; ".join(missing) or render(say("hint.lobby"))
+        return render(say("join.semicolon")).join(missing) or render(say("hint.lobby"))
     match frame.phase:
         case Phase.CREATED:
             hint = say("hint.created")
@@ -70,8 +72,17 @@ def teams(sheet: Sheet) -> list[str]:
     return [seat.team or seat.id for seat in sheet.seats]
 
 
-def standing_key(seat: SeatFrame, sheet: Sheet, index: int) -> str:
-    """Return what a robot does, such as "B key 2, posture 1/4"."""
+def refusals(refused: Mapping[str, int]) -> str:
+    """List how many messages were refused and why: "2 (wrong token), 1 (too many at once)"."""
+    counts = [say("info.refused", count=count, why=why) for why, count in refused.items()]
+    return render(say("plain.sentences", sentences=counts))
+
+
+def standing_key(frame: Frame, sheet: Sheet, index: int) -> str:
+    """Return what a robot does, such as "B key 2, posture 1/4"; "" before it is on the field."""
+    if not frame.poses:
+        return ""
+    seat = frame.seats[index]
     counts = sheet.seats[index].postures
     several = seat.level == Level.LOCOMOTION and seat.key < len(counts) and counts[seat.key] > 1
     key = say(

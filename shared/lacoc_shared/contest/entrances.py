@@ -53,8 +53,7 @@ def seat_access(
     if seat is None and len(seats) == 1:
         seat = next(iter(seats))
     if seat is None:
-        names = ", ".join(seats) or "left, right"
-        raise UserError(say("contest.which-seat", seats=names))
+        raise UserError(say("contest.which-seat", seats=[*seats] or ["left", "right"]))
     token = token or (seats[seat].token if seat in seats else None)
     if token is None:
         raise UserError(say("contest.no-token-seat", seat=seat))

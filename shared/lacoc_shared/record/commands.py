@@ -183,7 +183,7 @@ def _keys(record: Record, seat: int) -> dict[str, int]:
 def _how_it_ran(health: HealthVerdict | None, lost: bool) -> Phrase:
     """Say how well the match ran."""
     if health is None:
-        return say("info.result-lost" if lost else "info.not-measured")
+        return say("info.result-lost") if lost else say("info.not-measured")
     measured = say(
         "info.measured",
         factor=health.real_time_factor,
@@ -214,17 +214,28 @@ def _link(seat: LinkVerdict) -> Phrase:
 def _result(record: Record) -> Phrase:
     result = record.result
     if result is None:
-        return say("info.result-lost" if record.lost else "info.no-result")
+        return say("info.result-lost") if record.lost else say("info.no-result")
     pairs = zip(result.teams, result.scores, strict=False)
     scores = [say("info.score", team=team, score=score) for team, score in pairs]
     given_s = record.given_s
+    played_s = result.clock_s + given_s
+    clock_s = result.clock_s if given_s else None
+    if result.official:
+        return say(
+            "info.result",
+            scores=scores,
+            winner=result.official,
+            why=result.reason,
+            played_s=played_s,
+            clock_s=clock_s,
+        )
     return say(
-        "info.result" if result.official else "info.result-not-official",
+        "info.result-not-official",
         scores=scores,
-        winner=result.official or result.computed,
+        winner=result.computed,
         why=result.reason,
-        played_s=result.clock_s + given_s,
-        clock_s=result.clock_s if given_s else None,
+        played_s=played_s,
+        clock_s=clock_s,
     )
 
 

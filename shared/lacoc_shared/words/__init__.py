@@ -6,7 +6,7 @@ defines the template language. `use` sets the language of a process.
 """
 
 from lacoc_shared.words.phrase import Phrase, Value, say
-from lacoc_shared.words.render import LANGUAGES, counted, current, render, use
+from lacoc_shared.words.render import LANGUAGES, current, render, use
 from lacoc_shared.words.table import faults
 
-__all__ = ["LANGUAGES", "Phrase", "Value", "counted", "current", "faults", "render", "say", "use"]
+__all__ = ["LANGUAGES", "Phrase", "Value", "current", "faults", "render", "say", "use"]

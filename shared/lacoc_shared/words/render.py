@@ -57,11 +57,6 @@ def render(phrase: Phrase | str, language: Language | None = None) -> str:
     return _rendered(phrase, language or _current, 0)
 
 
-def counted(name: str, language: Language | None = None) -> str:
-    """Return the words for a counter (`count.*`), such as a reason for refused commands."""
-    return _plain(name, ("count.*",), language or _current, 0)
-
-
 def _rendered(phrase: Phrase, language: Language, depth: int) -> str:
     entry = table().get(phrase.code)
     if entry is None or depth >= DEEPEST:

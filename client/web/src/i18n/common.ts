@@ -1,7 +1,7 @@
 /** Messages of all pages: English, Japanese. */
 export const common = {
   "phase.0": ["Opening", "準備中"],
-  "phase.1": ["Lobby", "待機中"],
+  "phase.1": ["Lobby", "参加受付中"],
   "phase.2": ["Ready", "準備完了"],
   "phase.3": ["Countdown", "カウントダウン"],
   "phase.4": ["Playing", "試合中"],

@@ -73,8 +73,10 @@ def result_json(record: Record) -> bytes:
         UserError: if the match has no result.
     """
     if record.result is None:
-        why = "export.result-lost" if record.lost else "export.no-result"
-        raise UserError(say(why, match=record.header.match_id))
+        match = record.header.match_id
+        if record.lost:
+            raise UserError(say("export.result-lost", match=match))
+        raise UserError(say("export.no-result", match=match))
     found = msgspec.structs.asdict(record.result) | {
         "played_s": record.result.clock_s + record.given_s,
         "health": record.health,

@@ -52,7 +52,7 @@ export function HealthCard({ desk }: { desk: Desk }) {
             {dropped.length
               ? dropped
                   .map(([why, count]) => `${count} × ${said({ code: `count.${why}` })}`)
-                  .join(", ")
+                  .join(said({ code: "join.comma" }))
               : t("seatLink.nothingRefused")}
           </dd>
           <dt>{t("courtHealth.frames")}</dt>

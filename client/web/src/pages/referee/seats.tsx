@@ -135,7 +135,9 @@ function LinkFacts({ desk, sheet, index }: Props) {
       <dt>{t("seatLink.refused")}</dt>
       <dd>
         {refused.length
-          ? refused.map(([why, count]) => `${count} × ${said({ code: `count.${why}` })}`).join(", ")
+          ? refused
+              .map(([why, count]) => `${count} × ${said({ code: `count.${why}` })}`)
+              .join(said({ code: "join.comma" }))
           : t("seatLink.nothingRefused")}
       </dd>
     </dl>
