@@ -110,8 +110,8 @@ def fetch(
 ) -> bytes:
     """Ask a court and return its answer as bytes; see `ask`.
 
-    A restarted court can't be asked for a moment after its first frame. So the request is sent
-    again, as long as no court can have received it.
+    For a moment after its first frame, a restarted court does not receive requests yet. So the
+    request is sent again, as long as no court can have received it.
     """
     end_s = time.monotonic() + _COMING_BACK_S
     reached: tuple[str, ...] = ()

@@ -83,7 +83,7 @@ def test_the_referee_has_every_decision(
     tried = referee.decide("take-back", str(taken["event"]), "--dry-run")
     assert (tried["event"], tried["scores"]) == (None, [17, 18])
     assert referee.decide("take-back", str(taken["event"]))["scores"] == [17, 18]
-    assert referee.decide("clock", "0.5")["text"] == "0.5 seconds more to play."
+    assert referee.decide("clock", "0.5")["text"] == "0.5 seconds added to the match."
     referee.decide("resume")
     referee.decide("halt")
     assert "Go" not in referee.refused("official")

@@ -199,7 +199,7 @@ def test_a_failed_save_leaves_the_old_file(folder: Folder, monkeypatch: pytest.M
 
 def test_sequences_belong_into_text(folder: Folder) -> None:
     """A table of sequences is not saved as a workbook, and keys may not be missing."""
-    with pytest.raises(UserError, match="sequences belong into a text file"):
+    with pytest.raises(UserError, match="sequences belong in a text file"):
         folder.save("Loco-new.xlsx", walk(), ABSENT, force=False)
     table = walk()
     rows = tuple(row for row in table.rows if row.key != 1)

@@ -86,7 +86,7 @@ def test_a_workbook_is_the_same_file_each_time(sample, workshop, legs):
 
 
 def test_the_edited_sheet_is_what_counts(sample, workshop):
-    """The sheet "EX (input)" is read, even if the formulas' stored values are older (rules 2)."""
+    """The sheet "EX (input)" is read, not the formulas of the sheet "Loco-data" (rules 2)."""
     table = read_workbook(edited(sample, B2=-22.5, C2="３０,５"), "x")
     assert table.postures[0][:3] == (
         math.radians(-22.5),

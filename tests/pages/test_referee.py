@@ -223,11 +223,11 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     expect(page.locator(".fate")).to_have_text("taken back")
     group(page, "+10 s").click()
     confirm(page, "network")
-    log_has(page, "Referee Kim: 10 seconds more to play. Reason: network")
+    log_has(page, "Referee Kim: 10 seconds added to the match. Reason: network")
     group(page, "Other …").click()
     page.locator("input[name=amount]").fill("-600")
     confirm(page, "rule")
-    log_has(page, "600 seconds less to play.")
+    log_has(page, "600 seconds taken from the match.")
     step(page)
     log_has(page, "Referee Kim: play goes on in 3 seconds.")
     phase(page, 6)
@@ -408,7 +408,7 @@ def test_a_number_is_taken_as_it_is_typed(court: Venue, referee: Referee) -> Non
     field.press("Control+a")
     page.keyboard.type("-10.50")
     confirm(page, "rule")
-    log_has(page, "10.5 seconds less to play.")
+    log_has(page, "10.5 seconds taken from the match.")
 
 
 @pytest.mark.long

@@ -79,7 +79,7 @@ def test_second_swings_the_shank_outward_and_up(hexapod: RobotSpec, leg: int) ->
 
 
 def test_joint_ids_go_level_by_level(hexapod: RobotSpec) -> None:
-    """A joint's id is leg + legs x level, so joint 13 of a hexapod moves leg 1 (R,C)."""
+    """Joint ids count all Roots, then all 1st, then all 2nd: joint 13 of six legs is of leg R,C."""
     moved = [a != b for a, b in zip(hexapod.points(ZERO), hexapod.points(turned(13)), strict=True)]
     assert moved == [False, True, False, False, False, False]
 

@@ -92,7 +92,7 @@ def lost(verdict: HealthVerdict) -> list[object]:
 
 
 def test_a_match_that_is_held_well() -> None:
-    """At 50 beats a second without a late beat or a lost repeat, no rematch is advised."""
+    """If no beat is late and every repeated command arrives, no rematch is advised."""
     held = Held()
     held.seconds(4)
     verdict = held.verdict
