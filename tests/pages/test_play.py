@@ -553,7 +553,7 @@ def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: S
     page = seated(venue, sit, "--seconds", "1")
     other = playing(venue, page)
     page.sees(".result h1", "A draw")
-    page.sees(".result", "The referee is confirming the result")
+    page.is_told("The referee is confirming the result")
     referee = venue.referee()
     referee.ask("take_over")
     decision = {"type": "adjust", "seat": "left", "points": 3}
@@ -571,7 +571,7 @@ def test_the_result_says_who_won_and_one_stays_for_the_next(venue: Venue, sit: S
     page.sees(".result .ruling", "Reason: it left the field")
     page.sees(".result", "time is up · 0:01 played")
     referee.ask("decide", decision={"type": "official"}, reason="")
-    page.sees(".result", "Wait here: you play in the next match too")
+    page.is_told("Wait here: you play in the next match too")
     # The replay is listed before the next match opens, with the teams and the result.
     page.sees(".result a", "Watch the replay")
     replay = sit(venue.url)

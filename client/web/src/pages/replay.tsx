@@ -192,6 +192,7 @@ function Show({ player, server }: { player: Player; server: string | null }) {
         </div>
         <header class="head">
           <ScoreBug match={recording} />
+          <Notes notes={recording.record.notes} />
           <Hint match={recording} />
         </header>
       </div>
@@ -203,7 +204,6 @@ function Show({ player, server }: { player: Player; server: string | null }) {
         <ResultCard match={recording} />
       </div>
       <div class="lower">
-        <Notes notes={recording.record.notes} />
         <Thirds match={recording} />
       </div>
       <div class="foot">

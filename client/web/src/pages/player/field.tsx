@@ -82,7 +82,7 @@ export function Field(props: Props) {
       {/* biome-ignore-end lint/a11y/noNoninteractiveTabindex: see above */}
       {isIn && (
         <>
-          <div class="over">
+          <div class="on-stage">
             <ScoreBug match={court} />
             <NextStep {...props} />
             {!alone && <Countdown court={court} />}
