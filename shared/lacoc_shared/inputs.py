@@ -12,6 +12,9 @@ from lacoc_shared.decisions import Decision
 from lacoc_shared.messages import SentFile
 from lacoc_shared.words import Phrase
 
+THE_COURT = ""
+"""Author of the court's own decisions: no referee can have this name."""
+
 
 class _Input(msgspec.Struct, frozen=True, array_like=True):
     pass
@@ -71,9 +74,10 @@ class HeardSeat(_Input, frozen=True, tag="heard"):
 
 
 class Decide(_Input, frozen=True, tag="decide"):
-    """A referee decided."""
+    """A referee decided, or the court itself."""
 
     by: str
+    """The referee's name; `THE_COURT` for the court itself."""
     reason: Phrase | str
     """A text that the referee wrote, or a phrase of `reason.*`."""
     decision: Decision

@@ -596,7 +596,7 @@ def test_a_court_that_was_killed(venue: Venue, referee: Referee, console: Any) -
     phase(page, 5)  # a court that was killed in play goes on halted
     expect(page.locator("main.referee")).to_have_attribute("data-live", "true")
     expect(page.locator(".banner")).to_have_count(0)
-    log_has(page, "Referee court: halted. Reason: the court was started again")
+    log_has(page, "The court: halted. Reason: the court was started again")
     web.kill()
     expect(page.locator(".banner")).to_be_visible()
     venue.web()

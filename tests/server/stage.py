@@ -22,6 +22,7 @@ from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, ReadySeat
 from lacoc_shared.messages import MARKER_STATES, Event, Frame, Outcome, Scene, SentFile
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import RESTART_KEY, Phase
+from lacoc_shared.words import Phrase
 
 LEFT, RIGHT = 0, 1
 A, B = Level.POSTURE, Level.LOCOMOTION
@@ -63,7 +64,7 @@ def entry(robot: str = "hexapod") -> Entry:
     return weigh_in(was.robot, was.postures, was.locomotion)
 
 
-def decide(decision: d.Decision, reason: str = "agreed", by: str = "Kubota") -> Decide:
+def decide(decision: d.Decision, reason: Phrase | str = "agreed", by: str = "Kubota") -> Decide:
     return Decide(by, reason, decision)
 
 

@@ -23,7 +23,7 @@ from stage import (
 
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import decode, encode
-from lacoc_shared.inputs import ReadySeat
+from lacoc_shared.inputs import THE_COURT, ReadySeat
 from lacoc_shared.messages import DecisionReply, Done, Refusal
 from lacoc_shared.seat import Phase, SeatFlag
 from lacoc_shared.words import Phrase, faults, render, say
@@ -200,6 +200,15 @@ def test_a_decision_is_an_event_with_who_beat_and_reason() -> None:
 
 
 # What each decision does.
+
+
+def test_the_court_is_no_referee() -> None:
+    """A decision of the court itself is told as the court's, with its reason."""
+    stage = Stage().to(Phase.PLAYING)
+    stage.send(decide(d.Halt(), say("reason.court-restarted"), THE_COURT))
+    (event,) = [event for event in stage.beats[-1].events if event.kind == "decision"]
+    assert render(event.said) == "The court: halted. Reason: the court was started again"
+    assert render(event.said, "ja").startswith("コート：")
 
 
 def test_ready_for_a_seat() -> None:

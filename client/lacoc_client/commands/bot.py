@@ -100,9 +100,10 @@ def bot_command(
         sheet = controller.view.sheet
         ground = arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
         player = BotPlayer(controller, ground, name)
-        for hint in patience.until(controller.join):
-            screen.show(hint)
+        hints = patience.until(controller.join)
         screen.show(say("bot.holds", bot=name, seat=access.seat, court=access.court))
+        for hint in hints:
+            screen.show(hint)
         try:
             _play(controller, player, stopping, max(_GONE_S, wait or 0.0))
         finally:

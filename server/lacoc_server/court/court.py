@@ -27,7 +27,7 @@ from lacoc_server.match.match import Beat, Match
 from lacoc_server.world.world import World
 from lacoc_shared.contest.health_limits import HealthLimits
 from lacoc_shared.decisions import Halt
-from lacoc_shared.inputs import Advice, Decide, Input, JoinSeat
+from lacoc_shared.inputs import THE_COURT, Advice, Decide, Input, JoinSeat
 from lacoc_shared.messages import Health, HealthVerdict, Outcome
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network import heap
@@ -210,7 +210,7 @@ class Court:
         self._trouble = now = self._journal.trouble
         why = before or now
         if before != now and why is not None and match.phase in IN_PLAY:
-            return [Decide("court", why, Halt())]
+            return [Decide(THE_COURT, why, Halt())]
         if match.phase is Phase.FINISHED:
             reasons = self._health.verdict().advice
             if reasons != match.advice:

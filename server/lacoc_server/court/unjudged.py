@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 from lacoc_server.match.match import Match
 from lacoc_shared.decisions import Decision, Next, Official, Restart, Resume
-from lacoc_shared.inputs import Decide, Input
+from lacoc_shared.inputs import THE_COURT, Decide, Input
 from lacoc_shared.seat import BEATS_PER_S, NOBODY, Phase
 from lacoc_shared.words import Phrase, say
 
@@ -50,4 +50,4 @@ def _put_back(match: Match) -> list[Input]:
 
 
 def _decide(decision: Decision, reason: Phrase | str = "") -> Input:
-    return Decide("court", reason, decision)
+    return Decide(THE_COURT, reason, decision)

@@ -9,7 +9,7 @@ from lacoc_server.journal.verdict import other_arithmetic
 from lacoc_server.match.match import Match
 from lacoc_server.world import arithmetic
 from lacoc_shared.decisions import Halt
-from lacoc_shared.inputs import Decide, Input, KeySeat
+from lacoc_shared.inputs import THE_COURT, Decide, Input, KeySeat
 from lacoc_shared.messages import Event, HealthVerdict
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import is_held
@@ -55,7 +55,7 @@ class Unfinished:
             why = say("reason.court-restarted")
             if self.other_arithmetic:
                 why = say("reason.court-restarted-elsewhere")
-            return [Decide("court", why, Halt())]
+            return [Decide(THE_COURT, why, Halt())]
         return []
 
 

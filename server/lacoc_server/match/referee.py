@@ -17,7 +17,7 @@ from lacoc_server.match.history import Fold
 from lacoc_server.match.seat import Seat
 from lacoc_server.match.state import MatchState
 from lacoc_shared import decisions as d
-from lacoc_shared.inputs import Decide
+from lacoc_shared.inputs import THE_COURT, Decide
 from lacoc_shared.messages import MARKER_STATES, DecisionReply, Refusal
 from lacoc_shared.seat import BEATS_PER_S, Phase
 from lacoc_shared.words import Phrase, say
@@ -105,9 +105,13 @@ def _is_empty(reason: Phrase | str) -> bool:
 
 def _log(match: MatchState, item: Decide, name: str, did: Phrase, **data: Any) -> int:
     match.result_changed()
+    reason = item.reason or None
+    said = say("event.decided", by=item.by, did=did, reason=reason)
+    if item.by == THE_COURT:
+        said = say("event.court-decided", did=did, reason=reason)
     return match.tell(
         "decision",
-        say("event.decided", by=item.by, did=did, reason=item.reason or None),
+        said,
         decision=name,
         by=item.by,
         reason=msgspec.to_builtins(item.reason),

@@ -107,6 +107,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "event.strike": ["{team} strikes {marker} for {points} {points:plural point|points}.", "{team} が {marker} を倒しました（{points} 点）。"],
   "event.judged-again": ["Judged again: {event}", "再判定：{event}"],
   "event.decided": ["Referee {by}: {did}< Reason: {reason}>", "審判 {by}：{did}<理由：{reason}>"],
+  "event.court-decided": ["The court: {did}< Reason: {reason}>", "コート：{did}<理由：{reason}>"],
   "event.strayed": ["The robot of {team} moved {distance_m:.2} m away from its start place. The robot is put back.", "{team} のロボットがスタート位置から {distance_m:.2} m 動いたので、元の位置に戻しました。"],
   "event.strayed-often": ["The robot of {team} left its start place {times} times. {team} is not ready any more.", "{team} のロボットがスタート位置から {times} 回離れたので、{team} の準備完了を取り消しました。"],
   "event.other": ["{team} {en}", "{team}{ja}"],
