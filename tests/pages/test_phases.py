@@ -22,7 +22,7 @@ class Student(Designer):
     def goes_to(self, phase: int) -> None:
         self.focuses(f".phase-dots button:nth-child({phase})")
         self.press("Enter")
-        expect(self.find(".phase h3")).to_contain_text(str(phase), timeout=TIMEOUT_MS)
+        expect(self.find(".learn h3")).to_contain_text(str(phase), timeout=TIMEOUT_MS)
 
     def changes(self, text: str, *, guess: str = "") -> None:
         """Change the selected number; before it, perhaps, guess where the foot goes."""
@@ -73,7 +73,7 @@ def test_two_phases_are_done_by_keyboard(
         assert not violations(page.page)
 
         page.goes_to(2)
-        page.focuses(".phase button:has-text('A1')")
+        page.focuses(".learn button:has-text('A1')")
         page.press("Enter")
         page.is_done(2)
         page.goes_to(6)

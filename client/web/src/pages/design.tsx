@@ -73,6 +73,8 @@ export default function Design() {
             studio={studio}
             onOpen={() => {
               tab.value = "phase";
+              // Where all stands below one another, the task would be out of sight.
+              if (isNarrow.peek()) document.getElementById("tab-phase")?.scrollIntoView();
             }}
           />
           <Task studio={studio} />

@@ -58,16 +58,16 @@ export function PhasePanel({ studio, onTry }: { studio: Studio; onTry: () => voi
   const percent = Math.round(100 * phase.share);
   const pose = POSE_OF[number];
   return (
-    <section class="phase" aria-label={t("design.phases")}>
+    <section class="learn" aria-label={t("design.phases")}>
       {now.trouble && (
-        <p class="phase-trouble" role="status">
+        <p class="learn-trouble" role="status">
           {t("design.phase.notKept")} {said(now.trouble)}
         </p>
       )}
       <h3>
         {number} {said(phase.title)} <span data-state={state}>{stateName(state)}</span>
       </h3>
-      <p class="phase-task">{said(phase.task)}</p>
+      <p class="learn-task">{said(phase.task)}</p>
       <p>{said(phase.question)}</p>
       {number === ONE_LEG && <FootGuess studio={studio} />}
       {pose && studio.table.value?.kind === "postures" && (
@@ -89,7 +89,7 @@ export function PhasePanel({ studio, onTry }: { studio: Studio; onTry: () => voi
         {percent} %
       </progress>
       {phase.missing.length > 0 && (
-        <ul class="phase-missing" aria-label={t("design.phase.missing")}>
+        <ul class="learn-missing" aria-label={t("design.phase.missing")}>
           {phase.missing.map((one, index) => (
             <li key={index}>{said(one)}</li>
           ))}
