@@ -74,7 +74,8 @@ export default function Design() {
             onOpen={() => {
               tab.value = "phase";
               // Where all stands below one another, the task would be out of sight.
-              if (isNarrow.peek()) document.getElementById("tab-phase")?.scrollIntoView();
+              const show = () => document.getElementById("panel-phase")?.scrollIntoView();
+              if (isNarrow.peek()) requestAnimationFrame(() => requestAnimationFrame(show));
             }}
           />
           <Task studio={studio} />
