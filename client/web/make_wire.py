@@ -18,6 +18,7 @@ from typing import Any
 import msgspec
 
 from lacoc_client.design import folder, requests
+from lacoc_client.design.learning import diary, learner
 from lacoc_client.design.table import FileRow, FileTable
 from lacoc_client.gateway.page import TRY_LATER
 from lacoc_client.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
@@ -77,6 +78,11 @@ STRUCTS = (
     FileRow,
     FileTable,
     folder.FolderFile,
+    diary.PhaseState,
+    diary.Phases,
+    learner.Judged,
+    learner.EditReply,
+    learner.CheckReply,
 )
 ENUMS: tuple[type[IntEnum] | type[SeatFlag], ...] = (Phase, SeatFlag, No, Level)
 CONSTANTS: dict[str, float | str] = {

@@ -38,9 +38,10 @@ class DesignClient:
         self.folders: list[dict[str, Any]] = []
         self.studio: dict[str, Any] = {}
         self.progress: list[dict[str, Any]] = []
+        self.phases: dict[str, Any] = {}
         if key is not None:
             self.ask("hello", key=key)
-            self.until(lambda: self.folder and self.studio)
+            self.until(lambda: self.folder and self.studio and self.phases)
 
     def ask(self, do: str, **fields: Any) -> Any:
         """Send a request, wait for the reply and return its value."""
@@ -89,5 +90,7 @@ class DesignClient:
                 self.folders.append(body)
             case Kind.STUDIO:
                 self.studio = body
+            case Kind.PHASES:
+                self.phases = body
             case Kind.PROGRESS:
                 self.progress.append(body)

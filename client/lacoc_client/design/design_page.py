@@ -6,18 +6,22 @@ import time
 from contextlib import suppress
 from typing import Any
 
+import msgspec
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from lacoc_client.design import requests
 from lacoc_client.design.designer import Designer
 from lacoc_client.design.files import file_bytes, read_file
+from lacoc_client.design.learning.learner import Learner
 from lacoc_client.design.studio_desk import StudioDesk
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import Answers
 from lacoc_client.gateway.page import GARBAGE
 from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.phases.evidence import Moved, Named
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.allowance import Allowance
+from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import say
 
 _ASKS_HZ, _ASKS_BURST = 50.0, 100
@@ -38,6 +42,8 @@ class DesignPage:
         self._viewer = Viewer(websocket.state.socket)
         self._answers = Answers(self._viewer, lambda *_: None)
         self._studio = StudioDesk(designer.asker, self._viewer.send_if_fast)
+        self._learner = Learner(designer.diary, self._sample_trial)
+        self._comparing: set[asyncio.Task[None]] = set()
         self._asks = Allowance(_ASKS_HZ, _ASKS_BURST)
 
     async def serve(self) -> None:
@@ -58,6 +64,8 @@ class DesignPage:
         finally:
             self._designer.remove(self._viewer)
             self._answers.stop()
+            for task in self._comparing:
+                task.cancel()
             with suppress(UserError):
                 await asyncio.shield(self._studio.gone())
 
@@ -100,13 +108,61 @@ class DesignPage:
             case requests.RobotAsk():
                 answers.later(asked.id, self._studio.robot(asked))
             case requests.TrialAsk():
-                answers.later(asked.id, self._studio.trial(asked))
+                answers.later(asked.id, self._trial(asked))
             case requests.CoachAsk():
                 answers.later(asked.id, self._studio.coach(asked))
             case requests.CancelAsk():
                 answers.later(asked.id, self._studio.cancel(asked.job))
+            case (
+                requests.EditAsk()
+                | requests.CheckAsk()
+                | requests.PhaseAsk()
+                | requests.NameAsk()
+                | requests.VoteAsk()
+            ):
+                answers.later(asked.id, self._learn(asked))
             case _:
                 answers.later(asked.id, asyncio.to_thread(self._with_files, asked))
+
+    async def _trial(self, asked: requests.TrialAsk) -> msgspec.Raw:
+        """Let the robot walk, and keep what it shows as evidence."""
+        reply, payload = await self._studio.trial(asked)
+        await self._learner.tried(asked, reply)
+        self._designer.tell_phases()
+        task = asyncio.get_running_loop().create_task(self._compare(asked))
+        self._comparing.add(task)
+        task.add_done_callback(self._comparing.discard)
+        return msgspec.Raw(payload)
+
+    async def _compare(self, asked: requests.TrialAsk) -> None:
+        await self._learner.compared(asked)
+        self._designer.tell_phases()
+
+    async def _sample_trial(self, asked: requests.TrialAsk) -> TrialReply | None:
+        """Let the sample gait walk as a trial did; None if it does not fit the trial's robot."""
+        table = (await asyncio.to_thread(self._designer.sample)).table
+        if table is None or asked.table is None or table.legs != asked.table.legs:
+            return None
+        sample = msgspec.structs.replace(asked, table=table, sequences=None, guesses=())
+        return (await self._studio.trial(sample))[0]
+
+    async def _learn(self, asked: requests.Asked) -> Any:
+        """Answer a request about the phases."""
+        diary = self._designer.diary
+        value: Any = {}
+        match asked:
+            case requests.EditAsk():
+                value = await self._learner.edited(asked)
+            case requests.CheckAsk():
+                value = await self._learner.checked(asked)
+            case requests.PhaseAsk():
+                await diary.add(Moved(phase=asked.number))
+            case requests.NameAsk():
+                await diary.add(Named(word=asked.word))
+            case requests.VoteAsk():
+                await diary.vote(diary.phases.word, asked.choice)
+        self._designer.tell_phases()
+        return value
 
     def _with_files(self, asked: requests.Asked) -> Any:
         """Answer a request about files; runs on another thread."""

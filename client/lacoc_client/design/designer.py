@@ -4,9 +4,12 @@ import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
+import msgspec
+
 from lacoc_client.design.asker import Asker
 from lacoc_client.design.files import FileContent, read_file
 from lacoc_client.design.folder import Folder
+from lacoc_client.design.learning.diary import Diary
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.home import new_key
 from lacoc_client.gateway.viewer import Viewer
@@ -40,6 +43,8 @@ class Designer:
         """The robot file that pages begin with; None: the workshop's."""
         self.key = new_key()
         """The page key: without it a page gets nothing."""
+        self.diary = Diary(folder.path)
+        """What the student of the folder has done."""
         self._robot_name = robot or _SAMPLE
         self._viewers: dict[Viewer, None] = {}
 
@@ -53,6 +58,11 @@ class Designer:
         self._viewers[viewer] = None
         viewer.send(self._folder_message(()))
         viewer.send(self._studio_message())
+        viewer.send(self._phases_message())
+
+    def tell_phases(self) -> None:
+        """Tell all pages how far the student is."""
+        self._send(self._phases_message())
 
     def remove(self, viewer: Viewer) -> None:
         """Remove a page that has gone."""
@@ -62,11 +72,13 @@ class Designer:
     async def running(self) -> AsyncIterator[None]:
         """Look at the folder and for a studio until the block ends, and tell the pages."""
         self.asker.start()
+        await self.diary.read()
         looking = asyncio.get_running_loop().create_task(self._look())
         try:
             yield
         finally:
             looking.cancel()
+            await self.diary.close()
             await asyncio.to_thread(self.asker.close)
 
     async def _look(self) -> None:
@@ -96,6 +108,9 @@ class Designer:
             "changed": changed,
         }
         return wire.map_message(Kind.FOLDER, body)
+
+    def _phases_message(self) -> bytes:
+        return wire.map_message(Kind.PHASES, msgspec.structs.asdict(self.diary.phases))
 
     def _studio_message(self) -> bytes:
         present = self.asker.studio is not None

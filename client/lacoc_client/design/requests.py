@@ -1,11 +1,13 @@
 """What a page of /design asks (docs/gateway.md has it as a table)."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import msgspec
 
 from lacoc_client.design.table import FileTable
 from lacoc_client.gateway.wire import Ask, Unreadable, too_long
+from lacoc_client.phases.evidence import By
+from lacoc_client.phases.facts import FootWay, Pace, Way
 from lacoc_shared.gait.workbook import MAX_BYTES
 from lacoc_shared.messages import SentFile
 from lacoc_shared.studio import STUDIO_MAX_BYTES
@@ -78,6 +80,13 @@ class RobotAsk(Ask, frozen=True, kw_only=True, tag="robot"):
     robot: SentFile | None = None
 
 
+class Foretold(msgspec.Struct, frozen=True, kw_only=True):
+    """What a student foretells of a trial."""
+
+    about: Literal["pace", "way"]
+    said: Pace | Way
+
+
 class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
     """Let the robot walk."""
 
@@ -87,6 +96,47 @@ class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
     sequences: _Sequences | None = None
     keys: _Name = ""
     seconds: float | None = None
+    guesses: tuple[Foretold, ...] = ()
+
+
+class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
+    """Tell what the table has after an edit, as evidence for the phases."""
+
+    table: FileTable
+    robot: SentFile | None = None
+    sequences: _Sequences | None = None
+    by: By | None = None
+    """None: no edit; a file was opened, or an edit was undone."""
+    size: Literal["cell", "three", "table"] | None = None
+    """Size of the coach's search whose changes were taken."""
+    guess: FootWay | None = None
+    """Where the student said before the edit that the foot goes."""
+
+
+class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
+    """Check the table for its robot."""
+
+    table: FileTable
+    robot: SentFile | None = None
+    sequences: _Sequences | None = None
+
+
+class PhaseAsk(Ask, frozen=True, kw_only=True, tag="phase"):
+    """Go to a phase, forward or back."""
+
+    number: Annotated[int, msgspec.Meta(ge=1, le=6)]
+
+
+class NameAsk(Ask, frozen=True, kw_only=True, tag="name"):
+    """Choose a word for how the robot shall walk."""
+
+    word: Annotated[str, msgspec.Meta(min_length=1, max_length=40)]
+
+
+class VoteAsk(Ask, frozen=True, kw_only=True, tag="vote"):
+    """Vote whether A, the sample, or B, the own gait, fits the word better."""
+
+    choice: Literal["A", "B"]
 
 
 class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
@@ -122,6 +172,11 @@ Asked = (
     | TrialAsk
     | CoachAsk
     | CancelAsk
+    | EditAsk
+    | CheckAsk
+    | PhaseAsk
+    | NameAsk
+    | VoteAsk
 )
 """Every request of a page."""
 

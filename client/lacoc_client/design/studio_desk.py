@@ -56,8 +56,12 @@ class StudioDesk:
         request = RobotRequest(protocol=PROTOCOL, robot=asked.robot)
         return msgspec.Raw((await self._asker.ask("robot", request, RobotReply, _ROBOT_S))[1])
 
-    async def trial(self, asked: requests.TrialAsk) -> msgspec.Raw:
-        """Let the robot walk; while one trial of the page runs, the next one waits."""
+    async def trial(self, asked: requests.TrialAsk) -> tuple[TrialReply, bytes]:
+        """Let the robot walk; while one trial of the page runs, the next one waits.
+
+        Returns:
+            The answer, and its bytes.
+        """
         request = TrialRequest(
             protocol=PROTOCOL,
             files=_files(asked.table, asked.robot, asked.sequences),
@@ -65,7 +69,7 @@ class StudioDesk:
             seconds=asked.seconds,
         )
         async with self._trying:
-            return msgspec.Raw((await self._asker.ask("trial", request, TrialReply, _TRIAL_S))[1])
+            return await self._asker.ask("trial", request, TrialReply, _TRIAL_S)
 
     async def coach(self, asked: requests.CoachAsk) -> msgspec.Raw:
         """Search, and tell the page how far it is; end the search if nobody waits any more."""

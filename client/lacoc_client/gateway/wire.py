@@ -52,6 +52,7 @@ class Kind(IntEnum):
     FOLDER = 12
     PROGRESS = 13
     STUDIO = 14
+    PHASES = 15
 
 
 _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]

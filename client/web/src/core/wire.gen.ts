@@ -79,6 +79,7 @@ export const MESSAGE_KINDS = [
   "folder",
   "progress",
   "studio",
+  "phases",
 ] as const;
 
 /** Why a key was refused, by its `No`: codes of the table. */
@@ -386,6 +387,40 @@ export interface FolderFile {
   name: string;
   slot: "robot" | "postures" | "locomotion";
   version: string;
+}
+
+export interface PhaseState {
+  number: number;
+  state: "open" | "met" | "skipped";
+  share: number;
+  title: Phrase;
+  task: Phrase;
+  question: Phrase;
+  hint: Phrase;
+  explanation: Phrase;
+  missing: Phrase[];
+}
+
+export interface Phases {
+  phase: number;
+  word: string;
+  trouble: Phrase | null;
+  phases: PhaseState[];
+}
+
+export interface Judged {
+  said: string;
+  was: string[];
+  right: boolean;
+}
+
+export interface EditReply {
+  guess: Judged | null;
+}
+
+export interface CheckReply {
+  keys: number;
+  mistakes: Mistake[];
 }
 
 /** `SeatFrame` is an array on the wire: the names of its places. */

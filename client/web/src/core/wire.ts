@@ -11,6 +11,7 @@ import {
   type Health,
   MESSAGE_KINDS,
   type Mistake,
+  type Phases,
   type Progress,
   type Scene,
   SEATFRAME_FIELDS,
@@ -134,7 +135,8 @@ export type Message =
   | { kind: "files"; body: OwnFiles }
   | { kind: "folder"; body: Folder }
   | { kind: "progress"; body: Progress & { job: string } }
-  | { kind: "studio"; body: StudioState };
+  | { kind: "studio"; body: StudioState }
+  | { kind: "phases"; body: Phases };
 
 /** What a page asks for; each request is answered by a reply with its id. */
 export type Request =
@@ -161,7 +163,12 @@ type DesignRequest =
   | "robot"
   | "trial"
   | "coach"
-  | "cancel";
+  | "cancel"
+  | "edit"
+  | "check"
+  | "phase"
+  | "name"
+  | "vote";
 
 /** A file on its way to the court. */
 export interface SentFile {

@@ -1,6 +1,6 @@
 /** The studio: a gait is designed here, and tried (workshop 3-2, 4-1, 4-2). */
 
-import { computed, signal, useComputed, useSignal } from "@preact/signals";
+import { computed, type Signal, signal, useComputed, useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { bodyOf, jointsOfLeg } from "../core/design/parts";
 import { trialSource } from "../core/design/sources";
@@ -20,15 +20,17 @@ import { ConflictDialog, Files, TroubleDialog, takeFiles, usualName } from "./de
 import { Grid } from "./design/grid";
 import { Foretell } from "./design/guess";
 import { Keys, keyName, triedKeys } from "./design/keys";
+import { PhaseDots, PhasePanel } from "./design/phases";
 import { LegPicture, Robot } from "./design/robot";
 import { rowName } from "./design/rows";
 import { Strip } from "./design/strip";
-import { Studio, type Tried } from "./design/studio";
+import { type Pose, Studio, type Tried } from "./design/studio";
 import { Trials } from "./design/trials";
 import { qualityOfAddress } from "./watch/flags";
 import "./design/design.css";
 
-const TABS = ["trials", "coach", "robot"] as const;
+const TABS = ["trials", "phase", "coach", "robot"] as const;
+const POSES: readonly Pose[] = ["A1", "A1, A2"];
 type Tab = (typeof TABS)[number];
 
 declare global {
@@ -46,6 +48,7 @@ export default function Design() {
   const studio = useMemo(() => new Studio(), []);
   const open = useSignal<"" | "files" | "settings">("");
   const asks = useSignal(false);
+  const tab = useSignal<Tab>("trials");
   window.__studio = studio;
   const close = () => {
     open.value = "";
@@ -65,7 +68,18 @@ export default function Design() {
       <Banner studio={studio} />
       <header class="bar">
         <FileButtons studio={studio} onFiles={() => (open.value = "files")} />
-        <Task studio={studio} />
+        <div class="where">
+          <PhaseDots
+            studio={studio}
+            onOpen={() => {
+              tab.value = "phase";
+              // Where all stands below one another, the task would be out of sight.
+              const show = () => document.getElementById("panel-phase")?.scrollIntoView();
+              if (isNarrow.peek()) requestAnimationFrame(() => requestAnimationFrame(show));
+            }}
+          />
+          <Task studio={studio} />
+        </div>
         <div class="acts">
           <button
             class="button"
@@ -119,7 +133,7 @@ export default function Design() {
         <Strip studio={studio} />
       </section>
       <Bars studio={studio} />
-      <Side studio={studio} />
+      <Side studio={studio} tab={tab} onTry={tryIt} />
       {open.value === "files" && <Files studio={studio} onClose={close} />}
       {open.value === "settings" && <Settings onClose={close} />}
       <ConflictDialog studio={studio} />
@@ -227,10 +241,13 @@ function KeyChooser({ studio }: { studio: Studio }) {
     <label class="chooser">
       <span class="hidden-text">{t("design.pressed")}</span>
       <select
-        value={studio.key.value}
+        value={studio.pose.value ?? studio.key.value}
         title={t("design.pressed")}
         onChange={(event) => {
-          studio.key.value = Number(event.currentTarget.value);
+          const { value } = event.currentTarget;
+          const pose = POSES.find((one) => one === value) ?? null;
+          studio.pose.value = pose;
+          if (!pose) studio.key.value = Number(value);
         }}
       >
         {keys.map((key) => (
@@ -238,6 +255,12 @@ function KeyChooser({ studio }: { studio: Studio }) {
             {t("design.keyOption", { name: keyName(key) })}
           </option>
         ))}
+        {studio.table.value?.kind === "postures" &&
+          POSES.map((pose) => (
+            <option key={pose} value={pose}>
+              {t("design.keyOption", { name: pose })}
+            </option>
+          ))}
       </select>
     </label>
   );
@@ -373,8 +396,7 @@ function marksOf(studio: Studio): () => FloorMarks | null {
 }
 
 /** What a trial showed, and below it the tabs. */
-function Side({ studio }: { studio: Studio }) {
-  const tab = useSignal<Tab>("trials");
+function Side({ studio, tab, onTry }: { studio: Studio; tab: Signal<Tab>; onTry: () => void }) {
   return (
     <aside class="side">
       <Result studio={studio} />
@@ -412,6 +434,7 @@ function Side({ studio }: { studio: Studio }) {
         class="panel"
       >
         {tab.value === "trials" && <Trials studio={studio} />}
+        {tab.value === "phase" && <PhasePanel studio={studio} onTry={onTry} />}
         {tab.value === "coach" && <Coach studio={studio} />}
         {tab.value === "robot" && <Robot studio={studio} />}
       </div>

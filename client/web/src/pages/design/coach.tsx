@@ -278,12 +278,17 @@ function Better({ studio, found: { reply, rows, size } }: FoundProps) {
     );
   }
   const apply = () => {
-    studio.edit(t("design.step.coach"), (now) =>
-      reply.changes.reduce((made, { cell, to_deg }) => {
-        const row = rows[cell.posture] ?? 0;
-        const area = { top: row, bottom: row, left: cell.joint, right: cell.joint };
-        return change(made, area, () => to_deg);
-      }, now),
+    studio.edit(
+      t("design.step.coach"),
+      (now) =>
+        reply.changes.reduce((made, { cell, to_deg }) => {
+          const row = rows[cell.posture] ?? 0;
+          const area = { top: row, bottom: row, left: cell.joint, right: cell.joint };
+          return change(made, area, () => to_deg);
+        }, now),
+      null,
+      "coach",
+      size,
     );
     found.value = null;
     void studio.tryIt();

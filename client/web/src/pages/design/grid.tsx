@@ -287,7 +287,7 @@ export function pasteInto(studio: Studio, plain: string, html: string): void {
     refusePaste(studio, table, pasted.bad);
     return;
   }
-  studio.edit(t("design.step.paste"), () => pasted.table);
+  studio.edit(t("design.step.paste"), () => pasted.table, null, "paste");
   const { top, left, bottom, right } = pasted.area;
   studio.select({ row: top, col: left }, { row: bottom, col: right });
 }

@@ -25,7 +25,7 @@ export function Foretell({ studio, onTry, onClose }: Props) {
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);
   }, [onClose]);
-  const before = studio.lastOf(studio.key.value);
+  const before = studio.lastOf(studio.pressed());
   const guesses = studio.guesses.value;
   const choose = (guess: Guess) => {
     const others = guesses.filter(({ about }) => about !== guess.about);

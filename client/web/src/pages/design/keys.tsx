@@ -43,6 +43,7 @@ export function Keys({ studio }: { studio: Studio }) {
               aria-label={t("design.chooseKey", { name: keyName(key) })}
               onClick={() => {
                 studio.key.value = key;
+                studio.pose.value = null;
                 const row = studio.sequence.peek()?.[0];
                 if (row !== undefined) studio.select({ row, col: studio.active.peek().col });
               }}

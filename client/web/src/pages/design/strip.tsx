@@ -102,12 +102,12 @@ function Tools({ studio }: { studio: Studio }) {
   return (
     <div class="tools">
       {tool(t("design.tool.mirror"), true, () =>
-        studio.edit(t("design.tool.mirror"), (now) => mirrorRows(now, rows)),
+        studio.edit(t("design.tool.mirror"), (now) => mirrorRows(now, rows), null, "tool"),
       )}
       {tool(
         t("design.tool.half"),
         halves.length > 0,
-        () => studio.edit(t("design.tool.half"), (now) => otherHalf(now, halves)),
+        () => studio.edit(t("design.tool.half"), (now) => otherHalf(now, halves), null, "tool"),
         t("design.tool.halfHint", { keys: others || "–" }),
       )}
       <label class="check">
@@ -124,7 +124,13 @@ function Tools({ studio }: { studio: Studio }) {
       {tool(
         t("design.tool.leg", { from: table.legs[leg] ?? leg, to: table.legs[partner] ?? partner }),
         partner !== leg,
-        () => studio.edit(t("design.tool.copy"), (now) => copyLeg(now, rows, leg, partner)),
+        () =>
+          studio.edit(
+            t("design.tool.copy"),
+            (now) => copyLeg(now, rows, leg, partner),
+            null,
+            "tool",
+          ),
       )}
       {tool(t("design.tool.addRow"), canAdd(table, row), () =>
         studio.edit(t("design.tool.addRow"), (now) => addRow(now, row)),

@@ -25,8 +25,10 @@ import type { Phrase } from "../../core/phrase";
 import type {
   FileTable,
   FolderFile,
+  Judged,
   Message,
   Mistake,
+  Phases,
   Progress,
   RobotReply,
   SentFile,
@@ -47,7 +49,8 @@ export interface Tried {
   number: number;
   version: number;
   table: Table;
-  key: number;
+  /** A key of level B, or such as "A1" of level A. */
+  key: number | string;
   /** The rows that the key ran through. */
   rows: readonly number[];
   robot: RobotReply;
@@ -93,6 +96,17 @@ export interface Trouble {
   mistakes: readonly Mistake[];
 }
 
+/** What is tried of level A in phases 2 and 3: a posture, or one posture after another. */
+export type Pose = "A1" | "A1, A2";
+
+/** How an edit was made; null: none that counts as one's own work. */
+type By = "hand" | "tool" | "paste" | "coach" | null;
+
+const POSES: Record<Pose, { keys: string; seconds: number; measured: number }> = {
+  A1: { keys: "A1", seconds: 3, measured: 1 },
+  "A1, A2": { keys: "A1:1, A2", seconds: 1.5, measured: 2 },
+};
+const LEARN_MS = 250;
 const FORWARD = 2;
 const MOST_TRIALS = 40;
 const STANDING_KEYS = 9;
@@ -131,6 +145,14 @@ export class Studio {
 
   /** The key of level B that a trial presses. */
   readonly key = signal(FORWARD);
+  /** What is pressed of level A instead of the key; null: the key is. */
+  readonly pose = signal<Pose | null>(null);
+  /** How far the student is in the six phases; null: not known yet. */
+  readonly phases = signal<Phases | null>(null);
+  /** Where the student says that a foot goes with the next edit. */
+  readonly footGuess = signal<string | null>(null);
+  /** What came of the last such guess. */
+  readonly judged = signal<Judged | null>(null);
   /** Whether the second half of the key's sequence follows the first as its mirror. */
   readonly mirrors = signal(false);
   readonly trying = signal(false);
@@ -173,6 +195,8 @@ export class Studio {
   readonly why = signal<Phrase | null>(null);
   /** The robot of the command line. */
   private first: SentFile | null = null;
+  /** The edits that the gateway does not know yet; null: none. */
+  private untold: { by: By; size: string | null; timer: number } | null = null;
   private greeted = false;
   private opened = false;
   private again = false;
@@ -189,9 +213,17 @@ export class Studio {
   // The table
 
   /** Edit the table: one step that can be undone. */
-  edit(name: string, change: (table: Table) => Table, gesture: string | null = null): void {
+  edit(
+    name: string,
+    change: (table: Table) => Table,
+    gesture: string | null = null,
+    by: By = "hand",
+    size: string | null = null,
+  ): void {
     const history = this.history.peek();
     if (!history) return;
+    if (this.untold?.by !== by) this.tellEdit();
+    const version = this.version.peek();
     const halves = this.mirrors.peek() ? halvesOf(this.sequence.peek() ?? []) : [];
     const whole = (before: Table) => {
       const after = change(before);
@@ -205,16 +237,21 @@ export class Studio {
       this.watching.value = false;
     });
     this.clock.pause();
+    if (this.version.peek() !== version) this.learn(by, size);
   }
 
   undo(): void {
+    this.tellEdit();
     this.history.peek()?.undo();
+    this.learn(null);
     this.stayInside();
     this.watching.value = false;
   }
 
   redo(): void {
+    this.tellEdit();
     this.history.peek()?.redo();
+    this.learn(null);
     this.stayInside();
     this.watching.value = false;
   }
@@ -350,7 +387,7 @@ export class Studio {
     const robot = this.robot.peek();
     if (!conflict?.table || !robot) return;
     const table = fromWire(conflict.table, columnsOf(robot));
-    this.edit(t("design.step.theirs"), () => table);
+    this.edit(t("design.step.theirs"), () => table, null, null);
     this.file.value = {
       name: conflict.name,
       version: conflict.version,
@@ -394,6 +431,7 @@ export class Studio {
   }
 
   private begin(table: Table, file: OpenFile): void {
+    if (this.table.peek()) this.tellEdit();
     batch(() => {
       const isOther = this.table.peek()?.legs.length !== table.legs.length;
       // Versions go on, so that trials stay with their tables.
@@ -410,6 +448,7 @@ export class Studio {
       const first = this.sequence.peek()?.[0] ?? 0;
       this.select({ row: first, col: 0 });
     });
+    this.learn(null);
   }
 
   private show(wire: FileTable, name: string, version: string): void {
@@ -430,7 +469,7 @@ export class Studio {
       this.begin(table, NO_FILE);
       return;
     }
-    this.edit(t("design.step.take", { name }), () => table);
+    this.edit(t("design.step.take", { name }), () => table, null, "paste");
   }
 
   private versionOf(name: string): string {
@@ -441,7 +480,9 @@ export class Studio {
 
   /** Let the robot walk with the table as it is now. */
   async tryIt(): Promise<Tried | null> {
-    const [table, robot, rows] = [this.table.peek(), this.robot.peek(), this.sequence.peek()];
+    const [table, robot] = [this.table.peek(), this.robot.peek()];
+    const pose = this.pose.peek() && POSES[this.pose.peek()!];
+    const rows = pose ? rowsOfPose(table, pose.measured) : this.sequence.peek();
     if (!table || !robot) return null;
     if (this.trying.peek()) {
       this.again = true;
@@ -455,19 +496,21 @@ export class Studio {
       return null;
     }
     if (!rows) {
-      toast(t("design.noSequence", { key: this.key.peek() }), "no");
+      toast(t("design.noSequence", { key: this.pose.peek() ?? this.key.peek() }), "no");
       return null;
     }
     this.trying.value = true;
     this.trouble.value = null;
-    const [version, key] = [this.version.peek(), this.key.peek()];
+    const [version, key] = [this.version.peek(), this.pressed()];
     try {
+      this.tellEdit();
       const reply = await this.connection.ask<TrialReply>("trial", {
         table: wire,
         robot: this.robotFile(),
         sequences: this.digits(table),
-        keys: String(key),
-        seconds: null,
+        keys: pose ? pose.keys : String(key),
+        seconds: pose ? pose.seconds : null,
+        guesses: this.guesses.peek().map(({ about, is }) => ({ about, said: is })),
       });
       const last = this.trials.peek().at(-1);
       const tried: Tried = {
@@ -499,11 +542,16 @@ export class Studio {
   }
 
   /** The last trial of a key: what the next one is compared with. */
-  lastOf(key: number): Tried | null {
+  lastOf(key: number | string): Tried | null {
     return this.trials.peek().findLast((tried) => tried.key === key) ?? null;
   }
 
-  private judge(key: number, after: Record<string, unknown>): Tried["verdicts"] {
+  /** What the next trial presses. */
+  pressed(): number | string {
+    return this.pose.value ?? this.key.value;
+  }
+
+  private judge(key: number | string, after: Record<string, unknown>): Tried["verdicts"] {
     const before = this.lastOf(key)?.trial.reply.figures ?? null;
     return this.guesses.peek().flatMap((guess) => {
       const found = verdict(guess, before, after);
@@ -531,7 +579,7 @@ export class Studio {
 
   /** Put the table of a trial back, in one step. */
   restore(tried: Tried): void {
-    this.edit(t("design.step.restore", { number: tried.number }), () => tried.table);
+    this.edit(t("design.step.restore", { number: tried.number }), () => tried.table, null, null);
   }
 
   /** The files that a request to the studio is about. */
@@ -572,6 +620,61 @@ export class Studio {
     for (const note of notes) toast(said(note));
   }
 
+  // The six phases
+
+  /** Go to a phase, forward or back. */
+  async goTo(number: number): Promise<void> {
+    await this.evidence("phase", { number });
+  }
+
+  /** Send something that counts as evidence; null: it was refused. */
+  async evidence<T>(
+    what: "phase" | "name" | "vote" | "check",
+    fields: Record<string, unknown>,
+  ): Promise<T | null> {
+    this.tellEdit();
+    try {
+      return await this.connection.ask<T>(what, fields);
+    } catch (error) {
+      this.refuse(error);
+      return null;
+    }
+  }
+
+  /** Tell the gateway of an edit, after a moment in which more of the same kind may come. */
+  private learn(by: By, size: string | null = null): void {
+    if (this.untold) clearTimeout(this.untold.timer);
+    // What could not be told yet, because a cell has no angle, is told with this.
+    const first = this.untold ?? { by, size };
+    const timer = window.setTimeout(() => this.tellEdit(), LEARN_MS);
+    this.untold = { ...first, timer };
+  }
+
+  /** Tell the gateway of the edits that it does not know yet. */
+  private tellEdit(): void {
+    const untold = this.untold;
+    const files = untold && this.greeted ? this.request() : null;
+    if (!untold || !files) return;
+    clearTimeout(untold.timer);
+    this.untold = null;
+    const guess = untold.by === "hand" ? this.footGuess.peek() : null;
+    if (guess) this.footGuess.value = null;
+    const { by, size } = untold;
+    const ask = this.connection.ask<{ guess: Judged | null }>("edit", {
+      ...files,
+      by,
+      size,
+      guess,
+    });
+    ask.then(
+      (reply) => {
+        if (guess) this.judged.value = reply.guess;
+      },
+      // The next edit tells it, or the next connection.
+      () => {},
+    );
+  }
+
   // The connection
 
   private async greet(): Promise<void> {
@@ -579,6 +682,7 @@ export class Studio {
     const { robot } = await this.connection.ask<{ robot: SentFile | null }>("hello", hello);
     this.first = robot;
     this.greeted = true;
+    if (this.table.peek()) this.learn(null);
     void this.openFirst();
   }
 
@@ -588,6 +692,8 @@ export class Studio {
       this.present.value = message.body.present;
       this.why.value = message.body.why;
       if (!was && message.body.present) void this.openFirst();
+    } else if (message.kind === "phases") {
+      this.phases.value = message.body;
     } else if (message.kind === "progress") {
       this.progress.value = message.body;
     } else if (message.kind === "folder") {
@@ -681,6 +787,12 @@ export class Studio {
       this.refuse(error);
     }
   }
+}
+
+/** The row that a trial of level A measures; null if there is none. */
+function rowsOfPose(table: Table | null, key: number): number[] | null {
+  const row = table?.kind === "postures" ? table.rows.findIndex((one) => one.key === key) : -1;
+  return row < 0 ? null : [row];
 }
 
 /** A table to begin with: all postures are that in which the robot stands. */

@@ -1,0 +1,160 @@
+"""The six phases at a real gateway and a real studio: evidence in the file of a folder."""
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from design_client import DesignClient
+from test_design_page import Gateway, sample
+
+from lacoc_client.design.learning.diary import FILE
+from lacoc_client.phases.evidence import Compared, Edited, Evidence, Guessed, Tried
+from lacoc_client.phases.store import ClassStore
+
+pytestmark = pytest.mark.slow
+
+SEQUENCES = [[0], [4, 3, 2, 1], [1, 2, 3, 4]]
+Table = dict[str, Any]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return tmp_path
+
+
+@pytest.fixture
+def starts(folder: Path) -> Iterator[Callable[[], tuple[Gateway, DesignClient]]]:
+    """Give a function that starts `lacoc design`, and opens a page."""
+    open_now: list[tuple[Gateway, DesignClient]] = []
+
+    def start() -> tuple[Gateway, DesignClient]:
+        gateway = Gateway(folder)
+        page = DesignClient(gateway.url, gateway.key)
+        open_now.append((gateway, page))
+        return gateway, page
+
+    yield start
+    for gateway, page in open_now:
+        page.close()
+        if gateway.process.poll() is None:
+            gateway.close()
+
+
+def kept(folder: Path) -> list[Evidence]:
+    with ClassStore(folder / FILE) as store:
+        return [one.evidence for one in store.evidence("").result()]
+
+
+def changed(table: Table, key: int, joint: int, angle_deg: float) -> Table:
+    rows = [
+        {
+            **row,
+            "angles_deg": [*row["angles_deg"][:joint], angle_deg, *row["angles_deg"][joint + 1 :]],
+        }
+        if row["key"] == key
+        else row
+        for row in table["rows"]
+    ]
+    return {**table, "rows": rows}
+
+
+def states(page: DesignClient) -> list[str]:
+    return [phase["state"] for phase in page.phases["phases"]]
+
+
+def test_two_phases_are_done_and_survive_a_kill(
+    starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
+) -> None:
+    """Guesses and edits of a leg meet phase 1, a tripod phase 2; a killed gateway loses nothing."""
+    gateway, page = starts()
+    table = sample(page)
+    assert not (folder / FILE).exists()
+    page.ask("edit", table=table)
+    assert states(page) == ["open"] * 6
+
+    guesses = []
+    for joint, angle_deg, guess in (
+        (0, -30.0, "back"),
+        (0, 30.0, "back"),
+        (0, -20.0, "back"),
+        (6, 40.0, None),
+        (12, 40.0, None),
+        (12, 20.0, None),
+    ):
+        table = changed(table, 0, joint, angle_deg)
+        said = page.ask("edit", table=table, sequences=SEQUENCES, by="hand", guess=guess)["guess"]
+        guesses.append(said and said["right"])
+    assert guesses == [True, False, True, None, None, None]
+    page.until(lambda: states(page)[0] == "met")
+
+    page.ask("phase", number=2)
+    page.until(lambda: page.phases["phase"] == 2)
+    page.ask("trial", table=table, sequences=SEQUENCES, keys="A1", seconds=3.0)
+    page.until(lambda: states(page)[1] == "met")
+    page.ask("phase", number=3)
+    before = page.phases
+
+    children = psutil.Process(gateway.process.pid).children(recursive=True)
+    os.kill(gateway.process.pid, signal.SIGKILL)
+    gateway.process.communicate(timeout=30)
+    psutil.wait_procs(children, timeout=30)
+    _, again = starts()
+    assert states(again)[:3] == ["met", "met", "open"]
+    assert again.phases["phase"] == before["phase"] == 3
+
+
+def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
+    starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
+) -> None:
+    """A slower gait is told apart from the sample; predictions are judged; a check counts."""
+    gateway, page = starts()
+    own = sample(page)
+    halves = [
+        {
+            **row,
+            "angles_deg": [angle / 2 for angle in row["angles_deg"][:6]] + row["angles_deg"][6:],
+        }
+        for row in own["rows"]
+    ]
+    slow = {**own, "rows": halves}
+    page.ask("edit", table=own, sequences=SEQUENCES)
+    page.ask("trial", table=own, sequences=SEQUENCES, keys="2")
+    page.ask("edit", table=slow, sequences=SEQUENCES, by="tool")
+    guesses = [{"about": "pace", "said": "slower"}, {"about": "way", "said": "left"}]
+    page.ask("trial", table=slow, sequences=SEQUENCES, keys="2", guesses=guesses)
+    page.ask("name", word="calm")
+    page.ask("vote", choice="B")
+    page.ask("vote", choice="A")
+    checked = page.ask("check", table=slow, sequences=SEQUENCES)
+    wrong = page.ask("check", table=changed(slow, 1, 0, 170.0), sequences=SEQUENCES)
+    page.until(lambda: states(page)[4] == "met" or not page.phases["phases"][4]["missing"][1:])
+    page.close()
+    gateway.close()
+
+    evidence = kept(folder)
+    assert (checked["keys"], checked["mistakes"]) == (3, [])
+    assert len(wrong["mistakes"]) == 1
+    assert [one.said for one in evidence if isinstance(one, Guessed) and one.right] == ["slower"]
+    assert [type(one) for one in evidence].count(Tried) == 2
+    assert any(isinstance(one, Compared) and "speed" in one.differs for one in evidence)
+    assert [one.by for one in evidence if isinstance(one, Edited)] == ["tool"]
+    assert page.phases["word"] == "calm"
+    assert page.phases["trouble"] is None
+
+
+def test_a_file_that_cannot_be_kept_is_told_and_disturbs_nobody(
+    starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
+) -> None:
+    """While another program has the file, the page works, and says that nothing is kept."""
+    with ClassStore(folder / FILE):
+        _, page = starts()
+        table = sample(page)
+        page.ask("edit", table=table)
+        page.ask("edit", table=changed(table, 1, 0, 20.0), by="hand", guess="forward")
+        page.until(lambda: page.phases["phases"][0]["share"] > 0)
+
+        assert page.phases["trouble"]["code"] == "class.in-use"
