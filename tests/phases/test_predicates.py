@@ -236,7 +236,7 @@ def test_the_best_trial_says_what_is_missing() -> None:
 
 
 def test_one_version_must_show_everything() -> None:
-    """Two trials of two versions do not add up; two trials of one version do."""
+    """Two conditions are met only if trials of the same version of the table meet them."""
     turned = Bound(lambda facts: facts.drift_deg_s, lambda found: Phrase("phases.tipped"), least=5)
     none = Phrase("phases.try")
     both = OneVersion(All(TriedWhere((FORWARD,), none), TriedWhere((turned,), none)))

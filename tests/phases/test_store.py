@@ -198,7 +198,7 @@ store.close()
 
 @pytest.mark.slow
 def test_a_full_disk_is_told_and_loses_nothing(path: Path) -> None:
-    """While no file can grow, evidence is refused with one clear error; then the class goes on."""
+    """A full disk refuses evidence with a clear error; with room again, the class goes on."""
     done = subprocess.run(
         [sys.executable, "-c", FULL, str(path)], capture_output=True, text=True, check=True
     )
