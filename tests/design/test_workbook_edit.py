@@ -139,7 +139,7 @@ def test_one_number_changes_one_cell(name: str) -> None:
 
 
 def test_the_mirror_shows_the_new_numbers() -> None:
-    """The mirror sheet stores the new angle, and Excel calculates the workbook when it opens it."""
+    """The mirror sheet stores the new angle, and the workbook tells Excel to recalculate it."""
     after = edit_workbook(ours(), "x.xlsx", with_angle(sample(), 0, 0, 33))
     assert values(after, MIRROR_SHEET)["B2"] == 33
     assert values(after, MIRROR_SHEET)["C2"] == values(ours(), MIRROR_SHEET)["C2"]

@@ -224,7 +224,7 @@ STRAIGHT = Bound(
 
 
 def test_the_best_trial_says_what_is_missing() -> None:
-    """One trial must keep all limits; the nearest one has its own number in what is missing."""
+    """One trial must keep all limits; if none does, the nearest trial's number is reported."""
     tried = TriedWhere((FORWARD, STRAIGHT), Phrase("phases.try"))
     far = a_trial("1", forward_mm=150.0, drift_deg_s=9.0)
     straight = a_trial("2", forward_mm=10.0)
