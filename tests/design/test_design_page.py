@@ -193,7 +193,7 @@ def test_mistakes_of_a_table_have_their_places(page: DesignClient) -> None:
 
 
 def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -> None:
-    """Progress comes under the page's own name of the search; after a cancel the reply comes."""
+    """Progress carries the name that the page gave its search; a cancelled search replies."""
     search = page.send("coach", job="search", table=sample(page), size="cell", seconds=60.0)
     page.until(lambda: page.progress)
     page.ask("cancel", job="search")

@@ -32,7 +32,7 @@ CALC = Path(__file__).parents[1] / "gait" / "files" / "calc.xlsx"
 """The workshop's table as LibreOffice saves it."""
 PURPLE = "FF7030A0"
 NO_VALUE = re.compile("<v ?/>|<v></v>")
-"""The value of a formula in a workbook of a program that can't calculate."""
+"""A formula's empty value, as a program writes it that can't calculate."""
 
 
 def sample() -> PostureTable:
@@ -84,7 +84,7 @@ FILES = files()
 
 
 def everything(data: bytes) -> dict[str, Any]:
-    """Return what a workbook has, cell by cell, with looks."""
+    """Return a workbook's cells with looks and comments, its columns' widths and rows' heights."""
     book = openpyxl.load_workbook(io.BytesIO(data))
     found: dict[str, Any] = {"sheets": book.sheetnames}
     for sheet in book:
@@ -108,7 +108,7 @@ def differing(before: bytes, after: bytes) -> set[str]:
 
 
 def values(data: bytes, sheet: str) -> dict[str, Any]:
-    """Return the values of a sheet as a program reads them that does not calculate."""
+    """Return a sheet's stored values by cell name; no formula is calculated."""
     rows = openpyxl.load_workbook(io.BytesIO(data), data_only=True)[sheet].iter_rows()
     return {cell.coordinate: cell.value for row in rows for cell in row}
 
@@ -127,7 +127,7 @@ def test_an_unchanged_table_gives_the_same_bytes(name: str) -> None:
 
 @pytest.mark.parametrize("name", FILES)
 def test_one_number_changes_one_cell(name: str) -> None:
-    """If one angle differs, only its cell differs, in all sheets, looks and comments."""
+    """If one angle differs, a save changes its cell; all other cells, looks and comments stay."""
     wanted = with_angle(sample(), 3, 7, -12.5)
     after = edit_workbook(FILES[name], "x.xlsx", wanted)
     assert read_workbook(after, "x.xlsx") == wanted
@@ -139,7 +139,7 @@ def test_one_number_changes_one_cell(name: str) -> None:
 
 
 def test_the_mirror_shows_the_new_numbers() -> None:
-    """The sheet of formulas has the new values too; other formulas have none that are old."""
+    """The mirror sheet stores the new angle, and the workbook tells Excel to recalculate it."""
     after = edit_workbook(ours(), "x.xlsx", with_angle(sample(), 0, 0, 33))
     assert values(after, MIRROR_SHEET)["B2"] == 33
     assert values(after, MIRROR_SHEET)["C2"] == values(ours(), MIRROR_SHEET)["C2"]
@@ -148,7 +148,7 @@ def test_the_mirror_shows_the_new_numbers() -> None:
 
 
 def test_old_results_of_formulas_are_forgotten() -> None:
-    """A formula that depends on the table loses its stored value; one that does not keeps it."""
+    """A formula that reads the table loses its stored value; any other formula keeps its value."""
     calculated = _replaced(own(), lambda text: NO_VALUE.sub("<v>7</v>", text))
     assert values(calculated, "My notes")["A2"] == 7
     after = edit_workbook(calculated, "x.xlsx", with_angle(sample(), 0, 0, 33))
@@ -177,7 +177,7 @@ def test_a_posture_is_added_below_the_others(name: str) -> None:
 
 
 def test_what_belongs_to_rows_grows_with_them() -> None:
-    """Input help, colours by rule and merged headings fit the longer table."""
+    """If a posture is added, input help and colour rules cover its row; merged cells move down."""
     table = sample()
     after = edit_workbook(own(), "x.xlsx", PostureTable({**table.postures, 9: table.postures[1]}))
     sheet = openpyxl.load_workbook(io.BytesIO(after))[INPUT_SHEET]
@@ -189,7 +189,7 @@ def test_what_belongs_to_rows_grows_with_them() -> None:
 
 
 def test_a_row_that_went_is_used_again() -> None:
-    """A removed posture leaves an empty row; the next new key takes it."""
+    """A removed posture leaves an empty row; the next new posture is written into that row."""
     table = sample()
     fewer = PostureTable({key: row for key, row in table.postures.items() if key != 8})
     without = edit_workbook(own(), "x.xlsx", fewer)
@@ -202,7 +202,7 @@ def test_a_row_that_went_is_used_again() -> None:
 
 
 def test_formulas_in_the_table_become_their_numbers() -> None:
-    """After a change no formula in the table can give other numbers than those that were tried."""
+    """When an angle is changed, a formula in the table is replaced by the number that it gave."""
     book = openpyxl.load_workbook(CALC)
     book[INPUT_SHEET]["E2"] = "=-B2"
     formula = _replaced(saved(book), lambda text: NO_VALUE.sub("<v>-45</v>", text))
@@ -214,7 +214,7 @@ def test_formulas_in_the_table_become_their_numbers() -> None:
 
 
 def test_pictures_and_charts_stay_byte_for_byte() -> None:
-    """Parts of the workbook that are not about cells stay the same bytes, known here or not."""
+    """Charts and sparklines stay byte for byte when a posture is changed and another is added."""
     stream = io.BytesIO()
     with xlsxwriter.Workbook(stream) as made:
         cells = posture_cells(sample(), leg_labels(6))
@@ -239,7 +239,7 @@ def test_pictures_and_charts_stay_byte_for_byte() -> None:
 
 
 def test_the_order_of_calculation_goes_with_a_formula() -> None:
-    """Excel calls a workbook damaged if its list of formulas names a cell without one."""
+    """When a formula becomes a number, Excel's list of formulas (calcChain.xml) is removed."""
     book = openpyxl.load_workbook(CALC)
     book[INPUT_SHEET]["E2"] = "=-B2"
     parts = {}
@@ -276,7 +276,7 @@ def test_the_order_of_calculation_goes_with_a_formula() -> None:
 
 
 def test_a_shared_formula_lives_on_outside_the_table() -> None:
-    """Cells beside the table whose shared formula stood in the table get formulas of their own."""
+    """A cell below the table keeps its formula if it shared the formula with a table cell."""
     book = openpyxl.load_workbook(CALC)
     book[INPUT_SHEET]["B20"] = 1
     first = '<c r="B2"><f t="shared" ref="B2:B20" si="0">20+25+C30</f><v>45</v></c>'
@@ -302,7 +302,7 @@ def test_a_shared_formula_lives_on_outside_the_table() -> None:
     ],
 )
 def test_what_can_t_be_kept_is_refused(change: Callable[[Any], None], said: str) -> None:
-    """If a new row would push something away, nothing is written, and the message says why."""
+    """A new posture is refused with the reason if its row has no room."""
     book = openpyxl.load_workbook(io.BytesIO(ours()))
     change(book[INPUT_SHEET])
     table = sample()
@@ -311,7 +311,7 @@ def test_what_can_t_be_kept_is_refused(change: Callable[[Any], None], said: str)
 
 
 def test_a_table_of_another_robot_does_not_fit() -> None:
-    """A table for eight legs does not go into a workbook with columns for six."""
+    """A table for eight legs is not saved into a workbook with columns for six legs."""
     file = sample_gait_files("octopod").postures
     assert file is not None
     table = read_gait(file.data, file.name)
@@ -329,7 +329,7 @@ TABLES = st.dictionaries(
 @settings(max_examples=12, deadline=None, phases=[Phase.generate])
 @given(st.lists(TABLES, min_size=1, max_size=3), st.sampled_from(sorted(FILES)))
 def test_any_tables_one_after_another(tables: list[PostureTable], name: str) -> None:
-    """Whatever tables are saved in turn, each is read back, and everything else stays."""
+    """Tables that are saved one after another are read back; the rest of the workbook stays."""
     before = data = FILES[name]
     for table in tables:
         data = edit_workbook(data, "x.xlsx", table)
@@ -342,7 +342,7 @@ def test_any_tables_one_after_another(tables: list[PostureTable], name: str) -> 
 
 
 def _replaced(data: bytes, change: Callable[[str], str]) -> bytes:
-    """Return a workbook with another XML of its sheets."""
+    """Return a workbook with the XML of each sheet changed by a function."""
     stream = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(data)) as before, zipfile.ZipFile(stream, "w") as after:
         for part in before.namelist():

@@ -44,7 +44,7 @@ def test_the_sample_walks_five_whole_cycles(try_gait: Tries, sample: dict[int, P
 def test_a_tripod_is_seen_and_six_feet_are_none(
     try_gait: Tries, sample: dict[int, Posture]
 ) -> None:
-    """The sample's first posture stands on three feet for the whole time, the regular one never."""
+    """The sample robot stands on three feet throughout posture 1, and at no time in posture 0."""
     tripod, stand = try_gait(sample, "A1", 3.0), try_gait(sample, "A0", 3.0)
 
     assert tripod.tripod_s == pytest.approx(2.96, abs=0.1)
@@ -55,7 +55,7 @@ def test_a_tripod_is_seen_and_six_feet_are_none(
 def test_two_postures_go_forward_on_the_same_feet(
     try_gait: Tries, sample: dict[int, Posture]
 ) -> None:
-    """From the sample's first posture to its second, the robot goes forward on the same feet."""
+    """From the sample's posture 1 to posture 2, the robot goes forward on the same feet."""
     facts = try_gait(sample, "A1:1, a2", 1.5)
 
     assert facts.keys == ("A1", "A2")

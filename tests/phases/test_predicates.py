@@ -224,7 +224,7 @@ STRAIGHT = Bound(
 
 
 def test_the_best_trial_says_what_is_missing() -> None:
-    """One trial must keep all limits; the nearest one has its own number in what is missing."""
+    """One trial must keep all limits; if none does, the nearest trial's number is reported."""
     tried = TriedWhere((FORWARD, STRAIGHT), Phrase("phases.try"))
     far = a_trial("1", forward_mm=150.0, drift_deg_s=9.0)
     straight = a_trial("2", forward_mm=10.0)
@@ -236,7 +236,7 @@ def test_the_best_trial_says_what_is_missing() -> None:
 
 
 def test_one_version_must_show_everything() -> None:
-    """Two trials of two versions do not add up; two trials of one version do."""
+    """Two conditions are met only if trials of the same version of the table meet them."""
     turned = Bound(lambda facts: facts.drift_deg_s, lambda found: Phrase("phases.tipped"), least=5)
     none = Phrase("phases.try")
     both = OneVersion(All(TriedWhere((FORWARD,), none), TriedWhere((turned,), none)))

@@ -159,7 +159,7 @@ def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
 
 
 def test_a_student_may_skip_and_come_back() -> None:
-    """Who goes on has skipped the phases behind, also after coming back."""
+    """A student who moves to phase 4 has skipped phases 1-3, also after going back to phase 2."""
     evidence = [Moved(phase=4), Moved(phase=2), Hand(up=True)]
     now = progress(evidence)
 

@@ -77,7 +77,7 @@ def test_a_class_at_once(path: Path) -> None:
 
 
 def test_a_student_votes_once_and_nobody_sees_for_what(path: Path) -> None:
-    """A second vote in a poll does not count, and no row has a student beside a choice."""
+    """A second vote in a poll does not count; no row holds both a student and a choice."""
     with ClassStore(path) as store:
         counted = [
             store.vote(who, "calm", choice, 1.0).result()
@@ -113,7 +113,7 @@ def test_one_program_at_a_time_has_a_class(path: Path) -> None:
 
 
 def test_a_closed_store_says_so(path: Path) -> None:
-    """After the end nothing is kept, and whoever tries is told; closing again is harmless."""
+    """A closed store refuses evidence and tables with an error; it may be closed twice."""
     store = ClassStore(path)
     store.close()
     store.close()
@@ -198,7 +198,7 @@ store.close()
 
 @pytest.mark.slow
 def test_a_full_disk_is_told_and_loses_nothing(path: Path) -> None:
-    """While no file can grow, evidence is refused with one clear error; then the class goes on."""
+    """A full disk refuses evidence with a clear error; with room again, the class goes on."""
     done = subprocess.run(
         [sys.executable, "-c", FULL, str(path)], capture_output=True, text=True, check=True
     )
@@ -285,7 +285,7 @@ def test_tables_as_an_archive() -> None:
 
 
 def test_troubles_have_words_in_both_languages(path: Path) -> None:
-    """What a teacher is told of a damaged file names the file and where it was kept."""
+    """The message about a damaged file has the damaged file's new name, in both languages."""
     path.write_bytes(b"damaged")
     with ClassStore(path) as store:
         assert store.trouble is not None

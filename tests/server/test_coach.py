@@ -99,7 +99,7 @@ def test_a_change_that_hardly_helps_is_undone() -> None:
 
 
 def test_what_matters_is_ranked() -> None:
-    """Numbers are ranked by what a change of each does; both directions are told."""
+    """The coach ranks numbers by how a step up or down changes the score, and tells both."""
     found = what_matters((0,) * 6, RANGES, made_up)
     assert [one.size for one in found] == sorted((one.size for one in found), reverse=True)
     assert {one.number for one in found} == set(range(6))
@@ -111,7 +111,7 @@ def test_what_matters_is_ranked() -> None:
 
 @given(st.data())
 def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
-    """A digit is one row of the table however often it comes; unchanged angles stay exact."""
+    """A digit has one row of the table even if it is repeated; unchanged angles stay exact."""
     posture = st.tuples(*[st.floats(-1, 1)] * 3)
     rows = data.draw(st.lists(posture, min_size=1, max_size=4))
     order = data.draw(st.lists(st.integers(0, len(rows) - 1), min_size=1, max_size=8))

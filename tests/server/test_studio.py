@@ -147,7 +147,7 @@ def test_a_trial_is_that_of_the_command(asker: Asker) -> None:
 
 
 def test_a_sentence_has_its_place(asker: Asker) -> None:
-    """The page finds the cell and the leg of a sentence without reading its words."""
+    """A sentence of an explanation carries the table cell and the leg that it is about."""
     entry = entry_of("hexapod")
     assert entry.gait.locomotion is not None
     sequences = [list(map(list, one)) for one in entry.gait.locomotion.sequences]
@@ -226,7 +226,7 @@ def test_mistakes_in_files_are_listed(asker: Asker) -> None:
 
 
 def test_a_worker_that_dies_is_replaced(asker: Asker) -> None:
-    """Its request is refused and may come again; those beside it are answered."""
+    """A killed worker's request is refused as repeatable; the other worker's is answered."""
     asker.trial(GaitFiles(), seconds=0.1)
     until(lambda: len(asker.workers()) == 2)
     before = {one.pid for one in asker.workers()}
@@ -348,7 +348,7 @@ def test_a_search_with_wrong_wishes_is_refused(asker: Asker) -> None:
 
 
 def test_nobody_else_speaks_for_a_studio(asker: Asker) -> None:
-    """What a client sends in the place of the studio reaches nobody, and it gets no requests."""
+    """Another client can't send progress in the studio's name, and receives no requests."""
     (at,) = asker.session.endpoints
     with open_client([at]) as other:
         heard = asker.session.mailbox(KEYS.progress("mine"), 10)
@@ -360,7 +360,7 @@ def test_nobody_else_speaks_for_a_studio(asker: Asker) -> None:
 
 
 def test_the_longest_trial_of_the_largest_robot(asker: Asker) -> None:
-    """A reply of its size passes the network; a trial can't be longer, nor a robot larger."""
+    """The largest possible reply, of the longest trial of an octopod, passes the network."""
     reply = asker.trial(files_of("octopod"), seconds=60.0)
     assert reply.ticks == LONGEST_TICKS
 

@@ -221,7 +221,7 @@ class _Edit:
         return bool(depend)
 
     def _mirrors(self, cell: Cell) -> bool:
-        """Return whether a cell's stored value is that of the same cell of the table."""
+        """Return whether a cell has the same stored value as the table's cell at the same place."""
         there = self._layout.texts.get(cell.place, "")
         if number_of(there) is not None:
             return number_of(cell.value) == number_of(there)
