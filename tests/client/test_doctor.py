@@ -128,6 +128,7 @@ def test_packages_that_are_not_there(tmp_path: Path) -> None:
     assert "run a court" in by_name["no-engine"][1]
 
 
+@pytest.mark.long
 def test_ports_that_are_taken(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, taken: int
 ) -> None:

@@ -71,7 +71,7 @@ def test_the_referee_has_every_decision(
     court.bots()
 
     assert referee.decide("start")["text"] == "play begins in 3 seconds."
-    assert referee.decide("freeze", "left", "2")["scores"] == [18, 18]
+    assert referee.decide("freeze", "left", "60")["scores"] == [18, 18]
     referee.decide("unfreeze", "left")
     referee.decide("restart", "right")
     referee.decide("halt")

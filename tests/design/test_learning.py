@@ -107,6 +107,7 @@ def test_two_phases_are_done_and_survive_a_kill(
     assert again.phases["phase"] == before["phase"] == 3
 
 
+@pytest.mark.long
 def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
     starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
 ) -> None:

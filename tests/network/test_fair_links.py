@@ -33,6 +33,7 @@ def test_equal_links_let_both_keys_take_effect_in_the_same_beat(tmp_path: Path) 
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_without_the_setting_the_near_one_is_first(tmp_path: Path) -> None:
     """With `input_delay = "none"` no key is held, so the fast link's key takes effect first."""
     played = play(tmp_path, "none", *FAR, warm_s=3, seconds=4)

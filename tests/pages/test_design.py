@@ -302,6 +302,7 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     page.press("Control+s")  # under the usual name, which another table has
     page.sees("dialog[open]", "is in the folder already")
     page.press("Escape")
+    page.misses("dialog[open]")
     assert "1 Key\t12\t" in file.read_text(encoding="utf-8")
     page.press("Control+s")
     page.page.click("dialog >> text=Save mine over it")

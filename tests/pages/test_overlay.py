@@ -76,6 +76,7 @@ def test_flags_of_the_address(venue: Venue, open_page: OpenPage) -> None:
     odd.sees(".score-bug")
 
 
+@pytest.mark.long
 def test_the_workshops_two_windows(venue: Venue, open_page: OpenPage) -> None:
     """With split=1 each robot has a window, and there is one score board (workshop Fig. 5-11)."""
     venue.court()

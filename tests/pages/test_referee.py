@@ -367,6 +367,7 @@ def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
     expect(disc(page, "c4r3")).to_be_focused()
 
 
+@pytest.mark.long
 def test_no_reason_no_decision(court: Venue, referee: Referee) -> None:
     """A decision that needs a reason can't be confirmed without one; Escape cancels."""
     page = at_the_desk(referee())
@@ -607,6 +608,7 @@ def test_a_court_that_was_killed(venue: Venue, referee: Referee, console: Any) -
     phase(page, 8)
 
 
+@pytest.mark.long
 def test_take_back_of_a_strike(venue: Venue, referee: Referee) -> None:
     """Before an event is taken back, the page shows the new score and the events that vanish."""
     text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")

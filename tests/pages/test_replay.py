@@ -326,6 +326,7 @@ def test_a_recording_that_was_given_up_says_nothing_more(
     expect(page.locator("progress")).to_have_attribute("value", "0.3")
 
 
+@pytest.mark.long
 def test_files_of_this_machine(
     library: Venue, flags: Path, record: Record, open_page: OpenPage
 ) -> None:
@@ -486,6 +487,7 @@ def test_a_damaged_packed_file_says_so(
     show.sees(".trouble, .notes", "packed.mcap")
 
 
+@pytest.mark.long
 def test_without_the_servers_list(
     library: Venue, flags: Path, open_page: OpenPage, console: Any
 ) -> None:

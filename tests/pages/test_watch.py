@@ -100,6 +100,7 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     left.close()
 
 
+@pytest.mark.long
 def test_a_team_is_shown_in_its_own_look(venue: Venue, open_page: OpenPage) -> None:
     """A team's own colour and pattern show beside its score and on the board (rules 4)."""
     own = '[court.main.seat.right]\ncolour = "#cc3366"\npattern = "dots"\n'
@@ -154,6 +155,7 @@ def test_a_result_that_the_referee_changes(venue: Venue, open_page: OpenPage) ->
     show.sees(".result h1", "Bees wins")
 
 
+@pytest.mark.long
 def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
     """A match that the referee declares void is shown without a winner."""
     court = venue.court()
@@ -277,6 +279,7 @@ def test_a_court_that_is_unknown(venue: Venue, open_page: OpenPage) -> None:
     "width",
     [1000, *(pytest.param(width, marks=pytest.mark.long) for width in (1280, 1366, 1440, 1920))],
 )
+@pytest.mark.long
 def test_nothing_lies_over_the_teams(venue: Venue, open_page: OpenPage, width: int) -> None:
     """At each width the brand, the choice of court, the score and the buttons do not overlap."""
     text = venue.contest.read_text()
@@ -313,6 +316,7 @@ def apart(left: Any, right: Any) -> bool:
     return bool(left["x"] + left["width"] <= right["x"])
 
 
+@pytest.mark.long
 def test_long_words_stay_inside(venue: Venue, open_page: OpenPage) -> None:
     """A long team name and a long reason of the referee stay inside their boxes."""
     venue.court()
@@ -387,6 +391,7 @@ def test_a_phone(venue: Venue, open_page: OpenPage) -> None:
     assert violations(page) == []
 
 
+@pytest.mark.long
 def test_without_webgl(venue: Venue, open_page: OpenPage) -> None:
     """Without WebGL the page draws a flat map; on a phone the banner does not cover the score.
 

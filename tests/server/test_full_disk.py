@@ -200,6 +200,7 @@ def test_the_next_match_waits_for_its_record(tmp_path: Path) -> None:
     assert [path.name[-9:] for path in folder.iterdir()] == ["-002.mcap"]
 
 
+@pytest.mark.long
 def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
     """While the last record is written to a slow disk, frames come less than 1 s apart."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
@@ -219,6 +220,7 @@ def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
     assert [Record.read(path).cut for path in folder.iterdir()] == [None, None]
 
 
+@pytest.mark.long
 def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) -> None:
     """A court that is killed before a finished match is on disk goes on with the next match."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
