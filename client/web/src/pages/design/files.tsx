@@ -152,11 +152,16 @@ export function ConflictDialog({ studio }: { studio: Studio }) {
   if (!conflict) return null;
   const { name, when, table, mistakes } = conflict;
   const saving = when !== "open";
+  // A browser says only with its next picture that a dialog has closed: there may be another by then.
   const close = () => {
-    studio.conflict.value = null;
+    if (studio.conflict.peek() === conflict) studio.conflict.value = null;
   };
   return (
-    <Dialog title={t(when === "existing" ? "design.exists" : "design.conflict")} onClose={close}>
+    <Dialog
+      key={conflict}
+      title={t(when === "existing" ? "design.exists" : "design.conflict")}
+      onClose={close}
+    >
       <p>{t(`design.conflict.${when}`, { name })}</p>
       {mistakes.length > 0 && <Mistakes mistakes={mistakes} />}
       {!table && !mistakes.length && <p>{t("design.conflictGone", { name })}</p>}
