@@ -126,6 +126,8 @@ export class Studio {
   readonly history = signal<History | null>(null);
   readonly file = signal<OpenFile>(NO_FILE);
   readonly conflict = signal<Conflict | null>(null);
+  /** Whether somebody chose to begin with a new table or the sample: no file takes its place. */
+  private isAskedFor = false;
   readonly trouble = signal<Trouble | null>(null);
 
   readonly active = signal<Place>({ row: 0, col: 0 });
@@ -312,6 +314,7 @@ export class Studio {
 
   /** Begin with the sample gait of the robot, where it has one. */
   async openSample(): Promise<void> {
+    this.isAskedFor = true;
     const { table } = await this.connection.ask<Parsed>("sample");
     const robot = this.robot.peek();
     if (table && table.legs === robot?.legs.length) this.show(table, "", "");
@@ -319,6 +322,7 @@ export class Studio {
 
   /** Begin with a table in which all postures are that of the robot at its start. */
   openNew(): void {
+    this.isAskedFor = true;
     const robot = this.robot.peek();
     if (robot) this.begin(standing(robot), NO_FILE);
   }
@@ -766,7 +770,8 @@ export class Studio {
     const own = this.file.peek();
     const now = this.versionOf(name);
     // The first gait of the folder, or one whose mistakes were corrected.
-    const isFree = own.name === "" && this.isSaved.peek() && !this.trials.peek().length;
+    const isUntouched = this.isSaved.peek() && !this.trials.peek().length;
+    const isFree = own.name === "" && isUntouched && !this.isAskedFor;
     if (isFree && now && /^loco/i.test(name)) {
       this.trouble.value = null;
       await this.open(name);
