@@ -100,6 +100,8 @@ def test_two_phases_are_done_and_survive_a_kill(
 
     children = psutil.Process(gateway.process.pid).children(recursive=True)
     os.kill(gateway.process.pid, signal.SIGKILL)
+    for child in children:  # the studio, which outlives its killed parent, and its processes
+        child.kill()
     gateway.process.communicate(timeout=30)
     psutil.wait_procs(children, timeout=30)
     _, again = starts()
