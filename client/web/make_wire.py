@@ -23,8 +23,10 @@ from lacoc_client.design.table import FileRow, FileTable
 from lacoc_client.gateway.page import TRY_LATER
 from lacoc_client.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
 from lacoc_client.gateway.wire import Kind
+from lacoc_client.phases import facts
 from lacoc_server.doors.inbox import NAME_MAX
 from lacoc_server.match.referee import MAX_CLOCK_S, MAX_FREEZE_S, MAX_POINTS
+from lacoc_server.trial import explain
 from lacoc_shared import decisions, messages, mistakes, studio
 from lacoc_shared.codec import message_hash
 from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
@@ -110,6 +112,11 @@ CONSTANTS: dict[str, float | str] = {
     "TRY_LATER": TRY_LATER,
     "DESIGN_MAX_BYTES": requests.REQUEST_BYTES,
     "PARSE_MAX_BYTES": requests.PARSE_BYTES,
+    "SAME_MM_S": facts.SAME_MM_S,
+    "SAME_SHARE": facts.SAME_SHARE,
+    "STRAIGHT_DEG_S": facts.STRAIGHT_DEG_S,
+    "SEAM_DEG": explain.SEAM_DEG,
+    "SEAM_RATIO": explain.SEAM_RATIO,
 }
 LIMITS: dict[str, float] = {
     "DEEPEST": DEEPEST,

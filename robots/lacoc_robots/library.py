@@ -15,6 +15,8 @@ from lacoc_shared.words import say
 
 GROUP = "lacoc.robots"
 
+WORKSHOPS_ROBOT = "hexapod"
+"""The installed robot of the workshop, for whoever names none."""
 
 GAIT_NAMES = ("Loco-data.txt", "LocoTra-data.txt")
 """Names of the gait files in a folder, by level (rules 2)."""

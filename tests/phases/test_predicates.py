@@ -33,7 +33,6 @@ from lacoc_client.phases.predicates import (
     After,
     All,
     Bound,
-    Either,
     LastOf,
     OneVersion,
     Outcome,
@@ -194,12 +193,10 @@ def test_order_matters_after_something() -> None:
     assert ordered.look([HAND]).share < ordered.look([HAND, HAND]).share < 1
 
 
-def test_all_and_either() -> None:
-    """All needs each part and lists what is missing; either takes the part that is nearest."""
+def test_all() -> None:
+    """All needs each part and lists what is missing."""
     assert All(IS_HAND, IS_VOTE).look([HAND]).missing == (lacks(1), Phrase("phases.vote"))
     assert All(IS_HAND, IS_VOTE).look([HAND, HAND, VOTE]) == MET
-    assert Either(IS_HAND, IS_VOTE).look([HAND]).missing == (lacks(1),)
-    assert Either(IS_HAND, IS_VOTE).look([VOTE]) == MET
 
 
 def a_trial(version: str, **numbers: Any) -> Tried:

@@ -2,30 +2,26 @@
 
 import asyncio
 import hmac
-import time
 from contextlib import suppress
 from typing import Any
 
 import msgspec
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
 from lacoc_client.design import requests
 from lacoc_client.design.designer import Designer
 from lacoc_client.design.files import file_bytes, read_file
 from lacoc_client.design.learning.learner import Learner
 from lacoc_client.design.studio_desk import StudioDesk
-from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import Answers
-from lacoc_client.gateway.page import GARBAGE
+from lacoc_client.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.phases.evidence import Moved, Named
-from lacoc_shared.mistakes import FileRefused, UserError
-from lacoc_shared.network.allowance import Allowance
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import say
 
 _ASKS_HZ, _ASKS_BURST = 50.0, 100
-_FIRST_S = 10.0
 
 
 class DesignPage:
@@ -44,23 +40,13 @@ class DesignPage:
         self._studio = StudioDesk(designer.asker, self._viewer.send_if_fast)
         self._learner = Learner(designer.diary, self._sample_trial)
         self._comparing: set[asyncio.Task[None]] = set()
-        self._asks = Allowance(_ASKS_HZ, _ASKS_BURST)
 
     async def serve(self) -> None:
         """Answer the page until it goes."""
-        await self._websocket.accept()
         try:
-            # A connection that never sends a request must not stay open.
-            first = await asyncio.wait_for(self._websocket.receive(), _FIRST_S)
-            while first["type"] == "websocket.receive":
-                if not await self._take(first.get("bytes") or b""):
-                    return
-                # A page that asks too much is not read for a while; no other page notices.
-                while not self._asks.take(1, time.monotonic()):
-                    await asyncio.sleep(1 / _ASKS_HZ)
-                first = await self._websocket.receive()
-        except (TimeoutError, WebSocketDisconnect):
-            pass
+            await serve_requests(
+                self._websocket, self._answers, requests.read, self._take, _ASKS_HZ, _ASKS_BURST
+            )
         finally:
             self._designer.remove(self._viewer)
             self._answers.stop()
@@ -69,25 +55,13 @@ class DesignPage:
             with suppress(UserError):
                 await asyncio.shield(self._studio.gone())
 
-    async def _take(self, data: bytes) -> bool:
-        """Answer one message; return False if the page is to be closed."""
-        try:
-            asked = requests.read(data)
-        except wire.Unreadable as error:
-            to = wire.read_id(data)
-            if to is None:
-                await self._websocket.close(GARBAGE, "not a message")
-                return False
-            self._answers.refuse(to, error)
-            return True
+    async def _take(self, asked: requests.Asked) -> bool:
+        """Answer a request of a page that has shown the page key; close any other page."""
         if not self._is_greeted(asked):
             self._answers.refuse(asked.id, UserError(say("design.wrong-key")))
             await self._websocket.close(GARBAGE, "no page key")
             return False
-        try:
-            self._answer(asked)
-        except (UserError, FileRefused) as error:
-            self._answers.refuse(asked.id, error)
+        self._answer(asked)
         return True
 
     def _is_greeted(self, asked: requests.Asked) -> bool:

@@ -14,14 +14,13 @@ from lacoc_client.gateway import wire
 from lacoc_client.gateway.home import new_key
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
-from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot, sample_gait_files
 from lacoc_shared.messages import SentFile
 
 _LOOK_S = 1.0
 """How often the folder is looked at, and pages get a sign of life."""
 _SOON_S = 0.1
 """How soon pages are told that a studio has come or gone."""
-_SAMPLE = "hexapod"
 
 
 class Designer:
@@ -45,7 +44,7 @@ class Designer:
         """The page key: without it a page gets nothing."""
         self.diary = Diary(folder.path)
         """What the student of the folder has done."""
-        self._robot_name = robot or _SAMPLE
+        self._robot_name = robot or WORKSHOPS_ROBOT
         self._viewers: dict[Viewer, None] = {}
 
     def sample(self) -> FileContent:

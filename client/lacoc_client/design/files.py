@@ -78,13 +78,14 @@ def file_bytes(name: str, content: FileTable | str, before: bytes | None = None)
     return write(gait, leg_labels(content.legs))
 
 
-def sent_gait(table: FileTable, name: str) -> SentFile:
-    """Return a table as a gait file to send.
+def sent_gait(table: FileTable) -> SentFile:
+    """Return a table as a gait file to send, under its usual name.
 
     Raises:
         FileRefused: with every mistake of the table.
     """
-    return SentFile(name, write_gait(gait_of(table, name), leg_labels(table.legs)))
+    gait = gait_of(table, table.file_name)
+    return SentFile(table.file_name, write_gait(gait, leg_labels(table.legs)))
 
 
 def _suffix(name: str) -> str:

@@ -33,7 +33,6 @@ _CANCEL_S = 5.0
 _COACH_MORE_S = 300.0
 """How much longer than its search a coach may take: it may wait for another, and it undoes what
 hardly helps."""
-_TABLE_NAMES = {"postures": "Loco-data.txt", "locomotion": "LocoTra-data.txt"}
 
 
 class StudioDesk:
@@ -128,7 +127,7 @@ def _files(
     """
     if table is None:
         return GaitFiles(robot=robot, sequences=sequences)
-    sent = sent_gait(table, _TABLE_NAMES[table.kind])
+    sent = sent_gait(table)
     if table.kind == "postures":
         return GaitFiles(robot=robot, postures=sent, sequences=sequences)
     return GaitFiles(robot=robot, locomotion=sent)

@@ -5,9 +5,10 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from lacoc_robots.library import GAIT_NAMES
 from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY, Row, degrees_of, number_text
 from lacoc_shared.gait.reader import read_cells
-from lacoc_shared.gait.tables import JOINTS_PER_LEG, LocomotionTable, Posture, PostureTable
+from lacoc_shared.gait.tables import JOINTS_PER_LEG, Level, LocomotionTable, Posture, PostureTable
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -31,6 +32,11 @@ class FileTable(msgspec.Struct, frozen=True, kw_only=True):
     kind: Literal["postures", "locomotion"]
     legs: int
     rows: tuple[FileRow, ...]
+
+    @property
+    def file_name(self) -> str:
+        """The usual name of a text file with such a table (rules 2)."""
+        return GAIT_NAMES[Level.POSTURE if self.kind == "postures" else Level.LOCOMOTION]
 
 
 def page_table(gait: PostureTable | LocomotionTable) -> FileTable:

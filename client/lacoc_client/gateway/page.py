@@ -5,13 +5,14 @@ import hmac
 import time
 from typing import Any
 
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket
 
 from lacoc_client.asking import NoCourt
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import TOO_MUCH, Answers
 from lacoc_client.gateway.courts import Courts
 from lacoc_client.gateway.feed import CourtFeed
+from lacoc_client.gateway.page_requests import serve_requests
 from lacoc_client.gateway.page_seat import PageSeat
 from lacoc_client.gateway.referees import Referees, as_referee
 from lacoc_client.gateway.viewer import USUAL_HZ, Viewer
@@ -20,19 +21,16 @@ from lacoc_client.referee import RefereeClient
 from lacoc_shared import __version__
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.messages import PROTOCOL
-from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import say
 
 TRY_LATER = 1013
 """WebSocket close code: try again later."""
-GARBAGE = 1008
-"""WebSocket close code: a message can't be decoded at all."""
 
 _ASKS_HZ, _ASKS_BURST = 100.0, 200
 _TOKENS_HZ, _TOKENS_BURST = 1.0, 10
 _COURTS_HZ, _COURTS_BURST = 1.0, 5
-_FIRST_S = 10.0
 
 
 class Page:
@@ -52,45 +50,18 @@ class Page:
         self._referees: Referees | None = None
         self._answers = answers = Answers(self._viewer, self._log)
         self._seat = PageSeat(self._viewer, answers, self._home.prefill, self._log)
-        self._asks = Allowance(_ASKS_HZ, _ASKS_BURST)
         self._tokens = Allowance(_TOKENS_HZ, _TOKENS_BURST)
         self._greetings = Allowance(_COURTS_HZ, _COURTS_BURST)
         self._entering = asyncio.Lock()
 
     async def serve(self) -> None:
         """Answer the page until it goes."""
-        await self._websocket.accept()
         try:
-            # A connection that never sends a request must not stay open.
-            first = await asyncio.wait_for(self._websocket.receive(), _FIRST_S)
-            while first["type"] == "websocket.receive":
-                if not await self._take(first.get("bytes") or b""):
-                    return
-                # A page that asks too much is not read for a while; no other page notices.
-                while not self._asks.take(1, time.monotonic()):
-                    await asyncio.sleep(1 / _ASKS_HZ)
-                first = await self._websocket.receive()
-        except (TimeoutError, WebSocketDisconnect):
-            pass
+            await serve_requests(
+                self._websocket, self._answers, wire.read, self._answer, _ASKS_HZ, _ASKS_BURST
+            )
         finally:
             self._gone()
-
-    async def _take(self, data: bytes) -> bool:
-        """Answer one message; return False if the page is to be closed."""
-        try:
-            asked = wire.read(data)
-        except wire.Unreadable as error:
-            to = wire.read_id(data)
-            if to is None:
-                await self._websocket.close(GARBAGE, "not a message")
-                return False
-            self._answers.refuse(to, error)
-            return True
-        try:
-            return await self._answer(asked)
-        except (UserError, FileRefused) as error:
-            self._answers.refuse(asked.id, error)
-            return True
 
     async def _answer(self, asked: wire.Asked) -> bool:
         viewer, answers = self._viewer, self._answers

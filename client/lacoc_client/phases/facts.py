@@ -23,15 +23,17 @@ FootWay = Literal["forward", "back", "up", "down", "out", "in", "still"]
 Difference = Literal["speed", "period", "lift", "duty", "turning"]
 
 _SEAM = "explain.seam"
-_SAME_MM_S, _SAME_SHARE = 3.0, 0.05  # speeds that differ by less are the same, to the eye
-_STRAIGHT_DEG_S = 3.0  # a robot that turns by less goes straight (docs/studio.md 3)
+SAME_MM_S, SAME_SHARE = 3.0, 0.05
+"""Speeds that differ by less are the same, to the eye."""
+STRAIGHT_DEG_S = 3.0
+"""A robot that turns by less goes straight (docs/studio.md 3)."""
 _STILL_M = 0.001  # a foot that moves less than this stays where it is
 _ALSO = 0.6  # a direction is right if the foot moves there by this part of its largest motion
 _KEY = re.compile(r"([AaBb]?)([0-9])(?::[0-9.]+)?", re.ASCII)
 
 
 class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
-    """What a trial showed, in its measured time; definitions are in docs/studio.md 2 and 5."""
+    """What a trial showed, in its measured time; definitions are in docs/studio.md 2 and 7."""
 
     keys: tuple[str, ...]
     """Level and digit of each key, in the order of presses: "A1". The last one was measured."""
@@ -129,20 +131,20 @@ def feet_of_half(legs: int) -> int:
 def pace(before: TrialFacts, after: TrialFacts) -> Pace:
     """Say whether a gait became faster forward."""
     by = after.speed_mm_s - before.speed_mm_s
-    if abs(by) < max(_SAME_MM_S, _SAME_SHARE * abs(before.speed_mm_s)):
+    if abs(by) < max(SAME_MM_S, SAME_SHARE * abs(before.speed_mm_s)):
         return "same"
     return "faster" if by > 0 else "slower"
 
 
 def way(facts: TrialFacts) -> Way:
     """Say where a robot turns."""
-    if abs(facts.drift_deg_s) <= _STRAIGHT_DEG_S:
+    if abs(facts.drift_deg_s) <= STRAIGHT_DEG_S:
         return "straight"
     return "left" if facts.drift_deg_s > 0 else "right"
 
 
 def differences(one: TrialFacts, other: TrialFacts) -> tuple[Difference, ...]:
-    """Say in what two walks differ so much that people see it (docs/studio.md 5)."""
+    """Say in what two walks differ so much that people see it (docs/studio.md 7)."""
     found: list[Difference] = []
     if _apart(one.speed_mm_s, other.speed_mm_s, least=5.0, share=0.2):
         found.append("speed")
@@ -152,7 +154,7 @@ def differences(one: TrialFacts, other: TrialFacts) -> tuple[Difference, ...]:
         found.append("lift")
     if _apart(_mean(one.duty), _mean(other.duty), least=0.08, share=0.0):
         found.append("duty")
-    if _apart(one.drift_deg_s, other.drift_deg_s, least=2 * _STRAIGHT_DEG_S, share=0.2):
+    if _apart(one.drift_deg_s, other.drift_deg_s, least=2 * STRAIGHT_DEG_S, share=0.2):
         found.append("turning")
     return tuple(found)
 

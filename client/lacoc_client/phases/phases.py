@@ -1,4 +1,4 @@
-"""The six phases of workshop 4-2 as tasks with evidence (docs/studio.md 5 has the thresholds)."""
+"""The six phases of workshop 4-2 as tasks with evidence (docs/studio.md 7 has the thresholds)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from lacoc_client.phases.conditions import (
     within,
 )
 from lacoc_client.phases.evidence import Checked, Evidence, Named, Voted
-from lacoc_client.phases.facts import TRIPOD_MARGIN_M
+from lacoc_client.phases.facts import STRAIGHT_DEG_S, TRIPOD_MARGIN_M
 from lacoc_client.phases.predicates import (
     After,
     All,
@@ -32,7 +32,7 @@ from lacoc_client.phases.predicates import (
 )
 from lacoc_shared.words import Phrase, say
 
-_STRAIGHT_DEG_S, _TURNS_DEG_S, _WALKS_MM_S, _STILL_MM = 3.0, 5.0, 15.0, 10.0
+_TURNS_DEG_S, _WALKS_MM_S, _STILL_MM = 5.0, 15.0, 10.0
 
 
 @dataclass(frozen=True)
@@ -200,9 +200,9 @@ A_CYCLE = Phase(
                     Bound(
                         lambda facts: abs(facts.drift_deg_s),
                         lambda found: say(
-                            "phases.turns", found_deg_s=found, most_deg_s=_STRAIGHT_DEG_S
+                            "phases.turns", found_deg_s=found, most_deg_s=STRAIGHT_DEG_S
                         ),
-                        most=_STRAIGHT_DEG_S,
+                        most=STRAIGHT_DEG_S,
                     ),
                     Bound(
                         lambda facts: facts.seam_deg,
@@ -271,7 +271,7 @@ CREATIVE = Phase(
                 acts(
                     within(lambda facts: facts.speed_mm_s, _FORWARD, least=_WALKS_MM_S),
                     within(
-                        lambda facts: facts.drift_deg_s, _FORWARD, -_STRAIGHT_DEG_S, _STRAIGHT_DEG_S
+                        lambda facts: facts.drift_deg_s, _FORWARD, -STRAIGHT_DEG_S, STRAIGHT_DEG_S
                     ),
                     lacks=_FORWARD,
                 ),

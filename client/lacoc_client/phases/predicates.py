@@ -161,21 +161,6 @@ class All:
         return _all([part.look(evidence) for part in self.parts])
 
 
-class Either:
-    """One of several things is shown.
-
-    Args:
-        *parts: at least one.
-    """
-
-    def __init__(self, *parts: Predicate) -> None:
-        self.parts = parts
-
-    def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Look at each part; the one that is nearest counts."""
-        return max((part.look(evidence) for part in self.parts), key=_share)
-
-
 @dataclass(frozen=True)
 class After:
     """Something is shown by evidence that came after something else was shown."""

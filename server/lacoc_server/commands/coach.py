@@ -12,6 +12,7 @@ from msgspec.structs import asdict
 from rich.table import Table
 from rich.text import Text
 
+from lacoc_robots.library import WORKSHOPS_ROBOT
 from lacoc_robots.robot import RobotSpec
 from lacoc_server.commands.trial import GaitFile, RobotName, read_robot_file, read_trial_gait
 from lacoc_server.studio.coach.coach import coach, coached_key, place, reply_of, task_of
@@ -19,7 +20,7 @@ from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.matter import STEP_DEG, Matter
 from lacoc_server.studio.coach.search import Improved
-from lacoc_server.studio.coach.table import Angles, KeyTable
+from lacoc_server.studio.coach.table import Angles, KeyTable, differing
 from lacoc_server.studio.coach.trials import Task, Trials
 from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.figures import Figures
@@ -44,7 +45,7 @@ _STAGES = {
 @app.command(name="coach")
 def coach_command(
     file: GaitFile,
-    robot: RobotName = "hexapod",
+    robot: RobotName = WORKSHOPS_ROBOT,
     size: Annotated[
         Size | None,
         typer.Option(
@@ -179,7 +180,7 @@ def _improved_table(
 ) -> Table:
     table = screen.table(say("coach.number"), say("coach.before"), say("coach.after"))
     own = task.table.angles_deg
-    for index in task.table.changed(own, best.angles_deg):
+    for index in differing(own, best.angles_deg):
         place = Text(render(_place(task, digit, index)))
         table.add_row(place, f"{own[index]}", f"{best.angles_deg[index]}")
     table.add_section()

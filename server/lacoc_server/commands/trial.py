@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
-from lacoc_robots.library import find_robot
+from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
 from lacoc_server.studio.answers import Trial, try_gait
@@ -46,7 +46,7 @@ _MOST_COLUMNS = 100
 @app.command(name="trial")
 def trial_command(
     file: GaitFile,
-    robot: RobotName = "hexapod",
+    robot: RobotName = WORKSHOPS_ROBOT,
     keys: Annotated[
         str,
         typer.Option(

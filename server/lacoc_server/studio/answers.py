@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot, sample_gait_files
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
@@ -40,8 +40,6 @@ from lacoc_shared.studio import (
 )
 from lacoc_shared.words import Phrase, say
 
-WORKSHOPS_ROBOT = "hexapod"
-"""The robot of a request that has no robot file."""
 _MISTAKES_TOLD = 20
 """Most mistakes of a refusal, so that it stays a small message."""
 

@@ -25,7 +25,7 @@ MOST_SENTENCES = 3
 _TIPPED = 0.8
 """A robot has tipped over if its `upright` is below this: it leans by more than 37 degrees."""
 _AT_LIMIT_DEG = 0.5
-_SEAM_DEG, _SEAM_RATIO = 12.0, 1.6
+SEAM_DEG, SEAM_RATIO = 12.0, 1.6
 """The seam is the step from the last posture to the first. A leg jumps there if an angle changes by
 so many degrees more, and so many times more, than in any other step."""
 _LIFT_M = 0.008
@@ -142,7 +142,7 @@ def _seam(seen: Seen) -> Iterator[Finding]:
             angles = [seen.degrees(posture, leg, level) for posture in range(postures)]
             steps = [abs(b - a) for a, b in pairwise(angles)]
             seam_deg, other_deg = abs(angles[0] - angles[-1]), max(steps)
-            if seam_deg > max(other_deg * _SEAM_RATIO, other_deg + _SEAM_DEG):
+            if seam_deg > max(other_deg * SEAM_RATIO, other_deg + SEAM_DEG):
                 jumps.append((seam_deg - other_deg, seam_deg, leg, level))
     if jumps:
         _, seam_deg, leg, level = max(jumps)

@@ -23,15 +23,12 @@ from lacoc_client.phases.evidence import (
     edited,
 )
 from lacoc_client.phases.facts import TrialFacts, differences, foot_ways, pace, trial_facts, way
-from lacoc_robots.library import find_robot
+from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
 from lacoc_robots.robot_file import RobotSpec, read_robot
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.studio import TrialReply
-
-_ROBOT = "hexapod"
-_NAMES = {"postures": "Loco-data.txt", "locomotion": "LocoTra-data.txt"}
 
 
 class Judged(msgspec.Struct, frozen=True, kw_only=True):
@@ -152,7 +149,7 @@ class Learner:
         )
         mistakes: tuple[Mistake, ...] = ()
         try:
-            sent = sent_gait(table, _NAMES[table.kind])
+            sent = sent_gait(table)
             read_gait(sent.data, sent.name, legs=spec.labels, range_deg=spec.ranges_deg)
         except FileRefused as error:
             mistakes = tuple(error.mistakes)
@@ -168,7 +165,7 @@ def _version(table: FileTable, sequences: object) -> str:
     Raises:
         FileRefused: with every mistake of the table.
     """
-    data = sent_gait(table, _NAMES[table.kind]).data + repr(sequences).encode()
+    data = sent_gait(table).data + repr(sequences).encode()
     return hashlib.blake2b(data, digest_size=8).hexdigest()
 
 
@@ -178,7 +175,7 @@ def _rows(table: FileTable) -> Rows:
 
 def _robot(robot: SentFile | None) -> RobotSpec:
     if robot is None:
-        robot = SentFile(*find_robot(_ROBOT))
+        robot = SentFile(*find_robot(WORKSHOPS_ROBOT))
     return read_robot(robot.data, robot.name)
 
 

@@ -26,6 +26,11 @@ export const MOST_HZ = 50;
 export const TRY_LATER = 1013;
 export const DESIGN_MAX_BYTES = 131072;
 export const PARSE_MAX_BYTES = 1052672;
+export const SAME_MM_S = 3;
+export const SAME_SHARE = 0.05;
+export const STRAIGHT_DEG_S = 3;
+export const SEAM_DEG = 12;
+export const SEAM_RATIO = 1.6;
 
 export const Phase = {
   CREATED: 0,

@@ -9,7 +9,7 @@ from lacoc_server.studio.coach.goal import Goal, score
 from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import Matter, what_matters
 from lacoc_server.studio.coach.search import Improved, Search
-from lacoc_server.studio.coach.table import KeyTable
+from lacoc_server.studio.coach.table import KeyTable, differing
 from lacoc_server.studio.coach.trials import Stopped, Task, Trials
 from lacoc_server.studio.coach.undo import undo
 from lacoc_server.trial.figures import Figures
@@ -120,7 +120,7 @@ def reply_of(task: Task, key: int, found: Found) -> CoachReply:
         ),
         changes=tuple(
             Change(cell=place(task.table, index), from_deg=own[index], to_deg=best[index])
-            for index in task.table.changed(own, best)
+            for index in differing(own, best)
         ),
         before=vars(found.before),
         after=vars(found.after),

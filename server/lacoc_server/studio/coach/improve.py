@@ -13,7 +13,7 @@ from cmaes import CMAwM  # type: ignore[import-untyped]
 
 from lacoc_server.studio.coach.matter import Matter
 from lacoc_server.studio.coach.search import Improved, Score, Search
-from lacoc_server.studio.coach.table import Angles
+from lacoc_server.studio.coach.table import Angles, differing
 
 _STEPS_DEG = (5, 10, 15, 20, 30)
 _SIGMA_DEG = 8.0
@@ -84,13 +84,13 @@ def _few(
                 for sign in (1, -1)
                 if index not in changed
             ]
-            search.tried([table for _, table in _ranked(tables, rough)[:_CONFIRMED]])
+            search.tried([table for _, table in _ranked(tables, rough(tables))[:_CONFIRMED]])
             yield search.best
             if is_over():
                 break
         if search.best.angles_deg == before.angles_deg:
             break
-        changed.append(_first_change(before.angles_deg, search.best.angles_deg))
+        changed += differing(before.angles_deg, search.best.angles_deg)
         if is_over():
             return
     # The numbers are chosen; now each is turned to its best degree.
@@ -100,13 +100,9 @@ def _few(
         yield search.best
 
 
-def _ranked(tables: Sequence[Angles], rough: Score) -> list[tuple[float, Angles]]:
-    """Return tables with their rough scores, the best first."""
-    return sorted(zip(rough(tables), tables, strict=True), reverse=True)
-
-
-def _first_change(before: Angles, after: Angles) -> int:
-    return next(i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b)
+def _ranked(tables: Sequence[Angles], scores: Sequence[float]) -> list[tuple[float, Angles]]:
+    """Return tables with their scores, the best first."""
+    return sorted(zip(scores, tables, strict=True), reverse=True)
 
 
 def _whole(search: Search, rough: Score, is_over: IsOver, seed: int) -> Iterator[Improved]:
@@ -129,6 +125,6 @@ def _whole(search: Search, rough: Score, is_over: IsOver, seed: int) -> Iterator
             scores = rough(tables)
             optimizer.tell([(told, -score) for (_, told), score in zip(asked, scores, strict=True)])
             least = search.best.score - (1 - _HOPEFUL) * abs(search.best.score)
-            ranked = sorted(zip(scores, tables, strict=True), reverse=True)[:_HOPEFULS]
-            search.tried([table for score, table in ranked if score > least])
+            best = _ranked(tables, scores)[:_HOPEFULS]
+            search.tried([table for score, table in best if score > least])
             yield search.best

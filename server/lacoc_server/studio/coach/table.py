@@ -71,6 +71,7 @@ class KeyTable(NamedTuple):
             )
         return tuple(rows[index] for index in self.order)
 
-    def changed(self, before: Angles, after: Angles) -> list[int]:
-        """Return the indices of the angles that differ between two versions of this table."""
-        return [i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b]
+
+def differing(before: Angles, after: Angles) -> list[int]:
+    """Return the indices of the angles that differ between two versions of a table."""
+    return [i for i, (a, b) in enumerate(zip(before, after, strict=True)) if a != b]

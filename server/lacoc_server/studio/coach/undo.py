@@ -10,7 +10,7 @@ from functools import partial
 
 from lacoc_server.studio.coach.matter import Matter
 from lacoc_server.studio.coach.search import Improved, Score, Search
-from lacoc_server.studio.coach.table import Angles
+from lacoc_server.studio.coach.table import Angles, differing
 
 _EACH, _ALL = 0.02, 0.2
 """Undoing a change may cost the first share of the score, and undoing all of them the second share
@@ -55,19 +55,15 @@ def undo(search: Search, matters: Sequence[Matter], rough: Score) -> Iterator[Im
 def _guessed(matters: Sequence[Matter], own: Angles, table: Angles) -> list[int]:
     """List the numbers that differ, those first that probably help least."""
     size = {one.number: one.size for one in matters}
-    changed = _changed(own, table)
-    return sorted(changed, key=lambda index: size[index] * abs(table[index] - own[index]))
+    numbers = differing(own, table)
+    return sorted(numbers, key=lambda number: size[number] * abs(table[number] - own[number]))
 
 
 def _tried(rough: Score, own: Angles, table: Angles) -> list[int]:
     """List the numbers that differ, those first without which the rough score is best."""
-    changed = _changed(own, table)
-    without = rough([_back(own, table, [index]) for index in changed])
-    return [index for _, index in sorted(zip(without, changed, strict=True), reverse=True)]
-
-
-def _changed(own: Angles, table: Angles) -> list[int]:
-    return [index for index, angle in enumerate(table) if angle != own[index]]
+    numbers = differing(own, table)
+    without = rough([_back(own, table, [number]) for number in numbers])
+    return [number for _, number in sorted(zip(without, numbers, strict=True), reverse=True)]
 
 
 def _back(own: Angles, table: Angles, numbers: Sequence[int]) -> Angles:

@@ -1,5 +1,6 @@
 /** Guesses before a trial, and what came of them. */
 
+import { SAME_MM_S, SAME_SHARE, STRAIGHT_DEG_S } from "../wire";
 import { figure } from "./trial";
 
 export type Pace = "faster" | "slower" | "same";
@@ -13,12 +14,6 @@ export interface Verdict {
 }
 
 type Figures = Record<string, unknown>;
-
-/** Speeds that differ by less are the same, to the eye. */
-const SAME_MM_S = 3;
-const SAME_SHARE = 0.05;
-/** A robot that turns by less goes straight (docs/studio.md 3). */
-const STRAIGHT_DEG_S = 3;
 
 /**
  * Whether a gait became faster forward; null if a trial has no speed.

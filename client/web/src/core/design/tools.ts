@@ -1,5 +1,6 @@
 /** Tools for whole rows and legs: mirror, other half, copy of a leg, and the seam of a sequence. */
 
+import { SEAM_DEG, SEAM_RATIO } from "../wire";
 import { type Cell, joint, LEVELS, mapRows, type Row, type Table, withCells } from "./table";
 
 /** A row that is the mirror of another one; rows as indices. */
@@ -17,9 +18,6 @@ export interface Seam {
   /** Whether that is a jump, as `lacoc trial` says it (docs/studio.md 3). */
   jumps: boolean;
 }
-
-const SEAM_DEG = 12;
-const SEAM_RATIO = 1.6;
 
 /** The leg on the other side: legs are numbered clockwise from the right front (rules 1). */
 export const mirrorLeg = (leg: number, legs: number) => legs - 1 - leg;

@@ -1,0 +1,87 @@
+"""The requests of a page, taken one after the other, and no faster than a page may ask."""
+
+import asyncio
+import time
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from typing import Protocol, TypeVar
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from lacoc_client.gateway import wire
+from lacoc_client.gateway.answers import Answers
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.network.allowance import Allowance
+
+GARBAGE = 1008
+"""WebSocket close code: a message can't be decoded at all."""
+
+_FIRST_S = 10.0
+
+
+class Numbered(Protocol):
+    """A request, which has a number for its answer."""
+
+    @property
+    def id(self) -> int:
+        """The number."""
+
+
+Asked = TypeVar("Asked", bound=Numbered)
+
+
+async def serve_requests(
+    websocket: WebSocket,
+    answers: Answers,
+    read: Callable[[bytes], Asked],
+    answer: Callable[[Asked], Awaitable[bool]],
+    most_hz: float,
+    burst: int,
+) -> None:
+    """Answer what a page asks, until it goes or is to be closed.
+
+    Args:
+        websocket: the page's WebSocket, not accepted yet.
+        answers: sends refusals.
+        read: decodes a request; raises `wire.Unreadable`.
+        answer: answers a request and returns True, or False if the page is to be closed. The errors
+            for users that it raises become the refusal.
+        most_hz: requests a second in the long run.
+        burst: requests at once.
+    """
+    asks = Allowance(most_hz, burst)
+    await websocket.accept()
+    with suppress(TimeoutError, WebSocketDisconnect):
+        # A connection that never sends a request must not stay open.
+        message = await asyncio.wait_for(websocket.receive(), _FIRST_S)
+        while message["type"] == "websocket.receive":
+            if not await _take(message.get("bytes") or b"", websocket, answers, read, answer):
+                return
+            # A page that asks too much is not read for a while; no other page notices.
+            while not asks.take(1, time.monotonic()):
+                await asyncio.sleep(1 / most_hz)
+            message = await websocket.receive()
+
+
+async def _take(
+    data: bytes,
+    websocket: WebSocket,
+    answers: Answers,
+    read: Callable[[bytes], Asked],
+    answer: Callable[[Asked], Awaitable[bool]],
+) -> bool:
+    """Answer one message; return False if the page is to be closed."""
+    try:
+        asked = read(data)
+    except wire.Unreadable as error:
+        to = wire.read_id(data)
+        if to is None:
+            await websocket.close(GARBAGE, "not a message")
+            return False
+        answers.refuse(to, error)
+        return True
+    try:
+        return await answer(asked)
+    except (UserError, FileRefused) as error:
+        answers.refuse(asked.id, error)
+        return True
