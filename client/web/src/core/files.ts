@@ -118,7 +118,7 @@ function fromBase64(text: string): Uint8Array {
 }
 
 /** Hand a file, in its parts, to the person. */
-export function download(name: string, parts: string[]): void {
+export function download(name: string, parts: BlobPart[]): void {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(new Blob(parts, { type: "text/plain" }));
   link.download = name;

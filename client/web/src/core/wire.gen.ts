@@ -85,6 +85,12 @@ export const MESSAGE_KINDS = [
   "progress",
   "studio",
   "phases",
+  "handed",
+  "elsewhere",
+  "class",
+  "card",
+  "gone",
+  "tournament",
 ] as const;
 
 /** Why a key was refused, by its `No`: codes of the table. */

@@ -13,10 +13,12 @@ import {
   type Mistake,
   type Phases,
   type Progress,
+  type RobotReply,
   type Scene,
   SEATFRAME_FIELDS,
   type SeatFrame,
   type Sheet,
+  type TrialReply,
 } from "./wire.gen";
 
 export * from "./wire.gen";
@@ -101,6 +103,94 @@ export interface StudioState {
   why: Phrase | null;
 }
 
+/** Why a student needs help, the most urgent reason; "": none is known. */
+export type Need = "hand" | "stuck" | "quiet" | "";
+
+/** What the teacher has opened and closed. */
+export interface ClassRules {
+  /** Phases that are closed. */
+  closed: number[];
+  /** The most that the coach does. */
+  coach: "none" | "matters" | "cell" | "three" | "table";
+  explain_first: boolean;
+}
+
+/** A student, as the teacher sees them. */
+export interface Card {
+  name: string;
+  online: boolean;
+  /** Unix time of the last sign of work. */
+  seen_s: number;
+  phase: number;
+  states: ("open" | "met" | "skipped")[];
+  /** Of the phase, 0 to 1. */
+  share: number;
+  tries: number;
+  best_mm_s: number | null;
+  last_mm_s: number | null;
+  /** For each leg the runs with its foot down in the last trial, as shares of it. */
+  feet: [number, number][][] | null;
+  /** Labels of the legs. */
+  legs: string[];
+  /** What explains the last trial. */
+  said: Phrase | null;
+  /** Unix time since when the hand is up. */
+  hand_up_s: number | null;
+  /** What failed three times in a row. */
+  stuck: Phrase | null;
+  coached: boolean;
+  need: Need;
+}
+
+/** The class; its cards come only with the first of these messages. */
+export interface ClassState {
+  code: string;
+  /** What students type into their browsers. */
+  addresses: string[];
+  rules: ClassRules;
+  trouble: Phrase | null;
+  studios: number;
+  /** Why there is no studio. */
+  why: Phrase | null;
+  handed: { number: number; title: string } | null;
+  cards: Card[] | null;
+}
+
+export interface TournamentMatch {
+  left: string;
+  right: string;
+  scores: [number, number];
+  winner: 0 | 1 | null;
+  /** The file of its recording. */
+  record: string | null;
+}
+
+export interface Standing {
+  name: string;
+  won: number;
+  drawn: number;
+  lost: number;
+  points: number;
+}
+
+/** The friendly tournament of the class. */
+export interface Tournament {
+  state: "none" | "running" | "done" | "stopped";
+  arena: string;
+  done: number;
+  of: number;
+  matches: TournamentMatch[];
+  standings: Standing[];
+  trouble: Phrase | null;
+}
+
+/** A student's robot on the big screen. */
+export interface ShowReply {
+  name: string;
+  robot: RobotReply;
+  trial: TrialReply;
+}
+
 interface GoodReply {
   id: number;
   ok: true;
@@ -136,7 +226,11 @@ export type Message =
   | { kind: "folder"; body: Folder }
   | { kind: "progress"; body: Progress & { job: string } }
   | { kind: "studio"; body: StudioState }
-  | { kind: "phases"; body: Phases };
+  | { kind: "phases"; body: Phases }
+  | { kind: "class"; body: ClassState }
+  | { kind: "card"; body: Card }
+  | { kind: "gone"; body: { name: string } }
+  | { kind: "tournament"; body: Tournament };
 
 /** What a page asks for; each request is answered by a reply with its id. */
 export type Request =
@@ -150,7 +244,8 @@ export type Request =
   | "enter"
   | "take_over"
   | "decide"
-  | DesignRequest;
+  | DesignRequest
+  | ClassRequest;
 
 /** What a page of /design asks for. */
 type DesignRequest =
@@ -169,6 +264,19 @@ type DesignRequest =
   | "phase"
   | "name"
   | "vote";
+
+/** What the teacher's page asks for. */
+type ClassRequest =
+  | "rules"
+  | "hand_out"
+  | "lower"
+  | "admit"
+  | "forget"
+  | "new_code"
+  | "show"
+  | "export"
+  | "play"
+  | "stop_play";
 
 /** A file on its way to the court. */
 export interface SentFile {

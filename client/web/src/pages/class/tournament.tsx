@@ -1,0 +1,202 @@
+/** A friendly tournament of the class's gaits: start it, follow it, read the standings. */
+
+import { useSignal } from "@preact/signals";
+import type { Tournament as State, TournamentMatch } from "../../core/wire";
+import { said, t } from "../../i18n";
+import { Icon } from "../../ui/icons";
+import type { Teacher } from "./teacher";
+
+const GAMES = ["othello", "flag-strike"] as const;
+const COLUMNS = ["won", "drawn", "lost", "points"] as const;
+const ROUNDS = { least: 1, most: 10, usual: 3 };
+const SECONDS = { least: 10, most: 180, usual: 60 };
+
+export function Tournament({ teacher }: { teacher: Teacher }) {
+  const state = teacher.tournament.value;
+  return (
+    <div class="tournament">
+      {state.state === "running" ? (
+        <Running teacher={teacher} state={state} />
+      ) : (
+        <Start teacher={teacher} />
+      )}
+      {state.trouble && (
+        <p class="refused" role="alert">
+          {teacher.hide(said(state.trouble))}
+        </p>
+      )}
+      {state.state !== "none" && state.state !== "running" && (
+        <p role="status">{t(`class.play.${state.state}`, { done: state.done, of: state.of })}</p>
+      )}
+      {state.standings.length > 0 && (
+        <section aria-label={t("class.play.standings")}>
+          <Standings teacher={teacher} />
+          <button
+            class="button"
+            type="button"
+            onClick={() => {
+              teacher.screen.value = { shows: "standings" };
+            }}
+          >
+            <Icon name="full" /> {t("class.play.big")}
+          </button>
+        </section>
+      )}
+      {state.matches.length > 0 && <Matches teacher={teacher} matches={state.matches} />}
+    </div>
+  );
+}
+
+function Start({ teacher }: { teacher: Teacher }) {
+  const arena = useSignal<string>(GAMES[0]);
+  const rounds = useSignal(ROUNDS.usual);
+  const seconds = useSignal(SECONDS.usual);
+  const number = (label: string, value: typeof rounds, { least, most }: typeof ROUNDS) => (
+    <label class="field">
+      <span>{label}</span>
+      <input
+        type="number"
+        required
+        min={least}
+        max={most}
+        value={value.value}
+        onInput={(event) => {
+          value.value = event.currentTarget.valueAsNumber;
+        }}
+      />
+    </label>
+  );
+  return (
+    <form
+      class="start"
+      onSubmit={(event) => {
+        event.preventDefault();
+        const fields = { arena: arena.value, rounds: rounds.value, seconds: seconds.value };
+        void teacher.act("play", fields);
+      }}
+    >
+      <p class="muted">{t("class.play.text")}</p>
+      <label class="field">
+        <span>{t("class.play.game")}</span>
+        <select
+          name="arena"
+          value={arena.value}
+          onChange={(event) => {
+            arena.value = event.currentTarget.value;
+          }}
+        >
+          {GAMES.map((game) => (
+            <option key={game} value={game}>
+              {t(`class.play.${game}`)}
+            </option>
+          ))}
+        </select>
+      </label>
+      <div class="row">
+        {number(t("class.play.rounds"), rounds, ROUNDS)}
+        {number(t("class.play.seconds"), seconds, SECONDS)}
+      </div>
+      <button class="button strong" type="submit" disabled={teacher.cards.value.length < 2}>
+        {t("class.play.start")}
+      </button>
+    </form>
+  );
+}
+
+function Running({ teacher, state }: { teacher: Teacher; state: State }) {
+  const text = t("class.play.running", { done: state.done, of: state.of });
+  return (
+    <div class="running">
+      <p role="status">{text}</p>
+      <progress max={Math.max(1, state.of)} value={state.done} aria-label={text} />
+      <button class="button" type="button" onClick={() => void teacher.act("stop_play")}>
+        {t("class.play.stop")}
+      </button>
+    </div>
+  );
+}
+
+interface StandingsProps {
+  teacher: Teacher;
+  /** Whether there is room for whole words. */
+  big?: boolean;
+}
+
+/** The standings, the best first. */
+export function Standings({ teacher, big = false }: StandingsProps) {
+  const { standings } = teacher.tournament.value;
+  return (
+    <table class="standings">
+      <thead>
+        <tr>
+          <th scope="col">
+            <span class="hidden-text">{t("class.play.place")}</span>
+          </th>
+          <th scope="col">{t("class.play.name")}</th>
+          {COLUMNS.map((column) => {
+            const word = t(`class.play.${column}`);
+            return (
+              <th key={column} scope="col">
+                {big ? word : <abbr title={word}>{t(`class.play.${column}.short`)}</abbr>}
+              </th>
+            );
+          })}
+        </tr>
+      </thead>
+      <tbody>
+        {standings.map((one, index) => (
+          <tr key={one.name}>
+            <td>{index + 1}</td>
+            <th scope="row">{teacher.name(one.name)}</th>
+            {COLUMNS.map((column) => (
+              <td key={column}>{one[column]}</td>
+            ))}
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+interface MatchesProps {
+  teacher: Teacher;
+  matches: readonly TournamentMatch[];
+}
+
+/** All matches, the newest first; each leads to its replay. */
+function Matches({ teacher, matches }: MatchesProps) {
+  const hidden = teacher.projector.value;
+  return (
+    <section class="matches" aria-label={t("class.play.matches")}>
+      <h2>{t("class.play.matches")}</h2>
+      {hidden && <p class="muted">{t("class.play.noReplay")}</p>}
+      <ol reversed>
+        {matches.toReversed().map(({ left, right, scores, winner, record }, index) => {
+          const [one, other] = [left, right].map((name) => teacher.name(name)) as [string, string];
+          return (
+            <li key={matches.length - index}>
+              <span class="sides">
+                {winner === 0 ? <b>{one}</b> : one}
+                {" – "}
+                {winner === 1 ? <b>{other}</b> : other}
+              </span>
+              <span>
+                {scores[0]} : {scores[1]}
+              </span>
+              {record && !hidden && (
+                <a
+                  href={`/replay?file=${encodeURIComponent(record)}`}
+                  target="_blank"
+                  rel="noreferrer"
+                  aria-label={t("class.play.replay", { left: one, right: other })}
+                >
+                  <Icon name="play" />
+                </a>
+              )}
+            </li>
+          );
+        })}
+      </ol>
+    </section>
+  );
+}
