@@ -55,7 +55,7 @@ export const classroom = {
   "class.stuck": ["Three times the same", "同じ失敗が 3 回"],
   "class.quiet": ["quiet, {since}", "操作なし {since}"],
   "class.offline": ["offline, {since}", "オフライン {since}"],
-  "class.online": ["here", "参加中"],
+  "class.online": ["Is here", "参加中"],
   "class.coached": ["Used the coach", "コーチを使いました"],
   "class.moment": ["now", "今"],
   "class.min": ["{count} min", "{count} 分"],

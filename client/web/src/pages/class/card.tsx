@@ -11,6 +11,7 @@ const MARKS = { met: "✓", open: "", skipped: "–" } as const;
 
 export function StudentCard({ teacher, card }: { teacher: Teacher; card: Card }) {
   const name = teacher.name(card.name);
+  const what = news(teacher, card);
   return (
     <li>
       <button
@@ -38,7 +39,7 @@ export function StudentCard({ teacher, card }: { teacher: Teacher; card: Card })
             <small>{speed(card.last_mm_s)}</small>
           </span>
         </span>
-        <span class="news">{news(teacher, card)}</span>
+        {what && <span class="news">{what}</span>}
       </button>
     </li>
   );
