@@ -9,7 +9,14 @@ import type { Teacher } from "./teacher";
 /** A mark for each state of a phase, so that nobody has to tell colours apart. */
 const MARKS = { met: "✓", open: "", skipped: "–" } as const;
 
-export function StudentCard({ teacher, card }: { teacher: Teacher; card: Card }) {
+interface Props {
+  teacher: Teacher;
+  card: Card;
+  /** Whether Tab leads to it. */
+  isStop: boolean;
+}
+
+export function StudentCard({ teacher, card, isStop }: Props) {
   const name = teacher.name(card.name);
   const what = news(teacher, card);
   return (
@@ -17,6 +24,7 @@ export function StudentCard({ teacher, card }: { teacher: Teacher; card: Card })
       <button
         type="button"
         class="student"
+        tabIndex={isStop ? 0 : -1}
         data-student={card.name}
         data-need={card.need}
         data-online={card.online}

@@ -1,5 +1,6 @@
 /** All students, whoever needs help first. A card glides to its new place, or waits. */
 
+import { useSignal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { t } from "../../i18n";
 import { StudentCard } from "./card";
@@ -19,15 +20,31 @@ export function Cards({ teacher }: { teacher: Teacher }) {
   const list = useRef<HTMLOListElement>(null);
   const order = teacher.order.value;
   const hold = useHold(teacher);
+  /** The card that Tab leads to; arrow keys lead on to the others. */
+  const current = useSignal("");
   useGlide(list, order.map(({ name }) => name).join("\n"));
-  if (!teacher.state.value) return <p class="nobody muted">{t("link.connecting")}</p>;
+  const stop = order.findIndex(({ name }) => name === current.value);
+  if (!teacher.state.value) return <div />; // the banner says why
   return (
     <section class="all" aria-label={t("class.cards")}>
       {order.length ? (
-        <ol ref={list} class="students" {...hold}>
-          {order.map((card) => (
-            <StudentCard key={card.name} teacher={teacher} card={card} />
-          ))}
+        <ol
+          ref={list}
+          class="students"
+          {...hold}
+          onFocusIn={(event) => {
+            hold.onFocusIn();
+            current.value = nameOf(event.target);
+          }}
+          onKeyDown={(event) => {
+            hold.onKeyDown();
+            step(event);
+          }}
+        >
+          {order.map((card, index) => {
+            const isStop = stop < 0 ? index === 0 : index === stop;
+            return <StudentCard key={card.name} teacher={teacher} card={card} isStop={isStop} />;
+          })}
         </ol>
       ) : (
         <p class="nobody">{t("class.nobody")}</p>
@@ -35,6 +52,30 @@ export function Cards({ teacher }: { teacher: Teacher }) {
       <Legend holds={teacher.holds.value} />
     </section>
   );
+}
+
+/** Go to another card with the arrow keys, also to the row above or below. */
+function step(event: KeyboardEvent): void {
+  const list = event.currentTarget as HTMLElement;
+  const items = [...list.children] as HTMLElement[];
+  const at = items.findIndex((item) => item.contains(event.target as Node));
+  const columns = items.filter(({ offsetTop }) => offsetTop === items[0]?.offsetTop).length;
+  const steps: Record<string, number> = {
+    ArrowRight: 1,
+    ArrowLeft: -1,
+    ArrowDown: columns,
+    ArrowUp: -columns,
+    Home: -at,
+    End: items.length - 1 - at,
+  };
+  const by = steps[event.key];
+  if (by === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
+  event.preventDefault();
+  items[at + by]?.querySelector("button")?.focus();
+}
+
+function nameOf(target: EventTarget | null): string {
+  return (target as HTMLElement | null)?.dataset.student ?? "";
 }
 
 function Legend({ holds }: { holds: boolean }) {

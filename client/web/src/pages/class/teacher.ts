@@ -36,6 +36,7 @@ interface Parsed {
 }
 
 const NOW_MS = 5000;
+const TYPES = { evidence: "text/csv", tables: "application/zip" };
 const NO_TOURNAMENT: Tournament = {
   state: "none",
   arena: "",
@@ -161,7 +162,7 @@ export class Teacher {
 
   async save(what: "evidence" | "tables"): Promise<void> {
     const file = await this.act<{ name: string; data: Uint8Array }>("export", { what });
-    if (file) download(file.name, [file.data.slice()]);
+    if (file) download(file.name, [file.data.slice()], TYPES[what]);
   }
 
   /** A trial of a student's newest table. Rejects with `Refused`. */

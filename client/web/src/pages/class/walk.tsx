@@ -4,7 +4,14 @@ import { useComputed, useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { barsPath, looped } from "../../core/class";
 import { trialSource } from "../../core/design/sources";
-import { figure, footBars, readTrial, type Trial } from "../../core/design/trial";
+import {
+  figure,
+  floorMarks,
+  footBars,
+  pathOf,
+  readTrial,
+  type Trial,
+} from "../../core/design/trial";
 import { quality } from "../../core/settings";
 import { BEATS_PER_S, type RobotReply } from "../../core/wire";
 import { said, t } from "../../i18n";
@@ -81,13 +88,24 @@ function Trying({ shown }: { shown: Shown }) {
   const { robot, trial } = shown;
   const tick = useSignal(0);
   const source = useMemo(() => trialSource(robot, trial, tick), [robot, trial, tick]);
+  const marks = useMemo(() => {
+    const way = new Float32Array(pathOf(trial).flat());
+    return () => (trial.ticks ? floorMarks(trial, Math.floor(tick.peek()), way) : null);
+  }, [trial, tick]);
   useEffect(() => repeat(trial, (now) => (tick.value = now)), [trial, tick]);
   const { explained, fault, figures } = trial.reply;
   const first = explained[0];
   return (
     <>
       <div class="picture">
-        <View source={source} camera="robot" quality={fineness} orbit label={t("design.view")} />
+        <View
+          source={source}
+          camera="robot"
+          quality={fineness}
+          orbit
+          marks={marks}
+          label={t("design.view")}
+        />
       </div>
       <p class="big-speed">
         <b>{speed(figure(figures, "speed_mm_s"))}</b> mm/s
