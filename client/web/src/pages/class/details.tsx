@@ -58,7 +58,7 @@ function State({ teacher, card }: { teacher: Teacher; card: Card }) {
       )}
       {card.stuck && (
         <li data-need="stuck">
-          <b>{t("class.stuck")}:</b> {teacher.hide(said(card.stuck))}
+          <b>{t("class.stuck")}</b> {teacher.hide(said(card.stuck))}
         </li>
       )}
       {card.coached && <li>{t("class.coached")}</li>}
