@@ -17,8 +17,9 @@ from typing import Any
 
 import msgspec
 
+from lacoc_client.classroom import cards
 from lacoc_client.design import folder, requests
-from lacoc_client.design.learning import diary, learner
+from lacoc_client.design.learning import diary, draft, learner, rules
 from lacoc_client.design.table import FileRow, FileTable
 from lacoc_client.gateway.page import TRY_LATER
 from lacoc_client.gateway.viewer import LEAST_HZ, MOST_HZ, USUAL_HZ
@@ -80,8 +81,11 @@ STRUCTS = (
     FileRow,
     FileTable,
     folder.FolderFile,
+    rules.Rules,
     diary.PhaseState,
     diary.Phases,
+    draft.Draft,
+    cards.Card,
     learner.Judged,
     learner.EditReply,
     learner.CheckReply,

@@ -1,28 +1,16 @@
-"""A page of /design without a browser: it sends requests and keeps what it was told."""
+"""A page of /design without a browser."""
 
-import itertools
-import time
 from typing import Any
 
-import msgpack
-from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import connect
+from page_connection import PageConnection, Refused
 
 from lacoc_client.gateway.wire import Kind
 
-TIMEOUT_S = 60.0
+__all__ = ["DesignClient", "Refused"]
 
 
-class Refused(Exception):
-    """The gateway, or the studio behind it, refused a request; `reply` is its reply."""
-
-    def __init__(self, reply: dict[str, Any]) -> None:
-        super().__init__(reply["error"]["code"])
-        self.reply = reply
-
-
-class DesignClient:
-    """A page's connection; it reads only while it waits for something.
+class DesignClient(PageConnection):
+    """A page's connection to `lacoc design`.
 
     Args:
         url: address of the gateway.
@@ -30,67 +18,29 @@ class DesignClient:
     """
 
     def __init__(self, url: str, key: str | None) -> None:
-        address = f"{url.replace('http', 'ws', 1)}/design/ws"
-        self.socket = connect(address, max_size=None, legacy=True)  # closed by `close`
-        self._ids = itertools.count(1)
-        self._replies: dict[int, dict[str, Any]] = {}
-        self.folder: dict[str, Any] = {}
-        self.folders: list[dict[str, Any]] = []
-        self.studio: dict[str, Any] = {}
-        self.progress: list[dict[str, Any]] = []
-        self.phases: dict[str, Any] = {}
+        super().__init__(url, "/design/ws")
+        self.hello: dict[str, Any] = {}
+        """The reply to hello."""
         if key is not None:
-            self.ask("hello", key=key)
+            self.hello = self.ask("hello", key=key)
             self.until(lambda: self.folder and self.studio and self.phases)
 
-    def ask(self, do: str, **fields: Any) -> Any:
-        """Send a request, wait for the reply and return its value."""
-        return self.reply(self.send(do, **fields))
+    @property
+    def folder(self) -> dict[str, Any]:
+        return self.last(Kind.FOLDER)
 
-    def send(self, do: str, **fields: Any) -> int:
-        """Send a request without waiting for its reply; return its id."""
-        number = next(self._ids)
-        self.socket.send(msgpack.packb({"id": number, "do": do, **fields}))
-        return number
+    @property
+    def folders(self) -> list[dict[str, Any]]:
+        return self.told[Kind.FOLDER]
 
-    def reply(self, number: int) -> Any:
-        """Wait for the reply to a request and return its value."""
-        self.until(lambda: number in self._replies)
-        reply = self._replies.pop(number)
-        if not reply["ok"]:
-            raise Refused(reply)
-        return reply["value"]
+    @property
+    def studio(self) -> dict[str, Any]:
+        return self.last(Kind.STUDIO)
 
-    def until(self, condition: Any) -> None:
-        """Take in messages until a condition is true."""
-        deadline_s = time.monotonic() + TIMEOUT_S
-        while not condition():
-            assert time.monotonic() < deadline_s, "it did not become true"
-            self._take(self.socket.recv(TIMEOUT_S))
+    @property
+    def phases(self) -> dict[str, Any]:
+        return self.last(Kind.PHASES)
 
-    def code(self) -> int | None:
-        """Wait until the gateway closes the connection; return its close code."""
-        try:
-            while True:
-                self._take(self.socket.recv(TIMEOUT_S))
-        except ConnectionClosed:
-            return self.socket.protocol.close_code
-
-    def close(self) -> None:
-        self.socket.close()
-
-    def _take(self, message: str | bytes) -> None:
-        assert isinstance(message, bytes)
-        body = msgpack.unpackb(message[1:])
-        match message[0]:
-            case Kind.REPLY:
-                self._replies[body["id"]] = body
-            case Kind.FOLDER:
-                self.folder = body
-                self.folders.append(body)
-            case Kind.STUDIO:
-                self.studio = body
-            case Kind.PHASES:
-                self.phases = body
-            case Kind.PROGRESS:
-                self.progress.append(body)
+    @property
+    def progress(self) -> list[dict[str, Any]]:
+        return self.told[Kind.PROGRESS]

@@ -11,7 +11,7 @@ import pytest
 from design_client import DesignClient
 from test_design_page import Gateway, sample
 
-from lacoc_client.design.learning.diary import FILE
+from lacoc_client.design.designer import EVIDENCE_FILE
 from lacoc_client.phases.evidence import Compared, Edited, Evidence, Guessed, Tried
 from lacoc_client.phases.store import ClassStore
 
@@ -45,7 +45,7 @@ def starts(folder: Path) -> Iterator[Callable[[], tuple[Gateway, DesignClient]]]
 
 
 def kept(folder: Path) -> list[Evidence]:
-    with ClassStore(folder / FILE) as store:
+    with ClassStore(folder / EVIDENCE_FILE) as store:
         return [one.evidence for one in store.evidence("").result()]
 
 
@@ -72,7 +72,7 @@ def test_two_phases_are_done_and_survive_a_kill(
     """Guesses and edits of a leg meet phase 1, a tripod phase 2; a killed gateway loses nothing."""
     gateway, page = starts()
     table = sample(page)
-    assert not (folder / FILE).exists()
+    assert not (folder / EVIDENCE_FILE).exists()
     page.ask("edit", table=table)
     assert states(page) == ["open"] * 6
 
@@ -153,7 +153,7 @@ def test_a_file_that_cannot_be_kept_is_told_and_disturbs_nobody(
     starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
 ) -> None:
     """While another program has the file, the page works, and says that nothing is kept."""
-    with ClassStore(folder / FILE):
+    with ClassStore(folder / EVIDENCE_FILE):
         _, page = starts()
         table = sample(page)
         page.ask("edit", table=table)

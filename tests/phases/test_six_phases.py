@@ -170,14 +170,9 @@ def test_a_student_may_skip_and_come_back() -> None:
     assert (later.hand_up, later.coached) == (False, True)
 
 
-def test_a_teacher_chooses_whether_to_explain_first() -> None:
-    """Each text is read once: before the trial or afterwards; all are in both languages."""
+def test_all_texts_are_in_both_languages() -> None:
+    """Each text of a phase is a whole sentence, in English and in Japanese."""
     for phase in PHASES:
-        texts = {phase.task.code, phase.question.code, phase.explanation.code}
-        for explain_first in (False, True):
-            first, then = phase.first(explain_first), phase.afterwards(explain_first)
-            assert {one.code for one in (*first, then)} == texts
-            assert (phase.explanation in first) == explain_first
         for phrase in (phase.title, phase.task, phase.question, phase.hint, phase.explanation):
             assert not faults(phrase)
             assert render(phrase, "ja") != render(phrase, "en")

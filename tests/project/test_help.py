@@ -191,6 +191,8 @@ def test_a_page_names_commands_that_exist(page: Path) -> None:
                 break
             name += f" {word}"
         rest = typed[len(name.split()) - 1 :]
+        if rest and (usual := getattr(COMMANDS[name], "usual", None)):
+            name += f" {usual}"
         is_group = hasattr(COMMANDS[name], "list_commands")
         known = {
             opt for param in COMMANDS[name].params for opt in param.opts + param.secondary_opts

@@ -2,7 +2,7 @@
 
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Annotated
 
@@ -10,11 +10,12 @@ import typer
 
 from lacoc_client.child import kept_child
 from lacoc_client.commands import pages
-from lacoc_client.design.asker import Asker
 from lacoc_client.design.designer import Designer
 from lacoc_client.design.folder import Folder
 from lacoc_client.design.requests import MESSAGE_BYTES
 from lacoc_client.design.site import PATH, design_site
+from lacoc_client.design.studios.asker import Asker
+from lacoc_client.design.studios.studios import Studios
 from lacoc_client.gateway import server
 from lacoc_client.gateway.files import PageFiles
 from lacoc_shared.words import say
@@ -64,18 +65,15 @@ def design_command(
     """
     pages.check_pages(terminal=False)
     files = Folder(folder)
-    with _studio(connect) as address:
-        designer = Designer(files, Asker(address), robot)
+    with nullcontext(connect) if connect else own_studio() as address:
+        designer = Designer(files, Studios([Asker(address)]), robot)
         site = design_site(designer, PageFiles())
         pages.show_app(site, f"{PATH}#key={designer.key}", browser, listen, MESSAGE_BYTES)
 
 
 @contextmanager
-def _studio(connect: str | None) -> Iterator[str]:
-    """Give the address of a studio that runs elsewhere, or of one that ends with the block."""
-    if connect is not None:
-        yield connect
-        return
+def own_studio() -> Iterator[str]:
+    """Run a studio for this machine until the block ends; give its address."""
     with (
         tempfile.TemporaryDirectory(prefix="lacoc-design-") as folder,
         kept_child(

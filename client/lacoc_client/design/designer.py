@@ -1,21 +1,31 @@
-"""What all /design pages of a gateway share: the folder, the way to a studio, and who is there."""
+"""Where one person designs alone: a folder, the way to a studio, and the pages that are open."""
 
 import asyncio
+import hmac
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-import msgspec
-
-from lacoc_client.design.asker import Asker
+from lacoc_client.design import requests
 from lacoc_client.design.files import FileContent, read_file
 from lacoc_client.design.folder import Folder
+from lacoc_client.design.host import Entered
 from lacoc_client.design.learning.diary import Diary
+from lacoc_client.design.learning.keeper import Keeper
+from lacoc_client.design.learning.rules import FREE
+from lacoc_client.design.learning.student import Student
+from lacoc_client.design.studios.studios import Studios
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.home import new_key
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.gateway.wire import Kind
 from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot, sample_gait_files
 from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.studio import TrialReply
+from lacoc_shared.words import say
+
+EVIDENCE_FILE = "lacoc-evidence.sqlite"
+"""Name of the file in the folder that keeps what was done."""
 
 _LOOK_S = 1.0
 """How often the folder is looked at, and pages get a sign of life."""
@@ -24,95 +34,99 @@ _SOON_S = 0.1
 
 
 class Designer:
-    """The folder and the studio of a gateway; used from the event loop only.
+    """The folder and the studio of a gateway for one person; a `Host`.
 
     Args:
         folder: the files.
-        asker: the way to the studio; it is started and closed here.
+        studios: the way to the studio; it is started and closed here.
         robot: the robot that pages begin with, as on the command line; None: the workshop's.
 
     Raises:
         UserError: if there is no such robot.
     """
 
-    def __init__(self, folder: Folder, asker: Asker, robot: str | None = None) -> None:
-        self.folder = folder
-        self.asker = asker
+    def __init__(self, folder: Folder, studios: Studios, robot: str | None = None) -> None:
+        self.folder: Folder | None = folder
+        self.studios = studios
         self.robot = SentFile(*find_robot(robot)) if robot else None
-        """The robot file that pages begin with; None: the workshop's."""
         self.key = new_key()
         """The page key: without it a page gets nothing."""
-        self.diary = Diary(folder.path)
-        """What the student of the folder has done."""
+        self._folder = folder
+        self._keeper = Keeper(folder.path / EVIDENCE_FILE)
+        self._student = Student("", Diary(self._keeper), lambda: FREE)
         self._robot_name = robot or WORKSHOPS_ROBOT
-        self._viewers: dict[Viewer, None] = {}
+
+    async def enter(self, hello: requests.Hello, viewer: Viewer, where: str) -> Entered:
+        """Let a page in that shows the page key; see `Host.enter`."""
+        key = hello.key.encode("utf-8", "surrogatepass")
+        if not hmac.compare_digest(key, self.key.encode()):
+            raise UserError(say("design.wrong-key"))
+        return Entered(self._student)
+
+    def greet(self, student: Student, viewer: Viewer) -> None:
+        """Tell a page which files and whether a studio is there; see `Host.greet`."""
+        student.viewers[viewer] = None
+        viewer.send(self._folder_message(()))
+        viewer.send(studio_message(self.studios))
+        viewer.send(student.phases_message())
+
+    def leave(self, student: Student, viewer: Viewer) -> None:
+        """Take in that a page has gone; see `Host.leave`."""
+        student.viewers.pop(viewer, None)
+
+    def learned(self, student: Student, trial: TrialReply | None = None) -> None:
+        """Tell all pages how far the student is; see `Host.learned`."""
+        student.tell()
 
     def sample(self) -> FileContent:
         """Read the sample postures of the robot, which may have none; may block."""
-        postures = sample_gait_files(self._robot_name).postures
-        return FileContent() if postures is None else read_file(postures.name, postures.data)
-
-    def add(self, viewer: Viewer) -> None:
-        """Add a page, and tell it which files and whether a studio is there."""
-        self._viewers[viewer] = None
-        viewer.send(self._folder_message(()))
-        viewer.send(self._studio_message())
-        viewer.send(self._phases_message())
-
-    def tell_phases(self) -> None:
-        """Tell all pages how far the student is."""
-        self._send(self._phases_message())
-
-    def remove(self, viewer: Viewer) -> None:
-        """Remove a page that has gone."""
-        self._viewers.pop(viewer, None)
+        return sample_postures(self._robot_name)
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
         """Look at the folder and for a studio until the block ends, and tell the pages."""
-        self.asker.start()
-        await self.diary.read()
+        self.studios.start()
+        await self._student.diary.read()
         looking = asyncio.get_running_loop().create_task(self._look())
         try:
             yield
         finally:
             looking.cancel()
-            await self.diary.close()
-            await asyncio.to_thread(self.asker.close)
+            await self._keeper.close()
+            await asyncio.to_thread(self.studios.close)
 
     async def _look(self) -> None:
         loop = asyncio.get_running_loop()
-        present, next_s = None, loop.time()
+        present, next_s = 0, loop.time()
         while True:
             changed: tuple[str, ...] = ()
             is_due = loop.time() >= next_s
             if is_due:
                 next_s = loop.time() + _LOOK_S
-                changed = await asyncio.to_thread(self.folder.look)
+                changed = await asyncio.to_thread(self._folder.look)
             if changed:
-                self._send(self._folder_message(changed))
-            if is_due or present != self.asker.studio:
-                present = self.asker.studio
-                self._send(self._studio_message())
+                self._student.send(self._folder_message(changed))
+            if is_due or present != self.studios.present:
+                present = self.studios.present
+                self._student.send(studio_message(self.studios))
             await asyncio.sleep(_SOON_S)
 
-    def _send(self, message: bytes) -> None:
-        for viewer in self._viewers:
-            viewer.send(message)
-
     def _folder_message(self, changed: tuple[str, ...]) -> bytes:
-        body = {
-            "folder": str(self.folder.path),
-            "files": self.folder.files,
-            "changed": changed,
-        }
-        return wire.map_message(Kind.FOLDER, body)
+        return folder_message(str(self._folder.path), self._folder, changed)
 
-    def _phases_message(self) -> bytes:
-        return wire.map_message(Kind.PHASES, msgspec.structs.asdict(self.diary.phases))
 
-    def _studio_message(self) -> bytes:
-        present = self.asker.studio is not None
-        return wire.map_message(
-            Kind.STUDIO, {"present": present, "why": None if present else self.asker.why}
-        )
+def sample_postures(robot: str) -> FileContent:
+    """Read the sample postures of a robot, which may have none; may block."""
+    postures = sample_gait_files(robot).postures
+    return FileContent() if postures is None else read_file(postures.name, postures.data)
+
+
+def folder_message(path: str, folder: Folder | None, changed: tuple[str, ...] = ()) -> bytes:
+    """Return the message that says which files there are; without a folder there are none."""
+    files = folder.files if folder is not None else ()
+    return wire.map_message(Kind.FOLDER, {"folder": path, "files": files, "changed": changed})
+
+
+def studio_message(studios: Studios) -> bytes:
+    """Return the message that says whether there is a studio."""
+    return wire.map_message(Kind.STUDIO, {"present": studios.present > 0, "why": studios.why})

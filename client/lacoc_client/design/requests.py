@@ -1,6 +1,6 @@
 """What a page of /design asks (docs/gateway.md has it as a table)."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 
@@ -20,15 +20,22 @@ PARSE_BYTES = MAX_BYTES + 4096
 MESSAGE_BYTES = 16 << 20
 """Longest message; only a longer one closes the connection."""
 
+_T = TypeVar("_T")
 _Name = Annotated[str, msgspec.Meta(max_length=200)]
 _Job = Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,15}$")]
 _Sequences = tuple[tuple[Annotated[int, msgspec.Meta(ge=0, le=9)], ...], ...]
 
 
 class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
-    """The first message: it has the page key."""
+    """The first message: the page key, or what lets a student into a class."""
 
     key: _Name = ""
+    code: _Name = ""
+    """The class code."""
+    name: _Name = ""
+    """Nickname in the class."""
+    token: _Name = ""
+    """What the class gave this browser before."""
 
 
 class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
@@ -111,6 +118,10 @@ class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
     """Size of the coach's search whose changes were taken."""
     guess: FootWay | None = None
     """Where the student said before the edit that the foot goes."""
+    file: _Name = ""
+    """Name of the file that is open; "": none."""
+    file_version: _Name = ""
+    """Version of that file that the table was made from."""
 
 
 class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
@@ -137,6 +148,12 @@ class VoteAsk(Ask, frozen=True, kw_only=True, tag="vote"):
     """Vote whether A, the sample, or B, the own gait, fits the word better."""
 
     choice: Literal["A", "B"]
+
+
+class HandAsk(Ask, frozen=True, kw_only=True, tag="hand"):
+    """Raise the hand for help, or take it down."""
+
+    up: bool
 
 
 class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
@@ -177,6 +194,7 @@ Asked = (
     | PhaseAsk
     | NameAsk
     | VoteAsk
+    | HandAsk
 )
 """Every request of a page."""
 
@@ -195,11 +213,16 @@ def read(data: bytes) -> Asked:
     Raises:
         Unreadable: if it is no known request, or too long for its kind.
     """
+    return read_with(_asked, data)
+
+
+def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
+    """Decode a request; as `read`, for the requests that a decoder knows."""
     try:
         if len(data) > REQUEST_BYTES:
             most = PARSE_BYTES if _any_do.decode(data).do == "parse" else REQUEST_BYTES
             if len(data) > most:
                 raise too_long(len(data), most)
-        return _asked.decode(data)
+        return decoder.decode(data)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise Unreadable(say("gateway.bad-message", error=str(error))) from None

@@ -49,6 +49,17 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         await courts.close()
         await asyncio.to_thread(shelf.close)
 
+    async def page(websocket: WebSocket) -> None:
+        await Page(websocket, courts).serve()
+
+    others = [*recording_routes(shelf), WebSocketRoute("/ws", page)]
+    routes = page_routes(files, PATHS, others)
+    return Guard(Starlette(routes=routes, lifespan=lifespan), home.names)
+
+
+def recording_routes(shelf: Recordings) -> list[BaseRoute]:
+    """Return the routes of recordings: their list, and each of them."""
+
     async def recordings(_: Request) -> Response:
         found = await asyncio.to_thread(shelf.listed)
         return Response(msgspec.json.encode(found), media_type="application/json")
@@ -58,16 +69,7 @@ def site(home: Home, files: PageFiles) -> ASGIApp:
         path = await asyncio.to_thread(shelf.find, name)
         return _not_found(request) if path is None else FileResponse(path, media_type=_MCAP)
 
-    async def page(websocket: WebSocket) -> None:
-        await Page(websocket, courts).serve()
-
-    others = [
-        Route("/recordings", recordings),
-        Route("/recordings/{name}", one_recording),
-        WebSocketRoute("/ws", page),
-    ]
-    routes = page_routes(files, PATHS, others)
-    return Guard(Starlette(routes=routes, lifespan=lifespan), home.names)
+    return [Route("/recordings", recordings), Route("/recordings/{name}", one_recording)]
 
 
 def page_routes(

@@ -53,6 +53,12 @@ class Kind(IntEnum):
     PROGRESS = 13
     STUDIO = 14
     PHASES = 15
+    HANDED = 16
+    ELSEWHERE = 17
+    CLASS = 18
+    CARD = 19
+    GONE = 20
+    TOURNAMENT = 21
 
 
 _Id = Annotated[int, msgspec.Meta(ge=0, le=2**53)]

@@ -147,6 +147,12 @@ class ClassFile:
         rows = self._db.execute("SELECT student, name, version, at_s, content FROM tables")
         return [KeptTable(*row) for row in rows]
 
+    def forget(self, student: str) -> None:
+        """Delete all that is kept of a student; votes have no names, so they stay."""
+        with self._db:
+            self._db.execute("DELETE FROM evidence WHERE student = ?", (student,))
+            self._db.execute("DELETE FROM tables WHERE student = ?", (student,))
+
     def close(self) -> None:
         """Close the file."""
         self._db.close()

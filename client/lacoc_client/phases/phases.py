@@ -56,20 +56,6 @@ class Phase:
         """Say how far a student is; `evidence` is all that the student did, in order."""
         return All(*self.shown).look(evidence)
 
-    def first(self, explain_first: bool) -> tuple[Phrase, ...]:
-        """Return what a student reads before trying.
-
-        Args:
-            explain_first: whether the teacher wants the explanation before the task. Students
-                usually learn more if they try first, children of grades 2 to 5 if they read first
-                (docs/studio.md 7).
-        """
-        return (self.explanation, self.task) if explain_first else (self.task, self.question)
-
-    def afterwards(self, explain_first: bool) -> Phrase:
-        """Return what a student reads when the task is done; argument as in `first`."""
-        return self.question if explain_first else self.explanation
-
 
 ONE_LEG = Phase(
     number=1,

@@ -27,14 +27,26 @@ class Progress:
     """Whether the student asks for help."""
     coached: bool
     """Whether the student ever took over what the coach found."""
+    seen: int
+    """Number of pieces of evidence that it was found from."""
 
 
-def progress(evidence: Sequence[Evidence]) -> Progress:
-    """Say how far a student is; `evidence` is all that the student did, in order."""
+def progress(evidence: Sequence[Evidence], before: Progress | None = None) -> Progress:
+    """Say how far a student is.
+
+    Args:
+        evidence: all that the student did, in order.
+        before: what was said of an earlier part of it. Tasks that were met then are not looked at
+            again, because what was reached once stays reached.
+    """
     visited = [one.phase for one in evidence if isinstance(one, Moved)]
     visited = [number for number in visited if 1 <= number <= len(PHASES)]
     hands = [one.up for one in evidence if isinstance(one, Hand)]
-    outcomes = tuple(phase.look(evidence) for phase in PHASES)
+    known = before.outcomes if before is not None else (None,) * len(PHASES)
+    outcomes = tuple(
+        old if old is not None and old.met else phase.look(evidence)
+        for phase, old in zip(PHASES, known, strict=True)
+    )
     farthest = max(visited, default=1)
     return Progress(
         phase=visited[-1] if visited else 1,
@@ -44,6 +56,7 @@ def progress(evidence: Sequence[Evidence]) -> Progress:
         outcomes=outcomes,
         hand_up=bool(hands) and hands[-1],
         coached=any(isinstance(one, Coached) for one in evidence),
+        seen=len(evidence),
     )
 
 

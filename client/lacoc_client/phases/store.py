@@ -113,6 +113,19 @@ class ClassStore:
             self._tables[table.student, table.name] = table
             self._waiting.add((table.student, table.name))
 
+    def forget(self, student: str) -> "Future[None]":
+        """Delete all that is kept of a student."""
+
+        def work(file: ClassFile) -> None:
+            with self._lock:
+                gone = [key for key in self._tables if key[0] == student]
+                for key in gone:
+                    del self._tables[key]
+                    self._waiting.discard(key)
+            file.forget(student)
+
+        return self._do(work, writes=True)
+
     def tables(self, student: str | None = None) -> list[KeptTable]:
         """Return the newest tables of a student, or of everybody, by student and name."""
         with self._lock:
@@ -203,7 +216,7 @@ class ClassStore:
             self._waiting -= written
 
     def _is_newest(self, table: KeptTable) -> bool:
-        return self._tables[table.student, table.name] is table
+        return self._tables.get((table.student, table.name)) is table
 
     def _fresh(self) -> ClassFile:
         """Set the damaged file aside, and make a fresh one."""

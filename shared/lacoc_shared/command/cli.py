@@ -37,7 +37,7 @@ Panels = Mapping[str, tuple[str, ...]]
 
 _PANELS: Panels = {
     "Play": ("demo", "practice", "play", "watch"),
-    "Prepare your robot": ("design", "gait", "trial", "coach", "robot"),
+    "Prepare your robot": ("design", "class", "gait", "trial", "coach", "robot"),
     "Run a contest": ("contest", "serve", "web", "referee", "doctor"),
     "Study and develop": ("replay", "simulate", "bot", "studio"),
 }

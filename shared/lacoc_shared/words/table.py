@@ -20,6 +20,7 @@ FILES = (
     "gateway",
     "studio",
     "phases",
+    "class",
     "commands",
 )
 ON_PAGES = FILES[:-1]

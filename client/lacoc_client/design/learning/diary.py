@@ -1,25 +1,21 @@
-"""What a student has done in a folder, kept there while it happens."""
+"""What one student has done, kept while it happens."""
 
 import asyncio
 import time
-from collections.abc import Awaitable
-from pathlib import Path
-from typing import Any, TypeVar
+from collections.abc import Awaitable, Iterable
+from typing import TypeVar
 
 import msgspec
 
+from lacoc_client.design.learning.draft import NAME, Draft, read_draft
+from lacoc_client.design.learning.keeper import Keeper
+from lacoc_client.design.learning.rules import Rules
 from lacoc_client.phases.evidence import Evidence, Named, Voted
 from lacoc_client.phases.phases import PHASES
-from lacoc_client.phases.progress import State, progress
+from lacoc_client.phases.progress import Progress, State, progress
 from lacoc_client.phases.store import ClassStore
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase
-
-FILE = "lacoc-evidence.sqlite"
-"""Name of the file in the folder."""
-
-_ALONE = ""
-"""Name of the student who designs alone."""
 
 _T = TypeVar("_T")
 
@@ -42,72 +38,108 @@ class PhaseState(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Phases(msgspec.Struct, frozen=True, kw_only=True):
-    """How far the student of a folder is."""
+    """How far a student is."""
 
     phase: int
     """Number of the phase that the student is at."""
     word: str
     """The word that the robot shall walk like; "": none yet."""
+    hand_up: bool
+    """Whether the student asks for help."""
     trouble: Phrase | None
     """Why progress is not kept, or what happened to its file; None: all is well."""
     phases: tuple[PhaseState, ...]
+    rules: Rules
 
 
 class Diary:
-    """The evidence of a folder; used from the event loop only.
+    """The evidence and the draft of one student; used from the event loop only.
 
-    The file is made with the first evidence. Where it can't be written, evidence lasts as long as
-    the program, and `trouble` says why.
+    Where they can't be written, they last as long as the program, and `Keeper.trouble` says why.
 
     Args:
-        folder: the folder.
+        keeper: the file.
+        student: name of the student; "": whoever designs alone.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._path = folder / FILE
-        self._store: ClassStore | None = None
-        self._refused: Phrase | None = None
+    def __init__(self, keeper: Keeper, student: str = "") -> None:
+        self._keeper = keeper
+        self._student = student
+        self._is_read = False
         self._evidence: list[Evidence] = []
-        self._lock = asyncio.Lock()
+        self._progress: Progress | None = None
+        self._reading = asyncio.Lock()
+        self.draft: Draft | None = None
+        """The newest table; None: there is none."""
 
     async def read(self) -> None:
-        """Read what was kept before."""
-        if await asyncio.to_thread(self._path.exists):
+        """Read what was kept before, if there is a file."""
+        if await asyncio.to_thread(self._keeper.path.exists):
             await self._opened()
 
     async def add(self, *evidence: Evidence) -> None:
         """Keep evidence; it is on the disk when this returns, unless there is trouble."""
-        self._evidence += evidence
-        store = await self._opened() if evidence else None
+        if not evidence:
+            return
+        self._take(evidence)
+        store = await self._opened()
         if store is not None:
             now_s = time.time()
-            done = [asyncio.wrap_future(store.add(_ALONE, one, now_s)) for one in evidence]
-            await self._kept(asyncio.gather(*done))
+            done = [asyncio.wrap_future(store.add(self._student, one, now_s)) for one in evidence]
+            await _kept(asyncio.gather(*done))
 
     async def vote(self, poll: str, choice: str) -> None:
         """Keep a vote; for a poll in which the student has voted before, nothing is kept."""
         if Voted(poll=poll) in self._evidence:
             return
+        self._take([Voted(poll=poll)])
         store = await self._opened()
-        self._evidence.append(Voted(poll=poll))
         if store is not None:
-            vote = store.vote(_ALONE, poll, choice, time.time())
-            await self._kept(asyncio.wrap_future(vote))
+            vote = store.vote(self._student, poll, choice, time.time())
+            await _kept(asyncio.wrap_future(vote))
 
-    async def close(self) -> None:
-        """Close the file."""
-        if self._store is not None:
-            await asyncio.to_thread(self._store.close)
+    async def keep(self, draft: Draft, version: str) -> None:
+        """Keep the newest table; it is on the disk about a second later.
+
+        Args:
+            draft: the table.
+            version: name of its content.
+        """
+        self.draft = draft
+        store = await self._opened()
+        if store is not None:
+            store.keep(draft.kept(self._student, version, time.time()))
 
     @property
-    def phases(self) -> Phases:
+    def evidence(self) -> tuple[Evidence, ...]:
+        """All that the student did, in order."""
+        return tuple(self._evidence)
+
+    @property
+    def progress(self) -> Progress:
         """How far the student is."""
-        now = progress(self._evidence)
-        words = [one.word for one in self._evidence if isinstance(one, Named)]
+        if self._progress is None or self._progress.seen != len(self._evidence):
+            self._progress = progress(self._evidence, self._progress)
+        return self._progress
+
+    @property
+    def word(self) -> str:
+        """The word that the robot shall walk like; "": none yet."""
+        words = (one.word for one in reversed(self._evidence) if isinstance(one, Named))
+        return next(words, "")
+
+    def phases(self, rules: Rules) -> Phases:
+        """Say how far the student is, for a page.
+
+        Args:
+            rules: what the teacher allows.
+        """
+        now = self.progress
         return Phases(
             phase=now.phase,
-            word=words[-1] if words else "",
-            trouble=self._store.trouble if self._store is not None else self._refused,
+            word=self.word,
+            hand_up=now.hand_up,
+            trouble=self._keeper.trouble,
             phases=tuple(
                 PhaseState(
                     number=phase.number,
@@ -122,24 +154,36 @@ class Diary:
                 )
                 for phase, state, outcome in zip(PHASES, now.states, now.outcomes, strict=True)
             ),
+            rules=rules,
         )
 
     async def _opened(self) -> ClassStore | None:
-        """Return the file, after it was opened; None if it can't be."""
-        async with self._lock:
-            if self._store is None and self._refused is None:
+        """Return the file, after what it has of this student was read."""
+        store = await self._keeper.opened()
+        async with self._reading:
+            if store is not None and not self._is_read:
+                self._is_read = True
                 try:
-                    self._store = await asyncio.to_thread(ClassStore, self._path)
-                    kept = await asyncio.wrap_future(self._store.evidence(_ALONE))
-                except UserError as error:
-                    self._refused = error.phrase
-                else:
-                    before = [one.evidence for one in kept]
-                    self._evidence = before + self._evidence
-        return self._store
+                    kept = await asyncio.wrap_future(store.evidence(self._student))
+                except UserError:
+                    return store  # `trouble` has the reason
+                self._evidence[:0] = [one.evidence for one in kept]
+                self._progress = None
+                if self.draft is None:
+                    self.draft = _newest(store, self._student)
+        return store
 
-    async def _kept(self, work: Awaitable[_T]) -> Any:
-        try:
-            await work
-        except UserError:
-            return  # `trouble` has the reason
+    def _take(self, evidence: Iterable[Evidence]) -> None:
+        self._evidence += evidence
+
+
+def _newest(store: ClassStore, student: str) -> Draft | None:
+    drafts = [read_draft(table) for table in store.tables(student) if table.name == NAME]
+    return drafts[0] if drafts else None
+
+
+async def _kept(work: Awaitable[_T]) -> None:
+    try:
+        await work
+    except UserError:
+        return  # `trouble` has the reason

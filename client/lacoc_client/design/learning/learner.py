@@ -8,7 +8,8 @@ import msgspec
 
 from lacoc_client.design import requests
 from lacoc_client.design.files import sent_gait
-from lacoc_client.design.learning.diary import Diary
+from lacoc_client.design.learning.draft import Draft
+from lacoc_client.design.learning.student import Student
 from lacoc_client.design.table import FileTable
 from lacoc_client.phases.evidence import (
     SAMPLE,
@@ -59,16 +60,17 @@ class Learner:
     """What one page does; used from the event loop only.
 
     Args:
-        diary: keeps the evidence.
+        student: whose page it is.
         sample: lets the sample gait walk as a trial did; None: the robot has none.
     """
 
     def __init__(
         self,
-        diary: Diary,
+        student: Student,
         sample: Callable[[requests.TrialAsk], Awaitable[TrialReply | None]],
     ) -> None:
-        self._diary = diary
+        self.student = student
+        self._diary = student.diary
         self._sample = sample
         self._before: FileTable | None = None
         self._last: dict[str, TrialFacts] = {}
@@ -81,6 +83,15 @@ class Learner:
             FileRefused: with every mistake of the table or of the robot.
         """
         version = _version(asked.table, asked.sequences)
+        if asked.by is not None or self._diary.draft is not None:  # else nothing was changed yet
+            draft = Draft(
+                table=asked.table,
+                sequences=asked.sequences,
+                robot=asked.robot,
+                file=asked.file,
+                file_version=asked.file_version,
+            )
+            await self._diary.keep(draft, version)
         before, self._before = self._before, asked.table
         if before is None or asked.by is None or before.kind != asked.table.kind:
             return EditReply()
@@ -117,23 +128,28 @@ class Learner:
                 evidence.append(Guessed(about="pace", said=guess.said, was=(pace(before, facts),)))
         await self._diary.add(*evidence)
 
-    async def compared(self, asked: requests.TrialAsk) -> None:
-        """Compare the last trial of a key of level B with the same one of the sample."""
+    async def compared(self, asked: requests.TrialAsk) -> bool:
+        """Compare the last trial of a key of level B with the same one of the sample.
+
+        Returns:
+            Whether that is evidence.
+        """
         own = self._last.get(asked.keys)
         if asked.table is None or own is None or not own.keys[-1].startswith("B"):
-            return
+            return False
         place = (asked.keys, asked.robot)
         if place not in self._samples:
             try:
                 reply = await self._sample(asked)
             except (UserError, FileRefused):
-                return  # perhaps the next time
+                return False  # perhaps the next time
             self._samples[place] = None if reply is None else _facts(reply, asked.keys)
         sample = self._samples[place]
         differs = differences(own, sample) if sample is not None else ()
         if differs:
             version = _version(asked.table, asked.sequences)
             await self._diary.add(Compared(version=version, against=SAMPLE, differs=differs))
+        return bool(differs)
 
     async def checked(self, asked: requests.CheckAsk) -> CheckReply:
         """Check a table for its robot, as `lacoc gait check` does.

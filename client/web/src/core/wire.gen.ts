@@ -400,6 +400,12 @@ export interface FolderFile {
   version: string;
 }
 
+export interface Rules {
+  closed: number[];
+  coach: "none" | "matters" | "cell" | "three" | "table";
+  explain_first: boolean;
+}
+
 export interface PhaseState {
   number: number;
   state: "open" | "met" | "skipped";
@@ -415,8 +421,38 @@ export interface PhaseState {
 export interface Phases {
   phase: number;
   word: string;
+  hand_up: boolean;
   trouble: Phrase | null;
   phases: PhaseState[];
+  rules: Rules;
+}
+
+export interface Draft {
+  table: FileTable;
+  sequences: number[][] | null;
+  robot: unknown | null;
+  file: string;
+  file_version: string;
+}
+
+export interface Card {
+  name: string;
+  online: boolean;
+  seen_s: number;
+  phase: number;
+  states: ("open" | "met" | "skipped")[];
+  share: number;
+  missing: Phrase | null;
+  tries: number;
+  best_mm_s: number | null;
+  last_mm_s: number | null;
+  legs: string[];
+  feet: (([number, number])[])[] | null;
+  said: Phrase | null;
+  hand_up_s: number | null;
+  stuck: Phrase | null;
+  coached: boolean;
+  need: "hand" | "stuck" | "quiet" | "";
 }
 
 export interface Judged {

@@ -8,8 +8,9 @@ from typing import Any
 import msgspec
 
 from lacoc_client.design import requests
-from lacoc_client.design.asker import Asker
 from lacoc_client.design.files import sent_gait
+from lacoc_client.design.studios.asker import Asker
+from lacoc_client.design.studios.studios import Studios
 from lacoc_client.design.table import FileTable
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import in_loop
@@ -36,24 +37,26 @@ hardly helps."""
 
 
 class StudioDesk:
-    """What one page asks of the studio.
+    """What one page asks of the studios.
 
     Args:
-        asker: the way to the studio.
+        studios: the ways to them.
         send: sends a message to the page, if the page keeps up.
     """
 
-    def __init__(self, asker: Asker, send: Callable[[bytes], None]) -> None:
-        self._asker = asker
+    def __init__(self, studios: Studios, send: Callable[[bytes], None]) -> None:
+        self._studios = studios
         self._send = send
         self._page = secrets.token_hex(4)
         self._trying = asyncio.Lock()
-        self._jobs: set[str] = set()
+        self._jobs: dict[str, Asker] = {}
+        """The searches that run -> the way to the studio that does it."""
 
     async def robot(self, asked: requests.RobotAsk) -> msgspec.Raw:
         """Ask what a robot file describes; see `Asker.ask` for the errors of this class."""
         request = RobotRequest(protocol=PROTOCOL, robot=asked.robot)
-        return msgspec.Raw((await self._asker.ask("robot", request, RobotReply, _ROBOT_S))[1])
+        asker = self._studios.free()
+        return msgspec.Raw((await asker.ask("robot", request, RobotReply, _ROBOT_S))[1])
 
     async def trial(self, asked: requests.TrialAsk) -> tuple[TrialReply, bytes]:
         """Let the robot walk; while one trial of the page runs, the next one waits.
@@ -68,7 +71,7 @@ class StudioDesk:
             seconds=asked.seconds,
         )
         async with self._trying:
-            return await self._asker.ask("trial", request, TrialReply, _TRIAL_S)
+            return await self._studios.free().ask("trial", request, TrialReply, _TRIAL_S)
 
     async def coach(self, asked: requests.CoachAsk) -> msgspec.Raw:
         """Search, and tell the page how far it is; end the search if nobody waits any more."""
@@ -89,13 +92,14 @@ class StudioDesk:
             body = {"job": asked.job, **msgspec.structs.asdict(progress)}
             in_loop(loop, lambda: self._send(wire.map_message(Kind.PROGRESS, body)))
 
-        listening = await self._asker.progress(job, tell)
-        self._jobs.add(job)
+        asker = self._studios.free()
+        listening = await asker.progress(job, tell)
+        self._jobs[job] = asker
         try:
             timeout_s = asked.seconds + _COACH_MORE_S
-            return msgspec.Raw((await self._asker.ask("coach", request, CoachReply, timeout_s))[1])
+            return msgspec.Raw((await asker.ask("coach", request, CoachReply, timeout_s))[1])
         finally:
-            self._jobs.discard(job)
+            self._jobs.pop(job, None)
             await asyncio.shield(asyncio.to_thread(listening.close))
 
     async def cancel(self, job: str) -> dict[str, Any]:
@@ -110,7 +114,8 @@ class StudioDesk:
 
     async def _cancel(self, job: str) -> None:
         request = CancelRequest(protocol=PROTOCOL, job=job)
-        await self._asker.ask("cancel", request, Done, _CANCEL_S)
+        asker = self._jobs.get(job) or self._studios.free()
+        await asker.ask("cancel", request, Done, _CANCEL_S)
 
     def _job(self, name: str) -> str:
         """Return a name that no other page's search has."""

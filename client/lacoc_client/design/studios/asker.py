@@ -58,6 +58,8 @@ class Asker:
         """Name of the studio that is there; None: there is none."""
         self.why: Phrase | None = None
         """Why there is no connection; None: there is one, or nobody has tried yet."""
+        self.open = 0
+        """Number of requests that wait for their answer."""
 
     def start(self) -> None:
         """Begin to look for a studio."""
@@ -88,7 +90,11 @@ class Asker:
             NoAnswer: if it was asked, and does not answer.
             UserError: if it refuses for good.
         """
-        payload = await self._answered(what, codec.encode(message), timeout_s)
+        self.open += 1
+        try:
+            payload = await self._answered(what, codec.encode(message), timeout_s)
+        finally:
+            self.open -= 1
         try:
             return codec.decode(payload, reply, TRIAL_REPLY_MAX_BYTES), payload
         except codec.BadMessage as error:

@@ -1,0 +1,68 @@
+"""Who may come into a class: class codes, nicknames, tokens and guesses."""
+
+import secrets
+import unicodedata
+from collections import OrderedDict
+
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.allowance import Allowance
+from lacoc_shared.words import say
+
+_LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
+"""Letters of class codes: none that looks like another one."""
+_CODE_LENGTH = 6
+_LONGEST_NAME = 20
+_GUESSES_HZ, _GUESSES_BURST = 0.5, 20
+"""Wrong codes of a machine that are answered at once."""
+_LATER_S = 1.0
+"""How long a page waits for the answer to a further wrong code. Even with 400 pages at a time a
+machine would try codes for a month. The right code never waits: a class may share one address."""
+_MOST_MACHINES = 1000
+
+
+def new_code() -> str:
+    """Make a random class code, such as "K7QM3X"."""
+    return "".join(secrets.choice(_LETTERS) for _ in range(_CODE_LENGTH))
+
+
+def read_code(text: str) -> str:
+    """Return a class code as it was meant: "ｋ7q m3x" is "K7QM3X"."""
+    wide = unicodedata.normalize("NFKC", text).upper()
+    return "".join(letter for letter in wide if letter.isalnum())
+
+
+def read_name(text: str) -> str:
+    """Return a nickname without needless spaces.
+
+    Raises:
+        UserError: if it is empty, too long, or has signs that can't be seen.
+    """
+    name = " ".join(unicodedata.normalize("NFC", text).split())
+    if not name or len(name) > _LONGEST_NAME or not name.isprintable():
+        raise UserError(say("class.bad-name", most=_LONGEST_NAME))
+    return name
+
+
+def same_name(name: str) -> str:
+    """Return a text that is equal for two names that people take for the same."""
+    return unicodedata.normalize("NFKC", name).casefold()
+
+
+class Guesses:
+    """Slows a machine down that shows wrong codes, so that it can't try them all."""
+
+    def __init__(self) -> None:
+        self._machines: OrderedDict[str, Allowance] = OrderedDict()
+
+    def wait_s(self, machine: str, now_s: float) -> float:
+        """Take in a wrong code; return how long its answer must wait [s].
+
+        Args:
+            machine: address of the machine that showed it.
+            now_s: time on a clock that never goes back [s].
+        """
+        allowance = self._machines.setdefault(machine, Allowance(_GUESSES_HZ, _GUESSES_BURST))
+        self._machines.move_to_end(machine)
+        if len(self._machines) > _MOST_MACHINES:
+            self._machines.popitem(last=False)
+        return 0.0 if allowance.take(1, now_s) else _LATER_S

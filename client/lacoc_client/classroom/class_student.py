@@ -1,0 +1,72 @@
+"""A student of a class: also the token, and what the teacher's card shows."""
+
+import time
+from collections.abc import Callable
+
+from lacoc_client.classroom.cards import Card, Seen, card
+from lacoc_client.design.learning.diary import Diary
+from lacoc_client.design.learning.rules import Rules
+from lacoc_client.design.learning.student import Student
+from lacoc_client.phases.class_file import KeptTable
+from lacoc_shared.studio import TrialReply
+
+TOKEN = "token"
+"""Name under which the hash of a student's token is kept."""
+
+
+class ClassStudent(Student):
+    """A student of a class; used from the event loop only.
+
+    Args:
+        name: the nickname.
+        diary: keeps what the student does.
+        rules: returns what the teacher allows.
+    """
+
+    def __init__(self, name: str, diary: Diary, rules: Callable[[], Rules]) -> None:
+        super().__init__(name, diary, rules)
+        self.token_hash = ""
+        """Hash of the token of the browser that may come in; "": the next one gets a token."""
+        self.seen_s = 0.0
+        """Time when the student last did something, in seconds since 1970 (UTC)."""
+        self.hand_up_s: float | None = None
+        """Time since when the hand is up."""
+        self._trial: TrialReply | None = None
+        self._last: Card | None = None
+
+    def learned(self, trial: TrialReply | None) -> None:
+        """Take in that the student did something; a trial, or anything else (None)."""
+        self.seen_s = time.time()
+        if trial is not None:
+            self._trial = trial
+        self.hand_moved()
+
+    def hand_moved(self) -> None:
+        """Take in that the hand may have gone up or down."""
+        if not self.diary.progress.hand_up:
+            self.hand_up_s = None
+        elif self.hand_up_s is None:
+            self.hand_up_s = time.time()
+
+    def card(self) -> Card:
+        """Return the student's card."""
+        seen = Seen(
+            name=self.name,
+            online=bool(self.viewers),
+            seen_s=self.seen_s,
+            hand_up_s=self.hand_up_s,
+            trial=self._trial,
+        )
+        return card(seen, self.diary.evidence, self.diary.progress, time.time())
+
+    def changed_card(self) -> Card | None:
+        """Return the card if it has changed since this was asked last; else None."""
+        now = self.card()
+        if now == self._last:
+            return None
+        self._last = now
+        return now
+
+    def kept_token(self) -> KeptTable:
+        """Return the token as a class file keeps it."""
+        return KeptTable(self.name, TOKEN, "", time.time(), self.token_hash.encode())

@@ -1,0 +1,350 @@
+"""A class while it runs: its students, its teacher's pages, and its file."""
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Iterable, Sequence
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from lacoc_client.classroom.admission import Guesses, new_code, read_code, read_name, same_name
+from lacoc_client.classroom.cards import hand_times
+from lacoc_client.classroom.class_student import TOKEN, ClassStudent
+from lacoc_client.classroom.state import NAME, NOBODY, ClassState, Handed, fresh_state, read_state
+from lacoc_client.classroom.tournament import Tournament
+from lacoc_client.design import requests
+from lacoc_client.design.designer import folder_message, sample_postures, studio_message
+from lacoc_client.design.files import FileContent
+from lacoc_client.design.folder import Folder
+from lacoc_client.design.host import Entered
+from lacoc_client.design.learning.diary import Diary
+from lacoc_client.design.learning.keeper import Keeper
+from lacoc_client.design.learning.rules import Rules
+from lacoc_client.design.learning.student import Student
+from lacoc_client.design.studios.studios import Studios
+from lacoc_client.design.table import FileTable
+from lacoc_client.gateway import wire
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.gateway.wire import Kind
+from lacoc_client.phases.class_file import Kept, KeptTable
+from lacoc_client.phases.evidence import Hand, Joined
+from lacoc_client.phases.store import ClassStore
+from lacoc_robots.library import WORKSHOPS_ROBOT, find_robot
+from lacoc_shared import seal
+from lacoc_shared.contest.tokens import hash_token, new_token
+from lacoc_shared.messages import SentFile
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.studio import TrialReply
+from lacoc_shared.words import say
+
+CLASS_FILE = "lacoc-class.sqlite"
+"""Name of the file in the folder of a class."""
+
+_MOST_STUDENTS = 100
+_SOON_S = 0.1
+"""How soon pages are told that a studio has come or gone."""
+_ALIVE_S = 1.0
+"""How often pages get a sign of life."""
+_QUIET_LOOK_S = 10.0
+"""How often cards are looked at for students who have gone quiet."""
+
+
+class Classroom:
+    """A class; a `Host`. Used from the event loop only.
+
+    Args:
+        folder: folder of the class.
+        studios: the ways to the studios; they are started and closed here.
+        addresses: addresses that students can open.
+        robot: the robot of the class; None: the workshop's.
+
+    Raises:
+        UserError: if there is no such robot.
+    """
+
+    folder: Folder | None = None
+
+    def __init__(
+        self,
+        folder: Path,
+        studios: Studios,
+        addresses: Sequence[str] = (),
+        robot: str | None = None,
+    ) -> None:
+        self.studios = studios
+        self.robot = SentFile(*find_robot(robot)) if robot else None
+        self.addresses = tuple(addresses)
+        self.state: ClassState = fresh_state()
+        self.students: dict[str, ClassStudent] = {}
+        """Everybody who ever came in, by `same_name` of the nickname."""
+        self.teachers: dict[Viewer, None] = {}
+        """The teacher's pages."""
+        self.tournament = Tournament(folder, self._tell_tournament)
+        self._keeper = Keeper(folder / CLASS_FILE)
+        self._robot_name = robot or WORKSHOPS_ROBOT
+        self._guesses = Guesses()
+
+    @asynccontextmanager
+    async def running(self) -> AsyncIterator[None]:
+        """Look for studios until the block ends, and tell the pages."""
+        self.studios.start()
+        looking = asyncio.get_running_loop().create_task(self._look())
+        try:
+            yield
+        finally:
+            looking.cancel()
+            await self.tournament.stop()
+            await self._keeper.close()
+            await asyncio.to_thread(self.studios.close)
+
+    async def open(self) -> None:
+        """Read what was kept of the class.
+
+        Raises:
+            UserError: if its file can't be opened.
+        """
+        store = await self._store()
+        kept = {(table.student, table.name): table for table in store.tables()}
+        state = kept.pop((NOBODY, NAME), None)
+        self.state = (state and read_state(state)) or self.state
+        store.keep(self.state.kept())
+        evidence = await asyncio.wrap_future(store.evidence())
+        for name in dict.fromkeys((*(one.student for one in evidence), *(key[0] for key in kept))):
+            student = self._new(name)
+            await student.diary.read()
+            token = kept.get((name, TOKEN))
+            student.token_hash = token.content.decode() if token else ""
+            own: list[Kept] = [one for one in evidence if one.student == name]
+            student.seen_s = own[-1].at_s if own else 0.0
+            student.hand_up_s = hand_times((one.at_s, one.evidence) for one in own)
+
+    # What students do
+
+    async def enter(self, hello: requests.Hello, viewer: Viewer, where: str) -> Entered:
+        """Let a student in who shows a token, or class code and nickname; see `Host.enter`."""
+        if hello.token:
+            student, token = self._known(hello), hello.token
+        else:
+            student, token = await self._newcomer(hello, where), new_token()
+            student.token_hash = hash_token(token)
+            (await self._store()).keep(student.kept_token())
+        return Entered(student, token)
+
+    def greet(self, student: Student, viewer: Viewer) -> None:
+        """Tell a page what it must know, and close the student's others; see `Host.greet`."""
+        assert isinstance(student, ClassStudent)
+        self._send_away(student, forgotten=False)
+        student.viewers[viewer] = None
+        student.seen_s = time.time()
+        viewer.send(folder_message("", None))
+        viewer.send(studio_message(self.studios))
+        viewer.send(student.phases_message())
+        if self.state.handed is not None:
+            viewer.send(_handed_message(self.state.handed))
+        self._tell_card(student)
+
+    def leave(self, student: Student, viewer: Viewer) -> None:
+        """Take in that a page has gone; see `Host.leave`."""
+        assert isinstance(student, ClassStudent)
+        student.viewers.pop(viewer, None)
+        self._tell_card(student)
+
+    def learned(self, student: Student, trial: TrialReply | None = None) -> None:
+        """Tell the student and the teacher; see `Host.learned`."""
+        assert isinstance(student, ClassStudent)
+        student.learned(trial)
+        student.tell()
+        self._tell_card(student)
+
+    def sample(self) -> FileContent:
+        """Read the sample postures of the robot, which may have none; may block."""
+        return sample_postures(self._robot_name)
+
+    # What the teacher does
+
+    def find(self, name: str) -> ClassStudent:
+        """Return a student.
+
+        Raises:
+            UserError: if there is none of this name.
+        """
+        student = self.students.get(same_name(name))
+        if student is None:
+            raise UserError(say("class.no-student", name=name))
+        return student
+
+    async def set_rules(self, rules: Rules) -> None:
+        """Set what is allowed, and tell everybody."""
+        await self._set(rules=rules)
+        for student in self.students.values():
+            student.tell()
+
+    async def set_code(self) -> None:
+        """Set another class code; whoever is in the class stays in."""
+        await self._set(code=new_code())
+
+    async def hand_out(
+        self, title: str, table: FileTable, sequences: tuple[tuple[int, ...], ...] | None
+    ) -> None:
+        """Offer a table to everybody, also to those who come later."""
+        number = 1 + (self.state.handed.number if self.state.handed else 0)
+        handed = Handed(number=number, title=title, table=table, sequences=sequences)
+        await self._set(handed=handed)
+        for student in self.students.values():
+            student.send(_handed_message(handed))
+
+    async def lower(self, student: ClassStudent) -> None:
+        """Take a student's hand down."""
+        await student.diary.add(Hand(up=False))
+        student.hand_moved()
+        student.tell()
+        self._tell_card(student)
+
+    async def admit(self, student: ClassStudent) -> None:
+        """Let another browser in under a student's name: the next one with the class code."""
+        student.token_hash = ""
+        (await self._store()).keep(student.kept_token())
+
+    async def forget(self, student: ClassStudent) -> None:
+        """Delete all that is kept of a student.
+
+        Raises:
+            UserError: if the class file can't be written.
+        """
+        del self.students[same_name(student.name)]
+        self._send_away(student, forgotten=True)
+        await asyncio.wrap_future((await self._store()).forget(student.name))
+        self._tell(wire.map_message(Kind.GONE, {"name": student.name}))
+
+    async def evidence(self) -> list[Kept]:
+        """Read the evidence of everybody.
+
+        Raises:
+            UserError: if the class file can't be read.
+        """
+        return await asyncio.wrap_future((await self._store()).evidence())
+
+    async def kept(self) -> list[KeptTable]:
+        """Return the newest that is kept of everybody besides evidence."""
+        return (await self._store()).tables()
+
+    def add_teacher(self, viewer: Viewer) -> None:
+        """Add a page of the teacher, and tell it everything."""
+        self.teachers[viewer] = None
+        cards = [student.card() for student in self.students.values()]
+        viewer.send(self._class_message(cards))
+        viewer.send(self._tournament_message())
+
+    # Messages
+
+    def _known(self, hello: requests.Hello) -> ClassStudent:
+        student = self.students.get(same_name(hello.name))
+        if student is None or not seal.verify_token(hello.token, student.token_hash):
+            raise UserError(say("class.unknown-token"))
+        return student
+
+    async def _newcomer(self, hello: requests.Hello, where: str) -> ClassStudent:
+        """Find or make the student of a class code and a nickname."""
+        if not hello.code:
+            raise UserError(say("class.enter"))
+        if read_code(hello.code) != self.state.code:
+            await asyncio.sleep(self._guesses.wait_s(where, time.monotonic()))
+            raise UserError(say("class.wrong-code"))
+        name = read_name(hello.name)
+        student = self.students.get(same_name(name))
+        if student is None:
+            if len(self.students) >= _MOST_STUDENTS:
+                raise UserError(say("class.full", most=_MOST_STUDENTS))
+            student = self._new(name)
+        elif student.token_hash:
+            raise UserError(say("class.name-taken", name=name))
+        student.token_hash = "-"  # nobody else takes the name while this is written
+        await student.diary.add(Joined())
+        return student
+
+    def _new(self, name: str) -> ClassStudent:
+        diary = Diary(self._keeper, name)
+        student = ClassStudent(name, diary, lambda: self.state.rules)
+        self.students[same_name(name)] = student
+        return student
+
+    def _send_away(self, student: ClassStudent, forgotten: bool) -> None:
+        """Close all pages of a student to further requests, and tell them."""
+        student.send(wire.map_message(Kind.ELSEWHERE, {"forgotten": forgotten}))
+        for viewer in student.viewers:
+            viewer.can_act = False
+        student.viewers.clear()
+
+    async def _set(self, **changes: Any) -> None:
+        """Change settings, keep them, and tell the teacher."""
+        self.state = msgspec.structs.replace(self.state, **changes)
+        (await self._store()).keep(self.state.kept())
+        self._tell(self._class_message())
+
+    async def _store(self) -> ClassStore:
+        store = await self._keeper.opened()
+        if store is None:
+            assert self._keeper.trouble is not None
+            raise UserError(self._keeper.trouble)
+        return store
+
+    async def _look(self) -> None:
+        loop = asyncio.get_running_loop()
+        told, alive_s, quiet_s = self._public(), loop.time(), loop.time()
+        while True:
+            await asyncio.sleep(_SOON_S)
+            now_s = loop.time()
+            if now_s >= alive_s or self._public() != told:
+                alive_s = now_s + _ALIVE_S
+                message = studio_message(self.studios)
+                for student in self.students.values():
+                    student.send(message)
+            if self._public() != told:
+                told = self._public()
+                self._tell(self._class_message())
+            if now_s >= quiet_s:
+                quiet_s = now_s + _QUIET_LOOK_S
+                for student in self.students.values():
+                    self._tell_card(student)
+
+    def _tell_card(self, student: ClassStudent) -> None:
+        # Whoever has just been forgotten has no card.
+        if self.students.get(same_name(student.name)) is student:
+            card = student.changed_card()
+            if card is not None:
+                self._tell(wire.map_message(Kind.CARD, msgspec.structs.asdict(card)))
+
+    def _tell_tournament(self) -> None:
+        self._tell(self._tournament_message())
+
+    def _tell(self, message: bytes) -> None:
+        for viewer in self.teachers:
+            viewer.send(message)
+
+    def _public(self) -> tuple[Any, ...]:
+        """Return what the teacher is told at once when it changes."""
+        return (self._keeper.trouble, self.studios.present, self.studios.why)
+
+    def _class_message(self, cards: Iterable[Any] | None = None) -> bytes:
+        handed = self.state.handed
+        trouble, studios, why = self._public()
+        body = {
+            "code": self.state.code,
+            "addresses": self.addresses,
+            "rules": self.state.rules,
+            "trouble": trouble,
+            "studios": studios,
+            "why": why,
+            "handed": handed and {"number": handed.number, "title": handed.title},
+            "cards": None if cards is None else list(cards),
+        }
+        return wire.map_message(Kind.CLASS, body)
+
+    def _tournament_message(self) -> bytes:
+        return wire.map_message(Kind.TOURNAMENT, msgspec.structs.asdict(self.tournament.state))
+
+
+def _handed_message(handed: Handed) -> bytes:
+    return wire.map_message(Kind.HANDED, msgspec.structs.asdict(handed))

@@ -1,0 +1,55 @@
+"""What a class leaves behind, as files for a teacher."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from lacoc_client.design.learning.draft import NAME as DRAFT
+from lacoc_client.design.learning.draft import read_draft
+from lacoc_client.phases.class_file import ClassFile, Damaged, KeptTable
+from lacoc_client.phases.export import evidence_csv, tables_zip
+from lacoc_shared.mistakes import FileRefused, UserError, text_of
+from lacoc_shared.words import say
+
+RECORDINGS = "recordings"
+"""Folder in the folder of a class with the records of its matches."""
+EVIDENCE, TABLES = "evidence.csv", "tables.zip"
+
+
+def student_files(kept: Iterable[KeptTable]) -> list[KeptTable]:
+    """Turn the drafts among what is kept into the files of a gait; the rest is left out."""
+    found = []
+    for one in kept:
+        draft = read_draft(one) if one.name == DRAFT else None
+        if draft is None:
+            continue
+        try:
+            files = draft.files()
+        except FileRefused:  # a cell without an angle: pages send no such table
+            continue
+        found += [
+            KeptTable(one.student, file.name, one.version, one.at_s, file.data)
+            for file in files
+            if file is not None
+        ]
+    return found
+
+
+def export(path: Path) -> dict[str, bytes]:
+    """Read a class that is not open, as files by name.
+
+    Raises:
+        UserError: if there is no such class, it is open, or its file is damaged.
+    """
+    if not path.exists():
+        raise UserError(say("class.none", file=text_of(path)))
+    try:
+        file = ClassFile(path)
+    except Damaged as error:
+        raise UserError(say("class.cannot-open", file=text_of(path), why=str(error))) from None
+    try:
+        return {
+            EVIDENCE: evidence_csv(file.evidence()),
+            TABLES: tables_zip(student_files(file.tables())),
+        }
+    finally:
+        file.close()

@@ -1,0 +1,64 @@
+"""What a page of /design needs to know of where it is: in a folder of one's own, or in a class."""
+
+from typing import Protocol
+
+from lacoc_client.design import requests
+from lacoc_client.design.files import FileContent
+from lacoc_client.design.folder import Folder
+from lacoc_client.design.learning.student import Student
+from lacoc_client.design.studios.studios import Studios
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_shared.messages import SentFile
+from lacoc_shared.studio import TrialReply
+
+
+class Host(Protocol):
+    """Where students design; used from the event loop only, but for `sample`."""
+
+    robot: SentFile | None
+    """The robot file that pages begin with; None: the workshop's."""
+    studios: Studios
+    folder: Folder | None
+    """The folder with the student's files; None: pages have no folder."""
+
+    async def enter(self, hello: requests.Hello, viewer: Viewer, where: str) -> "Entered":
+        """Let a page in.
+
+        Args:
+            hello: what the page shows.
+            viewer: the page.
+            where: address of the page's machine.
+
+        Raises:
+            UserError: if the page may not come in, or must show something else.
+        """
+
+    def leave(self, student: Student, viewer: Viewer) -> None:
+        """Take in that a page has gone."""
+
+    def greet(self, student: Student, viewer: Viewer) -> None:
+        """Tell a page that has come in what it must know."""
+
+    def learned(self, student: Student, trial: TrialReply | None = None) -> None:
+        """Take in that a student did something.
+
+        Args:
+            student: the student.
+            trial: the trial, if that is what the student did.
+        """
+
+    def sample(self) -> FileContent:
+        """Read the sample postures of the robot, which may have none; may block."""
+
+
+class Entered:
+    """A page that was let in.
+
+    Args:
+        student: whose page it is.
+        token: lets this browser in again; None: it needs none.
+    """
+
+    def __init__(self, student: Student, token: str | None = None) -> None:
+        self.student = student
+        self.token = token

@@ -1,0 +1,44 @@
+"""The file that keeps what students do, opened when it is first needed."""
+
+import asyncio
+from pathlib import Path
+
+from lacoc_client.phases.store import ClassStore
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase
+
+
+class Keeper:
+    """A file of evidence and drafts; used from the event loop only.
+
+    Where it can't be opened, nothing is kept, and `trouble` says why.
+
+    Args:
+        path: the file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._store: ClassStore | None = None
+        self._refused: Phrase | None = None
+        self._lock = asyncio.Lock()
+
+    @property
+    def trouble(self) -> Phrase | None:
+        """Why nothing is kept, or what happened to the file; None: all is well."""
+        return self._refused if self._store is None else self._store.trouble
+
+    async def opened(self) -> ClassStore | None:
+        """Return the file, after it was opened; None if it can't be."""
+        async with self._lock:
+            if self._store is None and self._refused is None:
+                try:
+                    self._store = await asyncio.to_thread(ClassStore, self.path)
+                except UserError as error:
+                    self._refused = error.phrase
+        return self._store
+
+    async def close(self) -> None:
+        """Close the file."""
+        if self._store is not None:
+            await asyncio.to_thread(self._store.close)

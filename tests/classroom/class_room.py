@@ -1,0 +1,99 @@
+"""A running `lacoc class`, and pages of its students and teacher without a browser."""
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+from lacoc_process import Lacoc
+from page_connection import PageConnection
+
+from lacoc_client.gateway.wire import Kind
+
+
+class ClassRoom:
+    """A running `lacoc class`."""
+
+    def __init__(self, folder: Path, listen: str = "127.0.0.1:0", *words: str) -> None:
+        self.process = Lacoc(
+            *("class", str(folder), "--no-open", "--json", "--listen", listen, *words),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            stdin=subprocess.DEVNULL,
+            text=True,
+        )
+        assert self.process.stdout is not None
+        opened = json.loads(self.process.stdout.readline())
+        self.url, self.code = opened["url"], opened["code"]
+        self.key = opened["class"].partition("#key=")[2]
+
+    @property
+    def listen(self) -> str:
+        """Where it listens, to start it again there."""
+        return str(self.url).removeprefix("http://")
+
+    def student(self, name: str, token: str | None = None) -> "StudentPage":
+        """Come in as a student, with the token or the class code."""
+        page = StudentPage(self.url)
+        page.enter(name=name, **({"token": token} if token else {"code": self.code}))
+        return page
+
+    def teacher(self) -> "TeacherPage":
+        """Open the teacher's page."""
+        page = TeacherPage(self.url)
+        page.ask("hello", key=self.key)
+        page.until(lambda: page.told[Kind.TOURNAMENT])
+        return page
+
+    def close(self) -> None:
+        self.process.terminate()
+        self.process.communicate(timeout=60)
+
+
+class StudentPage(PageConnection):
+    """A page of /design in a class."""
+
+    def __init__(self, url: str) -> None:
+        super().__init__(url, "/design/ws")
+        self.hello: dict[str, Any] = {}
+        """The reply to hello."""
+
+    def enter(self, **fields: str) -> None:
+        """Come in, and wait for what a page is told first."""
+        self.hello = self.ask("hello", **fields)
+        self.until(lambda: self.told[Kind.PHASES])
+
+    @property
+    def phases(self) -> dict[str, Any]:
+        return self.last(Kind.PHASES)
+
+    def sample(self) -> dict[str, Any]:
+        """Return the sample table."""
+        return dict(self.ask("sample")["table"])
+
+
+class TeacherPage(PageConnection):
+    """A page of /class."""
+
+    def __init__(self, url: str) -> None:
+        super().__init__(url, "/class/ws")
+
+    @property
+    def group(self) -> dict[str, Any]:
+        """The newest settings of the class."""
+        return self.last(Kind.CLASS)
+
+    @property
+    def cards(self) -> dict[str, dict[str, Any]]:
+        """The newest card of each student."""
+        cards: dict[str, dict[str, Any]] = {}
+        for message in self.told[Kind.CLASS]:
+            cards |= {card["name"]: card for card in message["cards"] or ()}
+        cards |= {card["name"]: card for card in self.told[Kind.CARD]}
+        for gone in self.told[Kind.GONE]:
+            cards.pop(gone["name"], None)
+        return cards
+
+    def card(self, name: str) -> dict[str, Any]:
+        """Return the newest card of a student; {}: there is none yet."""
+        return self.cards.get(name, {})

@@ -1,0 +1,6 @@
+"""Makes `class_room` importable."""
+
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).parent))

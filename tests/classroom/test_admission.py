@@ -1,0 +1,58 @@
+"""Who may come into a class."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lacoc_client.classroom.admission import Guesses, new_code, read_code, read_name, same_name
+from lacoc_shared.mistakes import UserError
+
+
+@pytest.mark.parametrize("code", [new_code() for _ in range(20)], ids=range(20))
+def test_a_code_is_read_as_it_was_meant(code: str) -> None:
+    """Small letters, spaces, hyphens and full-width letters make no difference."""
+    assert len(code) == 6
+    assert read_code(code) == code
+    wide = "".join(chr(ord(letter) + 0xFEE0) for letter in code.lower())
+    for typed in (code.lower(), f" {code[:3]} {code[3:]} ", f"{code[:3]}-{code[3:]}", wide):
+        assert read_code(typed) == code
+
+
+@given(st.text())
+def test_a_name_is_short_text_that_can_be_seen(text: str) -> None:
+    """A nickname has 1 to 20 letters without needless spaces, or it is refused."""
+    try:
+        name = read_name(text)
+    except UserError as error:
+        assert error.phrase.code == "class.bad-name"
+    else:
+        assert 1 <= len(name) <= 20
+        assert name.isprintable()
+        assert name == " ".join(name.split()) == read_name(name)
+        assert same_name(name) == same_name(name.upper()) or name.upper().casefold() != name
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [("Anna", "ANNA"), ("ｱﾝﾅ", "アンナ"), ("Ｂｅｎ", "ben"), ("Jose\u0301", "José")],
+)
+def test_names_that_look_alike_are_the_same(one: str, other: str) -> None:
+    """Two students can't have names that people take for the same one."""
+    assert same_name(read_name(one)) == same_name(read_name(other))
+
+
+def test_a_thousand_guesses_disturb_nobody_else() -> None:
+    """After 20 wrong codes a machine waits for each answer; others do not, and later it may again."""
+    guesses = Guesses()
+    waits_s = [guesses.wait_s("10.0.0.9", 100 + guess / 1000) for guess in range(1000)]
+    assert waits_s == [0.0] * 20 + [1.0] * 980
+    assert guesses.wait_s("10.0.0.8", 101.0) == 0.0
+    assert guesses.wait_s("10.0.0.9", 104.0) == 0.0
+
+
+def test_guesses_of_many_machines_need_no_more_room() -> None:
+    """Only the machines that guessed last are known."""
+    guesses = Guesses()
+    for number in range(3000):
+        assert guesses.wait_s(str(number), 1.0) == 0.0
+    assert len(guesses._machines) == 1000

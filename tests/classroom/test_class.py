@@ -1,0 +1,308 @@
+"""A whole class at a real gateway with a real studio: students, teacher, and kill -9."""
+
+import csv
+import io
+import os
+import signal
+import time
+import zipfile
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from class_room import ClassRoom, StudentPage, TeacherPage
+from lacoc_process import run_lacoc
+from page_connection import Refused
+
+from lacoc_client.gateway.wire import Kind
+
+pytestmark = pytest.mark.slow
+
+SEQUENCES = [[0], [4, 3, 2, 1], [1, 2, 3, 4]]
+
+
+@pytest.fixture(scope="module")
+def room(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ClassRoom]:
+    """Give a class that all tests of this file share, each with students of its own."""
+    room = ClassRoom(tmp_path_factory.mktemp("class"))
+    yield room
+    room.close()
+
+
+@pytest.fixture
+def closing() -> Iterator[ExitStack]:
+    """Give a stack that closes pages at the end of a test."""
+    with ExitStack() as stack:
+        yield stack
+
+
+@pytest.fixture
+def teacher(room: ClassRoom, closing: ExitStack) -> TeacherPage:
+    page = room.teacher()
+    closing.callback(page.close)
+    return page
+
+
+def comes(closing: ExitStack, room: ClassRoom, name: str, token: str | None = None) -> StudentPage:
+    """Let a student in; the page closes with the test."""
+    page = room.student(name, token)
+    closing.callback(page.close)
+    return page
+
+
+def code_of(refusal: pytest.ExceptionInfo[Refused]) -> str:
+    return str(refusal.value.reply["error"]["code"])
+
+
+def edit(page: StudentPage, table: dict[str, Any], angle_deg: float) -> dict[str, Any]:
+    """Change the first number of a table by hand, and tell the gateway."""
+    first, *others = table["rows"]
+    row = {**first, "angles_deg": [angle_deg, *first["angles_deg"][1:]]}
+    changed = {**table, "rows": [row, *others]}
+    page.ask("edit", table=changed, sequences=SEQUENCES, by="hand")
+    return changed
+
+
+def test_students_come_in_with_code_and_name(room: ClassRoom, closing: ExitStack) -> None:
+    """A wrong code, a bad name and a taken name are refused; the token opens the class again."""
+    stranger = StudentPage(room.url)
+    closing.callback(stranger.close)
+    for fields, code in (
+        ({}, "class.enter"),
+        ({"code": "AAAAAA", "name": "Ada"}, "class.wrong-code"),
+        ({"code": room.code, "name": " "}, "class.bad-name"),
+        ({"token": "x", "name": "Ada"}, "class.unknown-token"),
+    ):
+        with pytest.raises(Refused) as refusal:
+            stranger.enter(**fields)
+        assert code_of(refusal) == code
+    stranger.enter(code=f" {room.code.lower()}", name="  Ada  ")
+    assert (stranger.hello["student"], stranger.hello["draft"]) == ("Ada", None)
+    with pytest.raises(Refused) as refusal:
+        comes(closing, room, "ADA")
+    assert code_of(refusal) == "class.name-taken"
+
+    again = comes(closing, room, "Ada", stranger.hello["token"])
+    stranger.until(lambda: stranger.told[Kind.ELSEWHERE])
+    assert stranger.last(Kind.ELSEWHERE) == {"forgotten": False}
+    with pytest.raises(Refused):
+        stranger.ask("sample")
+    assert again.sample()["legs"] == 6
+
+
+def test_whoever_guesses_codes_disturbs_nobody(room: ClassRoom, closing: ExitStack) -> None:
+    """Wrong codes get a clear answer; others work on, and come in from the same machine."""
+    student = comes(closing, room, "Bea")
+    guesser = StudentPage(room.url)
+    closing.callback(guesser.close)
+    asks = [guesser.send("hello", code=f"G{number:05}", name="X") for number in range(100)]
+    for ask in asks[:20]:
+        with pytest.raises(Refused) as refusal:
+            guesser.reply(ask)
+        assert code_of(refusal) == "class.wrong-code"
+    assert comes(closing, room, "Bob").sample()["legs"] == 6
+    student.until(lambda: student.last(Kind.STUDIO).get("present"))
+    assert student.ask("trial", table=student.sample())["ticks"] > 100
+
+
+def test_the_teacher_sees_what_students_do(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """A trial, a raised hand and a page that goes change the card; the hand comes first."""
+    student = comes(closing, room, "Cem")
+    teacher.until(lambda: teacher.card("Cem").get("online"))
+    assert (teacher.card("Cem")["feet"], teacher.card("Cem")["tries"]) == (None, 0)
+    student.until(lambda: student.last(Kind.STUDIO).get("present"))
+    student.ask("trial", table=student.sample(), sequences=SEQUENCES, keys="2")
+    teacher.until(lambda: teacher.card("Cem")["tries"] == 1)
+    card = teacher.card("Cem")
+    assert card["best_mm_s"] == card["last_mm_s"] > 30
+    assert len(card["feet"]) == len(card["legs"]) == 6
+    assert card["said"]["code"].startswith("explain.")
+
+    student.ask("hand", up=True)
+    teacher.until(lambda: teacher.card("Cem")["need"] == "hand")
+    assert teacher.card("Cem")["hand_up_s"] > 0
+    teacher.ask("lower", student="cem")
+    student.until(lambda: not student.phases["hand_up"])
+    assert teacher.card("Cem")["hand_up_s"] is None
+    student.ask("phase", number=3)
+    teacher.until(lambda: teacher.card("Cem")["phase"] == 3)
+    student.close()
+    teacher.until(lambda: not teacher.card("Cem")["online"])
+
+
+def test_the_teacher_closes_phases_and_the_coach(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """What is closed is refused, and students are told; it opens again at once."""
+    student = comes(closing, room, "Dan")
+    table = student.sample()
+    rules = {"closed": [4, 5, 6], "coach": "matters", "explain_first": True}
+    teacher.ask("rules", rules=rules)
+    student.until(lambda: student.phases["rules"] == rules)
+    with pytest.raises(Refused) as refusal:
+        student.ask("phase", number=4)
+    assert code_of(refusal) == "class.phase-closed"
+    with pytest.raises(Refused) as refusal:
+        student.ask("coach", job="a", table=table, size="cell", seconds=1)
+    assert code_of(refusal) == "class.coach-closed"
+    assert teacher.group["rules"] == rules
+
+    teacher.ask("rules", rules={"closed": [], "coach": "table", "explain_first": False})
+    assert student.ask("phase", number=4) == {}
+
+
+def test_the_teacher_hands_out_a_table(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """A table of the sample, of a file or of a student reaches everybody, also who comes later."""
+    student = comes(closing, room, "Eva")
+    with pytest.raises(Refused) as refusal:
+        teacher.ask("hand_out", title="Eva's", student="Eva")
+    assert code_of(refusal) == "class.no-table"
+    table = edit(student, student.sample(), 0.0)
+    table = edit(student, table, 7.0)
+    teacher.ask("hand_out", title="The sample")
+    teacher.ask("hand_out", title="Eva's", student="Eva")
+    student.until(lambda: student.last(Kind.HANDED).get("title") == "Eva's")
+    first, second = student.told[Kind.HANDED][-2:]
+    assert second["number"] == first["number"] + 1
+    assert second["table"] == table
+    assert second["sequences"] == SEQUENCES
+    later = comes(closing, room, "Eve")
+    later.until(lambda: later.last(Kind.HANDED) == second)
+    assert teacher.group["handed"]["title"] == "Eva's"
+
+
+def test_the_big_screen_and_the_exports(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """The newest table walks for the big screen; evidence and tables come as files."""
+    student = comes(closing, room, "=Finn/..")
+    table = edit(student, student.sample(), 3.0)
+    table = edit(student, table, 4.0)
+    shown = teacher.ask("show", student="=Finn/..")
+    assert shown["trial"]["ticks"] > 100
+    assert len(shown["robot"]["legs"]) == 6
+    assert shown["table"] == table
+
+    evidence = teacher.ask("export", what="evidence")
+    rows = list(csv.DictReader(io.StringIO(evidence["data"].decode("utf-8-sig"))))
+    kinds = [row["kind"] for row in rows if row["student"] == "'=Finn/.."]
+    assert kinds[0] == "joined"
+    assert "edited" in kinds
+    tables = teacher.ask("export", what="tables")
+    with zipfile.ZipFile(io.BytesIO(tables["data"])) as archive:
+        names = [name for name in archive.namelist() if "Finn" in name]
+        assert sorted(name.rpartition("/")[2] for name in names) == [
+            "Loco-data.txt",
+            "level B of Loco-data.txt",
+        ]
+
+
+def test_a_student_is_let_in_again_and_forgotten(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """Another device needs the teacher's leave; a forgotten student is gone from everywhere."""
+    student = comes(closing, room, "Gil")
+    teacher.ask("admit", student="Gil")
+    tablet = comes(closing, room, "Gil")
+    assert tablet.hello["token"] != student.hello["token"]
+    with pytest.raises(Refused) as refusal:
+        comes(closing, room, "Gil", student.hello["token"])
+    assert code_of(refusal) == "class.unknown-token"
+
+    teacher.ask("forget", student="Gil")
+    tablet.until(lambda: tablet.told[Kind.ELSEWHERE])
+    assert tablet.last(Kind.ELSEWHERE) == {"forgotten": True}
+    assert "Gil" not in teacher.cards
+    assert b"Gil" not in teacher.ask("export", what="evidence")["data"]
+    with pytest.raises(Refused) as refusal:
+        teacher.ask("show", student="Gil")
+    assert code_of(refusal) == "class.no-student"
+
+
+def test_only_the_teacher_opens_the_teachers_page(room: ClassRoom, closing: ExitStack) -> None:
+    """Without the page key /class refuses everything and closes the connection."""
+    for do, fields in (("hello", {"key": room.code}), ("export", {"what": "evidence"})):
+        page = TeacherPage(room.url)
+        closing.callback(page.close)
+        with pytest.raises(Refused) as refusal:
+            page.ask(do, **fields)
+        assert code_of(refusal) == "class.wrong-key"
+        assert page.code() == 1008
+        assert page.group == {}
+
+
+def test_a_new_code_keeps_everybody_in(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """The old code opens nothing any more; whoever is in has a token."""
+    student = comes(closing, room, "Hal")
+    old = room.code
+    teacher.ask("new_code")
+    room.code = teacher.group["code"]
+    assert room.code != old
+    assert comes(closing, room, "Hal", student.hello["token"]).hello["student"] == "Hal"
+    assert comes(closing, room, "Ida").hello["student"] == "Ida"
+
+
+def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
+    """A killed gateway opens again with its students, tables, settings and evidence."""
+    room = ClassRoom(tmp_path)
+    student, teacher = room.student("Jo"), room.teacher()
+    token = student.hello["token"]
+    table = edit(student, student.sample(), 1.0)
+    table = edit(student, table, 2.0)
+    student.ask("hand", up=True)
+    teacher.ask("rules", rules={"closed": [6], "coach": "three"})
+    teacher.ask("hand_out", title="The sample")
+    _until_kept(tmp_path, b"The sample")
+    os.kill(room.process.pid, signal.SIGKILL)
+    for child in psutil.Process(room.process.pid).children(recursive=True):
+        child.kill()
+    room.process.communicate()
+
+    again = ClassRoom(tmp_path, room.listen)
+    closing.callback(again.close)
+    assert (again.code, again.key) == (room.code, room.key)
+    back = comes(closing, again, "Jo", token)
+    assert back.hello["draft"]["table"] == table
+    assert back.phases["rules"] == {"closed": [6], "coach": "three", "explain_first": False}
+    back.until(lambda: back.told[Kind.HANDED])
+    desk = again.teacher()
+    closing.callback(desk.close)
+    assert desk.card("Jo")["need"] == "hand"
+    assert desk.card("Jo")["hand_up_s"] > 1e9
+
+
+def _until_kept(folder: Path, data: bytes) -> None:
+    """Wait until something stands in the class file, which is at most about a second later."""
+    deadline_s = time.monotonic() + 60
+    while not any(data in path.read_bytes() for path in folder.glob("lacoc-class.sqlite*")):
+        assert time.monotonic() < deadline_s
+        time.sleep(0.05)
+
+
+def test_the_commands_export_and_forget(tmp_path: Path) -> None:
+    """A class that is open can't be exported or forgotten; later both leave nothing behind."""
+    room = ClassRoom(tmp_path)
+    student = room.student("Kim")
+    edit(student, edit(student, student.sample(), 1.0), 2.0)
+    for words in (("export",), ("forget", "--yes")):
+        done = run_lacoc("class", words[0], str(tmp_path), *words[1:])
+        assert done.returncode == 2
+        assert "lacoc-class.sqlite" in done.stderr
+    room.close()
+    done = run_lacoc("class", "export", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert b"Kim" in (tmp_path / "evidence.csv").read_bytes()
+    assert zipfile.is_zipfile(tmp_path / "tables.zip")
+    (tmp_path / "evidence.csv").unlink()
+    (tmp_path / "tables.zip").unlink()
+    assert run_lacoc("class", "forget", str(tmp_path), "--yes").returncode == 0
+    assert list(tmp_path.iterdir()) == []

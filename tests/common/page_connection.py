@@ -1,0 +1,87 @@
+"""A page's connection without a browser: it sends requests and keeps what it was told."""
+
+import itertools
+import time
+from collections.abc import Callable
+from typing import Any
+
+import msgpack
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
+
+from lacoc_client.gateway.wire import Kind
+
+TIMEOUT_S = 60.0
+
+
+class Refused(Exception):
+    """The gateway, or the studio behind it, refused a request; `reply` is its reply."""
+
+    def __init__(self, reply: dict[str, Any]) -> None:
+        super().__init__(reply["error"]["code"])
+        self.reply = reply
+
+
+class PageConnection:
+    """A page's connection; it reads only while it waits for something.
+
+    Args:
+        url: address of the gateway.
+        path: path of the WebSocket.
+    """
+
+    def __init__(self, url: str, path: str) -> None:
+        address = f"{url.replace('http', 'ws', 1)}{path}"
+        self.socket = connect(address, max_size=None, legacy=True)  # closed by `close`
+        self._ids = itertools.count(1)
+        self._replies: dict[int, dict[str, Any]] = {}
+        self.told: dict[Kind, list[dict[str, Any]]] = {kind: [] for kind in Kind}
+        """All messages of each kind, but replies."""
+
+    def last(self, kind: Kind) -> dict[str, Any]:
+        """Return the newest message of a kind; {}: there is none yet."""
+        return self.told[kind][-1] if self.told[kind] else {}
+
+    def ask(self, do: str, **fields: Any) -> Any:
+        """Send a request, wait for the reply and return its value."""
+        return self.reply(self.send(do, **fields))
+
+    def send(self, do: str, **fields: Any) -> int:
+        """Send a request without waiting for its reply; return its id."""
+        number = next(self._ids)
+        self.socket.send(msgpack.packb({"id": number, "do": do, **fields}))
+        return number
+
+    def reply(self, number: int) -> Any:
+        """Wait for the reply to a request and return its value."""
+        self.until(lambda: number in self._replies)
+        reply = self._replies.pop(number)
+        if not reply["ok"]:
+            raise Refused(reply)
+        return reply["value"]
+
+    def until(self, condition: Callable[[], Any]) -> None:
+        """Take in messages until a condition is true."""
+        deadline_s = time.monotonic() + TIMEOUT_S
+        while not condition():
+            assert time.monotonic() < deadline_s, "it did not become true"
+            self._take(self.socket.recv(TIMEOUT_S))
+
+    def code(self) -> int | None:
+        """Wait until the gateway closes the connection; return its close code."""
+        try:
+            while True:
+                self._take(self.socket.recv(TIMEOUT_S))
+        except ConnectionClosed:
+            return self.socket.protocol.close_code
+
+    def close(self) -> None:
+        self.socket.close()
+
+    def _take(self, message: str | bytes) -> None:
+        assert isinstance(message, bytes)
+        kind, body = Kind(message[0]), msgpack.unpackb(message[1:])
+        if kind is Kind.REPLY:
+            self._replies[body["id"]] = body
+        else:
+            self.told[kind].append(body)
