@@ -3,6 +3,7 @@
 import { decode, encode } from "@msgpack/msgpack";
 import type { Phrase } from "./phrase";
 import {
+  type Card,
   type Event,
   type FolderFile,
   FRAME_FIELDS,
@@ -14,6 +15,7 @@ import {
   type Phases,
   type Progress,
   type RobotReply,
+  type Rules,
   type Scene,
   SEATFRAME_FIELDS,
   type SeatFrame,
@@ -103,51 +105,12 @@ export interface StudioState {
   why: Phrase | null;
 }
 
-/** Why a student needs help, the most urgent reason; "": none is known. */
-export type Need = "hand" | "stuck" | "quiet" | "";
-
-/** What the teacher has opened and closed. */
-export interface ClassRules {
-  /** Phases that are closed. */
-  closed: number[];
-  /** The most that the coach does. */
-  coach: "none" | "matters" | "cell" | "three" | "table";
-  explain_first: boolean;
-}
-
-/** A student, as the teacher sees them. */
-export interface Card {
-  name: string;
-  online: boolean;
-  /** Unix time of the last sign of work. */
-  seen_s: number;
-  phase: number;
-  states: ("open" | "met" | "skipped")[];
-  /** Of the phase, 0 to 1. */
-  share: number;
-  tries: number;
-  best_mm_s: number | null;
-  last_mm_s: number | null;
-  /** For each leg the runs with its foot down in the last trial, as shares of it. */
-  feet: [number, number][][] | null;
-  /** Labels of the legs. */
-  legs: string[];
-  /** What explains the last trial. */
-  said: Phrase | null;
-  /** Unix time since when the hand is up. */
-  hand_up_s: number | null;
-  /** What failed three times in a row. */
-  stuck: Phrase | null;
-  coached: boolean;
-  need: Need;
-}
-
 /** The class; its cards come only with the first of these messages. */
 export interface ClassState {
   code: string;
   /** What students type into their browsers. */
   addresses: string[];
-  rules: ClassRules;
+  rules: Rules;
   trouble: Phrase | null;
   studios: number;
   /** Why there is no studio. */

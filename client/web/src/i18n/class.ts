@@ -52,7 +52,6 @@ export const classroom = {
   "class.state": ["phase {number} {state}", "段階 {number} {state}"],
   "class.atPhase": ["at phase {number}, {percent} % done", "段階 {number}（達成度 {percent} %）"],
   "class.hand": ["hand up, {since}", "挙手 {since}"],
-  "class.stuck": ["Three times the same:", "同じ失敗が 3 回："],
   "class.quiet": ["quiet, {since}", "操作なし {since}"],
   "class.offline": ["offline, {since}", "オフライン {since}"],
   "class.online": ["Is here", "参加中"],

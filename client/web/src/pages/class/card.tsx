@@ -103,7 +103,7 @@ export function news(teacher: Teacher, card: Card): string {
   if (card.hand_up_s !== null) {
     return t("class.hand", { since: since(teacher, card.hand_up_s) });
   }
-  if (card.stuck) return teacher.hide(`3× ${said(card.stuck)}`);
+  if (card.stuck) return said(card.stuck);
   if (card.need === "quiet") return t("class.quiet", { since: since(teacher, card.seen_s) });
   return "";
 }

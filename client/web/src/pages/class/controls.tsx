@@ -3,7 +3,7 @@
 import { useSignal } from "@preact/signals";
 import { useId } from "preact/hooks";
 import { COACHES, PHASES } from "../../core/class";
-import type { ClassRules } from "../../core/wire";
+import type { Rules } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { Mistakes } from "../../ui/mistakes";
@@ -60,7 +60,7 @@ function Teaching({ teacher }: { teacher: Teacher }) {
           name="coach"
           value={rules.coach}
           onChange={(event) => {
-            const coach = event.currentTarget.value as ClassRules["coach"];
+            const coach = event.currentTarget.value as Rules["coach"];
             void teacher.change({ ...rules, coach });
           }}
         >
@@ -96,11 +96,7 @@ function HandOut({ teacher }: { teacher: Teacher }) {
     <section aria-label={t("class.handOut")}>
       <h2>{t("class.handOut")}</h2>
       <div class="row">
-        <button
-          class="button"
-          type="button"
-          onClick={() => void teacher.handOut({ sample: true }, sample)}
-        >
+        <button class="button" type="button" onClick={() => void teacher.handOut(sample)}>
           {sample}
         </button>
         <input
@@ -172,7 +168,7 @@ function Titled({ teacher, handout }: { teacher: Teacher; handout: Handout }) {
           event.preventDefault();
           const named = title.value.trim() || handout.title;
           close();
-          void teacher.handOut({ title: named, table, sequences: null }, named);
+          void teacher.handOut(named, { table });
         }}
       >
         <p class="muted">

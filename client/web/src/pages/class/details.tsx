@@ -25,7 +25,7 @@ export function Details({ teacher }: { teacher: Teacher }) {
         <section aria-label={t("class.lastTrial")}>
           <h3>{t("class.lastTrial")}</h3>
           <BigFeet card={card} />
-          {card.said && <p>{teacher.hide(said(card.said))}</p>}
+          {card.said && <p>{said(card.said)}</p>}
           <dl class="facts">
             <Fact title={t("class.best")} value={`${speed(card.best_mm_s)} mm/s`} />
             <Fact title={t("class.last")} value={`${speed(card.last_mm_s)} mm/s`} />
@@ -56,11 +56,7 @@ function State({ teacher, card }: { teacher: Teacher; card: Card }) {
           </button>
         </li>
       )}
-      {card.stuck && (
-        <li data-need="stuck">
-          <b>{t("class.stuck")}</b> {teacher.hide(said(card.stuck))}
-        </li>
-      )}
+      {card.stuck && <li data-need="stuck">{said(card.stuck)}</li>}
       {card.coached && <li>{t("class.coached")}</li>}
       <li>
         {!card.online
@@ -110,6 +106,7 @@ function Progress({ card }: { card: Card }) {
       <progress max={100} value={percent} aria-label={t("design.phase.share")}>
         {percent} %
       </progress>
+      {card.missing && <p class="muted">{said(card.missing)}</p>}
     </section>
   );
 }
@@ -176,7 +173,7 @@ function Acts({ teacher, card, onClose }: ActsProps) {
         title={t("class.act.handOutHint")}
         onClick={() => {
           onClose();
-          void teacher.handOut({ student }, name);
+          void teacher.handOut(name, { student });
         }}
       >
         {t("class.act.handOut")}

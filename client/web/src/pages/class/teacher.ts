@@ -9,13 +9,13 @@ import { remembered } from "../../core/settings";
 import { tab } from "../../core/storage";
 import {
   type Card,
-  type ClassRules,
   type ClassState,
   type FileTable,
   type Message,
   type Mistake,
   PARSE_MAX_BYTES,
   type Request,
+  type Rules,
   type ShowReply,
   type Tournament,
 } from "../../core/wire";
@@ -53,7 +53,7 @@ export class Teacher {
   readonly cards = signal<readonly Card[]>([]);
   readonly tournament = signal<Tournament>(NO_TOURNAMENT);
   /** As they are shown: a click is answered at once, the gateway's word holds. */
-  readonly rules = signal<ClassRules>(OPEN_RULES);
+  readonly rules = signal<Rules>(OPEN_RULES);
   /** The student whose details are open; "": none. */
   readonly opened = signal("");
   readonly screen = signal<Screen | null>(null);
@@ -126,9 +126,9 @@ export class Teacher {
     return this.hide(sentence(error.why));
   }
 
-  async change(rules: ClassRules): Promise<void> {
+  async change(rules: Rules): Promise<void> {
     this.rules.value = rules;
-    const taken = await this.act("rules", rules);
+    const taken = await this.act("rules", { rules });
     if (taken === null) this.rules.value = this.state.peek()?.rules ?? OPEN_RULES;
   }
 
@@ -154,9 +154,9 @@ export class Teacher {
     }
   }
 
-  /** Hand out a table, the sample, or that of a student. */
-  async handOut(what: object, title: string): Promise<void> {
-    if ((await this.act("hand_out", what)) === null) return;
+  /** Hand out a table, that of a student, or else the sample. */
+  async handOut(title: string, what: { table?: FileTable; student?: string } = {}): Promise<void> {
+    if ((await this.act("hand_out", { title, ...what })) === null) return;
     toast(t("class.handOut.done", { title }), "yes");
   }
 
@@ -188,7 +188,7 @@ export class Teacher {
       this.deal(this.cards.peek().filter(({ name }) => name !== message.body.name));
     } else if (message.kind === "tournament") {
       const before = this.tournament.peek().state;
-      this.tournament.value = message.body;
+      this.tournament.value = { ...NO_TOURNAMENT, ...message.body };
       const isOver = before === "running" && message.body.state === "done";
       // The room looks at this page: it sees the result.
       if (isOver && this.projector.peek() && !this.screen.peek() && !this.opened.peek()) {
