@@ -1,7 +1,7 @@
 /** What the teacher opens, closes, hands out and takes home. */
 
 import { useSignal } from "@preact/signals";
-import { useId } from "preact/hooks";
+import { useEffect, useId, useRef } from "preact/hooks";
 import { COACHES, PHASES } from "../../core/class";
 import type { Rules } from "../../core/wire";
 import { said, t } from "../../i18n";
@@ -157,6 +157,8 @@ export function HandoutDialog({ teacher }: { teacher: Teacher }) {
 function Titled({ teacher, handout }: { teacher: Teacher; handout: Handout }) {
   const title = useSignal(handout.title);
   const { table } = handout;
+  const input = useRef<HTMLInputElement>(null);
+  useEffect(() => input.current?.select(), []);
   const close = () => {
     if (teacher.handout.peek() === handout) teacher.handout.value = null;
   };
@@ -177,6 +179,7 @@ function Titled({ teacher, handout }: { teacher: Teacher; handout: Handout }) {
         <label class="field">
           <span>{t("class.handOut.title")}</span>
           <input
+            ref={input}
             value={title.value}
             maxLength={60}
             onInput={(event) => {
