@@ -73,7 +73,9 @@ export class Teacher {
 
   /** The cards in the order in which they stand on the page. */
   readonly order = computed<readonly Card[]>(() => {
-    const order = placed(this.shown, this.cards.value, this.holds.value);
+    // On the big screen, the next student and the one before stay the same.
+    const holds = this.holds.value || this.screen.value?.shows === "robot";
+    const order = placed(this.shown, this.cards.value, holds);
     this.shown = order.map(({ name }) => name);
     return order;
   });
