@@ -6,14 +6,14 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import Phrase, render, say
+from lacoc_shared.words import Phrase, current, render, say
 
 _OPEN_S = 60.0
 """Time for a process to be ready, also on a slow machine."""
@@ -21,6 +21,25 @@ _CLOSE_S = 10.0
 _LOOK_S = 0.02
 _AGAIN_S = 1.0
 """How soon a process that has ended is started again."""
+
+
+def command_line(words: Sequence[str]) -> list[str]:
+    """Return the command line of a `lacoc` command, from the words after `lacoc`."""
+    return [sys.executable, "-m", "lacoc_shared", *words]
+
+
+def apart() -> dict[str, Any]:
+    """Return the options with which a `lacoc` process is started.
+
+    It takes nothing from this process's settings but the language, and reads no keys. Ctrl-C does
+    not reach it: it ends after the command that started it.
+    """
+    environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
+    return {
+        "env": environment | {"LACOC_LANGUAGE": current()},
+        "stdin": subprocess.DEVNULL,
+        "start_new_session": True,
+    }
 
 
 class Child:
@@ -37,16 +56,8 @@ class Child:
         # Its output goes into files: it would block on a pipe that nobody empties.
         self._said = folder / "child.out"
         self._complained = folder / "child.err"
-        environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
         with self._said.open("wb") as out, self._complained.open("wb") as err:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", "lacoc_shared", *words],
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=out,
-                stderr=err,
-                start_new_session=True,  # keeps Ctrl-C from it: it ends after its command
-            )
+            self._process = subprocess.Popen(command_line(words), stdout=out, stderr=err, **apart())
 
     def opened(self) -> dict[str, Any]:
         """Wait until it is ready; return the message that it prints then.
@@ -62,9 +73,8 @@ class Child:
                 opened: dict[str, Any] = json.loads(first)
                 return opened
             if ended:
-                reason = _text(self._complained).strip()
-                reason = reason or f"its process ended with {self._process.returncode}."
-                raise UserError(say("child.closed", what=self._what, why=_without_heading(reason)))
+                why = complaint(_text(self._complained), self._process.returncode)
+                raise UserError(say("child.closed", what=self._what, why=why))
             time.sleep(_LOOK_S)
         raise UserError(say("child.slow", what=self._what, seconds=_OPEN_S))
 
@@ -141,9 +151,15 @@ def kept_child(
         yield opened
 
 
-def _without_heading(error: str) -> str:
-    """Remove the word that a command puts before an error, in its language."""
-    return error.removeprefix(render(say("command.error"))).strip()
+def complaint(errors: str, exit_code: int | None) -> str:
+    """Return what a `lacoc` process complained about before it ended.
+
+    Args:
+        errors: what it wrote to standard error; `apart` sets its language.
+        exit_code: its exit code; of interest if it said nothing.
+    """
+    said = errors.strip() or f"its process ended with {exit_code}."
+    return said.removeprefix(render(say("command.error"))).strip()
 
 
 def _text(path: Path) -> str:

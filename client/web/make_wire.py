@@ -17,7 +17,8 @@ from typing import Any
 
 import msgspec
 
-from lacoc_client.classroom import cards
+from lacoc_client import simulation
+from lacoc_client.classroom import cards, tournament
 from lacoc_client.design import folder, requests
 from lacoc_client.design.learning import diary, draft, learner, rules
 from lacoc_client.design.table import FileRow, FileTable
@@ -86,6 +87,10 @@ STRUCTS = (
     diary.Phases,
     draft.Draft,
     cards.Card,
+    tournament.Played,
+    simulation.Standing,
+    tournament.LeftOut,
+    tournament.TournamentState,
     learner.Judged,
     learner.EditReply,
     learner.CheckReply,

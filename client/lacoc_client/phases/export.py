@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+import unicodedata
 import zipfile
 from collections.abc import Iterable
 from datetime import UTC, datetime
@@ -15,7 +16,12 @@ from lacoc_client.phases.evidence import Evidence, Guessed
 
 _FIRST = ("number", "time", "student", "kind")
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
-_FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f\x7f]')  # in names of files, on one system or another
+_FORBIDDEN = re.compile(r'[/\\:*?"<>|\x00-\x1f\x7f\ud800-\udfff]')  # in names, on some system
+_LONGEST = 60  # characters of a name: systems allow 255 bytes, and a character has up to four
+_DEVICES = {"con", "prn", "aux", "nul"} | {
+    f"{device}{number}" for device in ("com", "lpt") for number in range(1, 10)
+}
+"""Names that Windows keeps for its devices."""
 
 
 def evidence_csv(evidence: Iterable[Kept]) -> bytes:
@@ -40,7 +46,7 @@ def tables_zip(tables: Iterable[KeptTable]) -> bytes:
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for table in tables:
             if table.student not in folders:
-                folders[table.student] = _free(_file_name(table.student), folders.values())
+                folders[table.student] = free_name(table.student, folders.values())
             name = f"{folders[table.student]}/{_file_name(table.name)}"
             at = datetime.fromtimestamp(max(table.at_s, 315_619_200), UTC)  # zip begins in 1980
             info = zipfile.ZipInfo(name, at.timetuple()[:6])
@@ -79,16 +85,29 @@ def _as_text(value: Any) -> str:
     return value if isinstance(value, str) else msgspec.json.encode(value).decode()
 
 
-def _file_name(name: str) -> str:
-    return _FORBIDDEN.sub("_", name).strip(". ")[:100] or "_"
+def free_name(name: str, taken: Iterable[str]) -> str:
+    """Return a name for a file or folder, as a person is called.
 
+    Every system accepts it. A name that is taken gets a number, also if only capitals differ, or
+    how accents are written: to some systems these are equal.
 
-def _free(name: str, taken: Iterable[str]) -> str:
-    """Add a number to a name if it is taken; capitals make no difference to some systems."""
-    others = {one.casefold() for one in taken}
-    numbered = name
+    Args:
+        name: what the person is called.
+        taken: names of other files or folders there.
+    """
+    others = {_same(one) for one in taken}
+    plain = numbered = _file_name(name)
     number = 2
-    while numbered.casefold() in others:
-        numbered = f"{name} ({number})"
+    while _same(numbered) in others:
+        numbered = f"{plain} ({number})"
         number += 1
     return numbered
+
+
+def _file_name(name: str) -> str:
+    plain = _FORBIDDEN.sub("_", name).strip(". ")[:_LONGEST].rstrip(". ") or "_"
+    return f"_{plain}" if plain.partition(".")[0].rstrip().casefold() in _DEVICES else plain
+
+
+def _same(name: str) -> str:
+    return unicodedata.normalize("NFKC", name).casefold()

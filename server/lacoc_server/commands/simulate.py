@@ -1,44 +1,30 @@
 """`lacoc simulate`: play matches without a network, as fast as the machine can."""
 
 import itertools
-import os
-from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import Annotated, Any
 
-import msgspec
 import typer
 from rich.table import Table
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.stand_test import try_standing
+from lacoc_server.commands.matches import Job, interrupted_by_signals, play_all
 from lacoc_server.match.entry import weigh_in
-from lacoc_server.simulate import player, simulate
+from lacoc_server.simulate import player
+from lacoc_server.simulate.league import Played, Standing, pairings, standings
 from lacoc_shared.command import options, screen
-from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
-from lacoc_shared.record.schema import Result, Setup
-from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.record.schema import Result
 from lacoc_shared.words import render, say
 
 app = typer.Typer()
 
 _LATE_TICKS = 7
-"""Ticks by which each repetition starts the bots later than the one before."""
-
-
-class _Job(msgspec.Struct, frozen=True):
-    """One match for a worker process."""
-
-    match_id: str
-    arena: str
-    overrides: dict[str, Any]
-    robot: str
-    players: tuple[str, ...]
-    late_ticks: int
-    folder: str | None
+"""Ticks by which the bots start later each time that two players meet in the same seats."""
 
 
 @app.command(name="simulate")
@@ -48,7 +34,7 @@ def simulate_command(
         typer.Argument(
             help="Who plays: bots of the arena (such as 'straight' and 'planner'), your_bot.py, or "
             "'ghost:RECORD.mcap:left'. 'planner@FOLDER' steers the gait of that folder. Two play "
-            "one match; more play everybody against everybody."
+            "one match; more play everybody against everybody, or --rounds."
         ),
     ],
     arena: Annotated[
@@ -68,6 +54,15 @@ def simulate_command(
     both_sides: Annotated[
         bool, typer.Option("--both-sides", help="Play every pair a second time with seats swapped.")
     ] = False,
+    rounds: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            help="Everybody plays N others, in both seats as evenly as possible, instead of "
+            "everybody. An odd number of players rest in turn.",
+            min=1,
+        ),
+    ] = None,
     repeat: Annotated[
         int,
         typer.Option(
@@ -77,6 +72,14 @@ def simulate_command(
     jobs: Annotated[
         int | None, typer.Option(help="Processes at a time; by default one for each core.", min=1)
     ] = None,
+    leave_out: Annotated[
+        bool,
+        typer.Option(
+            "--leave-out",
+            help="Leave out and name those who can't play: their files have mistakes, or their "
+            "robot does not stand. Without this nothing begins.",
+        ),
+    ] = False,
     record: Annotated[
         Path | None, typer.Option(metavar="FOLDER", help="Folder for a record of each match.")
     ] = None,
@@ -89,53 +92,100 @@ def simulate_command(
     go forward, 3 to turn right.
 
     Physics and rules are those of a court: a simulated match is bit for bit the match that a court
-    would play.
+    would play. Of many matches, as many as the machine has cores are played at a time; they give
+    way to all other programs.
+
+    With --json each match is printed as a line when it has ended, and after it the standings.
     """
     overrides = {"match": {"duration_s": seconds}} if seconds else {}
     loaded = arenas.load(arena, overrides)
-    pairs = _pairs(players, len(loaded.seats), both_sides)
-    _weigh_in(loaded, players, robot)
+    seats = [seat.id for seat in loaded.seats]
+    _check_number(players, len(seats), rounds)
+    out = _cannot_play(loaded, players, robot)
+    fit = [name for name in players if name not in out]
+    if out and json and leave_out:
+        for name, why in out.items():
+            screen.print_json(_left_out_line(name, why))
+    if out and (not leave_out or len(fit) < len(seats)):
+        raise _all_of(out)
+    if out and not json:
+        _show_left_out(out)
     work = [
-        _Job(
-            f"simulated-{number:03d}",
-            arena,
-            overrides,
-            robot,
-            pair,
-            repetition * _LATE_TICKS,
-            str(record) if record else None,
-        )
-        for number, (repetition, pair) in enumerate(
-            itertools.product(range(repeat), pairs), _first_number(record)
+        Job(f"simulated-{number:03d}", arena, overrides, robot, names, late_ticks, _text(record))
+        for number, (names, late_ticks) in enumerate(
+            _matches(fit, len(seats), both_sides, rounds, repeat), _first_number(record)
         )
     ]
-    results = _run_one(work[0]) if len(work) == 1 else _run_many(work, jobs)
     if json:
-        screen.print_json(results)
-    else:
-        screen.show(_table(results, [seat.id for seat in loaded.seats]))
-        if len(work) > 1 and len(loaded.seats) > 1:
-            screen.show(_standings(results, work))
+        screen.print_json({"kind": "begin", "players": fit, "matches": len(work)})
+    results: dict[str, Result] = {}
+    table: list[Standing] = []
+    with interrupted_by_signals(), closing(play_all(work, jobs)) as playing:
+        for job, result in playing:
+            results[job.match_id] = result
+            table = _standings(fit, work, results, seats)
+            if json:
+                screen.print_json(_match_line(job, result, seats))
+                screen.print_json({"kind": "standings", "done": len(results), "standings": table})
+    if json:
+        return
+    screen.show(_results_table([results[job.match_id] for job in work], seats))
+    if len(work) > 1 and len(seats) > 1:
+        screen.show(_standings_table(table))
 
 
-def _weigh_in(arena: arenas.Arena, players: Sequence[str], robot: str) -> None:
-    """Check that everybody can play, before anything begins.
+def _check_number(players: Sequence[str], seats: int, rounds: int | None) -> None:
+    if len(players) < seats:
+        raise UserError(say("simulate.players", seats=seats))
+    if rounds is not None and seats != 2:
+        raise UserError(say("simulate.rounds-of-two", seats=seats))
 
-    Raises:
-        UserError: if a bot, robot or folder does not exist.
-        FileRefused: with every mistake in every player's files.
-    """
+
+def _cannot_play(
+    arena: arenas.Arena, players: Sequence[str], robot: str
+) -> dict[str, FileRefused | UserError]:
+    """Return the players who can't play, each with the reason, before anything begins."""
     levels = arena.match.open_levels
-    mistakes: list[Mistake] = []
+    out: dict[str, FileRefused | UserError] = {}
     for name in dict.fromkeys(players):
-        join = player(arena, 0, name, robot).join
         try:
+            join = player(arena, 0, name, robot).join
             entry = weigh_in(join.robot, join.postures, join.locomotion, levels=levels)
-            mistakes += try_standing(entry.robot, entry.gait, levels, join.robot.name)
-        except FileRefused as refused:
-            mistakes += refused.mistakes
+            if falls := try_standing(entry.robot, entry.gait, levels, join.robot.name):
+                raise FileRefused(falls)
+        except (FileRefused, UserError) as error:
+            out[name] = error
+    return out
+
+
+def _all_of(out: Mapping[str, FileRefused | UserError]) -> FileRefused | UserError:
+    """Return one error for all players: a wrong name first, otherwise all mistakes in files."""
+    mistakes: list[Mistake] = []
+    for why in out.values():
+        if isinstance(why, UserError):
+            return why
+        mistakes += why.mistakes
+    return FileRefused(mistakes)
+
+
+def _left_out_line(name: str, why: FileRefused | UserError) -> dict[str, Any]:
+    return {
+        "kind": "left-out",
+        "player": name,
+        "mistakes": why.mistakes if isinstance(why, FileRefused) else [],
+        "why": why.phrase if isinstance(why, UserError) else None,
+        "text": str(why),
+    }
+
+
+def _show_left_out(out: Mapping[str, FileRefused | UserError]) -> None:
+    screen.warn(say("simulate.left-out", players=[*out]))
+    mistakes = [m for why in out.values() if isinstance(why, FileRefused) for m in why.mistakes]
+    for why in out.values():
+        if isinstance(why, UserError):
+            screen.note(why.phrase)
     if mistakes:
-        raise FileRefused(mistakes)
+        screen.show(screen.mistakes_table(mistakes), screen.stderr)
 
 
 def _first_number(record: Path | None) -> int:
@@ -144,61 +194,65 @@ def _first_number(record: Path | None) -> int:
     return 1 + max((int(path.name.split("-")[1].split(".")[0]) for path in known), default=0)
 
 
-def _pairs(players: list[str], seats: int, both_sides: bool) -> list[tuple[str, ...]]:
-    if seats == 1:
-        return [(name,) for name in players]
-    if len(players) < seats:
-        raise UserError(say("simulate.players", seats=seats))
-    if len(players) == seats:
-        pair = tuple(players)
-        return [pair, pair[::-1]] if both_sides else [pair]
-    return list(itertools.permutations(players, seats))
+def _text(path: Path | None) -> str | None:
+    return None if path is None else str(path)
 
 
-def _play(job: _Job, watch: Any = None) -> Result:
-    arena = arenas.load(job.arena, job.overrides)
-    setup = Setup(
-        match_id=job.match_id,
-        court="simulation",
-        match=1,
-        arena=arena.name,
-        settings=arena.settings,
-        limits={},
+def _matches(
+    players: Sequence[str], seats: int, both_sides: bool, rounds: int | None, repeat: int
+) -> Iterator[tuple[tuple[str, ...], int]]:
+    """Yield the players of each match by seat, and by how many ticks its bots start late."""
+    met: Counter[tuple[int, ...]] = Counter()
+    for _, pair in itertools.product(
+        range(repeat), _pairs(len(players), seats, both_sides, rounds)
+    ):
+        yield tuple(players[index] for index in pair), met[pair] * _LATE_TICKS
+        met[pair] += 1
+
+
+def _pairs(
+    players: int, seats: int, both_sides: bool, rounds: int | None
+) -> Sequence[tuple[int, ...]]:
+    if rounds is not None:
+        pairs: Sequence[tuple[int, ...]] = pairings(players, rounds)
+    elif seats == 1:
+        return [(index,) for index in range(players)]
+    elif players > seats:
+        return [*itertools.permutations(range(players), seats)]
+    else:
+        pairs = [tuple(range(players))]
+    return [seated for pair in pairs for seated in (pair, pair[::-1])] if both_sides else pairs
+
+
+def _match_line(job: Job, result: Result, seats: Sequence[str]) -> dict[str, Any]:
+    return {
+        "kind": "match",
+        "players": job.players,
+        "winner": _winner(result, seats),
+        "record": job.record and job.record.name,
+        "result": result,
+    }
+
+
+def _winner(result: Result, seats: Sequence[str]) -> int | None:
+    return seats.index(result.official) if result.official in seats else None
+
+
+def _standings(
+    players: Sequence[str], work: Sequence[Job], results: Mapping[str, Result], seats: Sequence[str]
+) -> list[Standing]:
+    ended = ((job, results[job.match_id]) for job in work if job.match_id in results)
+    return standings(
+        players,
+        [
+            Played(job.players, result.scores, _winner(result, seats))
+            for job, result in ended
+            if result.official != "void"
+        ],
     )
-    seated = [
-        player(arena, seat, name, job.robot, late_ticks=job.late_ticks)
-        for seat, name in enumerate(job.players)
-    ]
-    return simulate(setup, seated, Path(job.folder) if job.folder else None, watch, arena.folder)
 
 
-def _run_one(job: _Job) -> list[Result]:
-    duration_s = arenas.load(job.arena, job.overrides).match.duration_s
-    with screen.progress() as progress:
-        task = progress.add_task(" : ".join(job.players), total=round(duration_s))
-
-        def watch(frame: Frame) -> None:
-            if frame.beat % BEATS_PER_S == 0:
-                progress.update(task, completed=max(0, frame.clock_ticks) // BEATS_PER_S)
-
-        return [_play(job, watch)]
-
-
-def _run_many(work: Sequence[_Job], jobs: int | None) -> list[Result]:
-    results: dict[str, Result] = {}
-    # Each worker is a fresh interpreter: a forked one would inherit the parent's state.
-    pool = ProcessPoolExecutor(jobs or os.cpu_count(), mp_context=get_context("spawn"))
-    with screen.progress() as progress, pool:
-        task = progress.add_task(render(say("simulate.matches")), total=len(work))
-        futures = [pool.submit(_play, job) for job in work]
-        for future in as_completed(futures):
-            result = future.result()
-            results[result.match_id] = result
-            progress.advance(task)
-    return [results[job.match_id] for job in work]
-
-
-def _table(results: Sequence[Result], seats: Sequence[str]) -> Table:
+def _results_table(results: Sequence[Result], seats: Sequence[str]) -> Table:
     table = screen.table(
         *(say("fact.of-seat", seat=seat) for seat in seats),
         say("fact.score"),
@@ -216,20 +270,14 @@ def _table(results: Sequence[Result], seats: Sequence[str]) -> Table:
     return table
 
 
-def _standings(results: Sequence[Result], work: Sequence[_Job]) -> Table:
-    names = list(dict.fromkeys(name for job in work for name in job.players))
-    won = dict.fromkeys(names, 0)
-    lost, drawn = dict(won), dict(won)
-    for result, job in zip(results, work, strict=True):
-        best = max(result.scores)
-        for name, score in zip(job.players, result.scores, strict=True):
-            if result.official == "draw":
-                drawn[name] += 1
-            elif score == best:
-                won[name] += 1
-            else:
-                lost[name] += 1
-    table = screen.table(say("fact.player"), say("fact.won"), say("fact.drawn"), say("fact.lost"))
-    for name in sorted(names, key=lambda name: (-won[name], lost[name])):
-        table.add_row(name, str(won[name]), str(drawn[name]), str(lost[name]))
+def _standings_table(standings: Sequence[Standing]) -> Table:
+    table = screen.table(
+        say("fact.player"),
+        say("fact.won"),
+        say("fact.drawn"),
+        say("fact.lost"),
+        say("fact.points"),
+    )
+    for one in standings:
+        table.add_row(one.name, *map(str, (one.won, one.drawn, one.lost, one.points)))
     return table

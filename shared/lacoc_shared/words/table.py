@@ -21,6 +21,7 @@ FILES = (
     "studio",
     "phases",
     "class",
+    "tournament",
     "commands",
 )
 ON_PAGES = FILES[:-1]

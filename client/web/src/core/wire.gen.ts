@@ -455,6 +455,40 @@ export interface Card {
   need: "hand" | "stuck" | "quiet" | "";
 }
 
+export interface Played {
+  left: string;
+  right: string;
+  scores: [number, number];
+  winner: number | null;
+  void: boolean;
+  record: string | null;
+}
+
+export interface Standing {
+  name: string;
+  won: number;
+  drawn: number;
+  lost: number;
+  points: number;
+}
+
+export interface LeftOut {
+  name: string;
+  mistakes: Mistake[];
+  why: Phrase | null;
+}
+
+export interface TournamentState {
+  state: "none" | "running" | "done" | "stopped";
+  arena: string;
+  done: number;
+  of: number;
+  matches: Played[];
+  standings: Standing[];
+  left_out: LeftOut[];
+  trouble: Phrase | null;
+}
+
 export interface Judged {
   said: string;
   was: string[];

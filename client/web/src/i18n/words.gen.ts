@@ -582,4 +582,9 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "class.failed-stand": ["Three times the robot did not stand firmly on half of its legs.", "3 回続けて、半分の足でしっかり立てませんでした。"],
   "class.failed-turns": ["Three times the robot turned instead of walking straight.", "3 回続けて、まっすぐ進まずに曲がりました。"],
   "class.failed-slow": ["Three times the robot hardly moved forward.", "3 回続けて、ほとんど前に進みませんでした。"],
+  "tournament.no-key": ["The table has no key that walks: fill in at least one posture of key 1, 2 or 3.", "歩くキーがありません。キー 1、2、3 のどれかに姿勢を 1 つ以上入れてください。"],
+  "tournament.too-few": ["A tournament needs at least two gaits that walk.< Left out: {left_out}.>", "トーナメントには、歩ける歩容が 2 つ以上必要です。<外れた人：{left_out}>"],
+  "tournament.runs": ["A tournament is being played. Wait until it is over, or stop it.", "トーナメントの試合中です。終わるまで待つか、止めてください。"],
+  "tournament.ended": ["The tournament ended early: {why} The matches so far stay.", "トーナメントが途中で終わりました：{why} これまでの試合は残ります。"],
+  "tournament.cannot-start": ["The tournament could not start: {why}. Make room on the disk or end other programs, then start it again.", "トーナメントを始められませんでした：{why}。ディスクの空きを増やすか、ほかのプログラムを終了して、もう一度始めてください。"],
 };

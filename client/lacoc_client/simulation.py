@@ -1,0 +1,145 @@
+"""`lacoc simulate` in a process of its own, and the lines that it prints."""
+
+import asyncio
+import contextlib
+from asyncio.subprocess import PIPE, Process
+from collections.abc import AsyncIterator, Sequence
+from typing import Self
+
+import msgspec
+
+from lacoc_client.child import apart, command_line, complaint
+from lacoc_shared.mistakes import Mistake
+from lacoc_shared.words import Phrase
+
+_LINE_BYTES = 1 << 24
+_LOOK_S = 0.5
+
+
+class Standing(msgspec.Struct, frozen=True, kw_only=True):
+    """Where a player stands after some matches."""
+
+    name: str
+    won: int
+    drawn: int
+    lost: int
+    points: int
+    """Points of the player in all matches."""
+
+
+class Line(msgspec.Struct, frozen=True, tag_field="kind"):
+    """A line that `lacoc simulate --json` prints."""
+
+
+class LeftOutLine(Line, frozen=True, tag="left-out"):
+    """A player can't play."""
+
+    player: str
+    mistakes: tuple[Mistake, ...]
+    why: Phrase | None
+
+
+class BeginLine(Line, frozen=True, tag="begin"):
+    """The matches begin."""
+
+    matches: int
+
+
+class MatchResult(msgspec.Struct, frozen=True):
+    """What is needed of the result in a record."""
+
+    scores: tuple[int, int]
+    official: str
+
+
+class MatchLine(Line, frozen=True, tag="match"):
+    """A match has ended."""
+
+    players: tuple[str, str]
+    winner: int | None
+    record: str | None
+    result: MatchResult
+
+
+class StandingsLine(Line, frozen=True, tag="standings"):
+    """Standings after a match."""
+
+    done: int
+    standings: tuple[Standing, ...]
+
+
+_lines = msgspec.json.Decoder(LeftOutLine | BeginLine | MatchLine | StandingsLine)
+
+
+class Simulation:
+    """A running `lacoc simulate`; used from the event loop only.
+
+    Args:
+        process: its process; `start` makes it.
+    """
+
+    def __init__(self, process: Process) -> None:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        self._process = process
+        self._out = process.stdout
+        self._complaining = asyncio.create_task(process.stderr.read())
+
+    @classmethod
+    async def start(cls, words: Sequence[str]) -> Self:
+        """Start the command with these words after `lacoc simulate --json`.
+
+        Raises:
+            OSError: if the system can't start another process.
+        """
+        return cls(
+            await asyncio.create_subprocess_exec(
+                *command_line(["simulate", "--json", *words]),
+                stdout=PIPE,
+                stderr=PIPE,
+                limit=_LINE_BYTES,
+                **apart(),
+            )
+        )
+
+    async def lines(self) -> AsyncIterator[Line]:
+        """Yield what it prints, until it ends.
+
+        If it is killed, its worker processes keep its output open until their matches have ended.
+        So the end of the output is not awaited then.
+        """
+        reading = asyncio.create_task(self._out.readline())
+        try:
+            while True:
+                await asyncio.wait({reading}, timeout=_LOOK_S)
+                if reading.done():
+                    if not (line := reading.result()).endswith(b"\n"):
+                        return
+                    yield _lines.decode(line)
+                    reading = asyncio.create_task(self._out.readline())
+                elif self._process.returncode is not None:
+                    return
+        finally:
+            reading.cancel()
+
+    async def complaint(self) -> str | None:
+        """Wait until it has ended; return what went wrong, or None."""
+        while self._process.returncode is None:
+            await asyncio.sleep(_LOOK_S / 10)
+        if self._process.returncode == 0:
+            return None
+        await asyncio.wait({self._complaining}, timeout=_LOOK_S)
+        errors = self._complaining.result() if self._complaining.done() else b""
+        last_line = errors.decode(errors="replace").strip().rpartition("\n")[2]
+        return complaint(last_line, self._process.returncode)
+
+    def end(self) -> None:
+        """Ask it to end, as Ctrl-C does."""
+        with contextlib.suppress(ProcessLookupError):
+            self._process.terminate()
+
+    def close(self) -> None:
+        """End it at once."""
+        self._complaining.cancel()
+        with contextlib.suppress(ProcessLookupError):
+            self._process.kill()

@@ -1,0 +1,154 @@
+"""Tests of `lacoc simulate` with many players: who plays, what is printed, how it ends."""
+
+import json
+import signal
+import subprocess
+import time
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from lacoc_process import run_lacoc, started
+
+from lacoc_robots.library import sample_gait_files
+from lacoc_server.commands.simulate import simulate_command
+from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.record.reader import Record
+
+BROKEN = b"1\n1\n5"
+
+
+def handed_in(folder: Path, *names: str, locomotion: bytes | None = None) -> list[str]:
+    """Make a folder with a gait for each name, and return the players that steer them."""
+    sample = sample_gait_files("hexapod").locomotion
+    assert sample is not None
+    for name in names:
+        (folder / name).mkdir()
+        (folder / name / "LocoTra-data.txt").write_bytes(locomotion or sample.data)
+    return [f"straight@{folder / name}" for name in names]
+
+
+def in_json(*words: str) -> list[dict[str, Any]]:
+    """Return the lines that `lacoc simulate --json` prints."""
+    done = run_lacoc("simulate", "--json", *words)
+    assert done.returncode == 0, done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+@pytest.mark.slow
+def test_each_match_is_printed_when_it_has_ended(tmp_path: Path) -> None:
+    """Lines name who is left out, what begins, and each match with its record and standings."""
+    anna, ben, dai = handed_in(tmp_path, "anna", "ben", "大")
+    (chie,) = handed_in(tmp_path, "chie", locomotion=BROKEN)
+    emi = f"straight@{tmp_path / 'emi'}"
+    records = tmp_path / "records"
+    out, nobody, begin, *rest = in_json(
+        anna, ben, chie, emi, dai, "--rounds", "3", "--seconds", "1", "--leave-out",
+        "--record", str(records),
+    )  # fmt: skip
+    assert (out["kind"], out["player"], out["why"]) == ("left-out", chie, None)
+    assert {mistake["file"] for mistake in out["mistakes"]} == {"chie/LocoTra-data.txt"}
+    assert out["mistakes"][0]["found"]["code"] == "gait.fewer-keys"
+    assert "chie/LocoTra-data.txt, row 1" in out["text"]
+    assert (nobody["player"], nobody["mistakes"]) == (emi, [])
+    assert nobody["why"]["code"] == "simulate.no-folder"
+    assert begin == {"kind": "begin", "players": [anna, ben, dai], "matches": 3}
+
+    matches, tables = rest[::2], rest[1::2]
+    assert {line["kind"] for line in matches} == {"match"}
+    assert Counter(name for line in matches for name in line["players"]) == {
+        anna: 2, ben: 2, dai: 2,
+    }  # fmt: skip
+    assert sorted(line["record"] for line in matches) == sorted(
+        path.name for path in records.iterdir()
+    )
+    for line in matches:
+        record = Record.read(records / line["record"])
+        assert record.result is not None
+        assert list(record.result.teams) == line["result"]["teams"]
+        assert line["winner"] in (0, 1, None)
+    assert [(line["kind"], line["done"]) for line in tables] == [
+        ("standings", number) for number in (1, 2, 3)
+    ]
+    last = {line["name"]: line for line in tables[-1]["standings"]}
+    assert last.keys() == {anna, ben, dai}
+    assert all(line["won"] + line["drawn"] + line["lost"] == 2 for line in last.values())
+    assert sum(line["points"] for line in last.values()) == 3 * 36
+
+
+def test_without_two_players_left_nothing_begins(tmp_path: Path) -> None:
+    """If fewer players are left than play a match, the command ends with all mistakes."""
+    (anna,) = handed_in(tmp_path, "anna")
+    wrong = handed_in(tmp_path, "ben", "chie", locomotion=BROKEN)
+    with pytest.raises(FileRefused) as refused:
+        simulate_command([anna, *wrong], seconds=1.0, leave_out=True)
+    assert {mistake.file for mistake in refused.value.mistakes} == {
+        f"{name}/LocoTra-data.txt" for name in ("ben", "chie")
+    }
+    with pytest.raises(UserError, match="There is no folder"):
+        simulate_command([anna, f"straight@{tmp_path}/nobody"], seconds=1.0, leave_out=True)
+
+
+def test_a_robot_that_falls_is_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A robot that does not stand is left out, and its player is named beside the mistakes."""
+    anna, ben, chie = handed_in(tmp_path, "anna", "ben", "chie")
+    gait = tmp_path / "chie" / "LocoTra-data.txt"
+    leaning = gait.read_bytes().replace(b"20\t20\t20\t20\t20\t20", b"-50\t-50\t-50\t80\t80\t80", 1)
+    gait.write_bytes(leaning)
+    simulate_command([anna, ben, chie], seconds=1.0, leave_out=True, rounds=1)
+    said = capsys.readouterr()
+    assert f"left out, because they can't play: {chie}" in said.err
+    assert "leans" in said.err
+    assert "chie" not in said.out
+
+
+def test_rounds_are_for_two_seats() -> None:
+    """In an arena with one seat, --rounds is refused."""
+    with pytest.raises(UserError, match="has 1 seat"):
+        simulate_command(["walker", "walker"], arena="practice", seconds=1.0, rounds=1)
+
+
+@pytest.fixture
+def many(tmp_path: Path) -> Iterator["subprocess.Popen[str]"]:
+    """Give a process that plays long matches, each with a record in the folder "records"."""
+    words = ["straight", "nearest", "--repeat", "3", "--seconds", "600", "--json", "--jobs", "2"]
+    process = started(
+        "simulate", *words, "--record", str(tmp_path / "records"),
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    with process:
+        assert process.stdout is not None
+        assert json.loads(process.stdout.readline())["kind"] == "begin"
+        while len([*(tmp_path / "records").glob("*.live.mcap")]) < 2:
+            assert process.poll() is None
+            time.sleep(0.02)
+        yield process
+        process.kill()
+
+
+@pytest.mark.slow
+def test_a_request_to_end_leaves_nothing_half_done(
+    many: "subprocess.Popen[str]", tmp_path: Path
+) -> None:
+    """SIGTERM ends the command and its worker processes; half records are removed."""
+    workers = psutil.Process(many.pid).children(recursive=True)
+    many.send_signal(signal.SIGTERM)
+    assert many.wait(30) == 130
+    assert psutil.wait_procs(workers, 10)[1] == []
+    assert list((tmp_path / "records").iterdir()) == []
+
+
+@pytest.mark.slow
+def test_a_worker_that_dies_is_told(many: "subprocess.Popen[str]", tmp_path: Path) -> None:
+    """If a worker process is killed, the command says whose match it played, and ends."""
+    for child in psutil.Process(many.pid).children(recursive=True):
+        if "spawn_main" in " ".join(child.cmdline()):
+            child.kill()
+            break
+    _, said = many.communicate(timeout=30)
+    assert many.returncode == 2
+    assert "The process that played straight and nearest ended" in said
+    assert list((tmp_path / "records").iterdir()) == []
