@@ -20,6 +20,7 @@ import {
   SEATFRAME_FIELDS,
   type SeatFrame,
   type Sheet,
+  type TournamentState,
   type TrialReply,
 } from "./wire.gen";
 
@@ -119,34 +120,6 @@ export interface ClassState {
   cards: Card[] | null;
 }
 
-export interface TournamentMatch {
-  left: string;
-  right: string;
-  scores: [number, number];
-  winner: 0 | 1 | null;
-  /** The file of its recording. */
-  record: string | null;
-}
-
-export interface Standing {
-  name: string;
-  won: number;
-  drawn: number;
-  lost: number;
-  points: number;
-}
-
-/** The friendly tournament of the class. */
-export interface Tournament {
-  state: "none" | "running" | "done" | "stopped";
-  arena: string;
-  done: number;
-  of: number;
-  matches: TournamentMatch[];
-  standings: Standing[];
-  trouble: Phrase | null;
-}
-
 /** A student's robot on the big screen. */
 export interface ShowReply {
   name: string;
@@ -193,7 +166,7 @@ export type Message =
   | { kind: "class"; body: ClassState }
   | { kind: "card"; body: Card }
   | { kind: "gone"; body: { name: string } }
-  | { kind: "tournament"; body: Tournament };
+  | { kind: "tournament"; body: TournamentState };
 
 /** What a page asks for; each request is answered by a reply with its id. */
 export type Request =

@@ -145,7 +145,7 @@ export const classroom = {
   "class.play.game": ["Game", "競技"],
   "class.play.othello": ["Othello", "オセロ"],
   "class.play.flag-strike": ["Flag strike", "フラッグストライク"],
-  "class.play.rounds": ["Rounds", "回戦数"],
+  "class.play.rounds": ["Opponents each", "1 人の対戦数"],
   "class.play.seconds": ["Seconds a match", "1 試合の秒数"],
   "class.play.start": ["Start", "開始"],
   "class.play.stop": ["Stop", "中止"],
@@ -164,6 +164,8 @@ export const classroom = {
   "class.play.lost.short": ["L", "負"],
   "class.play.points.short": ["Pts", "点"],
   "class.play.matches": ["Matches", "試合"],
+  "class.play.void": ["void", "無効"],
+  "class.play.leftOut": ["{count} can't play", "参加できない人：{count} 人"],
   "class.play.replay": ["Replay: {left} and {right}", "リプレイ：{left} 対 {right}"],
   "class.play.noReplay": [
     "Replays show names. Leave projector mode to open them.",

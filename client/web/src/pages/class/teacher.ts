@@ -17,7 +17,7 @@ import {
   type Request,
   type Rules,
   type ShowReply,
-  type Tournament,
+  type TournamentState,
 } from "../../core/wire";
 import { sentence, t } from "../../i18n";
 import { toast } from "../../ui/toasts";
@@ -37,13 +37,14 @@ interface Parsed {
 
 const NOW_MS = 5000;
 const TYPES = { evidence: "text/csv", tables: "application/zip" };
-const NO_TOURNAMENT: Tournament = {
+const NO_TOURNAMENT: TournamentState = {
   state: "none",
   arena: "",
   done: 0,
   of: 0,
   matches: [],
   standings: [],
+  left_out: [],
   trouble: null,
 };
 
@@ -51,7 +52,7 @@ export class Teacher {
   readonly connection: Connection;
   readonly state = signal<ClassState | null>(null);
   readonly cards = signal<readonly Card[]>([]);
-  readonly tournament = signal<Tournament>(NO_TOURNAMENT);
+  readonly tournament = signal<TournamentState>(NO_TOURNAMENT);
   /** As they are shown: a click is answered at once, the gateway's word holds. */
   readonly rules = signal<Rules>(OPEN_RULES);
   /** The student whose details are open; "": none. */
@@ -190,7 +191,7 @@ export class Teacher {
       this.deal(this.cards.peek().filter(({ name }) => name !== message.body.name));
     } else if (message.kind === "tournament") {
       const before = this.tournament.peek().state;
-      this.tournament.value = { ...NO_TOURNAMENT, ...message.body };
+      this.tournament.value = message.body;
       const isOver = before === "running" && message.body.state === "done";
       // The room looks at this page: it sees the result.
       if (isOver && this.projector.peek() && !this.screen.peek() && !this.opened.peek()) {

@@ -1,14 +1,15 @@
 /** A friendly tournament of the class's gaits: start it, follow it, read the standings. */
 
 import { useSignal } from "@preact/signals";
-import type { Tournament as State, TournamentMatch } from "../../core/wire";
+import type { LeftOut, Played, TournamentState } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { Icon } from "../../ui/icons";
 import type { Teacher } from "./teacher";
 
 const GAMES = ["othello", "flag-strike"] as const;
 const COLUMNS = ["won", "drawn", "lost", "points"] as const;
-const ROUNDS = { least: 1, most: 10, usual: 3 };
+/** How many others each student meets. */
+const ROUNDS = { least: 1, most: 20, usual: 3 };
 const SECONDS = { least: 10, most: 180, usual: 60 };
 
 export function Tournament({ teacher }: { teacher: Teacher }) {
@@ -42,6 +43,7 @@ export function Tournament({ teacher }: { teacher: Teacher }) {
           </button>
         </section>
       )}
+      {state.left_out.length > 0 && <Left teacher={teacher} out={state.left_out} />}
       {state.matches.length > 0 && <Matches teacher={teacher} matches={state.matches} />}
     </div>
   );
@@ -103,7 +105,7 @@ function Start({ teacher }: { teacher: Teacher }) {
   );
 }
 
-function Running({ teacher, state }: { teacher: Teacher; state: State }) {
+function Running({ teacher, state }: { teacher: Teacher; state: TournamentState }) {
   const text = t("class.play.running", { done: state.done, of: state.of });
   return (
     <div class="running">
@@ -158,9 +160,28 @@ export function Standings({ teacher, big = false }: StandingsProps) {
   );
 }
 
+/** Who does not play, and why. */
+function Left({ teacher, out }: { teacher: Teacher; out: readonly LeftOut[] }) {
+  return (
+    <details class="left-out">
+      <summary>{t("class.play.leftOut", { count: out.length })}</summary>
+      <ul>
+        {out.map(({ name, mistakes, why }) => {
+          const reason = why ?? mistakes[0]?.found;
+          return (
+            <li key={name}>
+              <b>{teacher.name(name)}</b> {reason && said(reason)}
+            </li>
+          );
+        })}
+      </ul>
+    </details>
+  );
+}
+
 interface MatchesProps {
   teacher: Teacher;
-  matches: readonly TournamentMatch[];
+  matches: readonly Played[];
 }
 
 /** All matches, the newest first; each leads to its replay. */
@@ -171,7 +192,7 @@ function Matches({ teacher, matches }: MatchesProps) {
       <h2>{t("class.play.matches")}</h2>
       {hidden && <p class="muted">{t("class.play.noReplay")}</p>}
       <ol reversed>
-        {matches.toReversed().map(({ left, right, scores, winner, record }, index) => {
+        {matches.toReversed().map(({ left, right, scores, winner, record, ...match }, index) => {
           const [one, other] = [left, right].map((name) => teacher.name(name)) as [string, string];
           return (
             <li key={matches.length - index}>
@@ -180,9 +201,7 @@ function Matches({ teacher, matches }: MatchesProps) {
                 {" – "}
                 {winner === 1 ? <b>{other}</b> : other}
               </span>
-              <span>
-                {scores[0]} : {scores[1]}
-              </span>
+              <span>{match.void ? t("class.play.void") : `${scores[0]} : ${scores[1]}`}</span>
               {record && !hidden && (
                 <a
                   href={`/replay?file=${encodeURIComponent(record)}`}
