@@ -4,7 +4,6 @@ import csv
 import io
 import os
 import signal
-import time
 import zipfile
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -13,7 +12,7 @@ from typing import Any
 
 import psutil
 import pytest
-from class_room import ClassRoom, StudentPage, TeacherPage
+from class_room import ClassRoom, StudentPage, TeacherPage, until_kept
 from lacoc_process import run_lacoc
 from page_connection import Refused
 
@@ -261,7 +260,7 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     student.ask("hand", up=True)
     teacher.ask("rules", rules={"closed": [6], "coach": "three"})
     teacher.ask("hand_out", title="The sample")
-    _until_kept(tmp_path, b"The sample")
+    until_kept(tmp_path, b"The sample")
     os.kill(room.process.pid, signal.SIGKILL)
     for child in psutil.Process(room.process.pid).children(recursive=True):
         child.kill()
@@ -278,14 +277,6 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     closing.callback(desk.close)
     assert desk.card("Jo")["need"] == "hand"
     assert desk.card("Jo")["hand_up_s"] > 1e9
-
-
-def _until_kept(folder: Path, data: bytes) -> None:
-    """Wait until something stands in the class file, which is at most about a second later."""
-    deadline_s = time.monotonic() + 60
-    while not any(data in path.read_bytes() for path in folder.glob("lacoc-class.sqlite*")):
-        assert time.monotonic() < deadline_s
-        time.sleep(0.05)
 
 
 def test_the_commands_export_and_forget(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import psutil
 import pytest
 from chromium import OpenPage
-from class_room import ClassRoom, StudentPage
+from class_room import ClassRoom, StudentPage, until_kept
 from contestant import Contestant
 from playwright.sync_api import expect
 from show import violations
@@ -211,6 +211,7 @@ def test_the_page_goes_on_after_the_gateways_end(
         edits(comes(closing, room, name))
     desk = Desk(open_page, room.url)
     desk.begin(room.key)
+    until_kept(tmp_path, room.key.encode())
     for child in psutil.Process(room.process.pid).children(recursive=True):
         child.kill()
     os.kill(room.process.pid, signal.SIGKILL)

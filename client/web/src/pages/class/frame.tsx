@@ -20,8 +20,9 @@ interface FrameProps {
 /** Fills the screen until Escape; what is below it can't be reached meanwhile. */
 export function Frame({ label, onClose, keys = {}, back, buttons, children }: FrameProps) {
   const element = useRef<HTMLElement>(null);
-  const last = useRef(back);
-  last.current = back;
+  // A key takes what was drawn last, also before the page has come to its effects.
+  const now = useRef({ onClose, keys, back });
+  now.current = { onClose, keys, back };
   useEffect(() => {
     const opener = document.activeElement as HTMLElement | null;
     element.current?.focus();
@@ -29,19 +30,20 @@ export function Frame({ label, onClose, keys = {}, back, buttons, children }: Fr
     return () => {
       if (document.fullscreenElement) toggleFullscreen();
       // What is below can't have the focus yet.
-      requestAnimationFrame(() => (last.current?.() ?? opener)?.focus());
+      requestAnimationFrame(() => (now.current.back?.() ?? opener)?.focus());
     };
   }, []);
   useEffect(() => {
     const press = (event: KeyboardEvent) => {
-      const act = event.key === "Escape" ? onClose : keys[event.key];
+      const { onClose: close, keys: more } = now.current;
+      const act = event.key === "Escape" ? close : more[event.key];
       if (!act || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
       act();
     };
     // The browser keeps the Escape to itself that ends its full screen.
     const left = () => {
-      if (!document.fullscreenElement) onClose();
+      if (!document.fullscreenElement) now.current.onClose();
     };
     addEventListener("keydown", press);
     document.addEventListener("fullscreenchange", left);
@@ -49,7 +51,7 @@ export function Frame({ label, onClose, keys = {}, back, buttons, children }: Fr
       removeEventListener("keydown", press);
       document.removeEventListener("fullscreenchange", left);
     };
-  });
+  }, []);
   return (
     <section
       ref={element}

@@ -36,6 +36,7 @@ interface Parsed {
 }
 
 const NOW_MS = 5000;
+const PING_MS = 2000;
 const TYPES = { evidence: "text/csv", tables: "application/zip" };
 const NO_TOURNAMENT: TournamentState = {
   state: "none",
@@ -92,6 +93,8 @@ export class Teacher {
     setInterval(() => {
       this.nowS.value = Date.now() / 1000;
     }, NOW_MS);
+    // A class may be quiet for long: only an answer shows that the gateway is there.
+    setInterval(() => this.connection.ask("ping").catch(() => undefined), PING_MS);
   }
 
   /** What a student is called on this page. */
