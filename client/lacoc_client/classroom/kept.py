@@ -7,11 +7,10 @@ from lacoc_client.design.learning.draft import NAME as DRAFT
 from lacoc_client.design.learning.draft import read_draft
 from lacoc_client.phases.class_file import ClassFile, Damaged, KeptTable
 from lacoc_client.phases.export import evidence_csv, tables_zip
+from lacoc_client.seat_files import USUAL_NAMES
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
 from lacoc_shared.words import say
 
-RECORDINGS = "recordings"
-"""Folder in the folder of a class with the records of its matches."""
 EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 
 
@@ -27,8 +26,8 @@ def student_files(kept: Iterable[KeptTable]) -> list[KeptTable]:
         except FileRefused:  # a cell without an angle: pages send no such table
             continue
         found += [
-            KeptTable(one.student, file.name, one.version, one.at_s, file.data)
-            for file in files
+            KeptTable(one.student, name, one.version, one.at_s, file.data)
+            for name, file in zip(USUAL_NAMES, files, strict=True)
             if file is not None
         ]
     return found
