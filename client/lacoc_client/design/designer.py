@@ -28,9 +28,9 @@ EVIDENCE_FILE = "lacoc-evidence.sqlite"
 """Name of the file in the folder that keeps what was done."""
 
 _LOOK_S = 1.0
-"""How often the folder is looked at, and pages get a sign of life."""
+"""How often to look for changed files, and to send pages a sign of life [s]."""
 _SOON_S = 0.1
-"""How soon pages are told that a studio has come or gone."""
+"""How soon pages are told that a studio has come or gone [s]."""
 
 
 class Designer:
@@ -79,12 +79,12 @@ class Designer:
         student.tell()
 
     def sample(self) -> FileContent:
-        """Read the sample postures of the robot, which may have none; may block."""
+        """Read the robot's sample postures from the disk; empty if the robot has no sample."""
         return sample_postures(self._robot_name)
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
-        """Look at the folder and for a studio until the block ends, and tell the pages."""
+        """Watch the folder and the studio until the block ends, and tell pages what changes."""
         self.studios.start()
         await self._student.diary.read()
         looking = asyncio.get_running_loop().create_task(self._look())

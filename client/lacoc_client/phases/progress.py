@@ -9,24 +9,24 @@ from lacoc_client.phases.phases import PHASES
 from lacoc_client.phases.predicates import Outcome
 
 State = Literal["open", "met", "skipped"]
-"""A phase is skipped if the student went on without doing its task. Nothing locks: the student can
-come back, and the task is met as soon as evidence shows it."""
+"""A phase is "skipped" if the student went on without doing its task. The student can come back at
+any time, and the phase is "met" as soon as the evidence shows it."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a student is."""
+    """How far a student is in the six phases."""
 
     phase: int
     """Number of the phase that the student is at, from 1."""
     states: tuple[State, ...]
     """State of each phase."""
     outcomes: tuple[Outcome, ...]
-    """For each phase, how far it is and what is missing."""
+    """For each phase, the share that is done and what is missing."""
     hand_up: bool
-    """Whether the student asks for help."""
+    """Whether the student asks for help now."""
     coached: bool
-    """Whether the student ever took over what the coach found."""
+    """Whether the student has ever taken over changes of the coach."""
     seen: int
     """Number of pieces of evidence that it was found from."""
 

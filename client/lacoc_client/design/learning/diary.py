@@ -27,14 +27,14 @@ class PhaseState(msgspec.Struct, frozen=True, kw_only=True):
     """From 1 to 6."""
     state: State
     share: float
-    """How much of the task is done, from 0 to 1."""
+    """Part of the task that is done, from 0 to 1."""
     title: Phrase
     task: Phrase
     question: Phrase
     hint: Phrase
     explanation: Phrase
     missing: tuple[Phrase, ...]
-    """What is still missing, the most useful first."""
+    """Sentences that say what is still missing, the most useful first."""
 
 
 class Phases(msgspec.Struct, frozen=True, kw_only=True):
@@ -78,7 +78,7 @@ class Diary:
             await self._opened()
 
     async def add(self, *evidence: Evidence) -> None:
-        """Keep evidence; it is on the disk when this returns, unless there is trouble."""
+        """Keep evidence; when this returns, it is on the disk, or `Phases.trouble` says why not."""
         if not evidence:
             return
         self._take(evidence)
@@ -89,7 +89,7 @@ class Diary:
             await _kept(asyncio.gather(*done))
 
     async def vote(self, poll: str, choice: str) -> None:
-        """Keep a vote; for a poll in which the student has voted before, nothing is kept."""
+        """Keep a vote, unless the student has voted in this poll before."""
         if Voted(poll=poll) in self._evidence:
             return
         self._take([Voted(poll=poll)])
