@@ -1,4 +1,4 @@
-"""A page of /design without a browser."""
+"""A client of /design without a browser, for tests."""
 
 from typing import Any
 

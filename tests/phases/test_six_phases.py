@@ -171,7 +171,7 @@ def test_a_student_may_skip_and_come_back() -> None:
 
 
 def test_all_texts_are_in_both_languages() -> None:
-    """Each text of a phase is a whole sentence, in English and in Japanese."""
+    """Each text of a phase can be shown, and differs in English and Japanese."""
     for phase in PHASES:
         for phrase in (phase.title, phase.task, phase.question, phase.hint, phase.explanation):
             assert not faults(phrase)

@@ -57,7 +57,7 @@ class DesignPage:
                 await asyncio.shield(self._studio.gone())
 
     async def _take(self, asked: requests.Asked) -> bool:
-        """Answer a request of a page that was let in; close a page that begins with another."""
+        """Answer a request of a page that was let in; close a page that sends no hello first."""
         if isinstance(asked, requests.Hello):
             await self._enter(asked)
         elif self._learner is not None and self._viewer.can_act:

@@ -27,7 +27,7 @@ _Sequences = tuple[tuple[Annotated[int, msgspec.Meta(ge=0, le=9)], ...], ...]
 
 
 class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
-    """The first message: the page key, or what lets a student into a class."""
+    """Ask to be let in, with the page key or with a class code and a name; the first message."""
 
     key: _Name = ""
     code: _Name = ""

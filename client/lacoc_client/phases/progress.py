@@ -28,16 +28,16 @@ class Progress:
     coached: bool
     """Whether the student has ever taken over changes of the coach."""
     seen: int
-    """Number of pieces of evidence that it was found from."""
+    """Number of pieces of evidence from which this was computed."""
 
 
 def progress(evidence: Sequence[Evidence], before: Progress | None = None) -> Progress:
-    """Say how far a student is.
+    """Compute how far a student is.
 
     Args:
-        evidence: all that the student did, in order.
-        before: what was said of an earlier part of it. Tasks that were met then are not looked at
-            again, because what was reached once stays reached.
+        evidence: all evidence of the student, in order.
+        before: the result for an earlier part of the same evidence. Tasks that were met then are
+            not looked at again, because a task that was met stays met.
     """
     visited = [one.phase for one in evidence if isinstance(one, Moved)]
     visited = [number for number in visited if 1 <= number <= len(PHASES)]

@@ -57,11 +57,11 @@ class CheckReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Learner:
-    """What one page does; used from the event loop only.
+    """Makes evidence of what one page does; used from the event loop only.
 
     Args:
-        student: whose page it is.
-        sample: lets the sample gait walk as a trial did; None: the robot has none.
+        student: the student whose page it is.
+        sample: repeats a trial with the sample gait; returns None if the robot has no sample.
     """
 
     def __init__(
@@ -129,10 +129,10 @@ class Learner:
         await self._diary.add(*evidence)
 
     async def compared(self, asked: requests.TrialAsk) -> bool:
-        """Compare the last trial of a key of level B with the same one of the sample.
+        """Compare the last trial of a key of level B with the same trial of the sample gait.
 
         Returns:
-            Whether that is evidence.
+            Whether the comparison was kept as evidence.
         """
         own = self._last.get(asked.keys)
         if asked.table is None or own is None or not own.keys[-1].startswith("B"):
@@ -142,7 +142,7 @@ class Learner:
             try:
                 reply = await self._sample(asked)
             except (UserError, FileRefused):
-                return False  # perhaps the next time
+                return False  # the sample can't be tried now; the next trial asks again
             self._samples[place] = None if reply is None else _facts(reply, asked.keys)
         sample = self._samples[place]
         differs = differences(own, sample) if sample is not None else ()

@@ -37,11 +37,11 @@ for others, and after it the coach undoes changes that hardly help."""
 
 
 class StudioDesk:
-    """What one page asks of the studios.
+    """Sends the requests of one page to the studios.
 
     Args:
-        studios: the ways to them.
-        send: sends a message to the page, if the page keeps up.
+        studios: the connections to the studios.
+        send: sends a message to the page; drops it if the page reads too slowly.
     """
 
     def __init__(self, studios: Studios, send: Callable[[bytes], None]) -> None:
@@ -50,7 +50,7 @@ class StudioDesk:
         self._page = secrets.token_hex(4)
         self._trying = asyncio.Lock()
         self._jobs: dict[str, Asker] = {}
-        """The searches that run -> the way to the studio that does it."""
+        """Name of each search that runs -> the connection to the studio that runs it."""
 
     async def robot(self, asked: requests.RobotAsk) -> msgspec.Raw:
         """Ask what a robot file describes; all methods here raise the errors of `Asker.ask`."""
