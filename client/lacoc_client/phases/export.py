@@ -89,7 +89,7 @@ def free_name(name: str, taken: Iterable[str]) -> str:
     """Make a name for a file or folder from the name of a person.
 
     Every system accepts the result. A name that is taken gets a number, such as "Ada (2)". Names
-    that differ only in capital letters or in the form of accents count as equal, as on some systems.
+    that differ only in capital letters or in the form of accents count as equal.
 
     Args:
         name: name of the person.
