@@ -200,6 +200,15 @@ def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -
     assert {one["job"] for one in page.progress} == {"search"}
 
 
+def test_a_page_that_goes_ends_its_search(opens: Opens) -> None:
+    """A search of two minutes whose page has gone does not keep the next one waiting."""
+    gone, other = opens(), opens()
+    gone.send("coach", job="long", table=sample(gone), size="table", seconds=120.0)
+    gone.until(lambda: gone.progress)
+    gone.close()
+    assert other.ask("coach", job="short", table=sample(other), size="cell", seconds=0.0)["matters"]
+
+
 def test_too_much_is_one_clear_answer(page: DesignClient) -> None:
     """Requests and texts that are too long are refused, and the connection stays open."""
     pasted = "45\t" * (10_000_000 // 3)

@@ -1,7 +1,6 @@
 """The connection of one /design page: it takes the page's requests and has them answered."""
 
 import asyncio
-from contextlib import suppress
 from typing import Any
 
 import msgspec
@@ -53,8 +52,6 @@ class DesignPage:
             self._answers.stop()
             for task in self._comparing:
                 task.cancel()
-            with suppress(UserError):
-                await asyncio.shield(self._studio.gone())
 
     async def _take(self, asked: requests.Asked) -> bool:
         """Answer a request of a page that was let in; close a page that sends no hello first."""

@@ -3,6 +3,7 @@
 import asyncio
 import secrets
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import msgspec
@@ -16,6 +17,7 @@ from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import in_loop
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared.messages import PROTOCOL, Done, SentFile
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.studio import (
     CancelRequest,
     CoachReply,
@@ -98,6 +100,10 @@ class StudioDesk:
         try:
             timeout_s = asked.seconds + _COACH_MORE_S
             return msgspec.Raw((await asker.ask("coach", request, CoachReply, timeout_s))[1])
+        except asyncio.CancelledError:  # the page has gone, so nobody waits for the search
+            with suppress(UserError):
+                await self._cancel(job)
+            raise
         finally:
             self._jobs.pop(job, None)
             await asyncio.shield(asyncio.to_thread(listening.close))
@@ -106,11 +112,6 @@ class StudioDesk:
         """End a search of this page early; the reply to `coach` has the best table so far."""
         await self._cancel(self._job(job))
         return {}
-
-    async def gone(self) -> None:
-        """End the searches that the page has left running."""
-        for job in list(self._jobs):
-            await self._cancel(job)
 
     async def _cancel(self, job: str) -> None:
         request = CancelRequest(protocol=PROTOCOL, job=job)
