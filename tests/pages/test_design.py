@@ -198,7 +198,7 @@ def test_a_beginner_s_first_gait(
     page.cell_is(3, 13, "40")
     click(".try")
     page.sees(".result .tiles")
-    figures = page.page.evaluate("window.__studio.shown.value.trial.reply.figures")
+    figures = page.page.evaluate("window.__studio.showing.shown.value.trial.reply.figures")
     assert figures["cycles"] == 5
     assert figures["speed_mm_s"] * figures["seconds"] > 100
     assert figures["upright"] > 0.9
