@@ -3,7 +3,6 @@
 import type { ReadonlySignal, Signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect } from "preact/hooks";
-import "./drop.css";
 
 /**
  * Take what is dropped while this component is there.

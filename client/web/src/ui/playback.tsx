@@ -3,7 +3,6 @@
 import type { Playback } from "../core/playback";
 import { t } from "../i18n";
 import { Icon } from "./icons";
-import "./playback.css";
 
 interface PlayProps {
   playback: Playback;

@@ -37,7 +37,7 @@ export function PhasePanel({ learning, sheet, trials, canTry }: Props) {
         </p>
       )}
       <h3>
-        {number} {said(phase.title)} <span data-state={state}>{stateName(state)}</span>
+        {number}. {said(phase.title)} <span data-state={state}>{stateName(state)}</span>
       </h3>
       <p class="learn-task">{said(phase.task)}</p>
       <p>{said(phase.question)}</p>
