@@ -3,6 +3,7 @@
 import { signal, useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { said, t } from "../i18n";
+import { Banner, waitsForGateway } from "../ui/banner";
 import { Dropping, useDrop } from "../ui/drop";
 import { isNarrow } from "../ui/screen";
 import { Settings } from "../ui/settings";
@@ -99,22 +100,11 @@ export default function Design() {
 
 /** What the page waits for. */
 function Waiting({ studio }: { studio: Studio }) {
-  const { open, attempt, refused } = studio.gateway.state.value;
   const why = studio.why.value;
-  const text = refused
-    ? said(refused)
-    : !open
-      ? t(attempt > 1 ? "link.page" : "link.connecting", { attempt })
-      : studio.present.value === false
-        ? why
-          ? said(why)
-          : t("design.noStudio")
-        : "";
-  return text ? (
-    <div class="banner" role="status">
-      {text}
-    </div>
-  ) : null;
+  const noStudio = why ? said(why) : t("design.noStudio");
+  const text =
+    waitsForGateway(studio.gateway.state.value) || (studio.present.value === false && noStudio);
+  return text ? <Banner>{text}</Banner> : null;
 }
 
 /** Keys that work wherever the focus is. */
