@@ -118,9 +118,9 @@ function fromBase64(text: string): Uint8Array {
 }
 
 /** Hand a file, in its parts, to the person. */
-export function download(name: string, parts: string[]): void {
+export function download(name: string, parts: BlobPart[], type = "text/plain"): void {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob(parts, { type: "text/plain" }));
+  link.href = URL.createObjectURL(new Blob(parts, { type }));
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);

@@ -57,6 +57,8 @@ export interface BadCell {
 
 /** The joints of a leg, from the body outward. */
 export const LEVELS = ["Root", "1st", "2nd"] as const;
+/** Postures of a table to begin with. */
+const STANDING_KEYS = 9;
 /** The range of a joint if no robot says another (workshop 3-1) [deg]. */
 export const USUAL_RANGE: Range = [-150, 150];
 /** Sums of angles are rounded to a multiple of 1 / EXACT degrees. */
@@ -132,6 +134,16 @@ export function fromWire(wire: FileTable, columns: Columns): Table {
     cells: angles_deg.map((angle, col) => readCell(String(angle), ranges[col] ?? USUAL_RANGE)),
   }));
   return { kind: wire.kind, legs, ranges, rows };
+}
+
+/** Make a table to begin with: all postures are that in which the robot stands. */
+export function standing(robot: RobotReply): Table {
+  const rows = Array.from({ length: STANDING_KEYS }, (_, key) => ({
+    key,
+    posture: 0,
+    angles_deg: robot.start_deg,
+  }));
+  return fromWire({ kind: "postures", legs: robot.legs.length, rows }, columnsOf(robot));
 }
 
 /** The table in the wire format; null while a cell has no angle. */
