@@ -1,4 +1,4 @@
-"""What a class leaves behind, as files for a teacher."""
+"""Exports of a class: evidence and tables as files for a teacher."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -15,7 +15,7 @@ EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 
 
 def student_files(kept: Iterable[KeptTable]) -> list[KeptTable]:
-    """Turn the drafts among what is kept into the files of a gait; the rest is left out."""
+    """Return the gait and robot files of all drafts; tokens and settings are left out."""
     found = []
     for one in kept:
         draft = read_draft(one) if one.name == DRAFT else None
@@ -34,7 +34,7 @@ def student_files(kept: Iterable[KeptTable]) -> list[KeptTable]:
 
 
 def export(path: Path) -> dict[str, bytes]:
-    """Read a class that is not open, as files by name.
+    """Export a class that no program has open; return the files by name.
 
     Raises:
         UserError: if there is no such class, it is open, or its file is damaged.
