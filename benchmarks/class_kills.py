@@ -2,10 +2,10 @@
 
     python -m benchmarks.class_kills --kills 100
 
-A child keeps evidence and tables as fast as it can, and says what it was told is kept. It is killed
-at a random moment (SIGKILL). Then the file is opened: all evidence that was acknowledged must be
-there, and no table may be older than 2 s at the time of the kill, plus the time for which the
-machine let the child stand still.
+A child process writes evidence and tables, and prints each that the store has accepted. It is
+killed at a random moment (SIGKILL). Then the file is opened. All acknowledged evidence must be
+there. A change of the table may be lost only if it was made less than 2 s before the kill; the
+longest time for which the machine let the child stand still is added to this.
 """
 
 import argparse
@@ -24,24 +24,24 @@ from lacoc_client.phases.store import ClassStore
 
 STUDENT, FILE = "Ada", "Loco-data.txt"
 OLDEST_S = 2.0
-"""How old a lost table may be."""
+"""How long before the kill a lost change of the table may have been made [s]."""
 _PAUSE_S = 0.005
-_LONGEST_S = 3.5  # longer than `OLDEST_S`, so that tables must have been written
+_LONGEST_S = 3.5  # longer than `OLDEST_S`, so that in some runs a table must have been written
 
 
 class Killed(NamedTuple):
-    """What one kill showed."""
+    """What the file had after one kill."""
 
     acknowledged: int
-    """Number of the last evidence that was acknowledged; 0: none."""
+    """Number of the last acknowledged piece of evidence; 0: none."""
     kept: int
-    """Number of the last evidence in the file."""
+    """Number of the last piece of evidence in the file."""
     holes: int
-    """How many numbers before it are missing."""
+    """How many pieces of evidence before the last one are missing in the file."""
     table_lost_s: float
-    """Age, at the kill, of the oldest change of the table that was lost; 0: none was."""
+    """Age, at the kill, of the oldest change of the table that was lost [s]; 0: none was lost."""
     stalled_s: float
-    """Longest time between two lines of the child."""
+    """Longest time between two lines that the child printed [s]."""
 
     @property
     def lost(self) -> int:
@@ -50,7 +50,7 @@ class Killed(NamedTuple):
 
 
 def kill_once(path: Path, after_s: float) -> Killed:
-    """Start a child on a file, kill it some time after its first line, and look at the file."""
+    """Start a child on a file, kill it `after_s` after its first line, and look at the file."""
     child = subprocess.Popen(
         [sys.executable, "-m", "benchmarks.class_kills", "--child", str(path)],
         stdout=subprocess.PIPE,
@@ -81,7 +81,7 @@ def kill_once(path: Path, after_s: float) -> Killed:
 
 
 def keep_on(path: Path) -> None:
-    """Keep evidence and tables until somebody ends this process."""
+    """Write evidence and tables until somebody ends this process."""
     store = ClassStore(path)
     version = max((int(table.version) for table in store.tables()), default=0)
     while True:

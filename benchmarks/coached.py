@@ -1,12 +1,12 @@
-"""Measures the coach: how fast and how right it ranks numbers, and how much faster robots get.
+"""Measures the coach: how fast and how well it ranks numbers, and how much faster robots become.
 
-python -m benchmarks.coached matters            # the sample: time, and Kendall's tau
+python -m benchmarks.coached matters            # rank the sample's numbers: time, Kendall's tau
 python -m benchmarks.coached beginners --tables 50 --size table
-python -m benchmarks.coached sample             # from the sample, under both ways to advance
+python -m benchmarks.coached sample             # improve the sample, with both ways to advance
 
-A beginner's table is the sample with smaller swings, other lifts and errors in every number; half
-of them also have a fault (benchmarks/explained.py). Only tables with which the robot walks forward
-count, as a beginner asks the coach about a gait of their own that works.
+A beginner's table is the sample with smaller swings, other lifts, and an error in every number.
+Half of these tables also have a fault (benchmarks/explained.py). Only tables with which the robot
+walks forward are used, because beginners ask the coach about a gait that already works.
 """
 
 import argparse
@@ -37,7 +37,7 @@ from lacoc_shared.gait.tables import Gait, LocomotionTable, Posture
 _ROBOT, _KEY = "hexapod", 2
 _NOISE_DEG = 8
 _LEAST_MM_S = 10.0
-"""A beginner's robot walks at least this fast."""
+"""A beginner's table is used only if the robot walks at least this fast."""
 _HOLD_US = 200_000
 _AIMS = {"matters_s": 10.0, "tau": 0.8, "table": 2.0, "three": 1.3, "reached": 85.0, "time": 180.0}
 
@@ -63,7 +63,7 @@ def main() -> None:
 
 
 def _matters(workers: Workers) -> tuple[dict[str, Any], bool]:
-    """Rank the sample's numbers as the coach does, and again by longer trials."""
+    """Rank the sample's numbers as the coach does, and compare the order with longer trials."""
     entry = entry_of(_ROBOT)
     task = task_of(entry.robot, entry.gait, _KEY, Goal.FORWARD, None)
     trials = Trials(task, workers, threading.Event())
@@ -96,7 +96,7 @@ def _sample(workers: Workers, seconds: float) -> tuple[dict[str, Any], bool]:
 
 
 def _beginners(workers: Workers, options: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    """Search from many beginners' tables."""
+    """Search for a better table from each of many beginners' tables."""
     robot = entry_of(_ROBOT).robot
     ratios, searched_s = [], []
     for _, gait in zip(range(options.tables), beginners(robot), strict=False):
@@ -115,7 +115,7 @@ def _beginners(workers: Workers, options: argparse.Namespace) -> tuple[dict[str,
 
 
 def beginners(robot: RobotSpec) -> Iterator[Gait]:
-    """Make tables of beginners, one after another, for ever."""
+    """Yield beginners' gaits without end."""
     entry = entry_of(_ROBOT)
     assert entry.gait.locomotion is not None
     stand, sample = (entry.gait.locomotion.sequences[key] for key in (0, _KEY))
@@ -131,7 +131,7 @@ def beginners(robot: RobotSpec) -> Iterator[Gait]:
 
 
 def kendalls_tau(one: Sequence[float], other: Sequence[float]) -> float:
-    """Return how alike two orders are: 1 for the same, -1 for the reverse (tau-b)."""
+    """Return how similar two orders are: 1 for the same order, -1 for the reverse (tau-b)."""
     same = ties_one = ties_other = 0
     pairs = [*combinations(range(len(one)), 2)]
     for a, b in pairs:

@@ -1,4 +1,4 @@
-"""Puts one fault into each of many tables: does the first sentence name the fault, and its leg?
+"""Puts one fault into each of many tables, and counts how often the first sentence names it.
 
 python -m benchmarks.explained --tables 200
 """
@@ -24,15 +24,15 @@ from lacoc_shared.words import Phrase, render
 
 KEY = 2
 _NOISE_DEG = 3
-"""Each angle of a table differs by at most this much from the sample's, so no two are equal."""
+"""Each angle differs by at most this much from the sample's, so that no two tables are equal."""
 _AIM = 0.9
 
 Table = list[list[float]]
-"""For each posture its angles [deg], by joint id."""
+"""For each posture, its angles by joint id [deg]."""
 
 
 class Told(NamedTuple):
-    """A fault, and what was said of it."""
+    """A fault that was put into a table, and the sentences that explain the trial."""
 
     fault: str
     leg: str
@@ -42,7 +42,7 @@ class Told(NamedTuple):
 
 
 def main() -> None:
-    """Put in faults, print how many were named, and exit with 1 if they are too few."""
+    """Put faults into tables, print how many were named, and exit with 1 if they are too few."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.explained", description=__doc__)
     parser.add_argument("--tables", type=int, default=200)
     parser.add_argument("--verbose", action="store_true", help="print each that was not named")
@@ -63,7 +63,7 @@ def main() -> None:
 
 
 def tell(seed: int) -> Told:
-    """Put a fault into a table, let the robot walk with it, and return how it is explained."""
+    """Put a fault into a table, let the robot walk with the table, and return the explanation."""
     rng = random.Random(seed)
     name = tuple(FAULTS)[seed % len(FAULTS)]
     code, put = FAULTS[name]
@@ -73,7 +73,7 @@ def tell(seed: int) -> Told:
         [math.degrees(angle) + rng.randint(-_NOISE_DEG, _NOISE_DEG) for angle in posture]
         for posture in entry.gait.locomotion.sequences[KEY]
     ]
-    # The sample's middle legs do not swing: turned around, they would do the same.
+    # The sample's middle legs do not swing, so the fault "swapped" would change nothing there.
     swinging = [leg for leg in range(len(entry.robot.legs)) if _swings(table, leg)]
     leg = rng.choice(swinging if name == "swapped" else range(len(entry.robot.legs)))
     put(table, leg, entry.robot, rng)
@@ -116,14 +116,14 @@ def _dragged(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> No
 
 
 def _swapped(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """Turn the root of a leg the wrong way, as if the leg were on the other side."""
+    """Swing the root of a leg the wrong way, as if the leg were on the other side."""
     roots = [posture[leg] for posture in table]
     for posture in table:
         posture[leg] = max(roots) + min(roots) - posture[leg]
 
 
 def _late(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """Let a leg do everything one posture late."""
+    """Move a leg's angles to the next posture, so that the leg does everything one posture late."""
     legs = len(robot.legs)
     for joint in range(leg, len(table[0]), legs):
         angles = [posture[joint] for posture in table]
@@ -132,7 +132,7 @@ def _late(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
 
 
 def _seam(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """Turn a joint by equal steps from posture to posture, so that it jumps back at the end."""
+    """Turn a joint by equal steps from posture to posture, so that it jumps back at the seam."""
     joint = leg + len(robot.legs) * rng.choice((0, 2))
     step = rng.choice((-1, 1)) * rng.randint(13, 18)
     middle = table[0][joint]
@@ -155,7 +155,7 @@ def _belly(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None
 
 
 def _none(table: Table, leg: int, robot: RobotSpec, rng: random.Random) -> None:
-    """Leave the table as it is: nothing must be blamed."""
+    """Leave the table without a fault; the explanation must not name one."""
 
 
 FAULTS: dict[
@@ -169,9 +169,9 @@ FAULTS: dict[
     "belly": (("explain.belly",), _belly),
     "none": (("explain.slides", "explain.turns", "explain.unstable", "explain.walks"), _none),
 }
-"""Faults by name: the sentences that name each, and what puts it into a table."""
+"""For each fault: the codes of the sentences that name it, and the function that puts it in."""
 WHOLE = frozenset({"belly", "none"})
-"""Faults of the whole robot, which have no leg."""
+"""Faults of the whole robot, not of one leg."""
 
 if __name__ == "__main__":
     main()

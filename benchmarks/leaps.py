@@ -86,7 +86,7 @@ class Found(NamedTuple):
 
 
 def at_random(seed: int) -> Candidate:
-    """Make a random robot."""
+    """Make a robot with random numbers; the same seed makes the same robot."""
     dice = random.Random(seed)
     legs = dice.choice((4, 6, 8))
     numbers = {}

@@ -1,9 +1,9 @@
-"""How long a studio takes to answer a trial: to one student alone, and to a class that shares it.
+"""Measures how long a studio takes to answer trials: for one student, and for a whole class.
 
 python -m benchmarks.studio --students 30 --seconds 60
 
-Each student tries another gait every 10 s. The time of the bare trial, in this process and with no
-network, stands beside it.
+In the class, each student tries another gait every 10 s. For comparison, the same trial is also
+timed in this process, without a network.
 """
 
 import argparse
@@ -34,12 +34,16 @@ _EVERY_S = 10.0
 
 @dataclass
 class Student:
-    """A student: when the next trial is due, the trial that runs, and what all have taken."""
+    """A student who asks for trials."""
 
     due_s: float
+    """When to ask for the next trial [s]."""
     asked_s: float = 0.0
+    """When the last trial was asked for [s]."""
     question: Question | None = None
+    """The trial that has not been answered yet."""
     took_s: list[float] = field(default_factory=list)
+    """How long each answered trial took [s]."""
 
 
 def main() -> None:
@@ -86,7 +90,7 @@ def main() -> None:
 
 
 def _request(rng: random.Random) -> bytes:
-    """Make a request for a trial of a gait that nobody has tried."""
+    """Make a request for a trial of the sample gait with random changes."""
     entry = entry_of(_ROBOT)
     assert entry.gait.locomotion is not None
 
@@ -102,7 +106,7 @@ def _request(rng: random.Random) -> bytes:
 
 
 def _bare_s(rng: random.Random) -> float:
-    """Time the same work in this process, with a floor that is already compiled."""
+    """Measure how long such a trial takes in this process, with a floor that is compiled."""
     course = course_of(_ROBOT)
     times = []
     for _ in range(10):

@@ -1,4 +1,4 @@
-"""Compares trials with matches, and counts how often feet change, on random tables.
+"""Compares trials with matches on random tables, and counts how often feet go up or down.
 
 python -m benchmarks.trials --tables 1000
 """
@@ -33,25 +33,27 @@ from lacoc_shared.seat import Phase
 
 ROBOTS = ("hexapod", "quadruped", "octopod")
 _TURN_DEG = 60
-"""Drawn angles are at most this far from the start posture."""
+"""Random angles are at most this far from the start posture."""
 _WALKS_MM_S = 10.0
-"""A table walks if the robot goes forward at least this fast, on its feet."""
+"""A robot walks if it goes forward faster than this, on its feet."""
 _LOW_M = 0.001
 
 
 class Compared(NamedTuple):
-    """A table's trial beside the match of the same keys."""
+    """A comparison of a table's trial with a match of the same keys."""
 
     robot: str
     ticks: int
     cycles: int
     differs_at: int | None
-    """First cycle at whose end the state hash differs; -1: only other ticks differ; None: none."""
+    """Index of the first cycle at whose end the state hashes differ; -1: they differ only in other
+    ticks; None: they never differ."""
     walks: bool
+    """Whether the robot walks."""
     changes_hz: float
     """How often a foot comes down or goes up, mean over the feet [1/s]."""
     agrees: float
-    """Share of ticks and feet in which load and height agree whether the foot is down."""
+    """Share of ticks and feet in which load and height agree on whether the foot is down."""
 
 
 def main() -> None:
@@ -117,14 +119,14 @@ def _walks(figures: Figures) -> bool:
 
 
 def _agrees(walk: Walk) -> float:
-    """Return the share of ticks and feet in which a foot is down and low, or neither."""
+    """Return the share of ticks and feet in which a foot is both down and low, or neither."""
     part = slice(walk.span.first, walk.span.end)
     down = walk.down[part]
     return float(((walk.tip_m[part] < _LOW_M) == down).mean()) if len(down) else 1.0
 
 
 def _drawn(rng: random.Random, robot: str) -> tuple[Gait, SentFile]:
-    """Draw a gait of whole degrees, and its file; about every second is a changed sample gait."""
+    """Draw a gait in whole degrees, and its file; half of the gaits are changed sample gaits."""
     entry = entry_of(robot)
     spec = entry.robot
     assert entry.gait.locomotion is not None
@@ -166,7 +168,7 @@ def _drawn(rng: random.Random, robot: str) -> tuple[Gait, SentFile]:
 def match_digests(
     robot: str, locomotion: SentFile, presses: Sequence[Press], ticks: int
 ) -> list[bytes]:
-    """Play a trial's keys in a match of practice; return the state hash after each tick."""
+    """Play a trial's keys in a practice match; return the state hash after each tick."""
     settings = practice_field().settings
     setup = Setup(
         match_id="trial", court="trial", match=1, arena="practice", settings=settings, limits={}

@@ -1,4 +1,4 @@
-"""A `lacoc` process that a command starts for itself, and ends: a court, or a studio."""
+"""A `lacoc` process, such as a court or a studio, that a command starts and ends for itself."""
 
 import json
 import os
@@ -16,11 +16,11 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, current, render, say
 
 _OPEN_S = 60.0
-"""Time for a process to be ready, also on a slow machine."""
+"""Longest time until a process must be ready [s], also on a slow machine."""
 _CLOSE_S = 10.0
 _LOOK_S = 0.02
 _AGAIN_S = 1.0
-"""How soon a process that has ended is started again."""
+"""How often to check whether the process has ended and must be started again [s]."""
 
 
 def command_line(words: Sequence[str]) -> list[str]:
@@ -29,10 +29,10 @@ def command_line(words: Sequence[str]) -> list[str]:
 
 
 def apart() -> dict[str, Any]:
-    """Return the options with which a `lacoc` process is started.
+    """Return the options of `subprocess` with which a `lacoc` process is started.
 
-    It takes nothing from this process's settings but the language, and reads no keys. Ctrl-C does
-    not reach it: it ends after the command that started it.
+    The process gets only the language from this process's LACOC_ variables, and reads no keys.
+    Ctrl-C does not reach it: the command that started it ends it.
     """
     environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
     return {
@@ -47,23 +47,23 @@ class Child:
 
     Args:
         words: the words of the command line after `lacoc`.
-        folder: folder for what it prints.
-        what: what it is, as the subject of a sentence (`child.*`).
+        folder: folder for the files with the process's output.
+        what: name of the process for messages (`child.*`), such as "The studio".
     """
 
     def __init__(self, words: list[str], folder: Path, what: Phrase) -> None:
         self._what = what
-        # Its output goes into files: it would block on a pipe that nobody empties.
+        # The output goes into files: with a pipe that nobody empties, the process would block.
         self._said = folder / "child.out"
         self._complained = folder / "child.err"
         with self._said.open("wb") as out, self._complained.open("wb") as err:
             self._process = subprocess.Popen(command_line(words), stdout=out, stderr=err, **apart())
 
     def opened(self) -> dict[str, Any]:
-        """Wait until it is ready; return the message that it prints then.
+        """Wait until the process is ready; return the message that it prints then.
 
         Raises:
-            UserError: if it ends, or takes too long; the message is its own.
+            UserError: if the process ends (the error quotes what it printed), or takes too long.
         """
         deadline_s = time.monotonic() + _OPEN_S
         while time.monotonic() < deadline_s:
@@ -84,7 +84,7 @@ class Child:
         return self._process.poll() is not None
 
     def show_crash(self) -> None:
-        """Print what it complained about, if it has crashed: its files are deleted soon."""
+        """Print the errors of a process that crashed: the file with them is deleted soon."""
         if self._process.poll():
             screen.note(_text(self._complained))
 
@@ -104,11 +104,11 @@ def child(words: list[str], folder: Path, what: Phrase) -> Iterator[dict[str, An
 
     Args:
         words: the words of the command line after `lacoc`.
-        folder: folder for what it prints.
-        what: what it is, as the subject of a sentence (`child.*`).
+        folder: folder for the files with the process's output.
+        what: name of the process for messages (`child.*`), such as "The studio".
 
     Raises:
-        UserError: if it does not become ready.
+        UserError: if the process does not become ready.
     """
     process = Child(words, folder, what)
     with ExitStack() as stack:
@@ -125,12 +125,12 @@ def kept_child(
 
     Args:
         words: the words of the command line after `lacoc`.
-        folder: folder for what it prints.
-        what: what it is, as the subject of a sentence (`child.*`).
-        again: makes the words for another start from the message that the first one printed.
+        folder: folder for the files with the process's output.
+        what: name of the process for messages (`child.*`), such as "The studio".
+        again: takes the message of the first start, and returns the words for all later starts.
 
     Raises:
-        UserError: if it does not become ready at the first start.
+        UserError: if the process does not become ready at the first start.
     """
     process = Child(words, folder, what)
     ending = threading.Event()
@@ -152,11 +152,11 @@ def kept_child(
 
 
 def complaint(errors: str, exit_code: int | None) -> str:
-    """Return what a `lacoc` process complained about before it ended.
+    """Return the error with which a `lacoc` process ended, without the word "Error:".
 
     Args:
-        errors: what it wrote to standard error; `apart` sets its language.
-        exit_code: its exit code; of interest if it said nothing.
+        errors: the text that the process wrote to standard error.
+        exit_code: exit code of the process; the error names it if there is no text.
     """
     said = errors.strip() or f"its process ended with {exit_code}."
     return said.removeprefix(render(say("command.error"))).strip()

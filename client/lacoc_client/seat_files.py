@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from lacoc_robots.library import find_robot, sample_gait_files
+from lacoc_robots.library import GAIT_NAMES, find_robot, sample_gait_files
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.joining import join_postures, sample_sequences
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, LocomotionTable, PostureTable
@@ -16,6 +16,9 @@ from lacoc_shared.words import Phrase, say
 
 _POSTURES = ("Loco-data.txt", "Loco-data.xlsx", "Loco-data-6legs.txt")
 _LOCOMOTION = ("LocoTra-data.txt", "LocoTra-data*.txt")
+
+USUAL_NAMES = ("robot.toml", *GAIT_NAMES)
+"""Names under which the files of a join usually lie in a folder."""
 
 _ZIP = b"PK\x03\x04"  # first bytes of a workbook
 

@@ -1,4 +1,4 @@
-"""A picture of legs and joint ids in a terminal, to point at (workshop 3-1)."""
+"""Draws a robot's legs with their joint ids in a terminal, to point at joints (workshop 3-1)."""
 
 from collections.abc import Collection, Sequence
 
@@ -16,8 +16,8 @@ def joint_picture(labels: Sequence[str], lit: Collection[int]) -> Text:
     """Draw a robot from above, its front at the top, with the joint ids of each leg.
 
     Args:
-        labels: leg labels, clockwise from the right front; an even number.
-        lit: ids of the joints that stand out.
+        labels: leg labels, clockwise from the right front; their number is even.
+        lit: ids of the joints to highlight.
     """
     legs, half = len(labels), len(labels) // 2
     wide = max(map(len, labels))
@@ -39,7 +39,11 @@ def joint_picture(labels: Sequence[str], lit: Collection[int]) -> Text:
 
 
 def labels_of(mistakes: Sequence[Mistake]) -> tuple[str, ...] | None:
-    """Return the leg labels of the usual robot that the mistakes' joints fit; None: no robot."""
+    """Return the leg labels of the usual robot that has the joints and legs of all mistakes.
+
+    Of several such robots it is the one with six legs. None if there is none, or if no mistake
+    names a joint.
+    """
     named = [(one.joint, one.leg) for one in mistakes if one.joint is not None]
     for legs, labels in sorted(LEG_LABELS.items(), key=lambda item: item[0] != 6):
         if named and all(
@@ -51,7 +55,14 @@ def labels_of(mistakes: Sequence[Mistake]) -> tuple[str, ...] | None:
 
 
 def _ids(leg: int, legs: int, lit: Collection[int], outward: int) -> list[tuple[str, str]]:
-    """Write a leg's joint ids; the joint at the body is first if `outward` is 1, last if -1."""
+    """List a leg's joint ids with their styles, from left to right.
+
+    Args:
+        leg: index of the leg.
+        legs: number of legs.
+        lit: ids of the joints to highlight.
+        outward: 1: the joint at the body comes first; -1: it comes last.
+    """
     joints = [leg + legs * level for level in range(JOINTS_PER_LEG)][::outward]
     parts: list[tuple[str, str]] = []
     for joint in joints:

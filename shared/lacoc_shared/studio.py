@@ -1,7 +1,7 @@
 """The messages of a studio on the wire (docs/protocol.md has them as tables).
 
-A studio lets robots walk and searches for better gaits, for whoever asks it. It holds no state
-that an answer depends on: each request has the files that it is about.
+A studio lets robots walk, and searches for better gaits, for everybody who sends it a request. It
+remembers nothing between requests: each request has all the files that it needs.
 """
 
 from dataclasses import dataclass
@@ -14,9 +14,9 @@ from lacoc_shared.messages import Scene, SentFile, Sheet
 from lacoc_shared.words import Phrase
 
 STUDIO_MAX_BYTES = 131_072
-"""Largest request that a studio reads."""
+"""Largest request that a studio reads [bytes]."""
 TRIAL_REPLY_MAX_BYTES = 2 << 20
-"""Largest reply of a studio: a trial of 60 s with eight legs has 1.1 MB."""
+"""Largest reply of a studio [bytes]; a trial of 60 s with eight legs has 1.1 MB."""
 EVERY_STUDIO = "lacoc/*/live/studio"
 """Key expression for the announcements of all studios that can be reached (Zenoh's liveliness)."""
 
@@ -41,7 +41,7 @@ class StudioKeys:
 
     @property
     def alive(self) -> str:
-        """Key expression that is announced while the studio is connected (Zenoh's liveliness)."""
+        """Key expression that the studio announces while it is connected (Zenoh's liveliness)."""
         return f"lacoc/{self.studio}/live/studio"
 
     def request(self, what: str) -> str:
@@ -49,12 +49,12 @@ class StudioKeys:
         return f"{self.root}/ask/{what}"
 
     def progress(self, job: str) -> str:
-        """Return the key expression on which the studio tells how far a search is."""
+        """Return the key expression on which the studio sends the progress of a search."""
         return f"{self.root}/progress/{job}"
 
 
 class GaitFiles(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The files that a request is about, as those of a join: text, no workbooks."""
+    """The files of a request, in the format of those of a join: text, no workbooks."""
 
     robot: SentFile | None = None
     """None: the workshop's hexapod."""
@@ -62,8 +62,8 @@ class GaitFiles(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     locomotion: SentFile | None = None
     """With neither file and no robot: the workshop's sample gait."""
     sequences: tuple[tuple[int, ...], ...] | None = None
-    """Digits of the postures of each key of level B, if there is no locomotion file; None: as in
-    the sample's keys."""
+    """For each key of level B the digits of its postures, if there is no locomotion file; None: the
+    sequences of the sample's keys."""
 
 
 class RobotRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -74,11 +74,11 @@ class RobotRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class RobotReply(msgspec.Struct, frozen=True, kw_only=True):
-    """A robot, as pages draw it and tables have their columns."""
+    """A robot: what a page needs to draw it, and to make the columns of its table."""
 
     name: str
     legs: tuple[str, ...]
-    """Leg labels in leg order; joints are 3 * legs."""
+    """Leg labels in leg order; each leg has three joints."""
     ranges_deg: tuple[tuple[float, float], ...]
     """Lowest and highest angle of each joint, by joint id."""
     start_deg: tuple[float, ...]
@@ -86,8 +86,8 @@ class RobotReply(msgspec.Struct, frozen=True, kw_only=True):
     start_z_m: float
     """Height of the body's origin above the floor in that posture."""
     facts: dict[str, Any]
-    """Sizes, masses and speeds by name, with units in the names (docs/protocol.md). What legs can
-    differ in is a pair: lowest and highest."""
+    """Sizes, masses and speeds by name, with units in the names (docs/protocol.md). Where legs can
+    differ, the value is a pair: the lowest and the highest."""
     limits: dict[str, tuple[float | None, float | None]]
     """Lowest and highest value that the rules allow, for facts of the same name."""
     sheet: Sheet
@@ -101,13 +101,13 @@ class TrialRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     protocol: int
     files: GaitFiles
     keys: str = ""
-    """Keys as `lacoc trial --keys` has them; "": the key for forward."""
+    """Keys in the form of `lacoc trial --keys`; "": the key for forward."""
     seconds: float | None = None
-    """How long the last key is pressed; None: whole cycles."""
+    """How long the last key is pressed [s]; None: whole cycles."""
 
 
 class CellPlace(msgspec.Struct, frozen=True, kw_only=True):
-    """A place in a key's sequence."""
+    """The place of a cell in a key's sequence."""
 
     posture: int
     """Index in the sequence."""
@@ -119,29 +119,30 @@ class Sentence(msgspec.Struct, frozen=True, kw_only=True):
     """One sentence that explains a walk."""
 
     said: Phrase
-    """`explain.*`"""
+    """The sentence; its code is `explain.*`."""
     cell: CellPlace | None = None
+    """Cell that the sentence is about; None: it is about no cell."""
     leg: int = -1
-    """Index of the leg that it is about; -1: the whole robot."""
+    """Index of the leg that the sentence is about; -1: the whole robot."""
 
 
 class TrialReply(msgspec.Struct, frozen=True, kw_only=True):
-    """What was seen of a trial of `ticks` ticks; arrays are little-endian, tick by tick."""
+    """The measurements of a trial of `ticks` ticks; arrays are little-endian, tick by tick."""
 
     level: int
     key: int
     """Level and digit of the key that was measured."""
     figures: dict[str, Any]
-    """By the names of docs/studio.md 2."""
+    """Figures of the walk, by the names in docs/studio.md 2."""
     explained: tuple[Sentence, ...]
     notes: tuple[Phrase, ...] = ()
-    """What a reader of the figures must know."""
+    """Remarks on the files, and for a reader of the figures."""
     fault: Phrase | None = None
     """Why physics stopped before the end; None: it did not."""
     ticks: int
     first: int
     end: int
-    """The figures are of the ticks from `first` to before `end`."""
+    """The figures are for the ticks from `first` up to, but without, `end`."""
     starts: tuple[int, ...]
     """Ticks in which a cycle of the key's sequence begins."""
     posture: bytes
@@ -149,9 +150,9 @@ class TrialReply(msgspec.Struct, frozen=True, kw_only=True):
     down: bytes
     """uint8 (ticks,): bit i is set while the foot of leg i is down."""
     poses: bytes
-    """float32 (ticks, 7 + joints): as `Frame.poses`."""
+    """float32 (ticks, 7 + joints): pose and joint angles, as in `Frame.poses`."""
     commanded_rad: bytes
-    """float32 (ticks, joints)."""
+    """float32 (ticks, joints): commanded joint angles, by joint id."""
     contact_w_m: bytes
     """float32 (ticks, legs, 2): where each shank touches the floor; 0 without contact."""
     centre_w_m: bytes
@@ -163,32 +164,34 @@ class TrialReply(msgspec.Struct, frozen=True, kw_only=True):
     tip_m: bytes
     """float32 (ticks, legs): height of each foot's lowest point above the floor."""
     digest: bytes
-    """State hash after the last tick, as in a match's frames."""
+    """State hash after the last tick, as in the frames of a match."""
 
 
 class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask which numbers of a key matter, and for better ones."""
+    """Ask which numbers of a key matter, and for better numbers."""
 
     protocol: int
     job: str
-    """Name that the asker chooses, for progress and for a cancel: a-z, 0-9 and hyphens."""
+    """Name that the asker chooses for the search: a-z, 0-9 and hyphens. Its progress and a cancel
+    have this name too."""
     files: GaitFiles
     key: int | None = None
-    """Key of level B; None: the one for the goal."""
+    """Key of level B to change; None: the sample's key for the goal."""
     goal: str = "forward"
     """forward, right or left."""
     size: str | None = None
     """How much may change: cell, three or table; None: only say which numbers matter."""
     seconds: float = 30.0
-    """How long to search: from 0 to 120. Before it the studio finds which numbers matter, and after
-    it undoes what hardly helps."""
+    """How long to search [s], from 0 to 120. The time to rank the numbers before the search, and to
+    undo changes after it, does not count."""
     seed: int = 0
+    """Seed of the search's random numbers."""
 
 
 class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """End a search early; the reply is `Done`, and the search's own reply has the best so far.
+    """End a search early: the reply is `Done`, and the search's own reply has the best so far.
 
-    A search that still waits is refused.
+    The reply to a search that still waits is a refusal.
     """
 
     protocol: int
@@ -196,10 +199,10 @@ class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class Progress(msgspec.Struct, frozen=True, kw_only=True):
-    """How far a search is; several times a second."""
+    """The progress of a search; a studio sends it several times a second."""
 
     stage: str
-    """waiting (for the searches of others), matters, search or undo."""
+    """waiting (until earlier searches end), matters, search or undo."""
     done: float
     """Share of the stage, from 0 to 1."""
     trials: int
@@ -208,11 +211,13 @@ class Progress(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Weight(msgspec.Struct, frozen=True, kw_only=True):
-    """What a change of one number does to the score."""
+    """How a change of one number changes the score."""
 
     cell: CellPlace
     up: float
+    """Change of the score when the number is 10 degrees larger."""
     down: float
+    """Change of the score when the number is 10 degrees smaller."""
 
 
 class Change(msgspec.Struct, frozen=True, kw_only=True):
@@ -224,15 +229,17 @@ class Change(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
-    """What the coach found."""
+    """The result of a search."""
 
     key: int
+    """Key of level B that the search changed."""
     matters: tuple[Weight, ...]
     """All numbers of the key, those that matter most first."""
     changes: tuple[Change, ...]
     before: dict[str, Any]
+    """Figures of the student's own gait, by the names in docs/studio.md 2."""
     after: dict[str, Any]
-    """Figures of the own gait and of the best one."""
+    """Figures of the best gait that was found."""
     score_before: float
     score_after: float
     trials: int

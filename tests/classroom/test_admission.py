@@ -43,7 +43,7 @@ def test_names_that_look_alike_are_the_same(one: str, other: str) -> None:
 
 
 def test_a_thousand_guesses_disturb_nobody_else() -> None:
-    """After 20 wrong codes a machine waits for each answer; later it may guess again."""
+    """After 20 quick guesses a machine waits 1 s for each answer; no other machine waits."""
     guesses = Guesses()
     waits_s = [guesses.wait_s("10.0.0.9", 100 + guess / 1000) for guess in range(1000)]
     assert waits_s == [0.0] * 20 + [1.0] * 980

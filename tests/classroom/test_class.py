@@ -199,7 +199,7 @@ def test_the_big_screen_and_the_exports(
         names = [name for name in archive.namelist() if "Finn" in name]
         assert sorted(name.rpartition("/")[2] for name in names) == [
             "Loco-data.txt",
-            "level B of Loco-data.txt",
+            "LocoTra-data.txt",
         ]
 
 

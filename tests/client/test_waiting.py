@@ -84,7 +84,7 @@ def test_a_court_that_is_opened_later_is_found() -> None:
 def test_services_take_the_option(
     words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """`bot` and `referee` try until the time of --wait is over, and then fail as without it."""
+    """With --wait, `bot` and `referee` try for this time, and then fail with the usual error."""
     begin_s = time.monotonic()
     where = ("--connect", f"tcp/127.0.0.1:{free_port()}", "--wait", "2.5")
     assert cli.main([*words, *where]) == 2

@@ -1,4 +1,4 @@
-"""A page of /design without a browser."""
+"""A client of /design without a browser, for tests."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ class DesignClient(PageConnection):
 
     Args:
         url: address of the gateway.
-        key: the page key; None: it does not say hello.
+        key: the page key; None: the page sends no hello.
     """
 
     def __init__(self, url: str, key: str | None) -> None:

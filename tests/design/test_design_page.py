@@ -1,4 +1,4 @@
-"""The connection of a /design page: a real gateway, a real studio, files of a real folder."""
+"""Tests of a /design page's connection, with a real gateway, a real studio and a real folder."""
 
 import contextlib
 import re
@@ -61,7 +61,7 @@ Opens = Callable[..., DesignClient]
 
 @pytest.fixture
 def opens(gateway: Gateway) -> Iterator[Opens]:
-    """Give a function that opens a page; it closes with the test."""
+    """Give a function that opens a page; the page is closed when the test ends."""
     with ExitStack() as stack:
 
         def opened(key: str | None = gateway.key) -> DesignClient:
@@ -84,7 +84,7 @@ def sample(page: DesignClient) -> dict[str, Any]:
 
 
 def refused(page: DesignClient, do: str, **fields: Any) -> dict[str, Any]:
-    """Return the reply of a request that is refused."""
+    """Send a request that must be refused, and return the reply."""
     with pytest.raises(Refused) as refusal:
         page.ask(do, **fields)
     return refusal.value.reply
@@ -121,7 +121,7 @@ def test_only_a_page_with_the_key_gets_anything(opens: Opens) -> None:
 
 
 def test_a_page_is_told_of_the_folder_and_the_studio(page: DesignClient, gateway: Gateway) -> None:
-    """After hello a page knows the folder; a sign of life says that the studio is there."""
+    """A page is told the folder, the studio's presence, and each new file with its kind."""
     page.until(lambda: page.studio.get("present"))
     assert page.folder["folder"] == str(gateway.folder.resolve())
     (gateway.folder / "LocoTra-data-x.txt").write_text("1\n1\n")
@@ -135,7 +135,7 @@ def test_a_page_is_told_of_the_folder_and_the_studio(page: DesignClient, gateway
 
 @pytest.mark.parametrize("name", ["Loco-data.xlsx", "Loco-data.txt"])
 def test_two_pages_never_overwrite_each_other(opens: Opens, name: str) -> None:
-    """The second of two pages that save gets a conflict, and may save over it if it wants."""
+    """If two pages save one file, the second gets a conflict; it can still save with `force`."""
     one, other = opens(), opens()
     table = sample(one)
     first = one.ask("save", name=name, table=table, version="")["version"]
@@ -153,7 +153,7 @@ def test_two_pages_never_overwrite_each_other(opens: Opens, name: str) -> None:
 
 
 def test_a_pasted_sheet_and_a_download(page: DesignClient) -> None:
-    """What was made for a download is read again as a dropped file, as bytes or pasted as text."""
+    """A downloaded file can be dropped or pasted on the page again, and gives the same table."""
     table = sample(page)
     for name in ("Loco-data.xlsx", "Loco-data.txt"):
         data = page.ask("write", name=name, table=table)["data"]
@@ -165,7 +165,7 @@ def test_a_pasted_sheet_and_a_download(page: DesignClient) -> None:
 
 
 def test_a_trial_and_its_robot(page: DesignClient) -> None:
-    """The studio's answers arrive whole; a second trial waits for the first."""
+    """A page gets the studio's descriptions of robots and trials, also of two trials at once."""
     robot = {"name": "robot.toml", "data": find_robot("octopod")[1]}
     assert len(page.ask("robot", robot=robot)["legs"]) == 8
     told = page.ask("robot")
@@ -181,7 +181,7 @@ def test_a_trial_and_its_robot(page: DesignClient) -> None:
 
 
 def test_mistakes_of_a_table_have_their_places(page: DesignClient) -> None:
-    """An angle that no file may have is refused with its place, before the studio is asked."""
+    """A table with an angle out of range is refused with row, column and joint of the angle."""
     table = sample(page)
     table["rows"][2]["angles_deg"][3] = 151.0
     (mistake,) = refused(page, "trial", table=table)["mistakes"]
@@ -191,7 +191,7 @@ def test_mistakes_of_a_table_have_their_places(page: DesignClient) -> None:
 
 
 def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -> None:
-    """Progress carries the name that the page gave its search; a cancelled search replies."""
+    """Progress has the page's own name of the search; a cancelled search still gets a reply."""
     search = page.send("coach", job="search", table=sample(page), size="cell", seconds=60.0)
     page.until(lambda: page.progress)
     page.ask("cancel", job="search")
@@ -200,8 +200,17 @@ def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -
     assert {one["job"] for one in page.progress} == {"search"}
 
 
+def test_a_page_that_goes_ends_its_search(opens: Opens) -> None:
+    """A search of two minutes whose page has gone does not keep the next one waiting."""
+    gone, other = opens(), opens()
+    gone.send("coach", job="long", table=sample(gone), size="table", seconds=120.0)
+    gone.until(lambda: gone.progress)
+    gone.close()
+    assert other.ask("coach", job="short", table=sample(other), size="cell", seconds=0.0)["matters"]
+
+
 def test_too_much_is_one_clear_answer(page: DesignClient) -> None:
-    """Ten megabytes are refused in a sentence, and the connection stays."""
+    """Requests and texts that are too long are refused, and the connection stays open."""
     pasted = "45\t" * (10_000_000 // 3)
     for do, fields in (
         ("parse", {"name": "x", "data": pasted}),
@@ -214,14 +223,14 @@ def test_too_much_is_one_clear_answer(page: DesignClient) -> None:
 
 @pytest.mark.parametrize("garbage", [b"", b"\xc1", b"\x93\x01\x02\x03", b"\x81\xa2do\xa4read"])
 def test_garbage_closes_the_connection(opens: Opens, garbage: bytes) -> None:
-    """A message without an id can't be answered, so the connection is closed."""
+    """A message whose id can't be read closes the connection with code 1008."""
     page = opens()
     page.socket.send(garbage)
     assert page.code() == 1008
 
 
 def test_a_studio_that_dies_comes_back(page: DesignClient, gateway: Gateway) -> None:
-    """Pages are told when the studio has gone; it is started again, and trials go on."""
+    """A killed studio is started again; pages are told both, and the next trial works."""
     page.until(lambda: page.studio.get("present"))
     before = page.ask("trial", keys="2")["digest"]
     children = psutil.Process(gateway.process.pid).children(recursive=True)
@@ -242,14 +251,14 @@ def test_a_studio_that_dies_comes_back(page: DesignClient, gateway: Gateway) -> 
     ],
 )
 def test_a_wrong_start_is_told(tmp_path: Path, words: tuple[str, ...], said: str) -> None:
-    """A wrong folder, robot or address ends the command with one sentence."""
+    """A wrong folder, robot or address ends the command with an error that names it."""
     ended = run_lacoc("design", *words, "--no-open", cwd=tmp_path)
     assert ended.returncode == 2
     assert said in ended.stderr
 
 
 def test_a_studio_elsewhere_may_come_later(tmp_path: Path) -> None:
-    """With --connect a page says why there is no studio, and goes on as soon as there is one."""
+    """With --connect a page is told why no studio is found; trials work once a studio starts."""
     address = f"tcp/127.0.0.1:{free_port()}"
     with ExitStack() as stack:
         gateway = Gateway(tmp_path, "--connect", address, "--robot", "quadruped")
@@ -270,13 +279,13 @@ def test_a_studio_elsewhere_may_come_later(tmp_path: Path) -> None:
 
 @given(st.binary(max_size=300))
 def test_no_bytes_break_the_reader(data: bytes) -> None:
-    """Any bytes from a page can be read or raise `Unreadable`, and no other exception."""
+    """For any bytes from a page, `read` returns a request or raises `Unreadable`."""
     with contextlib.suppress(Unreadable):
         requests.read(data)
 
 
 def test_whole_numbers_of_a_browser_are_angles() -> None:
-    """A browser sends 45.0 as a whole number; it is read as an angle."""
+    """A browser sends the angle 45.0 as the integer 45, which is read as an angle."""
     rows = [{"key": 1, "posture": 0, "angles_deg": [45, -1.5] * 9}]
     body = {"id": 1, "do": "trial", "table": {"kind": "postures", "legs": 6, "rows": rows}}
     asked = requests.read(msgpack.packb(body))

@@ -1,4 +1,4 @@
-"""The files of a folder: listed, read and saved, and never overwritten unasked."""
+"""Tests of a folder's files: they are listed, read, saved, and not overwritten by accident."""
 
 import os
 from pathlib import Path
@@ -38,7 +38,7 @@ def walk() -> FileTable:
 
 
 def turned(table: FileTable, row: int, angle_deg: float) -> FileTable:
-    """Return a table with another first angle in a row."""
+    """Return a table in which the first angle of a row is changed."""
     rows = list(table.rows)
     angles = (angle_deg, *rows[row].angles_deg[1:])
     rows[row] = FileRow(key=rows[row].key, posture=rows[row].posture, angles_deg=angles)
@@ -60,7 +60,7 @@ def folder(tmp_path: Path) -> Folder:
 
 
 def test_gaits_and_robots_are_listed(folder: Folder) -> None:
-    """The folder lists gait files and robot files with what they are for, and no other files."""
+    """A folder lists gait and robot files, each with its kind, and no other files."""
     assert [(file.name, file.slot) for file in folder.files] == [
         ("Loco-data-old.txt", "postures"),
         ("Loco-data.xlsx", "postures"),
@@ -72,7 +72,7 @@ def test_gaits_and_robots_are_listed(folder: Folder) -> None:
 
 
 def test_files_are_read_as_tables(folder: Folder) -> None:
-    """Postures, sequences and robots are read, whatever program has saved them."""
+    """Files of postures, sequences and robots are read, from LibreOffice and in UTF-16 too."""
     assert folder.read("Loco-data.xlsx").table == sample()
     assert folder.read("Loco-data-old.txt").table == sample()
     table = folder.read("LocoTra-data2.txt").table
@@ -85,7 +85,7 @@ def test_files_are_read_as_tables(folder: Folder) -> None:
 
 
 def test_a_mistake_is_told_with_its_place(folder: Folder) -> None:
-    """A gait file with a mistake is refused with row, column, joint and leg."""
+    """A gait file with a wrong angle is refused with the angle's row, column, joint and leg."""
     (folder.path / "Loco-data.txt").write_bytes(
         file_bytes("x.txt", sample()).replace(b"0 Key\t45", b"0 Key\t451", 1)
     )
@@ -97,7 +97,7 @@ def test_a_mistake_is_told_with_its_place(folder: Folder) -> None:
 
 @pytest.mark.parametrize("name", ["Loco-data.xlsx", "Loco-data-old.txt", "Loco-new.txt"])
 def test_a_table_is_saved_and_read_back(folder: Folder, name: str) -> None:
-    """A saved table is read back, under the version that the save returned."""
+    """A saved table can be read again, and has the version that the save returned."""
     known = {file.name: file.version for file in folder.files}
     table = turned(sample(), 4, -12.25)
     saved = folder.save(name, table, known.get(name, ABSENT), force=False)
@@ -110,7 +110,7 @@ def test_a_table_is_saved_and_read_back(folder: Folder, name: str) -> None:
 
 
 def test_a_change_meanwhile_is_a_conflict(folder: Folder) -> None:
-    """If Excel has saved since the page read, nothing is written, and the page gets both tables."""
+    """If another program changed the file, a save writes nothing and returns the new table."""
     version = folder.read("Loco-data.xlsx").version
     path = folder.path / "Loco-data.xlsx"
     book = openpyxl.load_workbook(path)
@@ -124,14 +124,14 @@ def test_a_change_meanwhile_is_a_conflict(folder: Folder) -> None:
     assert path.read_bytes() == by_excel
     assert answer.conflict.table == turned(sample(), 0, 10)
     assert answer.conflict.version == folder.read("Loco-data.xlsx").version
-    # The page asks, and its person decides: their table, but Excel's remark stays.
+    # With `force` the page's table is saved, and the other program's remark stays.
     assert isinstance(folder.save("Loco-data.xlsx", mine, version, force=True), Saved)
     assert folder.read("Loco-data.xlsx").table == mine
     assert openpyxl.load_workbook(path)[INPUT_SHEET]["A20"].value == "my remark"
 
 
 def test_a_conflict_with_a_file_that_has_gone_or_is_broken(folder: Folder) -> None:
-    """A conflict also says that the file has gone, or which mistakes it has now."""
+    """A conflict tells the mistakes of a file that has become wrong, and that a file has gone."""
     version = folder.read("LocoTra-data2.txt").version
     path = folder.path / "LocoTra-data2.txt"
     path.write_text("1\n1\n500\n")
@@ -146,7 +146,7 @@ def test_a_conflict_with_a_file_that_has_gone_or_is_broken(folder: Folder) -> No
 
 
 def test_changes_are_noticed(folder: Folder) -> None:
-    """Files that come, change or go are named once; a touched file with the same content is not."""
+    """Each file that comes, changes or goes is named once; a new date alone is no change."""
     assert folder.look() == ()
     os.utime(folder.path / "my.toml", (1, 1))
     assert folder.look() == ()
@@ -170,7 +170,7 @@ def test_changes_are_noticed(folder: Folder) -> None:
     ],
 )
 def test_other_names_are_refused(folder: Folder, name: str) -> None:
-    """Nothing outside the folder, and no other kind of file, can be read or written."""
+    """Names outside the folder, and names of other kinds of files, are refused."""
     with pytest.raises(UserError, match="can't be a file here"):
         folder.read(name)
     with pytest.raises(UserError, match="can't be a file here"):
@@ -178,7 +178,7 @@ def test_other_names_are_refused(folder: Folder, name: str) -> None:
 
 
 def test_a_failed_save_leaves_the_old_file(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
-    """If the disk is full, or the file may not be written, one sentence says so."""
+    """On a full disk, or without permission to write, a save fails and the old file stays."""
     version = folder.read("Loco-data.xlsx").version
     before = (folder.path / "Loco-data.xlsx").read_bytes()
 
@@ -198,7 +198,7 @@ def test_a_failed_save_leaves_the_old_file(folder: Folder, monkeypatch: pytest.M
 
 
 def test_sequences_belong_into_text(folder: Folder) -> None:
-    """A table of sequences is not saved as a workbook, and keys may not be missing."""
+    """Sequences can't be saved as a workbook, nor as text if a key between others is missing."""
     with pytest.raises(UserError, match="sequences belong in a text file"):
         folder.save("Loco-new.xlsx", walk(), ABSENT, force=False)
     table = walk()
@@ -209,7 +209,7 @@ def test_sequences_belong_into_text(folder: Folder) -> None:
 
 
 def test_bad_angles_are_mistakes_with_their_place(folder: Folder) -> None:
-    """An angle out of range, or not a number, is not written, and its place in the file is told."""
+    """A table with an angle out of range, or not a number, is refused with the angle's place."""
     for angle_deg in (151.0, float("nan"), float("inf")):
         with pytest.raises(FileRefused) as refusal:
             folder.save("Loco-new.txt", turned(sample(), 2, angle_deg), ABSENT, force=False)
@@ -219,7 +219,7 @@ def test_bad_angles_are_mistakes_with_their_place(folder: Folder) -> None:
 
 
 def test_a_text_keeps_what_is_beside_its_numbers() -> None:
-    """Encoding, ends of lines, other rows, legend and remarks of a text file stay."""
+    """When a posture is added to a text file, encoding, line ends, other rows and remarks stay."""
     text = "Num of Posture\t1\r\n0 Key\t" + "\t".join(["４５．０"] * 18)
     text += "\r\n位置\t右前\r\nこれはわたしの歩容\r\n"
     for encoding in ("cp932", "utf-8-sig", "utf-16"):
@@ -249,7 +249,7 @@ def tables(draw: st.DrawFn, legs: int) -> FileTable:
 @settings(max_examples=15, deadline=None)
 @given(st.sampled_from([4, 6, 8]), st.sampled_from(["Loco.txt", "Loco.xlsx"]), st.data())
 def test_any_table_survives(legs: int, name: str, data: st.DataObject) -> None:
-    """Any table, also saved over any other of its robot, is read back with the same angles."""
+    """Any table, saved as a new file or over another table, is read back with the same angles."""
     table, other = data.draw(tables(legs)), data.draw(st.none() | tables(legs))
     before = None if other is None else file_bytes(name, other)
     assert read_file(name, file_bytes(name, table, before)).table == page_table(

@@ -1,4 +1,4 @@
-"""The six phases at a real gateway and a real studio: evidence in the file of a folder."""
+"""Tests of the six phases with a real gateway, a real studio and a real evidence file."""
 
 import os
 import signal
@@ -28,7 +28,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def starts(folder: Path) -> Iterator[Callable[[], tuple[Gateway, DesignClient]]]:
-    """Give a function that starts `lacoc design`, and opens a page."""
+    """Give a function that starts `lacoc design` on the folder, and opens a page."""
     open_now: list[tuple[Gateway, DesignClient]] = []
 
     def start() -> tuple[Gateway, DesignClient]:
@@ -69,7 +69,7 @@ def states(page: DesignClient) -> list[str]:
 def test_two_phases_are_done_and_survive_a_kill(
     starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
 ) -> None:
-    """Guesses and edits of a leg meet phase 1, a tripod phase 2; a killed gateway loses nothing."""
+    """A page completes phases 1 and 2; a gateway that is killed then loses no progress."""
     gateway, page = starts()
     table = sample(page)
     assert not (folder / EVIDENCE_FILE).exists()
@@ -100,7 +100,7 @@ def test_two_phases_are_done_and_survive_a_kill(
 
     children = psutil.Process(gateway.process.pid).children(recursive=True)
     os.kill(gateway.process.pid, signal.SIGKILL)
-    for child in children:  # the studio, which outlives its killed parent, and its processes
+    for child in children:  # the studio and its processes go on without the gateway
         child.kill()
     gateway.process.communicate(timeout=30)
     psutil.wait_procs(children, timeout=30)
@@ -113,7 +113,7 @@ def test_two_phases_are_done_and_survive_a_kill(
 def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
     starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
 ) -> None:
-    """A slower gait is told apart from the sample; predictions are judged; a check counts."""
+    """A slower gait is compared with the sample; guesses, a word, a vote and a check are kept."""
     gateway, page = starts()
     own = sample(page)
     halves = [
@@ -152,7 +152,7 @@ def test_an_own_gait_gets_a_word_and_is_compared_with_the_sample(
 def test_a_file_that_cannot_be_kept_is_told_and_disturbs_nobody(
     starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
 ) -> None:
-    """While another program has the file, the page works, and says that nothing is kept."""
+    """While another program has the evidence file open, the page works and says what is wrong."""
     with ClassStore(folder / EVIDENCE_FILE):
         _, page = starts()
         table = sample(page)

@@ -1,4 +1,4 @@
-"""The XML of worksheets, as several programs write it, changed in place."""
+"""Tests that cells are changed in worksheet XML of the styles that different programs write."""
 
 from xml.etree import ElementTree
 
@@ -25,7 +25,7 @@ UNNAMED = PLAIN.replace(' r="A2"', "").replace(' r="D6"', "")
 
 
 def shown(data: bytes) -> dict[str, tuple[str, str, str]]:
-    """Return the cells by name, each with its style, type and text, as a parser sees them."""
+    """Return a sheet's cells by address, each with its style, type and text."""
     found = {}
     for row in ElementTree.fromstring(data).iter(f"{{{MAIN}}}row"):
         for cell in row.iter(f"{{{MAIN}}}c"):
@@ -36,7 +36,7 @@ def shown(data: bytes) -> dict[str, tuple[str, str, str]]:
 
 @pytest.mark.parametrize("text", [PLAIN, PREFIXED, UNNAMED], ids=["plain", "prefixed", "unnamed"])
 def test_cells_are_found_and_changed(text: str) -> None:
-    """Cells are changed, added and emptied in rows that are there, empty or missing."""
+    """Cells are changed and added in rows that have cells, are empty, or are missing."""
     sheet = SheetXml(text.encode())
     cells = {cell.place: cell for cell in sheet.cells()}
     assert cells[2, 3].formula is not None
@@ -58,7 +58,11 @@ def test_cells_are_found_and_changed(text: str) -> None:
         "C4": ("", "", "-1.5"),
         "A5": ("", "", "1"),
         "B6": ("4", "s", "0"),
-        "C6" if text == UNNAMED else "D6": ("", "", ""),  # without a name: the next one
+        "C6" if text == UNNAMED else "D6": (
+            "",
+            "",
+            "",
+        ),  # a cell without an address is the next one
         "E6": ("", "", ""),
         "F6": ("", "", ""),
         "B9": ("", "inlineStr", "last"),
@@ -71,7 +75,7 @@ def test_cells_are_found_and_changed(text: str) -> None:
 
 
 def test_nothing_changed_is_the_same_bytes() -> None:
-    """Without changes all bytes stay."""
+    """A sheet without changes stays the same, byte for byte."""
     assert SheetXml(PREFIXED.encode()).edited({}) == PREFIXED.encode()
 
 
@@ -86,6 +90,6 @@ def test_nothing_changed_is_the_same_bytes() -> None:
     ids=["utf-16", "shift-jis", "broken", "empty"],
 )
 def test_what_can_t_be_edited_is_said(data: bytes) -> None:
-    """XML in another encoding, broken XML and a sheet without cells are not edited."""
+    """XML that is not UTF-8 or is broken, and a sheet with no cells, raise `NotEditable`."""
     with pytest.raises(NotEditable):
         SheetXml(data)

@@ -1,4 +1,4 @@
-"""Postures saved into a workbook: only the cells of the table change."""
+"""Tests that postures are saved into a workbook, and only the cells of the table change."""
 
 import io
 import math
@@ -29,10 +29,10 @@ from lacoc_shared.gait.workbook import read_workbook, write_workbook
 from lacoc_shared.mistakes import UserError
 
 CALC = Path(__file__).parents[1] / "gait" / "files" / "calc.xlsx"
-"""The workshop's table as LibreOffice saves it."""
+"""The workshop's table, saved by LibreOffice."""
 PURPLE = "FF7030A0"
 NO_VALUE = re.compile("<v ?/>|<v></v>")
-"""A formula's empty value, as a program writes it that can't calculate."""
+"""The empty result of a formula, as written by a program that can't calculate."""
 
 
 def sample() -> PostureTable:
@@ -50,12 +50,12 @@ def saved(book: openpyxl.Workbook) -> bytes:
 
 
 def ours() -> bytes:
-    """Return a workbook as this project writes it, with cached values of its formulas."""
+    """Return a workbook that this project writes, with stored results of its formulas."""
     return write_workbook(sample(), leg_labels(6))
 
 
 def own() -> bytes:
-    """Return a workbook in which a student has put everything that a spreadsheet program has."""
+    """Return a workbook with a student's own colours, comments, formulas, rules and sheets."""
     book = openpyxl.load_workbook(io.BytesIO(ours()))
     sheet = book[INPUT_SHEET]
     sheet["C5"].fill = PatternFill("solid", fgColor=PURPLE)
@@ -84,7 +84,7 @@ FILES = files()
 
 
 def everything(data: bytes) -> dict[str, Any]:
-    """Return a workbook's cells with looks and comments, its columns' widths and rows' heights."""
+    """Return a workbook's cells with formats and comments, its column widths and row heights."""
     book = openpyxl.load_workbook(io.BytesIO(data))
     found: dict[str, Any] = {"sheets": book.sheetnames}
     for sheet in book:
@@ -108,7 +108,7 @@ def differing(before: bytes, after: bytes) -> set[str]:
 
 
 def values(data: bytes, sheet: str) -> dict[str, Any]:
-    """Return a sheet's stored values by cell name; no formula is calculated."""
+    """Return a sheet's stored values by cell address; no formula is calculated."""
     rows = openpyxl.load_workbook(io.BytesIO(data), data_only=True)[sheet].iter_rows()
     return {cell.coordinate: cell.value for row in rows for cell in row}
 
@@ -127,7 +127,7 @@ def test_an_unchanged_table_gives_the_same_bytes(name: str) -> None:
 
 @pytest.mark.parametrize("name", FILES)
 def test_one_number_changes_one_cell(name: str) -> None:
-    """If one angle differs, a save changes its cell; all other cells, looks and comments stay."""
+    """If one angle differs, only its cell changes; other cells, formats and comments stay."""
     wanted = with_angle(sample(), 3, 7, -12.5)
     after = edit_workbook(FILES[name], "x.xlsx", wanted)
     assert read_workbook(after, "x.xlsx") == wanted
@@ -139,7 +139,7 @@ def test_one_number_changes_one_cell(name: str) -> None:
 
 
 def test_the_mirror_shows_the_new_numbers() -> None:
-    """The mirror sheet stores the new angle, and the workbook tells Excel to recalculate it."""
+    """The mirror sheet stores the new angle, and Excel must calculate all formulas again."""
     after = edit_workbook(ours(), "x.xlsx", with_angle(sample(), 0, 0, 33))
     assert values(after, MIRROR_SHEET)["B2"] == 33
     assert values(after, MIRROR_SHEET)["C2"] == values(ours(), MIRROR_SHEET)["C2"]
@@ -148,7 +148,7 @@ def test_the_mirror_shows_the_new_numbers() -> None:
 
 
 def test_old_results_of_formulas_are_forgotten() -> None:
-    """A formula that reads the table loses its stored value; any other formula keeps its value."""
+    """A formula that reads the table loses its stored result; any other formula keeps it."""
     calculated = _replaced(own(), lambda text: NO_VALUE.sub("<v>7</v>", text))
     assert values(calculated, "My notes")["A2"] == 7
     after = edit_workbook(calculated, "x.xlsx", with_angle(sample(), 0, 0, 33))
@@ -159,7 +159,7 @@ def test_old_results_of_formulas_are_forgotten() -> None:
 
 @pytest.mark.parametrize("name", FILES)
 def test_a_posture_is_added_below_the_others(name: str) -> None:
-    """A new key gets a row that looks like the last one; the legend moves down with its look."""
+    """A new key gets a row with the last row's format; the legend moves down with its format."""
     table = sample()
     wanted = PostureTable({**table.postures, 9: table.postures[1]})
     before, after = FILES[name], edit_workbook(FILES[name], "x.xlsx", wanted)
@@ -177,7 +177,7 @@ def test_a_posture_is_added_below_the_others(name: str) -> None:
 
 
 def test_what_belongs_to_rows_grows_with_them() -> None:
-    """If a posture is added, input help and colour rules cover its row; merged cells move down."""
+    """After a posture is added, input checks and colour rules cover its row; merged cells move."""
     table = sample()
     after = edit_workbook(own(), "x.xlsx", PostureTable({**table.postures, 9: table.postures[1]}))
     sheet = openpyxl.load_workbook(io.BytesIO(after))[INPUT_SHEET]
@@ -189,7 +189,7 @@ def test_what_belongs_to_rows_grows_with_them() -> None:
 
 
 def test_a_row_that_went_is_used_again() -> None:
-    """A removed posture leaves an empty row; the next new posture is written into that row."""
+    """A removed posture leaves an empty row, and the next new posture is written into this row."""
     table = sample()
     fewer = PostureTable({key: row for key, row in table.postures.items() if key != 8})
     without = edit_workbook(own(), "x.xlsx", fewer)
@@ -202,7 +202,7 @@ def test_a_row_that_went_is_used_again() -> None:
 
 
 def test_formulas_in_the_table_become_their_numbers() -> None:
-    """When an angle is changed, a formula in the table is replaced by the number that it gave."""
+    """When an angle is changed, a formula in the table becomes the number that it showed."""
     book = openpyxl.load_workbook(CALC)
     book[INPUT_SHEET]["E2"] = "=-B2"
     formula = _replaced(saved(book), lambda text: NO_VALUE.sub("<v>-45</v>", text))
@@ -214,7 +214,7 @@ def test_formulas_in_the_table_become_their_numbers() -> None:
 
 
 def test_pictures_and_charts_stay_byte_for_byte() -> None:
-    """Charts and sparklines stay byte for byte when a posture is changed and another is added."""
+    """Charts and sparklines stay byte for byte when one posture changes and another is added."""
     stream = io.BytesIO()
     with xlsxwriter.Workbook(stream) as made:
         cells = posture_cells(sample(), leg_labels(6))
@@ -276,7 +276,7 @@ def test_the_order_of_calculation_goes_with_a_formula() -> None:
 
 
 def test_a_shared_formula_lives_on_outside_the_table() -> None:
-    """A cell below the table keeps its formula if it shared the formula with a table cell."""
+    """A cell below the table that shared its formula with a table cell keeps the formula."""
     book = openpyxl.load_workbook(CALC)
     book[INPUT_SHEET]["B20"] = 1
     first = '<c r="B2"><f t="shared" ref="B2:B20" si="0">20+25+C30</f><v>45</v></c>'
@@ -302,7 +302,7 @@ def test_a_shared_formula_lives_on_outside_the_table() -> None:
     ],
 )
 def test_what_can_t_be_kept_is_refused(change: Callable[[Any], None], said: str) -> None:
-    """A new posture is refused with the reason if its row has no room."""
+    """A new posture is refused if a remark is in its way, or a formula stands in the legend."""
     book = openpyxl.load_workbook(io.BytesIO(ours()))
     change(book[INPUT_SHEET])
     table = sample()
@@ -329,7 +329,7 @@ TABLES = st.dictionaries(
 @settings(max_examples=12, deadline=None, phases=[Phase.generate])
 @given(st.lists(TABLES, min_size=1, max_size=3), st.sampled_from(sorted(FILES)))
 def test_any_tables_one_after_another(tables: list[PostureTable], name: str) -> None:
-    """Tables that are saved one after another are read back; the rest of the workbook stays."""
+    """After any tables are saved one after another, each is read back, and all else stays."""
     before = data = FILES[name]
     for table in tables:
         data = edit_workbook(data, "x.xlsx", table)

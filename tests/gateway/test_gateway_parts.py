@@ -232,7 +232,7 @@ def test_a_log_that_begins_again() -> None:
 
 
 def test_a_log_is_held_against_what_the_court_says() -> None:
-    """A log differs from a court's report if it lacks events, or has others that are no newer."""
+    """A log differs from a court's report if its events differ, except those after the report."""
     log: EventLog[str] = EventLog()
     assert not log.differs(1, 0, 0)
     assert log.differs(1, 500, 3)

@@ -158,7 +158,7 @@ def test_both_links_get_the_delay_of_the_slower() -> None:
 
 
 def test_without_the_setting_nothing_is_held() -> None:
-    """Without equal links no key is held, and none counts as late."""
+    """If the court does not make links equal, no key waits, and no key counts as late."""
     clock = warm(1, 12, most_ms=0)
     for _ in range(40):
         clock.begin()

@@ -67,7 +67,7 @@ def test_both_ways_are_delayed_and_order_is_kept(echo: str) -> None:
 
 
 def test_a_lost_packet_comes_late(echo: str) -> None:
-    """A lost packet arrives late, as with TCP."""
+    """A packet that the simulated link loses arrives late, as with TCP."""
     with SlowLink(echo, loss=1.0) as link, connect(link) as client:
         assert round_trip_s(client) >= 2 * SlowLink.RESEND_S
 

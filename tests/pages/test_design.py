@@ -23,7 +23,7 @@ TIP = "solo/leg4_2"
 
 
 class Designer(Contestant):
-    """Somebody who designs a gait on the page."""
+    """A person who designs a gait on the page."""
 
     def begin(self, key: str) -> None:
         """Open the page and wait until it has a table and a studio."""
@@ -71,7 +71,7 @@ class Designer(Contestant):
         return found
 
     def moves(self, before: list[float]) -> None:
-        """Wait until the drawn body is somewhere else."""
+        """Wait until the body is drawn in another place than `before`."""
         for _ in range(200):
             if math.dist(before, self.body()) > 1e-3:
                 return
@@ -79,7 +79,7 @@ class Designer(Contestant):
         pytest.fail(f"the body stays at {before}")
 
     def paste(self, text: str) -> None:
-        """Paste as a browser does, into what has the focus."""
+        """Paste text into the focused element, as a browser does."""
         self.page.evaluate(
             """text => {
               const clipboardData = new DataTransfer();
@@ -100,7 +100,7 @@ def write_sample(folder: Path) -> None:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give the folder that the module's page works in."""
+    """Give the folder with the sample's postures on which `lacoc design` runs."""
     folder = tmp_path_factory.mktemp("design")
     write_sample(folder)
     return folder
@@ -108,20 +108,20 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
-    """Give the address and page key of `lacoc design`, which runs during the module."""
+    """Give the address and the page key of a `lacoc design` that all tests of this file share."""
     with own_page(folder, "design") as address:
         yield address
 
 
 @pytest.fixture
 def sample(folder: Path) -> Path:
-    """Give the folder, with the sample's postures as they were."""
+    """Give the folder after the sample's postures were written into it again."""
     write_sample(folder)
     return folder
 
 
 def designer(open_page: OpenPage, address: tuple[str, str], **options: Any) -> Designer:
-    """Open the page in a browser profile of its own."""
+    """Open the page in its own browser profile."""
     settings = {"viewport": {"width": 1280, "height": 800}} | options
     page = Designer(open_page, address[0], **settings)
     page.begin(address[1])
@@ -131,7 +131,7 @@ def designer(open_page: OpenPage, address: tuple[str, str], **options: Any) -> D
 def test_a_number_moves_the_leg_and_a_trial_explains_it(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """By keyboard alone: a cell changes the posture, Try shows figures, and undo takes it back."""
+    """With the keyboard alone a number moves the leg, Try shows figures, and undo takes it back."""
     page = designer(open_page, address)
     page.sees(".task", "Click a number")
     page.tries()
@@ -172,7 +172,7 @@ def test_a_number_moves_the_leg_and_a_trial_explains_it(
 def test_a_beginner_s_first_gait(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """From standing legs, ten numbers and a tool make a gait that walks 100 mm in five cycles."""
+    """A beginner makes a gait that walks over 100 mm in five cycles, with at most 60 actions."""
     page = designer(open_page, address)
     actions = 0
 
@@ -198,7 +198,7 @@ def test_a_beginner_s_first_gait(
     page.cell_is(3, 13, "40")
     click(".try")
     page.sees(".result .tiles")
-    figures = page.page.evaluate("window.__studio.shown.value.trial.reply.figures")
+    figures = page.page.evaluate("window.__studio.showing.shown.value.trial.reply.figures")
     assert figures["cycles"] == 5
     assert figures["speed_mm_s"] * figures["seconds"] > 100
     assert figures["upright"] > 0.9
@@ -208,7 +208,7 @@ def test_a_beginner_s_first_gait(
 def test_the_coach_works_and_can_be_stopped(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """The coach says how far it is, and ends when it is told to; another key's goal chooses it."""
+    """The goal "left" chooses key 1; the coach shows its progress and ends after Stop."""
     page = designer(open_page, address)
     page.page.click("#tab-coach")
     page.find(".coach select").select_option("left")
@@ -223,7 +223,7 @@ def test_the_coach_works_and_can_be_stopped(
 def test_predict_compare_and_the_way_back(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """A prediction is judged, two trials are compared with a ghost, and an old table comes back."""
+    """Predictions get a verdict, Compare shows a ghost, and a trial gives its table back."""
     page = designer(open_page, address)
     page.tries()
     page.go(1, 0)
@@ -244,7 +244,7 @@ def test_predict_compare_and_the_way_back(
 def test_what_is_pasted_dropped_and_composed(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """Blocks are pasted whole or not at all; a sheet is read; an input method types digits."""
+    """A block is pasted whole or not at all, a whole sheet is read, and an IME types digits."""
     page = designer(open_page, address)
     page.go(1, 0)
     page.paste("1\t２\r\n−3\t4,5\r\n")
@@ -276,7 +276,10 @@ def test_what_is_pasted_dropped_and_composed(
 def test_a_file_that_changed_meanwhile_is_asked_about(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """What somebody else saved is never written over unasked, nor what is on the page lost."""
+    """If another program has saved the file, the page asks first; both tables can be kept.
+
+    Where the page can save nothing, it hands the table out as a file.
+    """
     page = designer(open_page, address)
     file = sample / "Loco-data.txt"
     page.go(1, 0)
@@ -315,12 +318,19 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     coming.value.save_as(sample.parent / BOOK)
     rows = load_workbook(sample.parent / BOOK).worksheets[0].iter_rows(values_only=True)
     assert any(row[:2] == ("1 Key", 45) for row in rows)
+    page.press("Escape")
+
+    page.page.evaluate("window.__studio.can.value = { save: false, coach: false, learn: false }")
+    with page.page.expect_download() as coming:
+        page.press("Control+s")
+    assert coming.value.suggested_filename == "Loco-data.txt"
+    page.misses("#tab-coach, #tab-phase, .phase-dots")
 
 
 def test_a_phone_in_japanese_tries_and_compares(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
-    """On a phone the strip turns a joint, two trials are compared, and all fits the width."""
+    """On a phone the strip changes a number, two trials are compared, and nothing is too wide."""
     page = designer(
         open_page,
         address,
@@ -344,7 +354,7 @@ def test_a_phone_in_japanese_tries_and_compares(
 
 
 def test_axe_finds_nothing(open_page: OpenPage, address: tuple[str, str], sample: Path) -> None:
-    """No serious mistake of accessibility: before a trial, after it, in dialogs and in each tab."""
+    """The tool axe finds no serious accessibility mistake on the page, in its tabs and a dialog."""
     page = designer(open_page, address)
     assert violations(page.page) == []
     page.tries()

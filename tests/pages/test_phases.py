@@ -30,7 +30,7 @@ class Student(Designer):
             self.focuses(f".foot-guess button:text-is('{guess}')")
             self.press("Enter")
             self.sees(".foot-guess p", "Now change")
-        before = self.page.evaluate("window.__studio.phases.value.phases[0].share")
+        before = self.page.evaluate("window.__studio.learning.phases.value.phases[0].share")
         self.focuses(".cell-input")
         self.page.keyboard.type(text)
         self.press("Enter")
@@ -38,7 +38,7 @@ class Student(Designer):
         if guess:
             self.sees(".foot-guess .verdict.right, .foot-guess .verdict.wrong")
         else:
-            script = "before => window.__studio.phases.value.phases[0].share > before"
+            script = "before => window.__studio.learning.phases.value.phases[0].share > before"
             self.page.wait_for_function(script, arg=before, timeout=TIMEOUT_MS)
 
     def is_done(self, phase: int) -> None:

@@ -443,7 +443,7 @@ def test_the_viewer_chooses_the_colours(venue: Venue, open_page: OpenPage) -> No
     arena, contrast = referee.sheet.seats[1].colour, "#ffe600"
 
     def drawn() -> float:
-        """Return the green of a disc divided by its red: 0.69 is orange, 0.90 is yellow."""
+        """Return a disc's green value divided by its red value: 0.69 is orange, 0.90 is yellow."""
         left, top = map(round, show.view(f"screen({corner.x_m}, {corner.y_m}, 0.01)"))
         disc = pixels_of(show.page, blank)[top - 9 : top + 10, left - 9 : left + 10]
         red, green, blue = np.median(disc.reshape(-1, 3), axis=0)

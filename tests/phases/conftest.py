@@ -1,4 +1,4 @@
-"""Real trials for the tests of the phases: as a studio answers them, in this process."""
+"""Fixtures for the tests of the phases: real trials by the studio's code, in this process."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -22,7 +22,7 @@ Tries = Callable[..., TrialFacts]
 
 @pytest.fixture(scope="session")
 def sample() -> dict[int, Posture]:
-    """Give the postures of the workshop's sample by key [rad]."""
+    """Give the postures of the workshop's sample gait by key [rad]."""
     table = read_gait(SAMPLE.read_bytes(), SAMPLE.name)
     assert isinstance(table, PostureTable)
     return table.postures
@@ -30,7 +30,10 @@ def sample() -> dict[int, Posture]:
 
 @pytest.fixture(scope="session")
 def ask_trial() -> Asks:
-    """Give a function that lets the workshop's robot walk with postures, or with sequences."""
+    """Give a function that tries postures or sequences on the workshop's robot.
+
+    With postures, key 0 of level B stands in posture 0, and key 1 repeats the postures 1 to 4.
+    """
     answers: dict[bytes, TrialReply] = {}
 
     def ask(
@@ -56,7 +59,7 @@ def ask_trial() -> Asks:
 
 @pytest.fixture(scope="session")
 def try_gait(ask_trial: Asks) -> Tries:
-    """Give a function that returns the facts of such a trial; arguments as of `ask_trial`."""
+    """Give a function that returns the facts of a trial; it takes the arguments of `ask_trial`."""
 
     def tried(
         gait: dict[int, Posture] | LocomotionTable, keys: str, seconds: float | None = None

@@ -1,4 +1,4 @@
-"""Facts of real trials, and where feet go."""
+"""Tests of the facts of real trials, and of the directions in which feet go."""
 
 import math
 from collections.abc import Callable
@@ -29,7 +29,7 @@ def legs() -> tuple[LegSpec, ...]:
 
 
 def test_the_sample_walks_five_whole_cycles(try_gait: Tries, sample: dict[int, Posture]) -> None:
-    """The sample's key 2 goes straight ahead, on the same three feet for half a cycle."""
+    """The sample walks five cycles straight ahead, on the same three feet for half a cycle."""
     facts = try_gait(sample, "B1")
 
     assert (facts.keys, facts.postures, facts.cycles) == (("B1",), 4, 5)
@@ -44,7 +44,7 @@ def test_the_sample_walks_five_whole_cycles(try_gait: Tries, sample: dict[int, P
 def test_a_tripod_is_seen_and_six_feet_are_none(
     try_gait: Tries, sample: dict[int, Posture]
 ) -> None:
-    """The sample robot stands on three feet throughout posture 1, and at no time in posture 0."""
+    """In the sample's posture 1 the robot stands on three feet, in posture 0 never."""
     tripod, stand = try_gait(sample, "A1", 3.0), try_gait(sample, "A0", 3.0)
 
     assert tripod.tripod_s == pytest.approx(2.96, abs=0.1)
@@ -55,7 +55,7 @@ def test_a_tripod_is_seen_and_six_feet_are_none(
 def test_two_postures_go_forward_on_the_same_feet(
     try_gait: Tries, sample: dict[int, Posture]
 ) -> None:
-    """From the sample's posture 1 to posture 2, the robot goes forward on the same feet."""
+    """From posture 1 to posture 2 of the sample, the robot goes forward on the same three feet."""
     facts = try_gait(sample, "A1:1, a2", 1.5)
 
     assert facts.keys == ("A1", "A2")
@@ -64,7 +64,7 @@ def test_two_postures_go_forward_on_the_same_feet(
 
 
 def test_a_jump_at_the_seam_is_told_in_degrees(try_gait: Tries, sample: dict[int, Posture]) -> None:
-    """A joint that turns slowly through a cycle, and jumps back at its end, is found."""
+    """A root that turns by 26 degrees a posture jumps back by 78 degrees at the end."""
     turned = {
         key: tuple(
             math.radians(-40 + 26 * (key - 1)) if joint == 0 else angle
@@ -80,7 +80,7 @@ def test_a_jump_at_the_seam_is_told_in_degrees(try_gait: Tries, sample: dict[int
 def test_faults_of_physics_are_facts(
     ask_trial: Callable[..., TrialReply], sample: dict[int, Posture]
 ) -> None:
-    """A trial that physics ended, and one that ended at once, have facts too."""
+    """A trial that physics stopped, also in its first tick, has facts."""
     reply = ask_trial(sample, "A1", 0.2)
     stopped = msgspec.structs.replace(reply, fault=Phrase("fault.numbers"))
     empty = msgspec.structs.replace(
@@ -96,7 +96,7 @@ def test_faults_of_physics_are_facts(
 def test_a_reply_that_does_not_fit_together_is_refused(
     ask_trial: Callable[..., TrialReply], sample: dict[int, Posture]
 ) -> None:
-    """Arrays of a wrong length and figures that are missing raise a ValueError."""
+    """A reply with arrays of a wrong length, or without figures, raises a ValueError."""
     reply = ask_trial(sample, "A1", 0.2)
 
     for wrong in ({"ticks": reply.ticks + 1}, {"figures": {}}, {"down": b""}, {"margin_m": b"x"}):
@@ -105,7 +105,7 @@ def test_a_reply_that_does_not_fit_together_is_refused(
 
 
 def test_faster_slower_and_turning(try_gait: Tries, sample: dict[int, Posture]) -> None:
-    """Pace and way are what a person would say of the sample and its changes."""
+    """With smaller angles the sample is slower; the sample's postures 5 to 8 turn right."""
     forward = try_gait(sample, "B1")
     shorter = try_gait({k: _half_roots(posture) for k, posture in sample.items()}, "B1")
     reordered = {1: sample[5], 2: sample[6], 3: sample[7], 4: sample[8], 0: sample[0]}
@@ -141,7 +141,7 @@ def test_a_foot_goes_the_same_way_on_both_sides(
     after: tuple[float, ...],
     ways: tuple[str, ...],
 ) -> None:
-    """Root swings a foot forward and back, and 2nd outward and inward, on all legs."""
+    """On every leg, Root moves the foot forward and back, and 2nd moves it out and in."""
     assert foot_ways(legs[leg], before, after)[0] == ways[0]
 
 
@@ -152,7 +152,7 @@ ANGLES = st.tuples(*[st.integers(-90, 90)] * 3)
 def test_a_foot_that_goes_back_goes_the_other_way(
     legs: tuple[LegSpec, ...], leg: int, one: tuple[int, ...], other: tuple[int, ...]
 ) -> None:
-    """The way back has the opposite directions, and a foot never goes in two opposite ones."""
+    """The reverse of an edit has the opposite directions; no edit has two opposite directions."""
     opposite = {"forward": "back", "up": "down", "out": "in", "still": "still"}
     opposite |= {there: here for here, there in opposite.items()}
     ways = foot_ways(legs[leg], one, other)

@@ -1,4 +1,4 @@
-"""Predicates: what they count, in which order, and that nothing is ever taken back."""
+"""Tests of the rules over evidence: they count right, and more evidence never makes less done."""
 
 import math
 from typing import Any
@@ -49,7 +49,7 @@ SHORT = st.sampled_from(["1", "2", SAMPLE])
 
 @st.composite
 def facts(draw: st.DrawFn) -> TrialFacts:
-    """Draw facts that often are good enough for one phase or another."""
+    """Draw facts of a trial that often meet the conditions of a phase."""
     good = st.sampled_from
     return TrialFacts(
         keys=draw(good([("A1", "A2"), ("B2",), ("A1",), ("B0",)])),
@@ -115,7 +115,7 @@ LISTS = st.lists(EVIDENCE, max_size=30)
 
 @given(LISTS)
 def test_evidence_takes_nothing_back(evidence: list[Evidence]) -> None:
-    """With each piece of evidence every phase is as far as before, or farther."""
+    """One more piece of evidence never makes the share of any phase smaller."""
     for phase in PHASES:
         shares = [phase.look(evidence[:count]).share for count in range(len(evidence) + 1)]
         assert shares == sorted(shares)
@@ -123,7 +123,7 @@ def test_evidence_takes_nothing_back(evidence: list[Evidence]) -> None:
 
 @given(LISTS)
 def test_every_outcome_is_whole(evidence: list[Evidence]) -> None:
-    """A share is from 0 to 1, 1 only if nothing is missing, and all that is missing has words."""
+    """A phase's share is from 0 to 1, and 1 only if nothing is missing. All phrases have texts."""
     for phase in PHASES:
         outcome = phase.look(evidence)
         assert 0 <= outcome.share <= 1
@@ -134,7 +134,7 @@ def test_every_outcome_is_whole(evidence: list[Evidence]) -> None:
 
 @given(LISTS)
 def test_progress_never_locks(evidence: list[Evidence]) -> None:
-    """Progress names a phase that exists; a phase is skipped only if it is behind, and not met."""
+    """The student is at the phase visited last; only phases before the farthest are skipped."""
     now = progress(evidence)
     visited = [one.phase for one in evidence if isinstance(one, Moved) and 1 <= one.phase <= 6]
 
@@ -146,7 +146,7 @@ def test_progress_never_locks(evidence: list[Evidence]) -> None:
 
 @given(EVIDENCE)
 def test_evidence_survives_json(evidence: Evidence) -> None:
-    """Evidence that was written as JSON is the same after it is read; NaN becomes null or fails."""
+    """Evidence that is written as JSON and read again is the same, except for NaN."""
     data = to_json(evidence)
     if b"null" not in data:
         assert from_json(data) == evidence
@@ -166,7 +166,7 @@ HAND, VOTE = Hand(up=True), Voted(poll="x")
 
 
 def test_a_count_says_how_much_is_left() -> None:
-    """One of two gives half a share and says that one is missing."""
+    """If one of two is there, the share is a half, and one is reported as missing."""
     assert IS_HAND.look([HAND, VOTE]) == Outcome(0.5, (lacks(1),))
     assert IS_HAND.look([HAND, VOTE, HAND]) == MET
 
@@ -176,7 +176,7 @@ def test_a_count_says_how_much_is_left() -> None:
     [("", 0), ("r", 0.5), ("rr", 1), ("rwr", 1), ("rwwr", 0.5), ("wwwrwwrr", 1), ("rrwww", 1)],
 )
 def test_two_of_the_last_three(answers: str, share: float) -> None:
-    """Two right answers count within three in a row, at any time."""
+    """The rule is met once two of any three answers in a row were right."""
     right = LastOf(lambda one: one.right if isinstance(one, Guessed) else None, 2, 3, lacks)
     evidence = [guess("up" if answer == "r" else "down") for answer in answers]
 
@@ -184,7 +184,7 @@ def test_two_of_the_last_three(answers: str, share: float) -> None:
 
 
 def test_order_matters_after_something() -> None:
-    """What came before the first thing was shown does not count; what came later does."""
+    """`After` counts a vote only if it comes after the student has raised a hand twice."""
     ordered = After(IS_HAND, IS_VOTE)
 
     assert not ordered.look([VOTE, HAND, HAND]).met
@@ -194,7 +194,7 @@ def test_order_matters_after_something() -> None:
 
 
 def test_all() -> None:
-    """All needs each part and lists what is missing."""
+    """`All` is met only if each of its rules is met, and lists what every rule lacks."""
     assert All(IS_HAND, IS_VOTE).look([HAND]).missing == (lacks(1), Phrase("phases.vote"))
     assert All(IS_HAND, IS_VOTE).look([HAND, HAND, VOTE]) == MET
 
@@ -221,7 +221,7 @@ STRAIGHT = Bound(
 
 
 def test_the_best_trial_says_what_is_missing() -> None:
-    """One trial must keep all limits; if none does, the nearest trial's number is reported."""
+    """One trial must keep all limits; if none does, the nearest trial says what is missing."""
     tried = TriedWhere((FORWARD, STRAIGHT), Phrase("phases.try"))
     far = a_trial("1", forward_mm=150.0, drift_deg_s=9.0)
     straight = a_trial("2", forward_mm=10.0)
@@ -233,7 +233,7 @@ def test_the_best_trial_says_what_is_missing() -> None:
 
 
 def test_one_version_must_show_everything() -> None:
-    """Two conditions are met only if trials of the same version of the table meet them."""
+    """Two rules in `OneVersion` are met only by trials of the same version of the table."""
     turned = Bound(lambda facts: facts.drift_deg_s, lambda found: Phrase("phases.tipped"), least=5)
     none = Phrase("phases.try")
     both = OneVersion(All(TriedWhere((FORWARD,), none), TriedWhere((turned,), none)))
@@ -244,7 +244,7 @@ def test_one_version_must_show_everything() -> None:
 
 
 def test_an_edit_is_what_differs_between_two_tables() -> None:
-    """An edit has each leg that changed, with the levels that did, and all three of its angles."""
+    """An edit lists each changed leg with the changed joints and all three angles of the leg."""
     before = {(1, 0): tuple(map(float, range(18)))}
     row = list(before[1, 0])
     row[2], row[14] = 50.0, 60.0

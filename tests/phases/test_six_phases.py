@@ -1,4 +1,4 @@
-"""A student goes through the six phases with real trials, from a table that only stands."""
+"""Tests of the six phases with facts of real trials: each task is met, or something is missing."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -39,24 +39,24 @@ def rows(postures: dict[int, Posture]) -> Rows:
 
 
 def edit(before: dict[int, Posture], after: dict[int, Posture], by: By = "hand") -> Evidence:
-    """Return the edit from one table to another."""
+    """Return the evidence of an edit from one table to another."""
     change = edited(rows(before), rows(after), "v", by)
     assert change is not None
     return change
 
 
 def standing(sample: Sample, keys: Sequence[int]) -> dict[int, Posture]:
-    """Return a table in which all keys stand as key 0 does."""
+    """Return a table in which all keys have the standing posture of key 0."""
     return dict.fromkeys(keys, sample[0])
 
 
 def codes(evidence: Sequence[Evidence], phase: int) -> set[str]:
-    """Return what is missing in a phase, as codes."""
+    """Return the codes of the phrases that say what a phase still lacks."""
     return {phrase.code for phrase in progress(evidence).outcomes[phase - 1].missing}
 
 
 def test_phase_1_needs_postures_of_one_leg_and_right_guesses(sample: Sample) -> None:
-    """Six postures of one leg with all its joints, three guesses, two of three of them right."""
+    """Phase 1 needs six postures of a leg, all three joints, and two right guesses of three."""
     table = {1: list(sample[0])}
     evidence: list[Evidence] = []
     for step in range(6):
@@ -74,7 +74,7 @@ def test_phase_1_needs_postures_of_one_leg_and_right_guesses(sample: Sample) -> 
 
 
 def test_phase_2_needs_an_own_tripod(try_gait: Tries, sample: Sample) -> None:
-    """Six legs are no tripod, and a tripod that the student did not make does not count."""
+    """Phase 2 needs a trial on three feet, after the student has made the posture by hand."""
     start = standing(sample, range(5))
     own = start | {1: sample[1]}
     on_six = Tried(version="1", facts=try_gait(start, "A1", 3.0))
@@ -89,7 +89,7 @@ def test_phase_2_needs_an_own_tripod(try_gait: Tries, sample: Sample) -> None:
 
 
 def test_phase_3_needs_two_postures_on_the_same_feet(try_gait: Tries, sample: Sample) -> None:
-    """From key 1 to key 2 the robot moves forward; back, and with other feet, does not count."""
+    """Phase 3 is met by two postures that move forward on the same feet, not back or on others."""
     table = {key: sample[key] for key in range(5)}
     made = edit(standing(sample, range(5)), table)
 
@@ -104,7 +104,7 @@ def test_phase_3_needs_two_postures_on_the_same_feet(try_gait: Tries, sample: Sa
 
 
 def test_phase_4_needs_a_gait_that_goes_on_and_on(try_gait: Tries, sample: Sample) -> None:
-    """Standing is no gait, and a gait that turns does not go straight."""
+    """Phase 4 is met by the sample's walk, made by hand; not by standing or by turning."""
     start = standing(sample, range(5))
     own = {key: sample[key] for key in range(5)}
     turning = {0: sample[0], **{key: sample[key + 4] for key in range(1, 5)}}
@@ -120,7 +120,7 @@ def test_phase_4_needs_a_gait_that_goes_on_and_on(try_gait: Tries, sample: Sampl
 
 
 def test_phase_5_needs_another_walk_a_word_and_a_vote(try_gait: Tries, sample: Sample) -> None:
-    """Half of all angles walk differently; without a word or a vote the phase is open."""
+    """Phase 5 needs a walk that differs from the sample, a word and a vote."""
     calm = {key: tuple(0.6 * angle for angle in angles) for key, angles in sample.items()}
     walk, known = try_gait(calm, "B1"), try_gait(sample, "B1")
     differs = differences(walk, known)
@@ -142,7 +142,7 @@ def test_phase_5_needs_another_walk_a_word_and_a_vote(try_gait: Tries, sample: S
 def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
     try_gait: Tries, sample: Sample
 ) -> None:
-    """The four keys of the sample act; each one that was not tried with this file is missing."""
+    """Phase 6 needs a check without mistakes, and a trial of each of the four keys of that file."""
     file = to_locomotion(PostureTable(sample), SAMPLE_KEYS)
     checked = Checked(version="1", keys=4, mistakes=0)
     tries = [Tried(version="1", facts=try_gait(file, f"B{key}")) for key in range(4)]
@@ -153,13 +153,13 @@ def test_phase_6_needs_a_checked_file_with_four_keys_that_act(
         others = [one for index, one in enumerate(tries) if index != key]
         assert codes([checked, *others], 6) == {f"phases.key-{name}"}
     posture = Tried(version="1", facts=try_gait(sample, "A2", 1.0))
-    assert len(CREATIVE.look([checked, posture]).missing) == 4  # each is told once
+    assert len(CREATIVE.look([checked, posture]).missing) == 4  # each key is named once
     assert codes([Checked(version="1", keys=4, mistakes=2), *tries], 6) == {"phases.check"}
     assert codes([Checked(version="2", keys=4, mistakes=0), *tries], 6) == {"phases.check"}
 
 
 def test_a_student_may_skip_and_come_back() -> None:
-    """A student who moves to phase 4 has skipped phases 1-3, also after going back to phase 2."""
+    """A student who goes to phase 4 skips phases 1 to 3, and may go back to phase 2."""
     evidence = [Moved(phase=4), Moved(phase=2), Hand(up=True)]
     now = progress(evidence)
 
@@ -171,7 +171,7 @@ def test_a_student_may_skip_and_come_back() -> None:
 
 
 def test_all_texts_are_in_both_languages() -> None:
-    """Each text of a phase is a whole sentence, in English and in Japanese."""
+    """Each text of a phase can be shown, and differs in English and Japanese."""
     for phase in PHASES:
         for phrase in (phase.title, phase.task, phase.question, phase.hint, phase.explanation):
             assert not faults(phrase)

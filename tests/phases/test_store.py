@@ -1,4 +1,4 @@
-"""A class on disk: it survives kills, damage and a full disk, and can be exported and forgotten."""
+"""Tests of a class on disk: kills, damage and a full disk lose nothing; export; deletion."""
 
 import csv
 import io
@@ -25,8 +25,8 @@ EDIT = Edited(version="2", by="hand", legs=(LegEdit(1, 0, 2, (0,), (10.0, 20.0, 
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """Give the path of a class that is not there yet."""
-    return tmp_path / "class [1].sqlite"  # a name that is also a pattern
+    """Give the path of a class file that does not exist yet."""
+    return tmp_path / "class [1].sqlite"  # a name with letters that mean a pattern to `glob`
 
 
 def table(student: str, version: str, name: str = "Loco-data.txt") -> KeptTable:
@@ -38,7 +38,7 @@ def names(path: Path) -> set[str]:
 
 
 def test_what_is_kept_can_be_read_again(path: Path) -> None:
-    """After the store is closed and opened, all evidence, tables and votes are there, in order."""
+    """After a store is closed and opened again, all evidence and the newest tables are there."""
     with ClassStore(path) as store:
         numbers = [store.add("Ada", one, 1.5).result() for one in (Joined(), EDIT)]
         numbers.append(store.add("りく", GUESS, 2.5).result())
@@ -59,7 +59,7 @@ def test_what_is_kept_can_be_read_again(path: Path) -> None:
 
 
 def test_a_class_at_once(path: Path) -> None:
-    """Evidence of many threads is all kept, each with a number of its own, in each one's order."""
+    """Eight threads that add evidence at the same time lose nothing and keep their own order."""
     students = [f"student {number}" for number in range(8)]
 
     def work(student: str) -> list[int]:
@@ -77,7 +77,7 @@ def test_a_class_at_once(path: Path) -> None:
 
 
 def test_a_student_votes_once_and_nobody_sees_for_what(path: Path) -> None:
-    """A second vote in a poll does not count; no row holds both a student and a choice."""
+    """A student's second vote in a poll does not count; the evidence does not have the choice."""
     with ClassStore(path) as store:
         counted = [
             store.vote(who, "calm", choice, 1.0).result()
@@ -103,7 +103,7 @@ def test_a_killed_program_loses_nothing_that_was_acknowledged(path: Path) -> Non
 
 
 def test_one_program_at_a_time_has_a_class(path: Path) -> None:
-    """A second store on the same file, and forgetting it, are refused while it is open."""
+    """While a store has a file open, a second store can't open it, and it can't be deleted."""
     with ClassStore(path) as store:
         for again in (ClassStore, forget):
             with pytest.raises(UserError) as refused:
@@ -126,7 +126,7 @@ def test_a_closed_store_says_so(path: Path) -> None:
 
 @pytest.mark.parametrize("damage", ["no database", "cut in half", "zeros inside"])
 def test_a_damaged_file_is_kept_and_the_class_goes_on(path: Path, damage: str) -> None:
-    """A file that SQLite can't read is renamed, the teacher is told, and a fresh file is used."""
+    """A file that SQLite can't read is renamed, `trouble` names it, and a fresh file is used."""
     with ClassStore(path) as store:
         for _ in range(200):
             store.add("Ada", EDIT, 1.0)
@@ -150,8 +150,10 @@ def test_a_damaged_file_is_kept_and_the_class_goes_on(path: Path, damage: str) -
 
 
 def test_damage_while_the_class_runs_keeps_everybodys_tables(path: Path) -> None:
-    """If the open file breaks, the work at hand is done in a fresh file, which has all tables."""
-    large = KeptTable("Ada", "Loco-data.txt", "1", 1.0, bytes(8 << 20))  # not held in memory
+    """If the file is damaged while it is open, a fresh file gets new evidence and all tables."""
+    large = KeptTable(
+        "Ada", "Loco-data.txt", "1", 1.0, bytes(8 << 20)
+    )  # too large for SQLite's cache
     with ClassStore(path) as store:
         for _ in range(300):
             store.add("Ada", EDIT, 1.0)
@@ -198,7 +200,7 @@ store.close()
 
 @pytest.mark.slow
 def test_a_full_disk_is_told_and_loses_nothing(path: Path) -> None:
-    """A full disk refuses evidence with a clear error; with room again, the class goes on."""
+    """On a full disk new evidence fails with an error; when there is room again, all goes on."""
     done = subprocess.run(
         [sys.executable, "-c", FULL, str(path)], capture_output=True, text=True, check=True
     )
@@ -211,7 +213,7 @@ def test_a_full_disk_is_told_and_loses_nothing(path: Path) -> None:
 
 
 def test_another_programs_database_is_left_alone(path: Path) -> None:
-    """A database that is no class is neither used nor renamed nor deleted."""
+    """A database of another program is refused, and stays as it is."""
     with sqlite3.connect(path) as db:
         db.execute("CREATE TABLE photos (name TEXT)")
     db.close()
@@ -226,15 +228,15 @@ def test_another_programs_database_is_left_alone(path: Path) -> None:
 
 
 def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
-    """In a folder that does not exist no class is made, and no class is forgotten there."""
+    """In a folder that does not exist, a class can't be made, and none can be deleted."""
     with pytest.raises(UserError, match="can't be opened"):
         ClassStore(tmp_path / "nowhere" / "class.sqlite")
-    with pytest.raises(UserError, match="no class"):
+    with pytest.raises(UserError, match="There is no file"):
         forget(tmp_path / "nowhere" / "class.sqlite")
 
 
 def test_forgetting_deletes_everything_of_this_class_alone(path: Path) -> None:
-    """The class, its damaged files and what SQLite left beside them go; other files stay."""
+    """`forget` deletes the class, its damaged files and SQLite's files; another class stays."""
     path.write_bytes(b"damaged")
     ClassStore(path).close()
     beside = Path(f"{path}-wal")
@@ -249,7 +251,7 @@ def test_forgetting_deletes_everything_of_this_class_alone(path: Path) -> None:
 
 
 def test_evidence_as_a_table_for_a_spreadsheet(path: Path) -> None:
-    """The CSV has a line for each piece of evidence, and no text that Excel would compute."""
+    """The CSV has a line for each piece of evidence; an apostrophe stops formulas in names."""
     given: list[tuple[str, Evidence]] = [
         ("Ada", GUESS),
         ("=HYPERLINK(1)", Named(word="-calm, or so")),
@@ -271,7 +273,7 @@ def test_evidence_as_a_table_for_a_spreadsheet(path: Path) -> None:
 
 
 def test_tables_as_an_archive() -> None:
-    """Each student has a folder; names that no system takes, or that are alike, are changed."""
+    """In the zip archive each student has a folder with a safe name that no other student has."""
     students = ("Ada", "ada", "../..", "a/b", "りく")
     data = tables_zip(table(student, "1") for student in students)
 
@@ -285,7 +287,7 @@ def test_tables_as_an_archive() -> None:
 
 
 def test_troubles_have_words_in_both_languages(path: Path) -> None:
-    """The message about a damaged file has the damaged file's new name, in both languages."""
+    """The message about a damaged file gives its new name in both languages."""
     path.write_bytes(b"damaged")
     with ClassStore(path) as store:
         assert store.trouble is not None

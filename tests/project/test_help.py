@@ -93,7 +93,7 @@ def english_left(shown: str) -> list[str]:
 
 
 def japanese_help(name: str, capsys: pytest.CaptureFixture[str]) -> str:
-    """Return what a command prints with --help."""
+    """Return what a command prints with --help in Japanese."""
     with pytest.raises(SystemExit):
         cli.main([*name.split()[1:], "--help"])
     return capsys.readouterr().out

@@ -290,7 +290,7 @@ def test_info_of_a_cut_record(tmp_path: Path, write_match: WriteMatch) -> None:
 
 
 def test_info_tells_the_time_played(tmp_path: Path, write_match: WriteMatch) -> None:
-    """Time that the referee gave was played, although the clock does not count it."""
+    """The time played includes time that the referee added; the clock does not include it."""
     path = write_match(tmp_path, gives_s=10.0)
     words = CliRunner().invoke(app, ["info", str(path)]).stdout
     assert "after 190.00 s of play (the clock: 180.00 s)" in " ".join(words.split())

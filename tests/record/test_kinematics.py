@@ -139,7 +139,7 @@ def test_which_bodies_move(model: mujoco.MjModel, scene: Scene) -> None:
 
 
 def test_a_scene_without_robots_needs_no_poses(scene: Scene) -> None:
-    """Without robots, bodies get their places although frames have no poses, as before READY."""
+    """In a scene without robots, as before READY, bodies get their places from empty poses."""
     still = Scene(bodies=scene.bodies[:2], geoms=())
     pos_w, _ = ForwardKinematics(still, ()).poses(b"")
     assert pos_w.tolist() == [[0, 0, 0], [1, 2, 0]]

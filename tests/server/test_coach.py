@@ -1,4 +1,4 @@
-"""Tests of the coach: it finds the angles that matter, and improves a gait by few changes."""
+"""Tests of the coach: it ranks the numbers of a table, and improves a gait by few changes."""
 
 import json
 import math
@@ -40,7 +40,7 @@ def made_up(tables: Sequence[Angles]) -> list[float]:
 
 
 def searched(size: Size, rounds: int = 40) -> Improved:
-    """Return the best table of a search that starts at zeros and lasts this many rounds."""
+    """Return the table that a search from zeros finds in this many rounds, after the undoing."""
     left = iter(range(rounds))
     own = (0,) * len(BEST)
     matters = what_matters(own, RANGES, made_up)
@@ -111,7 +111,7 @@ def test_what_matters_is_ranked() -> None:
 
 @given(st.data())
 def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
-    """A digit has one row of the table even if it is repeated; unchanged angles stay exact."""
+    """A repeated digit has one row; a change of one angle leaves all other angles as they are."""
     posture = st.tuples(*[st.floats(-1, 1)] * 3)
     rows = data.draw(st.lists(posture, min_size=1, max_size=4))
     order = data.draw(st.lists(st.integers(0, len(rows) - 1), min_size=1, max_size=8))
@@ -132,7 +132,7 @@ def test_a_table_keeps_its_sequence(data: st.DataObject) -> None:
 
 
 def test_goals() -> None:
-    """A goal scores speed, or turning left or right; a robot on its belly scores below zero."""
+    """A goal scores speed forward, or turning to its side. A robot on its belly scores below 0."""
     task = sample_task(2)
     forward = try_table(task, task.table.angles_deg)
     left = try_table(sample_task(1), sample_task(1).table.angles_deg)

@@ -117,7 +117,7 @@ def test_every_heading_is_as_fast() -> None:
 
 
 def test_reached() -> None:
-    """At level B with "reached" the sample gait walks at 57 ± 4 mm/s."""
+    """At level B, with `advance = "reached"`, the sample gait walks at 57 ± 4 mm/s."""
     walk = by_sequence()
     assert walk.forward_mm_s == pytest.approx(57.0, abs=4.0)
     assert abs(walk.turn_deg_s) < 1.0

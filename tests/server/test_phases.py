@@ -259,7 +259,7 @@ def test_a_match_that_is_over_ends_at_once() -> None:
 
 
 def test_all_corners_win_whatever_the_points_where_the_arena_says_so() -> None:
-    """Rules 6: with `all_corners_win`, the robot with all four corners wins with any points."""
+    """Rules 6: with `all_corners_win`, the robot with all corners wins, whatever its points are."""
     stage = Stage("flag-strike", {"game": {"all_corners_win": True}}, script=_all_corners())
     stage.to_playing()
     stage.until(P.FINISHED)

@@ -1,4 +1,4 @@
-"""Tests of a studio: a real process, asked over a real network."""
+"""Tests of a studio in a process of its own, over a real network connection."""
 
 import json
 import os
@@ -53,7 +53,7 @@ QUADRUPED = SentFile(*find_robot("quadruped"))
 
 
 class Asker:
-    """Asks a studio, and reads its answers."""
+    """Sends requests to the studio and decodes its answers."""
 
     def __init__(self, session: Session, process: subprocess.Popen[str]) -> None:
         self.session = session
@@ -75,20 +75,20 @@ class Asker:
         return decode(self.begin("trial", request).wait(), TrialReply, TRIAL_REPLY_MAX_BYTES)
 
     def refusal(self, what: str, request: object) -> Refusal:
-        """Send a request that is refused."""
+        """Send a request that must be refused, and return the refusal."""
         with pytest.raises(Refused) as refused:
             self.begin(what, request).wait()
         return decode(refused.value.payload, Refusal)
 
     def workers(self) -> list[psutil.Process]:
-        """List the studio's processes for trials."""
+        """List the child processes of the studio that run trials."""
         children = psutil.Process(self.process.pid).children()
         return [one for one in children if "spawn_main" in " ".join(one.cmdline())]
 
 
 @pytest.fixture(scope="module")
 def asker() -> Iterator[Asker]:
-    """Give a session that is connected to a studio with two processes."""
+    """Give an `Asker` that is connected to a studio with two processes for trials."""
     words = ("studio", "--json", "--name", "test", "--jobs", "2", "--listen", "tcp/127.0.0.1:0")
     process = started(*words, stdout=subprocess.PIPE, text=True)
     try:
@@ -119,7 +119,7 @@ def files_of(robot: str) -> GaitFiles:
 
 
 def test_a_trial_is_that_of_the_command(asker: Asker) -> None:
-    """A studio's trial has the figures of `lacoc trial`, its arrays, and the same last state."""
+    """A studio's trial has the figures, arrays and last state hash of a trial in this process."""
     reply = asker.trial(GaitFiles())
     entry = entry_of("hexapod")
     trial = try_gait(make_course(entry.robot), entry.gait)
@@ -147,7 +147,7 @@ def test_a_trial_is_that_of_the_command(asker: Asker) -> None:
 
 
 def test_a_sentence_has_its_place(asker: Asker) -> None:
-    """A sentence of an explanation carries the table cell and the leg that it is about."""
+    """A sentence that explains a trial has the cell of the table and the leg that it is about."""
     entry = entry_of("hexapod")
     assert entry.gait.locomotion is not None
     sequences = [list(map(list, one)) for one in entry.gait.locomotion.sequences]
@@ -162,7 +162,7 @@ def test_a_sentence_has_its_place(asker: Asker) -> None:
 
 @pytest.mark.parametrize("name", ["quadruped", "octopod"])
 def test_a_robot_is_described(asker: Asker, name: str) -> None:
-    """A robot has its table's columns, a drawable scene, and each limited fact keeps its limit."""
+    """The reply about a robot has joints, a scene, and facts that keep the limits of the rules."""
     file = SentFile(*find_robot(name))
     robot = asker.robot(file)
     legs = len(robot.legs)
@@ -179,7 +179,7 @@ def test_a_robot_is_described(asker: Asker, name: str) -> None:
 
 
 def test_a_wrong_request_gets_one_refusal(asker: Asker) -> None:
-    """Whatever is wrong with a request, its sender is told, and the next request is answered."""
+    """Each wrong request gets a refusal with its reason, and the next request is answered."""
     good = TrialRequest(protocol=PROTOCOL, files=GaitFiles())
 
     def code(what: str, request: object) -> str:
@@ -208,7 +208,7 @@ def test_a_wrong_request_gets_one_refusal(asker: Asker) -> None:
 
 
 def test_mistakes_in_files_are_listed(asker: Asker) -> None:
-    """A refusal names the mistakes of robot and gait files with their places."""
+    """A refusal lists the mistakes in robot and gait files, each with the name of the file."""
     request = RobotRequest(protocol=PROTOCOL, robot=SentFile("my.toml", b"name = 3"))
     refusal = asker.refusal("robot", request)
     assert refusal.why.code == "refused.mistakes"
@@ -226,7 +226,7 @@ def test_mistakes_in_files_are_listed(asker: Asker) -> None:
 
 
 def test_a_worker_that_dies_is_replaced(asker: Asker) -> None:
-    """A killed worker's request is refused as repeatable; the other worker's is answered."""
+    """The request of a killed process is refused with `again`; the other one is answered."""
     asker.trial(GaitFiles(), seconds=0.1)
     until(lambda: len(asker.workers()) == 2)
     before = {one.pid for one in asker.workers()}
@@ -253,7 +253,7 @@ def test_a_worker_that_dies_is_replaced(asker: Asker) -> None:
 
 
 def coach_request(job: str, **more: object) -> CoachRequest:
-    """Ask for a better gait of a quadruped with small steps, whose trials are short."""
+    """Make a request to improve a quadruped's gait with small steps; its trials are short."""
     entry = entry_of("quadruped")
     assert entry.gait.postures is not None
     one, other = (entry.gait.postures.postures[digit] for digit in (1, 3))
@@ -280,7 +280,7 @@ class Here:
 
 
 def test_a_search_can_be_repeated(asker: Asker) -> None:
-    """A search of one round has the same result in one process. It tells how far it is."""
+    """A search of one round has the same result in another process, and sends its progress."""
     progress = asker.session.mailbox(KEYS.progress("one"), 1000)
     request = coach_request("one")
     reply = decode(asker.begin("coach", request).wait(), CoachReply)
@@ -304,7 +304,7 @@ def test_a_search_can_be_repeated(asker: Asker) -> None:
 
 
 def test_a_search_can_be_cancelled(asker: Asker) -> None:
-    """A cancelled search replies with its best so far; trials never wait for it."""
+    """A cancelled search replies with the best so far, or is refused if it has not begun."""
     progress = asker.session.mailbox(KEYS.progress("long"), 1000)
     waiting = asker.session.mailbox(KEYS.progress("next"), 1000)
     question = asker.begin("coach", coach_request("long", seconds=100.0, size="table"))
@@ -334,7 +334,7 @@ def test_a_search_can_be_cancelled(asker: Asker) -> None:
 
 
 def test_a_search_with_wrong_wishes_is_refused(asker: Asker) -> None:
-    """A search's goal, size, time, key and name are checked."""
+    """A search with a wrong goal, size, time, key or name is refused with the reason."""
     for wrong, code in (
         ({"goal": "up"}, "studio.coach-choice"),
         ({"size": "all"}, "studio.coach-choice"),
@@ -348,7 +348,7 @@ def test_a_search_with_wrong_wishes_is_refused(asker: Asker) -> None:
 
 
 def test_nobody_else_speaks_for_a_studio(asker: Asker) -> None:
-    """Another client can't send progress in the studio's name, and receives no requests."""
+    """Another client can't send progress in the studio's name, and gets none of its requests."""
     (at,) = asker.session.endpoints
     with open_client([at]) as other:
         heard = asker.session.mailbox(KEYS.progress("mine"), 10)
@@ -360,13 +360,13 @@ def test_nobody_else_speaks_for_a_studio(asker: Asker) -> None:
 
 
 def test_the_longest_trial_of_the_largest_robot(asker: Asker) -> None:
-    """The largest possible reply, of the longest trial of an octopod, passes the network."""
+    """The reply of the longest trial of an octopod, the largest possible one, arrives."""
     reply = asker.trial(files_of("octopod"), seconds=60.0)
     assert reply.ticks == LONGEST_TICKS
 
 
 def test_physics_that_stop_are_a_reply() -> None:
-    """A trial whose physics stop has a fault and the figures of what was seen."""
+    """If physics stops, the reply to a trial has a fault, and the explanation says so first."""
     course = make_course(entry_of("hexapod").robot)
     course._world.data.qvel[:] = 1e9  # type: ignore[attr-defined]
     course._world._keep()  # type: ignore[attr-defined]
@@ -382,7 +382,7 @@ def test_physics_that_stop_are_a_reply() -> None:
 
 
 def test_no_process_is_left_when_a_studio_is_killed() -> None:
-    """The processes for trials end by themselves when their studio is killed."""
+    """When a studio is killed, its processes for trials end by themselves."""
     process = started(
         "studio", "--json", "--jobs", "1", "--listen", "tcp/127.0.0.1:0",
         stdout=subprocess.PIPE, text=True,

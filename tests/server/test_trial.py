@@ -41,7 +41,7 @@ def courses() -> dict[str, Course]:
 
 @pytest.fixture(scope="module")
 def sample(courses: dict[str, Course]) -> Walk:
-    """Give the walk of the workshop's robot with its sample gait, key 2 (forward)."""
+    """Give a trial of the workshop's robot with key 2 (forward) of its sample gait."""
     gait = read_trial_gait(SAMPLE, entry_of("hexapod").robot)
     return courses["hexapod"].walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, 2)])
 
@@ -69,7 +69,7 @@ def tables(draw: st.DrawFn, robot: str) -> Gait:
 def test_a_trial_is_what_a_court_would_do(
     courses: dict[str, Course], robot: str, data: st.DataObject
 ) -> None:
-    """After every tick a trial, which has sensors, has the same state as a match without them."""
+    """After every tick, a trial with sensors has the same state hash as a match without them."""
     gait = data.draw(tables(robot))
     assert gait.locomotion is not None
     # A match reads its gait from a file, which has whole degrees; the trial gets the same angles.
@@ -136,14 +136,14 @@ def test_the_figures_of_the_sample(sample: Walk) -> None:
 
 
 def test_feet_that_are_down_are_low(sample: Walk) -> None:
-    """Load and height (below 1 mm) agree in over 95 % of ticks on whether a foot is down."""
+    """In over 95 % of the ticks, a foot is down by its load exactly if it is lower than 1 mm."""
     part = slice(sample.span.first, sample.span.end)
     down = sample.down[part]
     assert ((sample.tip_m[part] < 0.001) == down).mean() > 0.95
 
 
 def test_contact_has_two_bounds() -> None:
-    """A standing foot counts as down until its load falls below a second, lower bound."""
+    """A foot comes down above 2 % of the weight, and stays down until its load is below 1 %."""
     load_n = np.array([[0.015], [0.03], [0.015], [0.005], [0.015]])
     assert feet_down(load_n, 1.0)[:, 0].tolist() == [False, True, True, False, False]
 
@@ -188,7 +188,7 @@ def test_margin_of_few_feet() -> None:
 
 
 def test_keys_as_people_type_them() -> None:
-    """A key typed without a level is one of level B if B has it; the last key lasts to the end."""
+    """Keys are read with levels and times; without a letter the level is B, or A if only A fits."""
     gait = read_trial_gait(SAMPLE, entry_of("hexapod").robot)
     assert forward_key(gait) == (Level.LOCOMOTION, 2)
     assert parse_keys("1:3, A4:0.5,2", gait, 25) == [
@@ -204,7 +204,7 @@ def test_keys_as_people_type_them() -> None:
 
 @pytest.mark.parametrize("seed", range(len(FAULTS)), ids=FAULTS)
 def test_the_first_sentence_names_the_fault(seed: int) -> None:
-    """An explanation first names the gait's only fault and leg, or no fault if there is none."""
+    """The first sentence names the only fault of a gait and its leg, or no fault if it has none."""
     told = tell(seed)
     assert told.named, told
 
@@ -266,6 +266,8 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert run("--keys", "1:1, 2", "--seconds", "2") == 0
     said = capsys.readouterr()
     assert "speed forward" in said.out
-    assert "The feet slide at" not in said.out  # nothing is explained without a whole cycle
+    assert (
+        "The feet slide over the floor at" not in said.out
+    )  # nothing is explained without a whole cycle
     assert "repeated too few times" in said.err
     assert run("--robot", "quadruped") == 2

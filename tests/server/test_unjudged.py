@@ -171,7 +171,7 @@ def test_silence_keeps_a_halted_match_waiting_and_then_ends_it() -> None:
 
 
 def test_two_have_time_to_read_who_has_won() -> None:
-    """A match of two teams without a referee shows its result for 10 s before the next opens."""
+    """After a match of two teams without a referee, the court shows the result for 10 s."""
     rules = {"start": "ready", "countdown_s": 0.02, "duration_s": 0.2}
     held = Held("othello", None, {"match": rules})
     held.begin()

@@ -16,13 +16,13 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture
 def workers() -> Iterator[Workers]:
-    """Give one process."""
+    """Give `Workers` with one process."""
     with Workers(1) as workers:
         yield workers
 
 
 def test_an_error_is_that_of_its_job(workers: Workers) -> None:
-    """A job that raises an error fails with its traceback, and the process goes on."""
+    """A job that raises an error fails with the traceback; the same process runs the next job."""
     first = workers.submit(os.getpid).result()
     failed = workers.submit(int, "no number")
     with pytest.raises(WorkerFailed, match=r"ValueError: .*no number"):
@@ -31,7 +31,7 @@ def test_an_error_is_that_of_its_job(workers: Workers) -> None:
 
 
 def test_a_process_that_ends_is_replaced(workers: Workers) -> None:
-    """A job that ends its process fails; the job behind it has another process."""
+    """A job that ends its process fails; a new process runs the next job."""
     first = workers.submit(os.getpid)
     ends, following = workers.submit(os._exit, 3), workers.submit(os.getpid)
     with pytest.raises(WorkerDied):
@@ -40,7 +40,7 @@ def test_a_process_that_ends_is_replaced(workers: Workers) -> None:
 
 
 def test_a_process_that_died_at_rest_costs_no_job(workers: Workers) -> None:
-    """A process that is killed between two jobs is replaced before the second."""
+    """If a process is killed between two jobs, a new process runs the second job."""
     first = workers.submit(os.getpid).result()
     os.kill(first, signal.SIGKILL)
     while not _has_ended(first):
@@ -56,13 +56,13 @@ def _has_ended(pid: int) -> bool:
 
 
 def test_a_job_has_a_time_limit() -> None:
-    """A job that takes too long fails, and its process is ended."""
+    """A job that takes longer than the limit fails with `WorkerDied`."""
     with Workers(1, limit_s=1.0) as workers, pytest.raises(WorkerDied):
         workers.submit(time.sleep, 60).result()
 
 
 def test_jobs_that_wait_can_be_cancelled(workers: Workers) -> None:
-    """A job that nobody wants any more is skipped."""
+    """A cancelled job never runs; the job after it does."""
     first = workers.submit(os.getpid)
     slow, unwanted, last = (
         workers.submit(time.sleep, 0.3),
@@ -75,7 +75,7 @@ def test_jobs_that_wait_can_be_cancelled(workers: Workers) -> None:
 
 
 def test_the_end_ends_all() -> None:
-    """A close cancels what waits, fails what runs, and leaves no process."""
+    """`close` cancels waiting jobs, lets running jobs fail, and leaves no process."""
     workers = Workers(2, background=True)
     pids = {workers.submit(os.getpid).result() for _ in range(4)}
     jobs = [workers.submit(time.sleep, 60) for _ in range(4)]

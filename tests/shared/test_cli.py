@@ -169,7 +169,7 @@ def test_a_missing_extra_is_one_line(lacoc: Lacoc, args: tuple[str, ...]) -> Non
 
 
 def test_a_missing_extra_found_late_is_the_same_line(lacoc: Lacoc) -> None:
-    """A command that imports MuJoCo only when it runs prints the same line."""
+    """A command that imports MuJoCo only when it runs also says in one line how to install it."""
     code, _, err = lacoc("late")
 
     assert code == 2

@@ -26,13 +26,13 @@ def new_code() -> str:
 
 
 def read_code(text: str) -> str:
-    """Return a class code as it was meant: "ｋ7q m3x" is "K7QM3X"."""
+    """Return a typed class code in its usual form: "ｋ7q m3x" becomes "K7QM3X"."""
     wide = unicodedata.normalize("NFKC", text).upper()
     return "".join(letter for letter in wide if letter.isalnum())
 
 
 def read_name(text: str) -> str:
-    """Return a nickname without needless spaces.
+    """Return a nickname without spaces at its ends and double spaces in it.
 
     Raises:
         UserError: if it is empty, too long, or has signs that can't be seen.
@@ -44,7 +44,7 @@ def read_name(text: str) -> str:
 
 
 def same_name(name: str) -> str:
-    """Return a text that is equal for two names that people take for the same."""
+    """Return a form of a name in which "Anna" and "ANNA" are equal."""
     return unicodedata.normalize("NFKC", name).casefold()
 
 
@@ -55,7 +55,7 @@ class Guesses:
         self._machines: OrderedDict[str, Allowance] = OrderedDict()
 
     def wait_s(self, machine: str, now_s: float) -> float:
-        """Take in a wrong code; return how long its answer must wait [s].
+        """Count a wrong code; return how long its answer must wait [s].
 
         Args:
             machine: address of the machine that showed it.

@@ -60,7 +60,7 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Seen(msgspec.Struct, frozen=True, kw_only=True):
-    """What is known of a student besides the evidence."""
+    """Things about a student that the evidence does not say."""
 
     name: str
     online: bool = False
@@ -115,13 +115,17 @@ def card(seen: Seen, evidence: Sequence[Evidence], progress: Progress, now_s: fl
 
 
 def hand_times(kept: Iterable[tuple[float, Evidence]]) -> float | None:
-    """Return since when a hand is up, from evidence with its times; None: it is not."""
+    """Return when the hand that is up now was raised; None: no hand is up.
+
+    Args:
+        kept: evidence of one student, each with its time [s], in order.
+    """
     hands = [(at_s, one.up) for at_s, one in kept if isinstance(one, Hand)]
     return hands[-1][0] if hands and hands[-1][1] else None
 
 
 def stuck(tries: Sequence[TrialFacts]) -> Phrase | None:
-    """Say what went wrong in the same way in each of the last trials; None: nothing did."""
+    """Return what went wrong if the last three trials failed in the same way; else None."""
     last = [failure(facts) for facts in tries[-_EQUAL_FAILURES:]]
     if len(last) < _EQUAL_FAILURES or any(one != last[0] for one in last):
         return None
@@ -129,7 +133,7 @@ def stuck(tries: Sequence[TrialFacts]) -> Phrase | None:
 
 
 def failure(facts: TrialFacts) -> Phrase | None:
-    """Say what went wrong in a trial, the worst first; None: nothing did."""
+    """Return the worst thing that went wrong in a trial; None: nothing did."""
     if facts.stopped:
         return say("class.failed-stopped")
     if facts.upright < _LEANS:

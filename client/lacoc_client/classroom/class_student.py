@@ -1,4 +1,4 @@
-"""A student of a class: also the token, and what the teacher's card shows."""
+"""A student of a class, who has a token and a card on the teacher's page."""
 
 import time
 from collections.abc import Callable
@@ -35,14 +35,14 @@ class ClassStudent(Student):
         self._last: Card | None = None
 
     def learned(self, trial: TrialReply | None) -> None:
-        """Take in that the student did something; a trial, or anything else (None)."""
+        """Note that the student did something; `trial` is the trial if it was one."""
         self.seen_s = time.time()
         if trial is not None:
             self._trial = trial
         self.hand_moved()
 
     def hand_moved(self) -> None:
-        """Take in that the hand may have gone up or down."""
+        """Note when the hand went up, or that it is down."""
         if not self.diary.progress.hand_up:
             self.hand_up_s = None
         elif self.hand_up_s is None:
@@ -60,7 +60,7 @@ class ClassStudent(Student):
         return card(seen, self.diary.evidence, self.diary.progress, time.time())
 
     def changed_card(self) -> Card | None:
-        """Return the card if it has changed since this was asked last; else None."""
+        """Return the card if it has changed since the last call; else None."""
         now = self.card()
         if now == self._last:
             return None

@@ -44,11 +44,11 @@ CLASS_FILE = "lacoc-class.sqlite"
 
 _MOST_STUDENTS = 100
 _SOON_S = 0.1
-"""How soon pages are told that a studio has come or gone."""
+"""How soon pages are told that a studio has come or gone [s]."""
 _ALIVE_S = 1.0
-"""How often pages get a sign of life."""
+"""How often students' pages get a sign of life [s]."""
 _QUIET_LOOK_S = 10.0
-"""How often cards are looked at for students who have gone quiet."""
+"""How often to look for students who have done nothing for long [s]."""
 
 
 class Classroom:
@@ -123,7 +123,7 @@ class Classroom:
     # What students do
 
     async def enter(self, hello: requests.Hello, viewer: Viewer, where: str) -> Entered:
-        """Let a student in who shows a token, or class code and nickname; see `Host.enter`."""
+        """Let a student in who shows a token, or the class code and a nickname (`Host.enter`)."""
         if hello.token:
             student, token = self._known(hello), hello.token
         else:
@@ -133,7 +133,7 @@ class Classroom:
         return Entered(student, token)
 
     def greet(self, student: Student, viewer: Viewer) -> None:
-        """Tell a page what it must know, and close the student's others; see `Host.greet`."""
+        """Tell a page what it must know, and stop the student's other pages (`Host.greet`)."""
         assert isinstance(student, ClassStudent)
         self._send_away(student, forgotten=False)
         student.viewers[viewer] = None
@@ -146,13 +146,13 @@ class Classroom:
         self._tell_card(student)
 
     def leave(self, student: Student, viewer: Viewer) -> None:
-        """Take in that a page has gone; see `Host.leave`."""
+        """Remove a page that has gone, and tell the teacher (`Host.leave`)."""
         assert isinstance(student, ClassStudent)
         student.viewers.pop(viewer, None)
         self._tell_card(student)
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
-        """Tell the student and the teacher; see `Host.learned`."""
+        """Tell the student and the teacher what has changed (`Host.learned`)."""
         assert isinstance(student, ClassStudent)
         student.learned(trial)
         student.tell()
@@ -176,19 +176,19 @@ class Classroom:
         return student
 
     async def set_rules(self, rules: Rules) -> None:
-        """Set what is allowed, and tell everybody."""
+        """Set what students may do, and tell everybody."""
         await self._set(rules=rules)
         for student in self.students.values():
             student.tell()
 
     async def set_code(self) -> None:
-        """Set another class code; whoever is in the class stays in."""
+        """Make another class code. Students who are in the class stay in it."""
         await self._set(code=new_code())
 
     async def hand_out(
         self, title: str, table: FileTable, sequences: tuple[tuple[int, ...], ...] | None
     ) -> None:
-        """Offer a table to everybody, also to those who come later."""
+        """Offer a table to all students, also to those who come later."""
         number = 1 + (self.state.handed.number if self.state.handed else 0)
         handed = Handed(number=number, title=title, table=table, sequences=sequences)
         await self._set(handed=handed)
@@ -203,7 +203,7 @@ class Classroom:
         self._tell_card(student)
 
     async def admit(self, student: ClassStudent) -> None:
-        """Let another browser in under a student's name: the next one with the class code."""
+        """Let the next browser that shows the class code in under this student's name."""
         student.token_hash = ""
         (await self._store()).keep(student.kept_token())
 
@@ -227,7 +227,7 @@ class Classroom:
         return await asyncio.wrap_future((await self._store()).evidence())
 
     async def kept(self) -> list[KeptTable]:
-        """Return the newest that is kept of everybody besides evidence."""
+        """Return the drafts and tokens of all students, and the settings of the class."""
         return (await self._store()).tables()
 
     def add_teacher(self, viewer: Viewer) -> None:
@@ -246,7 +246,7 @@ class Classroom:
         return student
 
     async def _newcomer(self, hello: requests.Hello, where: str) -> ClassStudent:
-        """Find or make the student of a class code and a nickname."""
+        """Check the class code and the nickname, and return the student, who may be new."""
         if not hello.code:
             raise UserError(say("class.enter"))
         if read_code(hello.code) != self.state.code:
@@ -271,14 +271,14 @@ class Classroom:
         return student
 
     def _send_away(self, student: ClassStudent, forgotten: bool) -> None:
-        """Close all pages of a student to further requests, and tell them."""
+        """Refuse further requests from all pages of a student, and tell the pages why."""
         student.send(wire.map_message(Kind.ELSEWHERE, {"forgotten": forgotten}))
         for viewer in student.viewers:
             viewer.can_act = False
         student.viewers.clear()
 
     async def _set(self, **changes: Any) -> None:
-        """Change settings, keep them, and tell the teacher."""
+        """Change and keep settings of the class, and tell the teacher."""
         self.state = msgspec.structs.replace(self.state, **changes)
         (await self._store()).keep(self.state.kept())
         self._tell(self._class_message())
@@ -324,7 +324,7 @@ class Classroom:
             viewer.send(message)
 
     def _public(self) -> tuple[Any, ...]:
-        """Return what the teacher is told at once when it changes."""
+        """Return trouble and studios: the teacher is told at once when they change."""
         return (self._keeper.trouble, self.studios.present, self.studios.why)
 
     def _class_message(self, cards: Iterable[Any] | None = None) -> bytes:

@@ -1,4 +1,4 @@
-"""What a class leaves behind, as files for a teacher."""
+"""Exports of a class: evidence and tables as files for a teacher."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -7,16 +7,15 @@ from lacoc_client.design.learning.draft import NAME as DRAFT
 from lacoc_client.design.learning.draft import read_draft
 from lacoc_client.phases.class_file import ClassFile, Damaged, KeptTable
 from lacoc_client.phases.export import evidence_csv, tables_zip
+from lacoc_client.seat_files import USUAL_NAMES
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
 from lacoc_shared.words import say
 
-RECORDINGS = "recordings"
-"""Folder in the folder of a class with the records of its matches."""
 EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 
 
 def student_files(kept: Iterable[KeptTable]) -> list[KeptTable]:
-    """Turn the drafts among what is kept into the files of a gait; the rest is left out."""
+    """Return the gait and robot files of all drafts; tokens and settings are left out."""
     found = []
     for one in kept:
         draft = read_draft(one) if one.name == DRAFT else None
@@ -27,15 +26,15 @@ def student_files(kept: Iterable[KeptTable]) -> list[KeptTable]:
         except FileRefused:  # a cell without an angle: pages send no such table
             continue
         found += [
-            KeptTable(one.student, file.name, one.version, one.at_s, file.data)
-            for file in files
+            KeptTable(one.student, name, one.version, one.at_s, file.data)
+            for name, file in zip(USUAL_NAMES, files, strict=True)
             if file is not None
         ]
     return found
 
 
 def export(path: Path) -> dict[str, bytes]:
-    """Read a class that is not open, as files by name.
+    """Export a class that no program has open; return the files by name.
 
     Raises:
         UserError: if there is no such class, it is open, or its file is damaged.

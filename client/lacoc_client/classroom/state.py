@@ -1,4 +1,4 @@
-"""What a class is set to, kept with the class."""
+"""The settings of a class: code, key, rules, and the table that was handed out."""
 
 import time
 

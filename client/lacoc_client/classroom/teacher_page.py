@@ -2,7 +2,6 @@
 
 import asyncio
 import hmac
-from contextlib import suppress
 from typing import Any
 
 import msgspec
@@ -51,8 +50,6 @@ class TeacherPage:
         finally:
             self._class.teachers.pop(self._viewer, None)
             self._answers.stop()
-            with suppress(UserError):
-                await asyncio.shield(self._studio.gone())
 
     async def _take(self, asked: requests.Asked) -> bool:
         """Answer a request of a page that has shown the page key; close any other page."""

@@ -11,7 +11,7 @@ from typing import Literal
 import msgspec
 
 from lacoc_client.phases.export import free_name
-from lacoc_client.seat_files import SeatFiles
+from lacoc_client.seat_files import USUAL_NAMES, SeatFiles
 from lacoc_client.simulation import (
     BeginLine,
     LeftOutLine,
@@ -21,7 +21,6 @@ from lacoc_client.simulation import (
     Standing,
     StandingsLine,
 )
-from lacoc_robots.library import GAIT_NAMES
 from lacoc_shared.mistakes import Mistake, UserError, text_of
 from lacoc_shared.words import Phrase, say
 
@@ -29,7 +28,6 @@ RECORDINGS = "recordings"
 """Folder of the records, in the folder of the class."""
 
 _BOT = "planner"
-_FILES = ("robot.toml", *GAIT_NAMES)
 _CLOSE_S = 15.0
 
 
@@ -238,7 +236,7 @@ def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _Team]
         own = folder / taken[-1]
         own.mkdir()
         known: dict[str, str] = {}
-        for file, on_disk in zip(files, _FILES, strict=True):
+        for file, on_disk in zip(files, USUAL_NAMES, strict=True):
             if file is not None:
                 (own / on_disk).write_bytes(file.data)
                 known[f"{own.name}/{on_disk}"] = file.name

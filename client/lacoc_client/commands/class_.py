@@ -12,6 +12,7 @@ from typer.core import TyperGroup
 from lacoc_client.classroom import kept
 from lacoc_client.classroom.classroom import CLASS_FILE, Classroom
 from lacoc_client.classroom.site import PATH, class_site
+from lacoc_client.classroom.tournament import RECORDINGS
 from lacoc_client.commands import pages
 from lacoc_client.commands.design import own_studio
 from lacoc_client.design.requests import MESSAGE_BYTES
@@ -144,7 +145,7 @@ def forget_command(
         raise UserError(say("class.not-forgotten"))
     for file in forget(path):
         screen.show(say("class.deleted", file=str(file)))
-    records = folder / kept.RECORDINGS
+    records = folder / RECORDINGS
     if records.exists():
         shutil.rmtree(records)
         screen.show(say("class.deleted", file=str(records)))

@@ -57,11 +57,11 @@ def design_command(
     ] = server.LOOPBACK,
     browser: pages.Browser = True,
 ) -> None:
-    """Design a gait: change the table, let the robot walk, see why it walks as it does.
+    """Design a gait: change the table, let the robot walk, and see why it walks as it does.
 
-    A page opens in your browser with the gait and robot files of the folder. It saves where you
-    opened, and asks first if another program changed the file. Nothing else has to run: a studio,
-    which lets the robot walk, is started here unless --connect names one.
+    A page opens in your browser with the gait and robot files of the folder. It saves into the file
+    that you opened, and asks first if another program has changed this file. This command also
+    starts a studio, which lets the robot walk, unless --connect names another studio.
     """
     pages.check_pages(terminal=False)
     files = Folder(folder)
@@ -80,7 +80,7 @@ def own_studio() -> Iterator[str]:
             _words("tcp/127.0.0.1:0"),
             Path(folder),
             say("child.studio"),
-            # The page's way to it stays the same.
+            # A studio that is started again gets the same address, so that pages find it.
             lambda opened: _words(opened["locators"][0]),
         ) as opened,
     ):

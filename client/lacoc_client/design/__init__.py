@@ -1,1 +1,1 @@
-"""Designing a gait on a page: the files of a folder, and a studio that lets the robot walk."""
+"""The page /design, on which a student designs a gait: its files, its studio and its phases."""

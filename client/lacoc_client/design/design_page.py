@@ -1,7 +1,6 @@
-"""One /design page's connection: the requests that it may make, and who answers them."""
+"""The connection of one /design page: it takes the page's requests and has them answered."""
 
 import asyncio
-from contextlib import suppress
 from typing import Any
 
 import msgspec
@@ -43,7 +42,7 @@ class DesignPage:
         self._comparing: set[asyncio.Task[None]] = set()
 
     async def serve(self) -> None:
-        """Answer the page until it goes."""
+        """Answer the page's requests until the page goes."""
         try:
             await serve_requests(
                 self._websocket, self._answers, requests.read, self._take, _ASKS_HZ, _ASKS_BURST
@@ -53,11 +52,9 @@ class DesignPage:
             self._answers.stop()
             for task in self._comparing:
                 task.cancel()
-            with suppress(UserError):
-                await asyncio.shield(self._studio.gone())
 
     async def _take(self, asked: requests.Asked) -> bool:
-        """Answer a request of a page that was let in; close a page that begins with another."""
+        """Answer a request of a page that was let in; close a page that sends no hello first."""
         if isinstance(asked, requests.Hello):
             await self._enter(asked)
         elif self._learner is not None and self._viewer.can_act:
@@ -121,7 +118,7 @@ class DesignPage:
                 answers.later(asked.id, asyncio.to_thread(self._with_files, asked))
 
     async def _trial(self, asked: requests.TrialAsk, learner: Learner) -> msgspec.Raw:
-        """Let the robot walk, and keep what it shows as evidence."""
+        """Let the robot walk, and keep what the trial shows as evidence."""
         reply, payload = await self._studio.trial(asked)
         await learner.tried(asked, reply)
         self._host.learned(learner.student, reply)
@@ -135,7 +132,7 @@ class DesignPage:
             self._host.learned(learner.student)
 
     async def _sample_trial(self, asked: requests.TrialAsk) -> TrialReply | None:
-        """Let the sample gait walk as a trial did; None if it does not fit the trial's robot."""
+        """Repeat a trial with the sample gait; None if the sample does not fit the robot."""
         table = (await asyncio.to_thread(self._host.sample)).table
         if table is None or asked.table is None or table.legs != asked.table.legs:
             return None

@@ -1,4 +1,4 @@
-"""Where one person designs alone: a folder, the way to a studio, and the pages that are open."""
+"""The host of one person who designs alone: it has the folder, the studio and the open pages."""
 
 import asyncio
 import hmac
@@ -25,12 +25,12 @@ from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import say
 
 EVIDENCE_FILE = "lacoc-evidence.sqlite"
-"""Name of the file in the folder that keeps what was done."""
+"""Name of the file in the folder that keeps the student's progress."""
 
 _LOOK_S = 1.0
-"""How often the folder is looked at, and pages get a sign of life."""
+"""How often to look for changed files, and to send pages a sign of life [s]."""
 _SOON_S = 0.1
-"""How soon pages are told that a studio has come or gone."""
+"""How soon pages are told that a studio has come or gone [s]."""
 
 
 class Designer:
@@ -38,7 +38,7 @@ class Designer:
 
     Args:
         folder: the files.
-        studios: the way to the studio; it is started and closed here.
+        studios: the connection to the studio; this class starts and closes it.
         robot: the robot that pages begin with, as on the command line; None: the workshop's.
 
     Raises:
@@ -50,7 +50,7 @@ class Designer:
         self.studios = studios
         self.robot = SentFile(*find_robot(robot)) if robot else None
         self.key = new_key()
-        """The page key: without it a page gets nothing."""
+        """The page key; a page that does not show it is refused."""
         self._folder = folder
         self._keeper = Keeper(folder.path / EVIDENCE_FILE)
         self._student = Student("", Diary(self._keeper), lambda: FREE)
@@ -64,14 +64,14 @@ class Designer:
         return Entered(self._student)
 
     def greet(self, student: Student, viewer: Viewer) -> None:
-        """Tell a page which files and whether a studio is there; see `Host.greet`."""
+        """Tell a page the folder's files, the studio's state and the phases; see `Host.greet`."""
         student.viewers[viewer] = None
         viewer.send(self._folder_message(()))
         viewer.send(studio_message(self.studios))
         viewer.send(student.phases_message())
 
     def leave(self, student: Student, viewer: Viewer) -> None:
-        """Take in that a page has gone; see `Host.leave`."""
+        """Remove a page that has gone; see `Host.leave`."""
         student.viewers.pop(viewer, None)
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
@@ -79,12 +79,12 @@ class Designer:
         student.tell()
 
     def sample(self) -> FileContent:
-        """Read the sample postures of the robot, which may have none; may block."""
+        """Read the robot's sample postures from the disk; empty if the robot has no sample."""
         return sample_postures(self._robot_name)
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
-        """Look at the folder and for a studio until the block ends, and tell the pages."""
+        """Watch the folder and the studio until the block ends, and tell pages what changes."""
         self.studios.start()
         await self._student.diary.read()
         looking = asyncio.get_running_loop().create_task(self._look())

@@ -20,20 +20,23 @@ _PACKED = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # workbooks, also old ones
 
 @dataclass(frozen=True)
 class FileContent:
-    """What a file has: a table, or the text of a robot file."""
+    """The content of a file: a table, or the text of a robot file."""
 
     table: FileTable | None = None
     robot: str | None = None
     notes: tuple[Phrase, ...] = ()
-    """Remarks: not mistakes, but perhaps not intended."""
+    """Remarks on what is no mistake, but perhaps not intended."""
 
 
 def read_file(name: str, data: bytes) -> FileContent:
-    """Read a gait file for any robot, or a robot file; the content shows what a gait file is.
+    """Read a gait file or a robot file.
+
+    The content, not the name, decides whether a gait file is a workbook or text, whether it has
+    postures or sequences, and for how many legs.
 
     Raises:
         FileRefused: with every mistake of a gait file.
-        UserError: if a robot file is no text.
+        UserError: if a robot file is not UTF-8 text.
     """
     if _suffix(name) == _ROBOT:
         try:
@@ -57,8 +60,8 @@ def file_bytes(name: str, content: FileTable | str, before: bytes | None = None)
         before: the file as it is now; None: there is none.
 
     Raises:
-        FileRefused: with every mistake of the table, or of the workbook that it belongs into.
-        UserError: if the file can't have such a content.
+        FileRefused: with every mistake of the table, or of the workbook to change.
+        UserError: if a file of this name can't have this content.
     """
     if isinstance(content, str):
         if _suffix(name) != _ROBOT:
@@ -79,7 +82,7 @@ def file_bytes(name: str, content: FileTable | str, before: bytes | None = None)
 
 
 def sent_gait(table: FileTable) -> SentFile:
-    """Return a table as a gait file to send, under its usual name.
+    """Return a table as a gait file that can be sent, under the usual name of such a file.
 
     Raises:
         FileRefused: with every mistake of the table.

@@ -1,7 +1,7 @@
 """The gait and robot files of a folder: list them, read them, save them, see what changed.
 
-A file's version is a hash of its content. Who saves names the version that was read, so a change
-that somebody else made meanwhile (in Excel, in another tab) is never overwritten unasked.
+A file's version is a hash of its content. Whoever saves a file names the version that was read. So
+a change that was made meanwhile (in Excel, in another tab) is not overwritten without a question.
 """
 
 import hashlib
@@ -61,9 +61,10 @@ class Saved(msgspec.Struct, frozen=True):
 
 
 class Conflict(msgspec.Struct, frozen=True):
-    """Nothing was written, because the file has changed; this is what it has now."""
+    """Nothing was written, because the file has changed since it was read."""
 
     conflict: Read
+    """What the file has now."""
 
 
 class _Known(NamedTuple):
@@ -90,11 +91,11 @@ class Folder:
         self._known: dict[str, _Known] = {}
         self._changed: set[str] = set()
         self.files: tuple[FolderFile, ...] = ()
-        """The files as they were last seen, by name."""
+        """The files as they were last seen, sorted by name."""
         self.look()
 
     def look(self) -> tuple[str, ...]:
-        """Look at the folder; return the names of files that came, went or changed since."""
+        """Look at the folder; return the names of files that came, went or changed meanwhile."""
         with self._lock:
             self._look()
             changed, self._changed = self._changed, set()
@@ -115,16 +116,17 @@ class Folder:
     def save(
         self, name: str, content: FileTable | str, version: str, force: bool
     ) -> Saved | Conflict:
-        """Save a table or the text of a robot file; the old file stays as it is if this fails.
+        """Save a table or the text of a robot file; if this fails, the old file stays as it is.
 
         Args:
-            name: name of the file; a new one gets the look that its suffix asks for.
+            name: name of the file; the suffix of a new file decides its format.
             content: the table, or the robot file's text.
-            version: version that the content was made from; `ABSENT`: there was no file.
-            force: save even if the file has changed since; what stands beside the table stays.
+            version: version of the file that the content was made from; `ABSENT`: a new file.
+            force: save even if the file has changed since that version. Remarks and sheets beside
+                the table stay as they are in the file now.
 
         Raises:
-            FileRefused: with every mistake of the table, or of a workbook that it belongs into.
+            FileRefused: with every mistake of the table, or of the workbook to change.
             UserError: if the file can't be written.
         """
         with self._lock:
@@ -134,7 +136,7 @@ class Folder:
                 if not force and version_of(before) != version:
                     return Conflict(_conflicting(name, before))
                 data = file_bytes(name, content, before)
-                if self._data(path) == before:  # else somebody saved just now
+                if self._data(path) == before:  # else another program saved just now: begin again
                     break
             if data != before:
                 replace_file(path, data)
@@ -186,7 +188,7 @@ def version_of(data: bytes | None) -> str:
 
 
 def _listed(folder: Path) -> list[tuple[str, int, int]]:
-    """List the files that may be gaits or robots, with time of change [ns] and size [bytes]."""
+    """List the files that may be gaits or robots: name, time of change [ns] and size [bytes]."""
     found = []
     try:
         with os.scandir(folder) as entries:
@@ -218,7 +220,7 @@ def _as_read(name: str, data: bytes, read: FileContent) -> Read:
 
 
 def _conflicting(name: str, data: bytes | None) -> Read:
-    """Return what a file has now that another program changed it."""
+    """Read a file that another program has changed; its mistakes are returned, not raised."""
     if data is None:
         return Read(version=ABSENT)
     try:

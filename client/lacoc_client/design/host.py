@@ -1,4 +1,4 @@
-"""What a page of /design needs to know of where it is: in a folder of one's own, or in a class."""
+"""The host of a page of /design: a folder of one's own, or a class."""
 
 from typing import Protocol
 
@@ -13,7 +13,7 @@ from lacoc_shared.studio import TrialReply
 
 
 class Host(Protocol):
-    """Where students design; used from the event loop only, but for `sample`."""
+    """A place where students design. Only `sample` may be called outside the event loop."""
 
     robot: SentFile | None
     """The robot file that pages begin with; None: the workshop's."""
@@ -34,13 +34,13 @@ class Host(Protocol):
         """
 
     def leave(self, student: Student, viewer: Viewer) -> None:
-        """Take in that a page has gone."""
+        """Remove a page that has gone."""
 
     def greet(self, student: Student, viewer: Viewer) -> None:
-        """Tell a page that has come in what it must know."""
+        """Tell a page that was let in what it must know."""
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
-        """Take in that a student did something.
+        """Tell all who must know that a student did something.
 
         Args:
             student: the student.

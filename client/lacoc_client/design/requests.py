@@ -1,4 +1,4 @@
-"""What a page of /design asks (docs/gateway.md has it as a table)."""
+"""The requests of a /design page (docs/gateway.md lists them in a table)."""
 
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -14,11 +14,11 @@ from lacoc_shared.studio import STUDIO_MAX_BYTES
 from lacoc_shared.words import say
 
 REQUEST_BYTES = STUDIO_MAX_BYTES
-"""Longest request that has no file of another program in it; a longer one is refused."""
+"""Longest request [bytes] except for `parse`; a longer one is refused."""
 PARSE_BYTES = MAX_BYTES + 4096
-"""Longest `parse`: a workbook as large as any that is read."""
+"""Longest `parse` [bytes], which may have the largest workbook that is read."""
 MESSAGE_BYTES = 16 << 20
-"""Longest message; only a longer one closes the connection."""
+"""Longest message [bytes]; a longer one closes the connection."""
 
 _T = TypeVar("_T")
 _Name = Annotated[str, msgspec.Meta(max_length=200)]
@@ -27,7 +27,7 @@ _Sequences = tuple[tuple[Annotated[int, msgspec.Meta(ge=0, le=9)], ...], ...]
 
 
 class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
-    """The first message: the page key, or what lets a student into a class."""
+    """Ask to be let in, with the page key or with a class code and a name; the first message."""
 
     key: _Name = ""
     code: _Name = ""
@@ -51,7 +51,7 @@ class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
 
 
 class SampleAsk(Ask, frozen=True, kw_only=True, tag="sample"):
-    """Read the sample gait of the robot that the command was given, or of the workshop's."""
+    """Read the sample gait of the robot that `lacoc design` began with."""
 
 
 class ParseAsk(Ask, frozen=True, kw_only=True, tag="parse"):
@@ -69,9 +69,9 @@ class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
     table: FileTable | None = None
     robot: str | None = None
     version: _Name = ""
-    """Version of the file that it was made from; "": there was no file of this name."""
+    """Version of the file that the content was made from; "": there was no file of this name."""
     force: bool = False
-    """Save even if the file has changed since."""
+    """Whether to save even if the file has changed since that version."""
 
 
 class WriteAsk(Ask, frozen=True, kw_only=True, tag="write"):
@@ -88,7 +88,7 @@ class RobotAsk(Ask, frozen=True, kw_only=True, tag="robot"):
 
 
 class Foretold(msgspec.Struct, frozen=True, kw_only=True):
-    """What a student foretells of a trial."""
+    """A student's guess of what the next trial will show."""
 
     about: Literal["pace", "way"]
     said: Pace | Way
@@ -107,17 +107,17 @@ class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
 
 
 class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
-    """Tell what the table has after an edit, as evidence for the phases."""
+    """Tell the gateway the table after an edit, as evidence for the phases."""
 
     table: FileTable
     robot: SentFile | None = None
     sequences: _Sequences | None = None
     by: By | None = None
-    """None: no edit; a file was opened, or an edit was undone."""
+    """None: this is no edit of the student's; a file was opened, or an edit was undone."""
     size: Literal["cell", "three", "table"] | None = None
-    """Size of the coach's search whose changes were taken."""
+    """If the student took over the coach's changes, the size of the coach's search."""
     guess: FootWay | None = None
-    """Where the student said before the edit that the foot goes."""
+    """The direction in which the student guessed, before the edit, that the foot will go."""
     file: _Name = ""
     """Name of the file that is open; "": none."""
     file_version: _Name = ""
@@ -125,7 +125,7 @@ class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
 
 
 class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
-    """Check the table for its robot."""
+    """Check the table against the robot's joints, as `lacoc gait check` does."""
 
     table: FileTable
     robot: SentFile | None = None
@@ -139,13 +139,13 @@ class PhaseAsk(Ask, frozen=True, kw_only=True, tag="phase"):
 
 
 class NameAsk(Ask, frozen=True, kw_only=True, tag="name"):
-    """Choose a word for how the robot shall walk."""
+    """Choose a word for how the robot should walk."""
 
     word: Annotated[str, msgspec.Meta(min_length=1, max_length=40)]
 
 
 class VoteAsk(Ask, frozen=True, kw_only=True, tag="vote"):
-    """Vote whether A, the sample, or B, the own gait, fits the word better."""
+    """Vote whether A (the sample) or B (the student's own gait) fits the word better."""
 
     choice: Literal["A", "B"]
 
@@ -157,10 +157,10 @@ class HandAsk(Ask, frozen=True, kw_only=True, tag="hand"):
 
 
 class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
-    """Ask which numbers matter, and for better ones."""
+    """Ask the coach which numbers matter, and for better numbers."""
 
     job: _Job
-    """Name that the page chooses, for progress and for `cancel`."""
+    """Name that the page chooses for the search; progress and `cancel` have it too."""
     table: FileTable | None = None
     robot: SentFile | None = None
     sequences: _Sequences | None = None
@@ -211,7 +211,7 @@ def read(data: bytes) -> Asked:
     """Decode a request of a page.
 
     Raises:
-        Unreadable: if it is no known request, or too long for its kind.
+        Unreadable: if the bytes are no known request, or too many for their kind of request.
     """
     return read_with(_asked, data)
 

@@ -1,4 +1,4 @@
-"""The paths of /design."""
+"""The web application of a gateway that `lacoc design` runs."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -23,7 +23,7 @@ def design_site(designer: Designer, files: PageFiles) -> ASGIApp:
     """Make the application of a gateway whose only page is /design.
 
     Args:
-        designer: what its pages share.
+        designer: the folder and the studio, which its pages share.
         files: the built pages.
     """
 

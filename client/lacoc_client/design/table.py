@@ -1,4 +1,4 @@
-"""A gait as a page has it: rows of angles in degrees, by key."""
+"""A gait as a table of the page: rows of angles in degrees, sorted by key."""
 
 from itertools import groupby
 from typing import Annotated, Literal
@@ -35,7 +35,7 @@ class FileTable(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def file_name(self) -> str:
-        """The usual name of a text file with such a table (rules 2)."""
+        """The usual name of a text file with such a table, such as "Loco-data.txt" (rules 2)."""
         return GAIT_NAMES[Level.POSTURE if self.kind == "postures" else Level.LOCOMOTION]
 
 
@@ -58,10 +58,10 @@ def gait_of(table: FileTable, name: str) -> PostureTable | LocomotionTable:
 
     Args:
         table: the table.
-        name: name of its file, for messages.
+        name: name of the table's file, for messages.
 
     Raises:
-        FileRefused: with every mistake; rows and columns are those of the file.
+        FileRefused: with every mistake; rows and columns are counted as in the file.
         UserError: if a key of a locomotion table is missing.
     """
     cells = _posture_cells(table) if table.kind == "postures" else _locomotion_cells(table)

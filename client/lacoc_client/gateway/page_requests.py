@@ -1,4 +1,4 @@
-"""The requests of a page, taken one after the other, and no faster than a page may ask."""
+"""Reads a page's requests one after the other, and slows down a page that sends too many."""
 
 import asyncio
 import time
@@ -14,17 +14,17 @@ from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.network.allowance import Allowance
 
 GARBAGE = 1008
-"""WebSocket close code: a message can't be decoded at all."""
+"""WebSocket close code (policy violation) for a page whose message can't be decoded."""
 
 _FIRST_S = 10.0
 
 
 class Numbered(Protocol):
-    """A request, which has a number for its answer."""
+    """A request with a number, which its reply repeats."""
 
     @property
     def id(self) -> int:
-        """The number."""
+        """Number of the request."""
 
 
 Asked = TypeVar("Asked", bound=Numbered)
@@ -38,16 +38,16 @@ async def serve_requests(
     most_hz: float,
     burst: int,
 ) -> None:
-    """Answer what a page asks, until it goes or is to be closed.
+    """Answer a page's requests until the page goes, or `answer` returns False.
 
     Args:
         websocket: the page's WebSocket, not accepted yet.
         answers: sends refusals.
         read: decodes a request; raises `wire.Unreadable`.
-        answer: answers a request and returns True, or False if the page is to be closed. The errors
-            for users that it raises become the refusal.
-        most_hz: requests a second in the long run.
-        burst: requests at once.
+        answer: answers a request; returns True to go on, or False after it has closed the page. A
+            `UserError` or `FileRefused` that it raises is sent to the page as a refusal.
+        most_hz: most requests a second in the long run.
+        burst: most requests at once.
     """
     asks = Allowance(most_hz, burst)
     await websocket.accept()
@@ -70,7 +70,7 @@ async def _take(
     read: Callable[[bytes], Asked],
     answer: Callable[[Asked], Awaitable[bool]],
 ) -> bool:
-    """Answer one message; return False if the page is to be closed."""
+    """Answer one message; return False if the page's connection was closed."""
     try:
         asked = read(data)
     except wire.Unreadable as error:

@@ -1,6 +1,9 @@
 """The six phases of the workshop (4-2) as steps with evidence (docs/studio.md 7).
 
-`evidence` is what students do, `facts` what trials and edits show. `predicates` count evidence,
-`conditions` say what is asked of it, `phases` has the six tasks, and `progress` how far a student
-is. All of this is pure. `store` keeps a class on disk (`class_file`), and `export` hands it out.
+`evidence` has the kinds of evidence of what students do. `facts` has what trials and edits show.
+`predicates` has rules that count evidence, and `conditions` has the rules that the phases need.
+`phases` has the six tasks, and `progress` says how far a student is. All of this is pure.
+
+`store` keeps the evidence and tables of a class, or of one student, in a file on disk. `class_file`
+is this file, and `export` makes files for a teacher from it.
 """

@@ -1,4 +1,4 @@
-"""The SQLite file of a class: all evidence, and everyone's newest tables. For one thread."""
+"""The SQLite file of a class: all evidence, and every student's newest tables."""
 
 import sqlite3
 from collections.abc import Iterable, Iterator
@@ -12,9 +12,9 @@ from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 
 _APPLICATION, _VERSION = 0x4C41434F, 1
-"""What SQLite's header says: "LACO" in ASCII, and the version of the tables below."""
+"""Numbers in the file's header that mark a class: "LACO" in ASCII, and the version of `_TABLES`."""
 _BESIDE = ("", "-wal", "-shm", "-journal")
-"""Ends of the names of the files that SQLite keeps for one database."""
+"""Endings of the names of the files that SQLite keeps for one database."""
 _TABLES = """
 CREATE TABLE evidence (
     number INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -34,14 +34,14 @@ CREATE TABLE votes (
 
 
 class Damaged(Exception):
-    """A file is no whole database."""
+    """The file is damaged: SQLite can't read it as a database."""
 
 
 class Kept(NamedTuple):
-    """Evidence as the file has it."""
+    """A piece of evidence in the file."""
 
     number: int
-    """Grows in the class, from 1."""
+    """Counts all evidence of the class in the order of writing, from 1."""
     student: str
     at_s: float
     """Time when it happened, in seconds since 1970 (UTC)."""
@@ -49,28 +49,28 @@ class Kept(NamedTuple):
 
 
 class KeptTable(NamedTuple):
-    """The newest content of a student's file."""
+    """The newest content of one of a student's gait files."""
 
     student: str
     name: str
-    """Name of the file, such as "Loco-data.txt"."""
+    """Name of the gait file, such as "Loco-data.txt"."""
     version: str
     at_s: float
     content: bytes
 
 
 class ClassFile:
-    """The file of a class; no other program can open it meanwhile.
+    """The file of a class; no other program can open it meanwhile. For one thread at a time.
 
-    What a method has written is on the disk when it returns.
+    When a method that writes returns, its data are on the disk.
 
     Args:
         path: the file; it is made if there is none.
 
     Raises:
-        Damaged: if it is no whole database.
-        UserError: if another program has it open, it is something else than a class, or it can't
-            be opened.
+        Damaged: if SQLite can't read the file as a database.
+        UserError: if another program has the file open, if it is a database of something else, or
+            if it can't be opened.
     """
 
     def __init__(self, path: Path) -> None:
@@ -100,10 +100,10 @@ class ClassFile:
             return self._add(student, evidence, at_s)
 
     def vote(self, student: str, poll: str, choice: str, at_s: float) -> bool:
-        """Count a vote, and write that the student voted, but not for what.
+        """Count a vote; the file keeps that the student voted, but not for which choice.
 
         Returns:
-            False if the student has voted in this poll before; then nothing is counted.
+            Whether the vote counts: False if the student has voted in this poll before.
         """
         voted = Voted(poll=poll)
         before = "SELECT 1 FROM evidence WHERE student = ? AND kind = ? AND body = ?"
@@ -119,21 +119,21 @@ class ClassFile:
         return True
 
     def votes(self, poll: str) -> dict[str, int]:
-        """Return the votes of a poll by choice."""
+        """Return how many votes each choice of a poll has."""
         rows = self._db.execute("SELECT choice, votes FROM votes WHERE poll = ?", (poll,))
         return dict(rows.fetchall())
 
     def write_tables(self, tables: Iterable[KeptTable]) -> None:
-        """Write the newest content of files; arguments and errors as in `add`."""
+        """Write the newest content of gait files; raises the same error as `add`."""
         with self._db:
             self._db.executemany("INSERT OR REPLACE INTO tables VALUES (?, ?, ?, ?, ?)", tables)
 
     def evidence(self, student: str | None = None, after: int = 0) -> list[Kept]:
-        """Read evidence in the order in which it was written, without what can't be read.
+        """Read evidence in the order in which it was written; skip evidence that can't be decoded.
 
         Args:
-            student: whose; None: everybody's.
-            after: only evidence with a larger number.
+            student: the student whose evidence is read; None: all students.
+            after: only evidence with a larger number is read.
         """
         rows = self._db.execute(
             "SELECT number, student, at_s, body FROM evidence"
@@ -158,7 +158,12 @@ class ClassFile:
         self._db.close()
 
     def problem(self, error: sqlite3.Error, opening: bool = False) -> Damaged | UserError:
-        """Say what an error of SQLite means."""
+        """Return the exception that an error of SQLite stands for.
+
+        Args:
+            error: the error.
+            opening: whether the error came while the file was opened.
+        """
         file, why = text_of(self._path.name), str(error)
         match getattr(error, "sqlite_errorcode", 0) & 0xFF:
             case sqlite3.SQLITE_CORRUPT | sqlite3.SQLITE_NOTADB:
@@ -184,7 +189,7 @@ class ClassFile:
             raise UserError(say("class.newer", file=text_of(self._path)))
         db.execute("PRAGMA journal_mode = WAL")
         db.execute("PRAGMA synchronous = FULL")  # a commit is on the disk, also if power fails
-        # Everything or nothing: a file without tables is a new one when it is opened again.
+        # One transaction makes all tables or none. A file without tables counts as a new one.
         with db:
             db.execute("BEGIN IMMEDIATE")  # takes the lock, which is held until the file is closed
             if not application:
@@ -213,7 +218,7 @@ def set_aside(path: Path) -> Path:
     free = (path.with_name(f"{path.stem}.damaged-{number}{path.suffix}") for number in count(1))
     kept = next(name for name in free if not name.exists())
     try:
-        for end in _BESIDE[1:]:  # the file itself last: until then it is still the damaged one
+        for end in _BESIDE[1:]:  # the database itself last: after a failure it is found again
             beside = Path(f"{path}{end}")
             if beside.exists():
                 beside.rename(f"{kept}{end}")
@@ -225,17 +230,18 @@ def set_aside(path: Path) -> Path:
 
 
 def forget(path: Path) -> list[Path]:
-    """Delete a class with everything that was kept of it, also its damaged files.
+    """Delete the file of a class, its damaged files, and what SQLite keeps beside them.
 
     Returns:
         The deleted files.
 
     Raises:
-        UserError: if a program has the class open, or a file can't be deleted.
+        UserError: if there is no such file, it is not a class, a program has it open, or a file
+            can't be deleted.
     """
     if not path.exists():
         raise UserError(say("class.none", file=text_of(path)))
-    with suppress(Damaged):  # it can't be read, but it can be deleted
+    with suppress(Damaged):  # a damaged file can be deleted too
         ClassFile(path).close()
     old = path.parent.glob(f"{_escaped(path.stem)}.damaged-*{_escaped(path.suffix)}")
     found = [Path(f"{one}{end}") for one in (path, *old) for end in _BESIDE]
@@ -251,7 +257,7 @@ def forget(path: Path) -> list[Path]:
 
 def _readable(rows: Iterable[tuple[int, str, float, str]]) -> Iterator[Kept]:
     for number, student, at_s, body in rows:
-        with suppress(ValueError):  # somebody has changed the file by hand
+        with suppress(ValueError):  # somebody changed the file with another program
             yield Kept(number, student, at_s, from_json(body))
 
 
@@ -260,5 +266,5 @@ def _escaped(name: str) -> str:
 
 
 def _row(evidence: Evidence) -> tuple[str, str]:
-    """Return kind and body of evidence, as the file has them."""
+    """Return kind and body of evidence, as they stand in the file's columns."""
     return type(evidence).__name__.lower(), to_json(evidence).decode()

@@ -1,4 +1,4 @@
-"""What the phases ask of evidence, in their own words; `predicates` has how it is counted."""
+"""The conditions that the six phases ask for, made of the general rules in `predicates`."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -10,13 +10,13 @@ from lacoc_shared.words import Phrase, say
 
 _OWN = ("hand", "tool")
 _UPRIGHT = 0.8
-"""A robot has tipped over below this (docs/studio.md 3)."""
+"""A robot has tipped over if its `upright` is below this (docs/studio.md 3)."""
 _BELLY = 0.05
-"""A robot lies on its body if it rests on it for a larger share of time."""
+"""A robot does not act on its feet if its body rests on the floor for a larger share of time."""
 
 
 def own_cells(cells: int) -> Different:
-    """Ask for a number of different cells that the student changed, not the coach or a paste."""
+    """Ask for a number of different cells that the student changed without the coach or a paste."""
     return Different(_cells, cells, lambda left: say("phases.more-cells", left=left))
 
 
@@ -28,14 +28,14 @@ def _cells(one: Evidence) -> Iterator[tuple[None, tuple[int, ...]]]:
 
 
 def leg_postures(one: Evidence) -> Iterator[tuple[int, tuple[float, ...]]]:
-    """Give legs with the angles that the student gave them."""
+    """Yield each leg that the student changed, with its angles after the edit."""
     if isinstance(one, Edited) and one.by in _OWN:
         for leg in one.legs:
             yield leg.leg, leg.angles_deg
 
 
 def leg_joints(one: Evidence) -> Iterator[tuple[int, int]]:
-    """Give legs with the levels of the joints that the student changed."""
+    """Yield each joint that the student changed, as leg and level."""
     if isinstance(one, Edited) and one.by in _OWN:
         for leg in one.legs:
             for level in leg.changed:
@@ -43,12 +43,12 @@ def leg_joints(one: Evidence) -> Iterator[tuple[int, int]]:
 
 
 def foot_guess(one: Evidence) -> bool | None:
-    """Say whether a guess of a foot was right; None if it is no such guess."""
+    """Return whether a guess of where a foot goes was right; None for all other evidence."""
     return one.right if isinstance(one, Guessed) and one.about == "foot" else None
 
 
 def differs_from_sample(one: Evidence) -> Iterator[tuple[None, str]]:
-    """Give in what a walk differs from the sample's."""
+    """Yield each way in which a walk differs from the sample's walk."""
     if isinstance(one, Compared) and one.against == SAMPLE:
         for difference in one.differs:
             yield None, difference
@@ -69,7 +69,12 @@ IS_UPRIGHT = Bound(
 
 
 def acts(*bounds: Bound, lacks: Phrase) -> Predicate:
-    """Ask for a trial of a key of level B, in which the robot does something upright."""
+    """Ask for a trial of a key of level B in which the robot stays on its feet.
+
+    Args:
+        *bounds: further limits that the same trial must keep.
+        lacks: sentence for whatever is missing.
+    """
     level_b = Bound(lambda facts: float(facts.keys[-1].startswith("B")), lambda _: lacks, least=1)
     belly = Bound(lambda facts: facts.belly_share, lambda _: lacks, most=_BELLY)
     return TriedWhere((level_b, IS_UPRIGHT, belly, NOT_STOPPED, *bounds), lacks)
@@ -81,5 +86,5 @@ def within(
     least: float = -math.inf,
     most: float = math.inf,
 ) -> Bound:
-    """Ask for a number within limits; what is missing is the same for each number."""
+    """Ask that a number of a trial is from `least` to `most`; `lacks` says what is missing."""
     return Bound(number, lambda _: lacks, least, most)

@@ -1,6 +1,6 @@
-"""What students do, as it is kept: the evidence from which the phases are decided.
+"""The kinds of evidence of what students do, from which the phases decide what is done.
 
-Each kind has one meaning. Evidence is only added, never changed.
+Evidence is only added, never changed.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,19 +12,19 @@ from lacoc_client.phases.facts import Difference, TrialFacts
 from lacoc_shared.gait.tables import JOINTS_PER_LEG
 
 SAMPLE = "sample"
-"""The version that stands for the sample gait of the robot."""
+"""Name of the version that is the sample gait of the robot."""
 
 By = Literal["hand", "tool", "paste", "coach"]
-"""How cells were changed. A tool makes cells from others, as mirror and copy do."""
+"""How cells were changed. A tool of the page, such as mirror or copy, makes cells from others."""
 Rows = Mapping[tuple[int, int], Sequence[float]]
-"""A table: key and index in its sequence -> (joints,) angles [deg], by joint id."""
+"""A table: (key, index in the key's sequence) -> (joints,) angles [deg], by joint id."""
 
 _Word = Annotated[str, msgspec.Meta(max_length=40)]
 _Name = Annotated[str, msgspec.Meta(max_length=100)]
 
 
 class _Kind(msgspec.Struct, frozen=True, kw_only=True, tag_field="kind", tag=str.lower):
-    """A kind of evidence; its name in lower case stands in the JSON."""
+    """A kind of evidence; the name of its class in lower case is the field "kind" of its JSON."""
 
 
 class Joined(_Kind, frozen=True, kw_only=True):
@@ -39,7 +39,7 @@ class Moved(_Kind, frozen=True, kw_only=True):
 
 
 class LegEdit(msgspec.Struct, frozen=True, array_like=True):
-    """A leg of one posture after an edit."""
+    """An edit of one leg in one posture."""
 
     key: int
     posture: int
@@ -62,12 +62,13 @@ class Edited(_Kind, frozen=True, kw_only=True):
 
 
 class Guessed(_Kind, frozen=True, kw_only=True):
-    """The student predicted something, and then saw it."""
+    """The student guessed what would happen, and then saw what happened."""
 
     about: Literal["foot", "pace", "way"]
-    """Where a foot goes (`facts.FootWay`); whether a gait becomes faster (`facts.Pace`); where the
-    robot turns (`facts.Way`)."""
+    """What was guessed: where a foot goes (`facts.FootWay`), whether the robot becomes faster
+    (`facts.Pace`), or to which side it turns (`facts.Way`)."""
     said: _Word
+    """The student's answer."""
     was: tuple[_Word, ...]
     """All right answers."""
 
@@ -85,45 +86,48 @@ class Tried(_Kind, frozen=True, kw_only=True):
 
 
 class Checked(_Kind, frozen=True, kw_only=True):
-    """A gait was checked, as `lacoc gait check` does."""
+    """A gait was checked for mistakes, as `lacoc gait check` does."""
 
     version: _Word
     keys: int
-    """Number of keys of level B that it has."""
+    """Number of keys of level B that the gait has."""
     mistakes: int
+    """Number of mistakes that were found."""
 
 
 class Compared(_Kind, frozen=True, kw_only=True):
-    """The student compared the trials of two versions."""
+    """Trials of two versions of the table were compared."""
 
     version: _Word
     against: _Word
     """The other version; `SAMPLE`: the sample gait."""
     differs: tuple[Difference, ...]
-    """In what the walks differ so much that people see it (`facts.differences`)."""
+    """The differences between the walks that people can see (`facts.differences`)."""
 
 
 class Named(_Kind, frozen=True, kw_only=True):
-    """The student chose a word for how the robot shall walk, such as "elegant"."""
+    """The student chose a word for how the robot should walk, such as "elegant"."""
 
     word: _Word
 
 
 class Voted(_Kind, frozen=True, kw_only=True):
-    """The student voted whether A or B fits a word better; for which one, nobody can see."""
+    """The student voted whether A or B fits a word better; the choice is not kept here."""
 
     poll: _Name
+    """The word."""
 
 
 class Coached(_Kind, frozen=True, kw_only=True):
-    """The student took over what the coach found."""
+    """The student took over the coach's changes."""
 
     version: _Word
     size: Literal["cell", "three", "table"]
+    """How much the coach was allowed to change: one number, three, or all."""
 
 
 class Hand(_Kind, frozen=True, kw_only=True):
-    """The student raised the hand for help, or took it down."""
+    """The student raised a hand to ask for help, or took it down."""
 
     up: bool
 
@@ -136,15 +140,15 @@ _DECODER = msgspec.json.Decoder(Evidence)
 
 
 def to_json(evidence: Evidence) -> bytes:
-    """Encode evidence."""
+    """Encode evidence as JSON."""
     return msgspec.json.encode(evidence)
 
 
 def from_json(data: bytes | str) -> Evidence:
-    """Decode evidence.
+    """Decode evidence from JSON.
 
     Raises:
-        ValueError: if it is none.
+        ValueError: if the data are not evidence.
     """
     evidence: Evidence = _DECODER.decode(data)
     return evidence
@@ -155,8 +159,7 @@ def edited(before: Rows, after: Rows, version: str, by: By) -> Edited | None:
 
     Args:
         before: the table before the edit.
-        after: the table after it. Rows that were not there before count as changed; rows that are
-            gone do not.
+        after: the table after the edit. New rows count as changed; removed rows do not count.
         version: name of the version that the edit made.
         by: how the cells were changed.
     """

@@ -1,4 +1,4 @@
-"""A class as files for a teacher: evidence as CSV, tables as a zip archive."""
+"""Writes a class into files for a teacher: evidence as CSV, tables as a zip archive."""
 
 import csv
 import io
@@ -25,10 +25,10 @@ _DEVICES = {"con", "prn", "aux", "nul"} | {
 
 
 def evidence_csv(evidence: Iterable[Kept]) -> bytes:
-    """Write evidence as CSV, one line each, with a column for each name that occurs.
+    """Write evidence as CSV: one line for each piece, one column for each field that occurs.
 
-    It begins with a byte order mark, so that Excel reads it as UTF-8. A text that a spreadsheet
-    would take for a formula gets an apostrophe before it.
+    The text begins with a byte order mark, so that Excel reads it as UTF-8. A value that a
+    spreadsheet program would take for a formula gets an apostrophe before it.
     """
     lines = [_line(one) for one in evidence]
     columns = dict.fromkeys((*_FIRST, *(name for line in lines for name in line)))
@@ -40,7 +40,7 @@ def evidence_csv(evidence: Iterable[Kept]) -> bytes:
 
 
 def tables_zip(tables: Iterable[KeptTable]) -> bytes:
-    """Put the newest tables into a zip archive, a folder for each student."""
+    """Put the newest tables into a zip archive with one folder for each student."""
     data = io.BytesIO()
     folders: dict[str, str] = {}
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -63,7 +63,7 @@ def _line(one: Kept) -> dict[str, Any]:
 
 
 def _values(evidence: Evidence) -> dict[str, Any]:
-    """Return the values of evidence by column; facts of a trial have columns of their own."""
+    """Return the values of evidence by column; each fact of a trial has its own column."""
     values: dict[str, Any] = msgspec.to_builtins(evidence)
     values.pop("kind")
     values |= values.pop("facts", {})
@@ -86,14 +86,14 @@ def _as_text(value: Any) -> str:
 
 
 def free_name(name: str, taken: Iterable[str]) -> str:
-    """Return a name for a file or folder, as a person is called.
+    """Make a name for a file or folder from the name of a person.
 
-    Every system accepts it. A name that is taken gets a number, also if only capitals differ, or
-    how accents are written: to some systems these are equal.
+    Every system accepts the result. A name that is taken gets a number, such as "Ada (2)". Names
+    that differ only in capital letters or in the form of accents count as equal.
 
     Args:
-        name: what the person is called.
-        taken: names of other files or folders there.
+        name: name of the person.
+        taken: names of other files or folders in the same place.
     """
     others = {_same(one) for one in taken}
     plain = numbered = _file_name(name)

@@ -1,4 +1,4 @@
-"""What a trial or an edit shows of a gait: the few numbers and words that the phases ask for."""
+"""Computes, from a trial or an edit, the few numbers and words that the phases ask for."""
 
 import math
 import re
@@ -15,7 +15,7 @@ from lacoc_shared.seat import BEAT_S
 from lacoc_shared.studio import TrialReply
 
 TRIPOD_MARGIN_M = 0.010
-"""Smallest support margin with which a robot stands firmly."""
+"""Smallest support margin with which a robot stands firmly [m]."""
 
 Pace = Literal["faster", "slower", "same"]
 Way = Literal["left", "right", "straight"]
@@ -24,28 +24,28 @@ Difference = Literal["speed", "period", "lift", "duty", "turning"]
 
 _SEAM = "explain.seam"
 SAME_MM_S, SAME_SHARE = 3.0, 0.05
-"""Speeds that differ by less are the same, to the eye."""
+"""Two speeds count as the same if they differ by less than 3 mm/s, or by less than 5 %."""
 STRAIGHT_DEG_S = 3.0
-"""A robot that turns by less goes straight (docs/studio.md 3)."""
+"""A robot that turns at most this fast goes straight (docs/studio.md 3)."""
 _STILL_M = 0.001  # a foot that moves less than this stays where it is
-_ALSO = 0.6  # a direction is right if the foot moves there by this part of its largest motion
+_ALSO = 0.6  # a direction is a right answer if the motion along it is this part of the largest
 _KEY = re.compile(r"([AaBb]?)([0-9])(?::[0-9.]+)?", re.ASCII)
 
 
 class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
-    """What a trial showed, in its measured time; definitions are in docs/studio.md 2 and 7."""
+    """What a trial showed in its measured time; docs/studio.md 2 and 7 define the numbers."""
 
     keys: tuple[str, ...]
-    """Level and digit of each key, in the order of presses: "A1". The last one was measured."""
+    """Level and digit of each pressed key in order, such as "A1". The last key was measured."""
     postures: int
-    """Number of postures of the measured key that the robot was sent to."""
+    """Number of postures of the measured key that were the drive's target."""
     cycles: int
     """Whole cycles that were measured."""
     cycle_s: float | None
     forward_mm: float
-    """Way in the direction that the robot looked at first."""
+    """Distance forward; forward is where the robot faced when the measurement began."""
     left_mm: float
-    """Way to the left of that direction."""
+    """Distance to the left of this direction."""
     speed_mm_s: float
     drift_deg_s: float
     upright: float
@@ -60,13 +60,13 @@ class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
     same_feet_share: float
     """Largest share of time on the same half of the feet, with any margin."""
     seam_deg: float
-    """How far a joint jumps from the last posture to the first; 0: none jumps."""
+    """Largest jump of a joint from the last posture back to the first; 0: no joint jumps."""
     stopped: bool
-    """Whether physics stopped before the end."""
+    """Whether physics stopped before the end of the trial."""
 
 
 class _Figures(msgspec.Struct, frozen=True, kw_only=True):
-    """The figures that are needed."""
+    """The figures of a trial that the facts are made of."""
 
     seconds: float
     cycles: int
@@ -82,7 +82,7 @@ class _Figures(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def trial_facts(reply: TrialReply, keys: str = "") -> TrialFacts:
-    """Find the facts in a studio's reply.
+    """Compute the facts of a trial from a studio's reply.
 
     Args:
         reply: the reply.
@@ -124,12 +124,12 @@ def trial_facts(reply: TrialReply, keys: str = "") -> TrialFacts:
 
 
 def feet_of_half(legs: int) -> int:
-    """Return on how many feet half of a robot stands: three of six, and never fewer than three."""
+    """Return how many feet half of the legs are: three of six legs, and never fewer than three."""
     return max(3, legs // 2)
 
 
 def pace(before: TrialFacts, after: TrialFacts) -> Pace:
-    """Say whether a gait became faster forward."""
+    """Return whether the robot became faster forward from one trial to the next."""
     by = after.speed_mm_s - before.speed_mm_s
     if abs(by) < max(SAME_MM_S, SAME_SHARE * abs(before.speed_mm_s)):
         return "same"
@@ -137,14 +137,14 @@ def pace(before: TrialFacts, after: TrialFacts) -> Pace:
 
 
 def way(facts: TrialFacts) -> Way:
-    """Say where a robot turns."""
+    """Return to which side a robot turns."""
     if abs(facts.drift_deg_s) <= STRAIGHT_DEG_S:
         return "straight"
     return "left" if facts.drift_deg_s > 0 else "right"
 
 
 def differences(one: TrialFacts, other: TrialFacts) -> tuple[Difference, ...]:
-    """Say in what two walks differ so much that people see it (docs/studio.md 7)."""
+    """List the differences between two walks that are large enough to see (docs/studio.md 7)."""
     found: list[Difference] = []
     if _apart(one.speed_mm_s, other.speed_mm_s, least=5.0, share=0.2):
         found.append("speed")
@@ -162,16 +162,16 @@ def differences(one: TrialFacts, other: TrialFacts) -> tuple[Difference, ...]:
 def foot_ways(
     leg: LegSpec, before_deg: Sequence[float], after_deg: Sequence[float]
 ) -> tuple[FootWay, ...]:
-    """Say where the foot of a leg goes, seen from the body.
+    """Return the directions in which the foot of a leg moves, seen from the body.
 
     Args:
         leg: the leg.
-        before_deg: (3,) angles of root, 1st and 2nd joint before the change.
-        after_deg: (3,) angles after it.
+        before_deg: (3,) angles of the joints Root, 1st and 2nd before the change.
+        after_deg: (3,) their angles after the change.
 
     Returns:
-        All directions that are right answers, the strongest first. "out" is away from the body's
-        middle line. At an angle of 45 degrees two directions are right.
+        All directions that count as right answers, the one with the largest motion first. "out" is
+        away from the middle of the body. A motion at 45 degrees between two directions has both.
     """
     start = leg.points(*map(math.radians, before_deg))[-1]
     end = leg.points(*map(math.radians, after_deg))[-1]
@@ -224,7 +224,7 @@ def _most_common(values: npt.NDArray[Any]) -> int:
 
 
 def _pressed(keys: str, reply: TrialReply) -> tuple[str, ...]:
-    """List the keys that were pressed. A key without a level is of level B, but for the last."""
+    """List the pressed keys. The reply has the last one; an earlier one without a level is B."""
     found = [_KEY.fullmatch(word.strip()) for word in keys.split(",")]
     before = [f"{(key[1] or 'B').upper()}{key[2]}" for key in found[:-1] if key]
     return (*before, f"{'AB'[reply.level]}{reply.key}")

@@ -45,15 +45,15 @@ class Phase:
     title: Phrase
     task: Phrase
     question: Phrase
-    """Makes a student think before trying."""
+    """A question that makes a student think before trying."""
     hint: Phrase
     explanation: Phrase
-    """What there is to understand."""
+    """What a student should have understood after the task."""
     shown: tuple[Predicate, ...]
-    """What evidence must show, each on its own."""
+    """The rules that the evidence must meet, all of them, in any order."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Say how far a student is; `evidence` is all that the student did, in order."""
+        """Return how far a student is; `evidence` is all evidence of the student, in order."""
         return All(*self.shown).look(evidence)
 
 

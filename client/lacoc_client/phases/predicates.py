@@ -1,7 +1,7 @@
-"""Small predicates over evidence, and how they are put together.
+"""Rules that look at a student's evidence and say how much of something is done.
 
-Each says how far a student is. Evidence that is added never takes anything back: what was reached
-once stays reached. A test checks this for all phases.
+Small rules can be put together to larger ones. More evidence never makes less done: a rule that was
+met once stays met. A test checks this for all phases.
 """
 
 import math
@@ -16,21 +16,21 @@ from lacoc_client.phases.facts import TrialFacts
 from lacoc_shared.words import Phrase
 
 _NEARLY = 0.99
-"""Largest share of what is not met."""
+"""Largest share of a rule that is not met."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How far a student is with one thing."""
+    """How far a student is with one rule."""
 
     share: float
-    """From 0 to 1; 1: it is done."""
+    """Part that is done, from 0 to 1; 1: the rule is met."""
     missing: tuple[Phrase, ...]
-    """What is still missing, the most useful first; empty: it is done."""
+    """Sentences that say what is still missing, the most useful first; empty: the rule is met."""
 
     @property
     def met(self) -> bool:
-        """Whether it is done."""
+        """Whether the rule is met."""
         return not self.missing
 
 
@@ -38,47 +38,48 @@ MET = Outcome(1.0, ())
 
 
 class Predicate(Protocol):
-    """Something that evidence shows, or does not show yet."""
+    """A rule that evidence meets, or does not meet yet."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Say how far it is shown; `evidence` is in the order in which it came."""
+        """Return how far the rule is met; `evidence` is in the order in which it came."""
 
 
 Lacks = Callable[[int], Phrase]
-"""Says what is missing, from a count."""
+"""Takes a number of missing things; returns a sentence that says so."""
 
 
 @dataclass(frozen=True)
 class Times:
-    """Something happened a number of times."""
+    """A rule that something must happen a number of times."""
 
     test: Callable[[Evidence], bool]
+    """Says whether a piece of evidence counts."""
     times: int
     lacks: Lacks
-    """Gets how many times are missing."""
+    """Takes how many times are missing."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Count."""
+        """Count the evidence that passes the test."""
         return _counted(sum(map(self.test, evidence)), self.times, self.lacks)
 
 
 def once(test: Callable[[Evidence], bool], lacks: Phrase) -> Times:
-    """Ask that something happened at all."""
+    """Make the rule that something must happen at least once."""
     return Times(test, 1, lambda left: lacks)
 
 
 @dataclass(frozen=True)
 class Different:
-    """One group has a number of different things: six postures of one leg."""
+    """A rule that one group must have a number of different things, as one leg six postures."""
 
     things: Callable[[Evidence], Iterable[tuple[Hashable, Hashable]]]
-    """Gives pairs of a group and a thing."""
+    """Takes a piece of evidence; returns its pairs of a group and a thing."""
     count: int
     lacks: Lacks
-    """Gets how many are missing in the best group."""
+    """Takes how many things are missing in the group that has most."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Count the things of each group."""
+        """Count the different things of each group, and return the outcome of the largest."""
         groups: defaultdict[Hashable, set[Hashable]] = defaultdict(set)
         for one in evidence:
             for group, thing in self.things(one):
@@ -88,17 +89,17 @@ class Different:
 
 @dataclass(frozen=True)
 class LastOf:
-    """At some time, enough of the last answers were right."""
+    """A rule that among `last` answers in a row at least `right` must be right, at any time."""
 
     answer: Callable[[Evidence], bool | None]
-    """Says whether an answer was right; None: this is no answer."""
+    """Says whether an answer was right; None: this evidence is no answer."""
     right: int
     last: int
     lacks: Lacks
-    """Gets how many of the last answers should have been right, and were not."""
+    """Takes how many right answers the best row still lacks."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Find the best run of answers."""
+        """Find the `last` answers in a row with the most right ones."""
         answers = [right for one in evidence if (right := self.answer(one)) is not None]
         runs = (answers[start : start + self.last] for start in range(len(answers)))
         return _counted(max(map(sum, runs), default=0), self.right, self.lacks)
@@ -106,17 +107,17 @@ class LastOf:
 
 @dataclass(frozen=True)
 class Bound:
-    """A limit for one number of a trial."""
+    """A limit for one number of a trial: it must be from `least` to `most`."""
 
     number: Callable[[TrialFacts], float | None]
-    """None, NaN or infinite: the trial does not say, so the limit is not kept."""
+    """Returns the number; None, NaN or infinity: the trial has none, so the limit is not kept."""
     lacks: Callable[[float], Phrase]
-    """Says what is missing, from the number that was found, or 0."""
+    """Takes the trial's number (0 if it has none); returns a sentence that says what is missing."""
     least: float = -math.inf
     most: float = math.inf
 
     def look(self, facts: TrialFacts) -> Outcome:
-        """Compare."""
+        """Compare the trial's number with the limits."""
         number = self.number(facts)
         if number is None or not math.isfinite(number):
             return Outcome(0.0, (self.lacks(0.0),))
@@ -133,47 +134,47 @@ class Bound:
 
 @dataclass(frozen=True)
 class TriedWhere:
-    """One trial keeps all limits. The trial that comes nearest says what is missing."""
+    """A rule that one trial must keep all limits."""
 
     bounds: tuple[Bound, ...]
     none: Phrase
-    """Said while there is no trial."""
+    """What is missing while there is no trial."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Compare each trial; of equals the last one counts."""
+        """Return the outcome of the trial with the largest share; of equal ones, of the last."""
         tries = [one.facts for one in evidence if isinstance(one, Tried)]
         best = [_all([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]
         return max(best, key=_share, default=Outcome(0.0, (self.none,)))
 
 
 class All:
-    """Everything is shown.
+    """A rule that several rules must be met.
 
     Args:
-        *parts: what must be shown.
+        *parts: the rules.
     """
 
     def __init__(self, *parts: Predicate) -> None:
         self.parts = parts
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Look at each part; the share is their mean."""
+        """Look at each rule; the share is the mean of their shares."""
         return _all([part.look(evidence) for part in self.parts])
 
 
 @dataclass(frozen=True)
 class After:
-    """Something is shown by evidence that came after something else was shown."""
+    """A rule that the evidence after one rule was met must meet another rule."""
 
     first: Predicate
     then: Predicate
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Find when the first thing was shown, and look at what came after it."""
+        """Find when the rule `first` was met, and look at the later evidence with `then`."""
         start = self.first.look(evidence)
         if not start.met:
             return Outcome(start.share / 2, start.missing)
-        # What is shown once stays shown, so the earliest time can be found by halving.
+        # A rule that is met stays met, so bisection finds when it was met first.
         counts = range(len(evidence) + 1)
         shown = bisect_left(counts, True, key=lambda count: self.first.look(evidence[:count]).met)
         rest = self.then.look(evidence[shown:])
@@ -182,12 +183,12 @@ class After:
 
 @dataclass(frozen=True)
 class OneVersion:
-    """Something is shown by what was done with one version of the table."""
+    """A rule that the evidence of one and the same version of the table must meet a rule."""
 
     shown: Predicate
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Look at each version; the one that is nearest counts, of equals the last."""
+        """Return the outcome of the version with the largest share; of equal ones, of the last."""
         versions: dict[str, list[Evidence]] = {}
         for one in evidence:
             if isinstance(one, Edited | Tried | Checked | Compared | Coached):

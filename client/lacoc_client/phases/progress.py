@@ -9,35 +9,35 @@ from lacoc_client.phases.phases import PHASES
 from lacoc_client.phases.predicates import Outcome
 
 State = Literal["open", "met", "skipped"]
-"""A phase is skipped if the student went on without doing its task. Nothing locks: the student can
-come back, and the task is met as soon as evidence shows it."""
+"""A phase is "skipped" if the student went on without doing its task. The student can come back at
+any time, and the phase is "met" as soon as the evidence shows it."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a student is."""
+    """How far a student is in the six phases."""
 
     phase: int
     """Number of the phase that the student is at, from 1."""
     states: tuple[State, ...]
     """State of each phase."""
     outcomes: tuple[Outcome, ...]
-    """For each phase, how far it is and what is missing."""
+    """For each phase, the share that is done and what is missing."""
     hand_up: bool
-    """Whether the student asks for help."""
+    """Whether the student asks for help now."""
     coached: bool
-    """Whether the student ever took over what the coach found."""
+    """Whether the student has ever taken over changes of the coach."""
     seen: int
-    """Number of pieces of evidence that it was found from."""
+    """Number of pieces of evidence from which this was computed."""
 
 
 def progress(evidence: Sequence[Evidence], before: Progress | None = None) -> Progress:
-    """Say how far a student is.
+    """Compute how far a student is.
 
     Args:
-        evidence: all that the student did, in order.
-        before: what was said of an earlier part of it. Tasks that were met then are not looked at
-            again, because what was reached once stays reached.
+        evidence: all evidence of the student, in order.
+        before: the result for an earlier part of the same evidence. Tasks that were met then are
+            not looked at again, because a task that was met stays met.
     """
     visited = [one.phase for one in evidence if isinstance(one, Moved)]
     visited = [number for number in visited if 1 <= number <= len(PHASES)]

@@ -1,4 +1,4 @@
-"""A class that is kept on disk while it happens (`class_file` has the file itself)."""
+"""Keeps the evidence and tables of a class on disk; `class_file` reads and writes the file."""
 
 import sqlite3
 import threading
@@ -15,13 +15,13 @@ from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import Phrase, say
 
 TABLE_S = 1.0
-"""Longest time that a table waits until it is written [s]."""
+"""Longest time that a new table waits before it is written [s]."""
 
 _T = TypeVar("_T")
 
 
 class _Job(Generic[_T]):
-    """Work that waits for the store's thread."""
+    """A piece of work for the store's thread."""
 
     def __init__(self, work: Callable[[ClassFile], _T], writes: bool) -> None:
         self.work = work
@@ -30,22 +30,22 @@ class _Job(Generic[_T]):
 
 
 class ClassStore:
-    """A class on disk; may be used from any thread.
+    """The evidence and tables of a class, kept on disk; may be used from any thread.
 
-    One thread works on the file, so that no event loop waits for a disk. A future is done when its
-    work is on disk (`asyncio.wrap_future` lets an event loop wait for it). A process that is killed
-    loses no evidence whose future was done, and no table older than `TABLE_S` and the time of a
-    write.
+    A thread of its own works on the file, so that no event loop waits for the disk. The methods
+    return futures, which are done when their data are on the disk (`asyncio.wrap_future` makes an
+    event loop wait for one). If the process is killed, no evidence is lost whose future was done.
+    A table is lost only if it was newer than `TABLE_S` plus the time of a write.
 
-    A damaged file is kept under another name, and the class goes on in a fresh one. While the disk
-    is full, futures fail with a `UserError`, and tables wait for room.
+    A damaged file is renamed, and the class goes on in a fresh file. While the disk is full,
+    futures fail with a `UserError`, and tables wait until there is room.
 
     Args:
         path: the file; it is made if there is none.
 
     Raises:
-        UserError: if another program has it open, it is something else than a class, or it can't
-            be opened.
+        UserError: if another program has the file open, if it is a database of something else, or
+            if it can't be opened.
     """
 
     def __init__(self, path: Path) -> None:
@@ -58,7 +58,7 @@ class ClassStore:
             self._file = self._fresh()
         self._tables = {(one.student, one.name): one for one in self._file.tables()}
         self._waiting: set[tuple[str, str]] = set()
-        """Which tables are not on disk yet."""
+        """Student and name of each table that is not on disk yet."""
         self._jobs: SimpleQueue[_Job[Any] | None] = SimpleQueue()
         self._closed = False
         self._lock = threading.Lock()
@@ -68,9 +68,9 @@ class ClassStore:
 
     @property
     def trouble(self) -> Phrase | None:
-        """What is wrong with the file, for the teacher; None: nothing.
+        """A sentence that says what is wrong with the file; None: nothing.
 
-        A full disk is told until a write succeeds, a damaged file until the store is closed.
+        It names a full disk until a write succeeds, and a damaged file until the store is closed.
         """
         return self._no_room or self._damage
 
@@ -78,33 +78,33 @@ class ClassStore:
         """Keep evidence.
 
         Args:
-            student: whose it is.
-            evidence: what happened.
-            at_s: time when it happened, in seconds since 1970 (UTC).
+            student: name of the student.
+            evidence: what the student did.
+            at_s: time when the student did it, in seconds since 1970 (UTC).
 
         Returns:
-            The number of the evidence.
+            The number of the evidence in the class.
         """
         return self._do(lambda file: file.add(student, evidence, at_s), writes=True)
 
     def vote(self, student: str, poll: str, choice: str, at_s: float) -> "Future[bool]":
-        """Count a vote; as `ClassFile.vote`."""
+        """Count a vote; the result is that of `ClassFile.vote`."""
         return self._do(lambda file: file.vote(student, poll, choice, at_s), writes=True)
 
     def votes(self, poll: str) -> "Future[dict[str, int]]":
-        """Read the votes of a poll by choice."""
+        """Read how many votes each choice of a poll has."""
         return self._do(lambda file: file.votes(poll))
 
     def evidence(self, student: str | None = None, after: int = 0) -> "Future[list[Kept]]":
-        """Read evidence; as `ClassFile.evidence`."""
+        """Read evidence; arguments and result are those of `ClassFile.evidence`."""
         return self._do(lambda file: file.evidence(student, after))
 
     def keep(self, table: KeptTable) -> None:
-        """Keep the newest content of a student's file; it is written at most `TABLE_S` later.
+        """Keep the newest content of a student's gait file; it is written within `TABLE_S`.
 
         Raises:
             UserError: if the store is closed.
-            ValueError: if a name is no text that can be written.
+            ValueError: if a name can't be encoded as UTF-8.
         """
         f"{table.student}{table.name}{table.version}".encode()  # one bad name would stop all tables
         with self._lock:
@@ -127,13 +127,13 @@ class ClassStore:
         return self._do(work, writes=True)
 
     def tables(self, student: str | None = None) -> list[KeptTable]:
-        """Return the newest tables of a student, or of everybody, by student and name."""
+        """Return the newest tables of a student, or of all (None), sorted by student and name."""
         with self._lock:
             tables = sorted(self._tables.items())
         return [table for (who, _), table in tables if student in (None, who)]
 
     def close(self) -> None:
-        """Write what waits, and close the file."""
+        """Write the tables that wait, and close the file."""
         with self._lock:
             if not self._closed:
                 self._closed = True
@@ -209,9 +209,9 @@ class ClassStore:
         job = _Job(lambda file: file.write_tables(tables), writes=True)
         self._work(job)
         if job.done.exception() is not None:
-            return  # `trouble` tells it; the tables wait for the next time
+            return  # `trouble` says why; the tables wait for the next try
         with self._lock:
-            # One that is newer than what was written goes on waiting.
+            # A table that was kept during the write is newer, and goes on waiting.
             written = {(one.student, one.name) for one in tables if self._is_newest(one)}
             self._waiting -= written
 
@@ -219,7 +219,7 @@ class ClassStore:
         return self._tables.get((table.student, table.name)) is table
 
     def _fresh(self) -> ClassFile:
-        """Set the damaged file aside, and make a fresh one."""
+        """Rename the damaged file, and make a fresh one."""
         kept = set_aside(self._path)
         file, kept_name = text_of(self._path.name), text_of(kept.name)
         self._damage = say("class.damaged", file=file, kept=kept_name)

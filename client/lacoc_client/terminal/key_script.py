@@ -115,7 +115,7 @@ class PipeKeys:
             return self._script.due(playing_s, playing)
 
     def take_said(self) -> list[Phrase]:
-        """Return what is wrong with the script; see `keys.Keys`."""
+        """Return the mistakes in the script since the last call; see `keys.Keys`."""
         said, self._said = self._said, []
         return said
 

@@ -1,4 +1,4 @@
-"""`lacoc coach`: find which numbers of a gait matter, and change few of them for a better walk."""
+"""`lacoc coach`: rank the numbers of a gait, and change few of them for a better walk."""
 
 import signal
 import threading
@@ -56,7 +56,7 @@ def coach_command(
     goal: Annotated[
         Goal,
         typer.Option(
-            "--for", help="What the robot shall do better; this also chooses the key to change."
+            "--for", help="What the robot should do better; this also chooses the key to change."
         ),
     ] = Goal.FORWARD,
     key: Annotated[
@@ -126,7 +126,7 @@ def coach_command(
 
 @contextmanager
 def _stop_on_interrupt() -> Iterator[threading.Event]:
-    """Let Ctrl-C set an event, so that the search ends and what it has found is kept."""
+    """Make Ctrl-C set an event, so that the search ends and its best gait is kept."""
     stop = threading.Event()
     before = signal.signal(signal.SIGINT, lambda *_: stop.set())
     try:

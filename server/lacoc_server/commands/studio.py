@@ -21,7 +21,7 @@ def studio_command(
             envvar="LACOC_LISTEN",
             metavar="ADDRESS",
             help="Where to listen, such as tcp/0.0.0.0:7447; port 0 takes a free one. Several may "
-            "be given; by default it is this machine alone.",
+            "be given; by default only programs on this machine can connect.",
         ),
     ] = None,
     name: Annotated[
@@ -30,15 +30,15 @@ def studio_command(
     jobs: Annotated[
         int | None,
         typer.Option(
-            metavar="N", help="Number of processes for trials; by default one a core.", min=1
+            metavar="N", help="Number of processes for trials; by default one for each core.", min=1
         ),
     ] = None,
     json: options.Json = False,
 ) -> None:
-    """Run a studio: robots walk and are measured there, for the pages where gaits are designed.
+    """Run a studio: it lets robots walk and measures them, for pages on which gaits are designed.
 
-    It answers requests for trials and for the coach, from any machine that reaches its address. It
-    keeps nothing. Ctrl-C ends it.
+    It answers requests for trials and for the coach from every machine that can reach its address.
+    It saves nothing. Ctrl-C ends it.
     """
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):

@@ -1,4 +1,4 @@
-"""`lacoc trial`: let a robot walk with a gait, and print the figures of its walking."""
+"""`lacoc trial`: let a robot walk with a gait, and print figures of how it walks."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -102,7 +102,7 @@ def read_robot_file(name: str) -> RobotSpec:
 
 
 def read_trial_gait(file: Path, robot: RobotSpec) -> Gait:
-    """Read a gait file for a trial; postures are joined into sequences as for the sample's keys.
+    """Read a gait file for a trial; postures are joined into the sequences of the sample's keys.
 
     Raises:
         UserError: if the file can't be read.
@@ -128,7 +128,7 @@ def _as_json(trial: Trial) -> dict[str, Any]:
 
 
 def _table(figures: Figures, title: Phrase) -> Any:
-    """Make a table of the figures that a person asks for first."""
+    """Make a table of the most important figures."""
     table = screen.table(say("trial.figure"), say("trial.value"))
     table.title, table.title_justify = Text(render(title)), "left"
     for what, value in (

@@ -244,10 +244,13 @@ class Judge:
         return RecordedPhysics(world, self._recorded, scene, model_hash)
 
     def _other_model(self, world: World) -> tuple[Scene | None, str | None]:
-        """Find what another kind of machine built from the same robots.
+        """Check whether another kind of machine compiled the recorded model from the same robots.
+
+        The numbers of two such models may differ in their last bits.
 
         Returns:
-            The recorded scene and hash of the model, where they may differ by their last bits.
+            The recorded scene and the recorded hash of the model if they differ in this way, else
+            (None, None).
         """
         beat = max(0, self._beat)
         made_by = header_at(self._record, beat).arithmetic.get("model")

@@ -150,7 +150,7 @@ class Match(MatchState):
                 self.finish(why)
 
     def _move_to_play(self) -> None:
-        """Go on from the lobby to play, as far as the seats allow."""
+        """Go from the lobby to READY, the countdown and play, as soon as the seats allow each."""
         if self.phase is Phase.LOBBY and not self.missing():
             self.build()
             self.enter(Phase.READY, model=self.physics.model_hash)

@@ -1,1 +1,1 @@
-"""The studio: answers requests for trials and for the coach, over the network."""
+"""The studio: a server that answers requests for trials and for the coach over the network."""

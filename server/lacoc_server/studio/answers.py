@@ -1,4 +1,4 @@
-"""A studio's answers: from a request and a floor to a reply, with no clock, network or chance."""
+"""Answers a studio's requests, without a network: the same request has the same answer."""
 
 import math
 from collections.abc import Callable
@@ -41,38 +41,39 @@ from lacoc_shared.studio import (
 from lacoc_shared.words import Phrase, say
 
 _MISTAKES_TOLD = 20
-"""Most mistakes of a refusal, so that it stays a small message."""
+"""Most mistakes in one refusal, so that it stays a small message."""
 
 CourseOf = Callable[[RobotSpec], Course]
-"""Gives the floor for a robot's trials."""
+"""Returns the floor for a robot's trials."""
 _Request = TypeVar("_Request", bound=msgspec.Struct)
 
 
 class Busy(UserError):
-    """Too much waits at the studio; the same request may come again."""
+    """Too many requests wait at the studio; the same request may be sent again later."""
 
 
 class Answer(NamedTuple):
     """An encoded reply, or an encoded `Refusal`."""
 
     right: bool
-    """Whether it is a reply."""
+    """Whether this is a reply; False: a refusal."""
     payload: bytes
 
 
 class Files(NamedTuple):
-    """The files of a request, as they were read."""
+    """The robot and the gait that were read from a request's files."""
 
     robot: RobotSpec
     gait: Gait
     sequences: tuple[tuple[int, ...], ...] | None
-    """For each key of level B the digits of its postures, if they are those of a Loco-data file."""
+    """For each key of level B the digits of its postures in the Loco-data file; None if the gait
+    has a LocoTra-data file."""
     notes: list[Phrase]
-    """Remarks on what is legal, but probably not meant."""
+    """Remarks on what is allowed in the files, but probably not intended."""
 
 
 class Trial(NamedTuple):
-    """A trial with everything that is said of it."""
+    """A trial with its figures and explanation."""
 
     press: Press
     """The key that was measured."""
@@ -80,16 +81,16 @@ class Trial(NamedTuple):
     figures: Figures
     explained: list[Sentence]
     notes: list[Phrase]
-    """What a reader of the figures must know."""
+    """Remarks for a reader of the figures, such as that the trial ended early."""
 
 
 def answer(what: str, payload: bytes, course_of: CourseOf) -> Answer:
     """Answer a request.
 
     Args:
-        what: which request: robot or trial.
-        payload: the request as it arrived.
-        course_of: gives the floor for a robot.
+        what: name of the request: robot or trial.
+        payload: the encoded request.
+        course_of: returns the floor for a robot.
     """
     try:
         match what:
@@ -108,8 +109,8 @@ def read(payload: bytes, kind: type[_Request]) -> _Request:
     """Decode a request.
 
     Raises:
-        BadMessage: if it is not such a request, or too large.
-        UserError: if it is of another version of the protocol.
+        BadMessage: if the bytes are not such a request, or too many.
+        UserError: if the request uses another version of the protocol.
     """
     protocol = decode(payload, _Version, STUDIO_MAX_BYTES).protocol
     if protocol != PROTOCOL:
@@ -118,7 +119,7 @@ def read(payload: bytes, kind: type[_Request]) -> _Request:
 
 
 def refusal(error: BadMessage | FileRefused | UserError) -> Refusal:
-    """Say why a request is refused."""
+    """Make the message that says why a request is refused."""
     match error:
         case FileRefused():
             count = len(error.mistakes)
@@ -131,7 +132,10 @@ def refusal(error: BadMessage | FileRefused | UserError) -> Refusal:
 
 
 def read_files(files: GaitFiles) -> Files:
-    """Read a robot and its gait; postures get sequences if there is no locomotion file.
+    """Read a robot and its gait.
+
+    Without a locomotion file, the request's sequences of postures, or the sample's, become the keys
+    of level B. Without any file, the robot and the gait are the workshop's.
 
     Raises:
         FileRefused: with every mistake of every file.
@@ -172,11 +176,11 @@ def read_files(files: GaitFiles) -> Files:
 
 
 def try_gait(course: Course, gait: Gait, keys: str = "", seconds: float | None = None) -> Trial:
-    """Let a robot walk, measure it, and explain it.
+    """Let a robot walk, measure how it walks, and explain it.
 
     Args:
-        course: the robot's floor.
-        gait: its gait.
+        course: the floor with the robot.
+        gait: the robot's gait.
         keys: keys as a person types them (`trial.keys`); "": the key for forward.
         seconds: how long the last key is pressed [s]; None: whole cycles.
 
@@ -205,10 +209,10 @@ class _Version(msgspec.Struct):
 
 
 def _check_name(file: SentFile | None) -> None:
-    """Check the name of a file, which mistakes quote.
+    """Check the name of a file, because messages about mistakes quote it.
 
     Raises:
-        UserError: if it is too long or can't be shown.
+        UserError: if the name is empty, too long, or has letters that can't be shown.
     """
     if file is not None and not (0 < len(file.name) <= FILE_NAME_MAX and file.name.isprintable()):
         raise UserError(say("refused.file-name", most=FILE_NAME_MAX))
@@ -221,10 +225,14 @@ def _robot_of(file: SentFile | None) -> RobotSpec:
 
 
 def _check_time(tick: int, seconds: float | None) -> None:
-    """Check that a trial with the last key at a tick is not too long.
+    """Check the length of a trial.
+
+    Args:
+        tick: tick in which the last key is pressed.
+        seconds: how long the last key is pressed [s]; None: whole cycles.
 
     Raises:
-        UserError: if it is, or if the time is no time.
+        UserError: if the trial is too long, or `seconds` is shorter than a tick.
     """
     before_s = (tick - SETTLE_TICKS) / BEATS_PER_S
     last_s = BEAT_S if seconds is None else seconds

@@ -8,11 +8,11 @@ from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 
 Bounds = tuple[float | None, float | None]
-"""Lowest and highest value that is allowed; None: any."""
+"""Lowest and highest value that the rules allow; None: no limit on this side."""
 
 
 def facts(robot: RobotSpec) -> dict[str, Any]:
-    """List the numbers of a robot: a number, or a pair for what legs can differ in."""
+    """List a robot's numbers by name; for what can differ between legs, the lowest and highest."""
     low, high = robot.bounds((0.0,) * robot.joints)
     width_m, length_m, height_m = (b - a for a, b in zip(low, high, strict=True))
     legs = robot.legs
@@ -48,7 +48,7 @@ def facts(robot: RobotSpec) -> dict[str, Any]:
 
 
 def bounds(limits: Limits) -> dict[str, Bounds]:
-    """List what the rules allow, by the names of `facts`."""
+    """List the limits of the rules for the numbers that `facts` gives, under the same names."""
     part_kg = limits.part_mass_min_kg, limits.part_mass_max_kg
     link_m = limits.link_min_m, limits.link_max_m
     return {

@@ -1,4 +1,4 @@
-"""The floors that a process of a studio keeps: compiling one takes longer than a short trial."""
+"""Keeps a process's floors for trials: to compile a floor takes longer than a short trial."""
 
 from functools import lru_cache
 
@@ -11,7 +11,7 @@ from lacoc_server.world.world import SUBSTEPS
 
 @lru_cache(maxsize=16)
 def course_of(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
-    """Give the floor for a robot's trials in this process; arguments as in `make_course`."""
+    """Return the floor for a robot's trials in this process; arguments as in `make_course`."""
     return make_course(robot, steps)
 
 

@@ -1,4 +1,4 @@
-"""The searches of a studio's coach: one at a time, the others wait in order."""
+"""Runs the searches of a studio's coach: one at a time, while the others wait in order."""
 
 import threading
 import time
@@ -21,17 +21,17 @@ from lacoc_shared.studio import CoachRequest, Progress
 from lacoc_shared.words import say
 
 _MOST_S = 120.0
-"""Longest search."""
+"""Longest time that a search may ask for [s]."""
 _MOST_WAITING = 8
 _TELL_S = 0.2
-"""How often whoever asked is told how far a search is [s]."""
+"""How often a search sends its progress [s]."""
 _END_S = 10.0
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 Done = Callable[[Answer], None]
 """Takes the answer of a search; called on any thread."""
 Tell = Callable[[str, Progress], None]
-"""Takes the name of a search, and how far it is."""
+"""Takes the name of a search, and its progress."""
 
 
 class _Search(NamedTuple):
@@ -43,13 +43,13 @@ class _Search(NamedTuple):
 class Searches:
     """Searches for better gaits in processes that give way to trials.
 
-    One search has all processes, because it should end soon. The processes start with the first
-    search, because many studios never have one.
+    One search uses all processes, so that it ends soon. The processes start with the first search,
+    because many studios never have one.
 
     Args:
         jobs: number of processes; None: one for each core.
-        tell: is told how far each search is, several times a second.
-        failed: makes the answer to a search that ended with an error.
+        tell: called several times a second with the progress of each search.
+        failed: makes the answer to a search that ended with an unexpected error.
     """
 
     def __init__(self, jobs: int | None, tell: Tell, failed: Callable[[Exception], Answer]) -> None:
@@ -65,11 +65,11 @@ class Searches:
         self._thread.start()
 
     def add(self, request: CoachRequest, done: Done) -> None:
-        """Begin a search, or let it wait for those before it.
+        """Begin a search, or let it wait until earlier searches end.
 
         Raises:
-            UserError: if its name is wrong or taken.
-            Busy: if too many wait.
+            UserError: if the name of the search is wrong or taken.
+            Busy: if too many searches wait.
         """
         check_name(request.job)
         with self._changed:
@@ -81,10 +81,10 @@ class Searches:
             self._changed.notify()
 
     def cancel(self, job: str) -> None:
-        """Let a search end soon, with what it has found; one that still waits is refused.
+        """Let a search end soon and reply with the best so far; a waiting search is refused.
 
         Raises:
-            UserError: if there is no such search.
+            UserError: if there is no search with this name.
         """
         with self._changed:
             search = next((one for one in self._all() if one.request.job == job), None)
@@ -111,7 +111,7 @@ class Searches:
 
     @property
     def processes(self) -> tuple[int, ...]:
-        """The numbers of the processes that run now."""
+        """The ids of the processes that run now."""
         return () if self._workers is None else self._workers.processes
 
     def _all(self) -> list[_Search]:
@@ -131,7 +131,7 @@ class Searches:
             except Exception as error:
                 answer = self._failed(error)
             with self._changed:
-                self._running = None  # its name is free before its answer is there
+                self._running = None  # first free the name, then send the answer
             search.done(answer)
 
     def _answer(self, search: _Search, workers: Workers) -> Answer:
@@ -168,10 +168,10 @@ class Searches:
 
 
 def _chosen(field: str, text: str, kind: type[_Choice]) -> _Choice:
-    """Read one of a few words.
+    """Read a field of a request that must be one of a few words.
 
     Raises:
-        UserError: if it is none of them.
+        UserError: if the text is none of these words.
     """
     try:
         return kind(text)

@@ -1,4 +1,4 @@
-"""A studio's place on the network: requests come in, processes answer them."""
+"""Takes a studio's requests from the network, and gives them to processes that answer them."""
 
 from collections.abc import Sequence
 from concurrent.futures import CancelledError, Future
@@ -18,19 +18,18 @@ from lacoc_shared.studio import CancelRequest, CoachRequest, Progress, RobotRequ
 from lacoc_shared.words import render, say
 
 _MOST_WAITING = 128
-"""Requests that may wait for a process; more are refused, and may come again."""
+"""Most requests that may wait for a process; more are refused, and may be sent again."""
 
 
 class Studio:
     """Answers requests over the network until it is closed; used as a context manager.
 
-    Zenoh's threads bring the requests, and the processes' threads send the answers; no thread is
-    needed that waits.
+    Zenoh's threads bring the requests. The threads that serve the processes send the answers.
 
     Args:
         name: name of the studio.
         listen: addresses to listen on; port 0 takes a free one.
-        jobs: number of processes for trials; None: one for each core.
+        jobs: number of processes for trials, and also for searches; None: one for each core.
 
     Raises:
         UserError: if the name is wrong, or the studio can't listen on an address.
@@ -58,7 +57,7 @@ class Studio:
         self._session.close()
 
     def _arrived(self, request: Request) -> None:
-        """Take a request in, on Zenoh's thread; what takes long is done elsewhere."""
+        """Take a request in; this is Zenoh's thread, so other threads do what takes long."""
         what, payload = request.key.rpartition("/")[2], request.payload
         try:
             match what:
@@ -83,7 +82,7 @@ class Studio:
         _answer(request, answer)
 
     def _failed(self, error: BaseException) -> Answer:
-        """Log why a request has no answer, and make one."""
+        """Log an error that left a request without an answer, and make a refusal."""
         ended = isinstance(error, WorkerDied | CancelledError)
         why = say("studio.died") if ended else say("studio.failed")
         self._log.warning(render(why), code=why.code, error=repr(error))

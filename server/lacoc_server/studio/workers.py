@@ -1,4 +1,4 @@
-"""Processes that work for this one. If one dies, only its own job is lost, and another starts."""
+"""Runs jobs in other processes. If one of them dies, only its job is lost, and another starts."""
 
 import contextlib
 import os
@@ -17,12 +17,12 @@ T = TypeVar("T")
 
 _SPAWN = get_context("spawn")
 _NICE = 10
-"""How much lower the priority of background work is, where the system has priorities."""
+"""How much lower the priority of background processes is (`os.nice`), on systems that have this."""
 _END_S = 5.0
 
 
 class WorkerDied(Exception):
-    """The process of a job ended before the job did, or took too long and was ended."""
+    """The process of a job ended before the job was done, or was ended because it took too long."""
 
 
 class WorkerFailed(Exception):
@@ -36,14 +36,14 @@ class _Job(NamedTuple):
 
 
 class Workers:
-    """Runs functions in processes, first come, first served; used as a context manager.
+    """Runs functions in processes, in the order in which they come; used as a context manager.
 
-    Processes start at once, so that the first job finds them ready.
+    The processes start at once, so that the first job finds them ready.
 
     Args:
         jobs: number of processes; None: one for each core.
-        background: whether they give way to all others.
-        limit_s: longest time for a job [s]; then its process is ended.
+        background: whether these processes give way to all others.
+        limit_s: longest time for a job [s]; after this its process is ended.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class Workers:
 
     @property
     def processes(self) -> tuple[int, ...]:
-        """The numbers of the processes that run now."""
+        """The ids of the processes that run now."""
         return tuple(pid for child in list(self._children) if (pid := child.process.pid))
 
     def submit(
@@ -81,7 +81,8 @@ class Workers:
         """Run a function of a module in a process.
 
         Returns:
-            Its result. It raises `WorkerDied` or `WorkerFailed`, or is cancelled by `close`.
+            A future of the function's result. It raises `WorkerDied` or `WorkerFailed`; `close`
+            cancels it.
         """
         assert not named, "a job has positional arguments only"
         result: Future[T] = Future()
@@ -89,7 +90,7 @@ class Workers:
         return result
 
     def close(self) -> None:
-        """End all processes; jobs that are not done are cancelled or fail."""
+        """End all processes; waiting jobs are cancelled, and running jobs fail."""
         self._closing = True
         for _ in self._threads:
             self._jobs.put(None)
@@ -105,7 +106,7 @@ class Workers:
                 job.result.cancel()
                 continue
             try:
-                if not child.process.is_alive():  # it died while it had nothing to do
+                if not child.process.is_alive():  # the process died between two jobs
                     child = self._replaced(child)
                 right, found = child.call(job.function, job.arguments, self._limit_s)
             except WorkerDied as error:
@@ -128,7 +129,7 @@ class Workers:
     def _child(self) -> "_Child":
         child = _Child(self._background)
         self._children.add(child)
-        if self._closing:  # `close` may not have seen it
+        if self._closing:  # `close` may have missed this new process
             child.process.kill()
         return child
 
@@ -140,7 +141,7 @@ class _Child:
         self._connection, other = _SPAWN.Pipe()
         self.process = _SPAWN.Process(target=_work, args=(other, background), daemon=True)
         self.process.start()
-        other.close()  # so that the pipe ends with the process
+        other.close()  # only the process holds this end now, so it closes with the process
 
     def call(
         self, function: Callable[..., Any], arguments: tuple[Any, ...], limit_s: float
@@ -148,7 +149,7 @@ class _Child:
         """Run a function in the process; return whether it worked, and its result or traceback.
 
         Raises:
-            WorkerDied: if the process ended, or the time is over.
+            WorkerDied: if the process ended, or took longer than `limit_s`.
         """
         try:
             self._connection.send((function, arguments))
@@ -167,8 +168,8 @@ class _Child:
 
 
 def _work(connection: "Connection[Any, Any]", background: bool) -> None:
-    """Do what comes through the pipe until the other end closes it, or dies."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that this one serves
+    """Run the functions that come through the pipe until its other end is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
     if background and hasattr(os, "nice"):
         os.nice(_NICE)
     with contextlib.suppress(EOFError, OSError):

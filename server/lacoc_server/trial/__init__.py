@@ -1,5 +1,6 @@
-"""A trial: one robot walks alone, under the contest's drive, and its walking is measured.
+"""A trial: one robot walks alone, under the contest's drive, and its walk is measured.
 
-`course` runs it. `walk` holds what was seen, tick by tick. `feet` and `support` find steps and
-balance in it, and `figures` puts numbers to it. No part of this package knows MuJoCo.
+`course` runs a trial, and `walk` holds what was measured in each tick. `feet` and `support` find
+steps and balance, `figures` computes the figures, and `explain` explains them. `steps` computes
+where the feet go from the table alone. No module of this package knows MuJoCo.
 """

@@ -1,4 +1,4 @@
-"""Foot bars in a terminal: when each foot is down (Hildebrand's diagram)."""
+"""Draws bars in a terminal that show when each foot is down (Hildebrand's diagram)."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -11,17 +11,17 @@ _DOWN, _UP, _MARK = "█", "·", "│"
 def foot_bars(
     legs: Sequence[str], down: Bools, starts: Sequence[int], first: int, columns: int
 ) -> list[str]:
-    """Draw a row for each leg, with enough ticks in each column that the whole walk fits.
+    """Draw a bar for each leg; a column stands for as many ticks as needed to show the whole walk.
 
     Args:
         legs: labels of the legs.
         down: (ticks, legs) whether the foot is down.
-        starts: ticks in which a cycle begins; a last row marks them.
+        starts: ticks in which a cycle begins; the last row marks them.
         first: first tick that is drawn.
-        columns: largest width of the bars.
+        columns: largest width of the bars [characters].
 
     Returns:
-        A row for each leg, and then the row of marks, which is empty if no cycle begins.
+        A row for each leg, and then the row with the marks. No rows if there is no tick to draw.
     """
     ticks = len(down) - first
     if ticks <= 0:

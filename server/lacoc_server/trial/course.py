@@ -1,4 +1,4 @@
-"""Let a robot walk alone on an open floor, exactly as a court would."""
+"""Lets a robot walk alone on an open floor, exactly as it would walk at a court."""
 
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
@@ -19,24 +19,24 @@ from lacoc_shared.seat import BEATS_PER_S
 SETTLE_TICKS = BEATS_PER_S // 2
 """Ticks for which the robot stands before a key is pressed."""
 CYCLES = 5
-"""Whole cycles that are measured. The first cycle is not, because the robot gets going in it."""
+"""Number of cycles that are measured, after the first cycle, in which the robot starts to move."""
 NO_CYCLE_S = 6.0
-"""How long a key is measured if its sequence has one posture, and so never repeats [s]."""
+"""How long a key is measured if its sequence never leaves its first posture [s]."""
 LONGEST_TICKS = SETTLE_TICKS + 60 * BEATS_PER_S
-"""Longest trial, with all its keys."""
+"""Longest trial with all its keys [ticks]."""
 
 _FIELD = {"game": {"size_m": [20.0, 20.0]}, "match": {"levels": ["B", "A"]}}
-"""Practice on a field so large that no robot reaches a wall; robots stand as in a contest, where
-level B is open."""
+"""Settings of the arena "practice" for trials. The field is so large that no robot reaches a wall.
+Level B is open, so that robots stand before a key as in a contest."""
 
 
 def practice_field() -> Arena:
-    """Load the field of trials."""
+    """Load the arena in which trials take place."""
     return arenas.load("practice", _FIELD)
 
 
 class SensedPhysics(Physics, Protocol):
-    """Physics of one robot, with its contact with the floor; `world.sensed` implements it."""
+    """Physics of one robot that also measures its contact with the floor (see `world.sensed`)."""
 
     @property
     def weight_n(self) -> float:
@@ -53,10 +53,10 @@ class SensedPhysics(Physics, Protocol):
 
 
 class Course:
-    """A floor on which one robot is tried again and again; each trial begins in the same state.
+    """A floor with one robot for many trials; each trial begins in the same state.
 
     Args:
-        world: the robot at its start place.
+        world: physics with the robot at its start place.
         robot: the robot.
         arena: the field; its settings say at which level the robot stands before the first key,
             and whether sequences repeat.
@@ -82,11 +82,11 @@ class Course:
         seconds: float | None = None,
         cycles: int = CYCLES,
     ) -> Walk:
-        """Let the robot stand, press keys, and watch it walk.
+        """Let the robot stand, press the keys, and measure how the robot walks.
 
         Args:
             gait: the robot's gait.
-            presses: at least one key, in the order of their ticks; the last one is measured.
+            presses: at least one key, in the order of their ticks; the last key is measured.
             seconds: time from the last press to the end [s]; None: whole cycles after the first,
                 or `NO_CYCLE_S` if the key's sequence never begins again. No trial is longer than
                 `LONGEST_TICKS`.
@@ -142,13 +142,13 @@ class Course:
 
 
 class Plan(NamedTuple):
-    """What a drive commands in a trial; it does not depend on physics."""
+    """The commands of a drive in a trial, which do not depend on physics."""
 
     states: list[DriveState]
     """State of the drive in each tick."""
     starts: list[int]
-    """Ticks in which a cycle of the last key begins; also the tick after the last one, if a cycle
-    would begin there."""
+    """Ticks in which a cycle of the last key begins. The tick after the end of the trial is among
+    them if a cycle would begin there."""
     span: Span
     """Ticks to measure."""
 
@@ -156,7 +156,7 @@ class Plan(NamedTuple):
 def plan(
     drive: Drive, level: Level, presses: Sequence[Press], seconds: float | None, cycles: int
 ) -> Plan:
-    """Let a drive run through a trial's keys; arguments as in `Course` and `Course.walk`."""
+    """Run a drive through the keys of a trial; arguments as in `Course` and `Course.walk`."""
     last = presses[-1]
     due = {press.tick: press for press in presses}
     most = LONGEST_TICKS
@@ -184,5 +184,5 @@ def plan(
 
 
 def _stack(rows: Sequence[Floats], *width: int) -> Floats:
-    """Stack one row for each tick; without a tick the rows' shape is `width`."""
+    """Stack one row for each tick; `width` is the shape of a row, for the case without ticks."""
     return np.stack(rows) if rows else np.zeros((0, *width))

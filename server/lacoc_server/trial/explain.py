@@ -1,8 +1,7 @@
-"""Say in at most three sentences why a robot walks as it does, the most useful first.
+"""Explains in at most three sentences why a robot walks as it does, the most useful first.
 
-Each rule looks for one situation (docs/studio.md 3) and names the leg, the cell of the table and
-the figure that show it. Most causes in the table come before effects that physics shows. A rule
-that finds nothing says nothing.
+Each rule looks for one situation (docs/studio.md 3), and names the leg, the cell of the table and
+the figure that show it. A cause in the table usually comes before an effect that physics shows.
 """
 
 import math
@@ -26,26 +25,26 @@ _TIPPED = 0.8
 """A robot has tipped over if its `upright` is below this: it leans by more than 37 degrees."""
 _AT_LIMIT_DEG = 0.5
 SEAM_DEG, SEAM_RATIO = 12.0, 1.6
-"""The seam is the step from the last posture to the first. A leg jumps there if an angle changes by
-so many degrees more, and so many times more, than in any other step."""
+"""The seam is the step from the last posture to the first. A joint jumps there if its step is
+larger than its largest other step by `SEAM_DEG` degrees, and also by the factor `SEAM_RATIO`."""
 _LIFT_M = 0.008
-"""No leg drags unless the median leg lifts its foot higher than this [m]."""
+"""Legs are checked for dragging only if the median leg lifts its foot higher than this [m]."""
 _DRAGGED = 0.35
-"""A leg drags if it is lifted less than this part of the median leg's lift."""
+"""A leg drags its foot if it lifts the foot less than this part of the median leg's lift."""
 _SWING_M2, _AGAINST = 1e-4, 0.3
-"""A leg pushes backward if in the air it swings against the others, by more than `_AGAINST` of the
-median swing. The median swing must be larger than `_SWING_M2`."""
+"""A leg pushes in the wrong direction if its foot swings against the other feet while it is lifted,
+by more than `_AGAINST` of the median swing. The median swing must be larger than `_SWING_M2`."""
 _APART = 0.12
-"""A leg is out of step if it is lifted more than this part of the sequence before or after every
-other leg."""
+"""A leg is out of step if the time at which it is lifted differs from that of each other leg by
+more than this part of the cycle."""
 _BELLY, _FALLS, _TURNS_DEG_S, _SLIDES_MM_S, _SLOW_MM_S = 0.05, 0.9, 3.0, 20.0, 15.0
 
 
 class Finding(NamedTuple):
-    """A situation that was found."""
+    """A situation that a rule found."""
 
     rank: float
-    """The highest rank is told first."""
+    """The finding with the highest rank is told first."""
     said: Phrase
     leg: int = -1
     """Index of the leg that it is about; -1: the whole robot."""
@@ -54,7 +53,7 @@ class Finding(NamedTuple):
 
 @dataclass(frozen=True)
 class Seen:
-    """What the rules look at."""
+    """The trial that the rules look at."""
 
     robot: RobotSpec
     walk: Walk
@@ -65,7 +64,7 @@ class Seen:
     """Postures of that key [rad]."""
 
     def cell(self, posture: int, leg: int, level: int) -> Phrase:
-        """Name a cell of the table."""
+        """Make the phrase that names a cell of the table."""
         return say(
             "explain.cell",
             key=self.press.digit,
@@ -92,13 +91,13 @@ def explain(
 
     Args:
         robot: the robot.
-        walk: its trial.
+        walk: the trial of the robot.
         figures: figures of the trial.
         press: the key that was measured.
         sequence: postures of the key [rad].
 
     Returns:
-        At most `MOST_SENTENCES`, the most useful first.
+        At most `MOST_SENTENCES` sentences, the most useful first.
     """
     seen = Seen(robot, walk, figures, press, tuple(sequence))
     found = [finding for rule in _RULES for finding in rule(seen)]
@@ -191,7 +190,7 @@ def _legs(seen: Seen) -> Iterator[Finding]:
 
 
 def _out_of_step(seen: Seen, steps: Steps, legs: Sequence[int]) -> Iterator[Finding]:
-    """Find the one leg that is lifted alone, while each other leg is lifted with another."""
+    """Find a leg that is lifted alone, while each other leg is lifted together with another."""
     if len(seen.sequence) < 3 or len(legs) < 4:
         return
     phases = steps.phase

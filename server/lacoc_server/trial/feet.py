@@ -1,7 +1,7 @@
-"""Which feet are down, and when in a cycle they come down.
+"""Finds which feet are down, and when in a cycle they come down.
 
-A foot that touches lightly loses and finds the floor many times a second. So "down" has two bounds:
-a foot comes down above the higher one and is up again below the lower one.
+A foot that touches the floor lightly loses and finds it many times a second. So there are two
+bounds for its load: the foot comes down above the higher bound, and is up below the lower one.
 """
 
 import math
@@ -21,11 +21,11 @@ def feet_down(load_n: Floats, weight_n: float) -> Bools:
     """Find the feet that are down.
 
     Args:
-        load_n: (ticks, legs) mean normal force of each tick.
-        weight_n: weight of the robot.
+        load_n: (ticks, legs) mean normal force of each tick [N].
+        weight_n: weight of the robot [N].
 
     Returns:
-        (ticks, legs) whether the foot is down; before the first tick all are up.
+        (ticks, legs) whether the foot is down; before the first tick all feet are up.
     """
     down = np.zeros(load_n.shape, np.bool_)
     now = np.zeros(load_n.shape[1], np.bool_)
@@ -46,11 +46,11 @@ def phases(down: Bools, first: int, cycles: Sequence[tuple[int, int]]) -> list[f
     Args:
         down: (ticks, legs) whether the foot is down.
         first: feet that come down before this tick do not count.
-        cycles: first tick of each cycle, and the tick after its last.
+        cycles: for each cycle its first tick, and the tick after its last.
 
     Returns:
-        The mean over all cycles, on a circle: 0.98 and 0.02 give 0. None for a foot that stays up
-        or stays down.
+        For each foot the mean over all cycles, on a circle: the mean of 0.98 and 0.02 is 0. None
+        for a foot that stays up or stays down.
     """
     found: list[float | None] = []
     for leg in range(down.shape[1]):

@@ -1,4 +1,4 @@
-"""The figures of a walk (docs/studio.md 2)."""
+"""Computes the figures of a walk (docs/studio.md 2)."""
 
 import math
 from dataclasses import dataclass
@@ -11,23 +11,23 @@ from lacoc_server.trial.walk import Floats, Walk
 from lacoc_shared.seat import BEAT_S
 
 _LEAST_M_S = 1e-3
-"""Below this forward speed a slip ratio means nothing [m/s]."""
+"""Below this forward speed there is no slip ratio [m/s]."""
 _LEAST_M = 1e-2
-"""Below this distance a cost of transport means nothing [m]."""
+"""Below this distance there is no cost of transport, straightness or turning per metre [m]."""
 
 
 @dataclass(frozen=True)
 class Figures:
-    """What a trial measured, over whole cycles."""
+    """The figures of a trial, over whole cycles if there are any."""
 
     seconds: float
-    """How long was measured [s]."""
+    """Length of the measurement [s]."""
     cycles: int
-    """Whole cycles that were measured; 0: no cycle was completed."""
+    """Number of cycles that were measured; 0: no cycle was completed."""
     cycle_s: float | None
-    """Period of the gait [s]; None without a cycle."""
+    """Period of the gait [s]; None if no cycle was completed."""
     speed_mm_s: float
-    """Forward speed [mm/s], in the direction that the robot faced at first."""
+    """Forward speed [mm/s], in the direction that the robot faced when the measurement began."""
     lateral_mm_s: float
     """Speed to the left [mm/s]."""
     drift_deg_s: float
@@ -35,11 +35,13 @@ class Figures:
     drift_deg_m: float | None
     """Turning to the left [deg] per metre; None if the robot hardly moved."""
     straightness: float | None
-    """Distance between the path's ends over its length, 0 to 1; None if the robot hardly moved."""
+    """Distance between the ends of the path, divided by the length of the path; from 0 to 1. None
+    if the robot hardly moved."""
     duty: list[float]
     """For each leg, the share of ticks in which its foot is down."""
     phase: list[float | None]
-    """For each leg, when in a cycle its foot comes down, from 0 to 1; None if it never does."""
+    """For each leg, when in a cycle its foot comes down, from 0 to 1; None if it stays up or down.
+    """
     changes_hz: list[float]
     """For each leg, how often its foot comes down or goes up [1/s]."""
     few_feet_share: float
@@ -53,27 +55,25 @@ class Figures:
     slip_mm_s: float
     """Speed of the loaded feet along the floor, weighted by their load [mm/s]."""
     slip_legs_mm_s: list[float]
-    """The same for each leg."""
+    """`slip_mm_s` of each leg."""
     slip_ratio: float | None
-    """Slip speed over forward speed; None if the robot hardly moves."""
+    """Slip speed divided by forward speed; None if the robot hardly moves forward."""
     cost_of_transport: float | None
-    """Work of the motors (without braking) over weight times distance; None: it hardly moved."""
+    """Work of the motors (without braking), divided by weight times distance; None if the robot
+    hardly moved."""
     clearance_mm: float
     """95th percentile of the height of the feet [mm]."""
     clearance_legs_mm: list[float]
-    """The same for each leg."""
+    """`clearance_mm` of each leg."""
     belly_share: float
-    """Share of ticks in which another part than a shank bears weight on the floor."""
+    """Share of ticks in which other parts than shanks bear weight on the floor."""
     upright: float
-    """Smallest cosine of the body's lean from upright: 1 is level, 0 lies on its side."""
+    """Smallest cosine of the angle between the body's up and the world's: 1 is upright, 0 is on the
+    side, -1 is on the back."""
 
 
 def measure(walk: Walk) -> Figures:
-    """Compute the figures of a walk.
-
-    Args:
-        walk: a trial; its `span` is measured.
-    """
+    """Compute the figures of a walk over its `span`."""
     span = walk.span
     part = slice(span.first, span.end)
     seconds = max(span.seconds, BEAT_S)
@@ -133,7 +133,7 @@ def measure(walk: Walk) -> Figures:
 
 
 def _yaw_rad(pose: Floats) -> float:
-    """Return the heading of a body, 0 for its forward along the world's +y; left is positive."""
+    """Return the heading of a body: 0 if it faces the world's +y, positive to the left."""
     w, x, y, z = pose[3:]
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 

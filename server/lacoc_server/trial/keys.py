@@ -1,4 +1,4 @@
-"""The keys of a trial, as a person types them: "2", or "1:3, A4:1.5, 2"."""
+"""Reads the keys of a trial as a person types them: "2", or "1:3, A4:1.5, 2"."""
 
 import math
 import re
@@ -20,8 +20,8 @@ _LONGEST_S = 60.0
 def forward_key(gait: Gait) -> tuple[Level, int]:
     """Return the key to try if the person names none.
 
-    At level B it is `FORWARD`, else the first key whose sequence moves, else the last key. A gait
-    without level B gives its last key of level A.
+    With level B it is `FORWARD` if this key moves the robot, else the first key that does, else the
+    last key. Without level B it is the last key of level A.
     """
     if gait.locomotion is None:
         return Level.POSTURE, gait.keys(Level.POSTURE)[-1]
@@ -36,11 +36,11 @@ def parse_keys(text: str, gait: Gait, first_tick: int) -> list[Press]:
     """Read keys that a person typed.
 
     Args:
-        text: keys in order, separated by commas. Each is a digit. A letter before it names its
-            level ("A4"); each but the last has its time after it ("1:3" is key 1 for 3 s). The
-            last key stays pressed to the end.
-        gait: the gait whose keys they are.
-        first_tick: when the first key is pressed.
+        text: keys in order, separated by commas. Each key is a digit. A letter before the digit
+            names the key's level ("A4"). Each key but the last has its time behind it ("1:3" is
+            key 1 for 3 s). The last key stays pressed to the end.
+        gait: the gait that has the keys.
+        first_tick: tick in which the first key is pressed.
 
     Raises:
         UserError: if the text is not of this form, or the gait has no such key.
@@ -62,7 +62,7 @@ def parse_keys(text: str, gait: Gait, first_tick: int) -> list[Press]:
 
 
 def _seconds(text: str | None) -> float | None:
-    """Read a time [s]: 0 if `text` is None; None if it is not a time, or too long."""
+    """Read a time [s]; no text is 0. None if the text is no time, or the time is too long."""
     try:
         seconds = float(text or 0)
     except ValueError:
@@ -71,7 +71,7 @@ def _seconds(text: str | None) -> float | None:
 
 
 def _level(letter: str, digit: int, gait: Gait) -> Level:
-    """Find the level of a key: the one that its letter names, else B if it has the key, else A."""
+    """Return the level of a key: that of its letter; without a letter B if B has it, else A."""
     wanted = {"": (Level.LOCOMOTION, Level.POSTURE), "A": (Level.POSTURE,)}
     for level in wanted.get(letter.upper(), (Level.LOCOMOTION,)):
         if gait.sequence(level, digit) is not None:

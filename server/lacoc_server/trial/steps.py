@@ -1,4 +1,4 @@
-"""What a sequence of postures does with the feet, from the table alone: no physics."""
+"""Computes from the table alone, without physics, where a sequence of postures puts the feet."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,21 +10,21 @@ from lacoc_shared.gait.tables import Posture
 
 @dataclass(frozen=True)
 class Steps:
-    """What each leg's foot does from posture to posture, in the body frame."""
+    """The places of each leg's foot in the postures of a sequence, in the body frame."""
 
     ahead_m: list[list[float]]
-    """For each leg and posture, how far its foot is forward."""
+    """For each leg and posture, how far forward the foot is."""
     lift_m: list[list[float]]
-    """For each leg and posture, how far its foot is above the lowest foot of that posture."""
+    """For each leg and posture, how high the foot is above the lowest foot of this posture."""
 
     @property
     def highest_m(self) -> list[float]:
-        """For each leg, its highest lift."""
+        """For each leg, its largest lift in all postures."""
         return [max(lift) for lift in self.lift_m]
 
     @property
     def swing_m2(self) -> list[float]:
-        """For each leg, its motion forward weighted by its lift; negative: it swings backward."""
+        """For each leg, its motion forward, weighted by its lift; negative for a swing backward."""
         return [
             sum(
                 (ahead[index] - ahead[index - 1]) * (lift[index] + lift[index - 1]) / 2
@@ -35,14 +35,14 @@ class Steps:
 
     @property
     def phase(self) -> list[float]:
-        """For each leg, the part of the sequence around which it is lifted, from 0 to 1."""
+        """For each leg, when in the sequence it is lifted (the mean, from 0 to 1)."""
         return [
             mean_phase([index / len(lift) for index in range(len(lift))], lift)
             for lift in self.lift_m
         ]
 
     def swings_to(self, leg: int) -> int:
-        """Return the posture to which a leg swings forward: there its foot should be in the air."""
+        """Return the posture to which a leg swings forward most; there it should be lifted."""
         ahead = self.ahead_m[leg]
         return max(range(len(ahead)), key=lambda index: ahead[index] - ahead[index - 1])
 

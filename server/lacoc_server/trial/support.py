@@ -1,4 +1,4 @@
-"""Balance: how far the centre of mass is inside the polygon of the feet that stand."""
+"""Measures balance: how far the centre of mass is inside the polygon of the standing feet."""
 
 import math
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ Point = tuple[float, float]
 
 
 def hull(points: Sequence[Point]) -> list[Point]:
-    """Return the corners of the convex hull, counter-clockwise; two if all points are on a line."""
+    """Return the corners of the convex hull, counter-clockwise; points on one line give two."""
     ordered = sorted(set(points))
     if len(ordered) < 3:
         return ordered
@@ -27,15 +27,15 @@ def hull(points: Sequence[Point]) -> list[Point]:
 
 
 def margin_m(feet: Sequence[Point], centre: Point) -> float | None:
-    """Return the support margin: the distance of a centre of mass from the nearest edge [m].
+    """Return the support margin: the distance of a centre of mass from the polygon's edge [m].
 
     Args:
-        feet: where feet stand [m].
+        feet: places of the standing feet [m].
         centre: centre of mass in the plane of the floor [m].
 
     Returns:
-        Positive inside the polygon, negative outside it. One or two feet have no inside, so
-        the margin is never positive. None without feet.
+        The margin, positive inside the polygon and negative outside. One or two feet enclose no
+        area, so their margin is never positive. None without feet.
     """
     corners = hull(feet)
     if not corners:
@@ -66,7 +66,7 @@ def margins_m(down: Bools, contact_w_m: Floats, centre_w_m: Floats) -> Floats:
 
 
 def _left(start: Point, end: Point, point: Point) -> float:
-    """Return twice the area of a triangle; positive if the point is left of the line."""
+    """Return twice the area of a triangle: positive if the point is left of the line."""
     return (end[0] - start[0]) * (point[1] - start[1]) - (end[1] - start[1]) * (point[0] - start[0])
 
 

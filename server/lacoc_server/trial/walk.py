@@ -1,4 +1,4 @@
-"""What was seen of a trial, tick by tick."""
+"""The measurements of a trial, tick by tick."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -15,7 +15,7 @@ Bools = npt.NDArray[np.bool_]
 
 
 class Press(NamedTuple):
-    """A key, and when it is pressed."""
+    """A key, and the tick in which it is pressed."""
 
     tick: int
     level: Level
@@ -23,7 +23,7 @@ class Press(NamedTuple):
 
 
 class Span(NamedTuple):
-    """Ticks that are measured: from `first` to before `end`."""
+    """The ticks of a measurement: from `first` up to, but without, `end`."""
 
     first: int
     end: int
@@ -43,18 +43,17 @@ class Span(NamedTuple):
 
 @dataclass(frozen=True)
 class Sensed:
-    """What was measured in one tick. All but the means are from the tick's last step."""
+    """The measurements of one tick. Without "mean", a value is that of the tick's last step."""
 
     load_n: Floats
     """(legs,) normal force between each shank and the floor, mean over the steps."""
     other_load_n: float
     """Normal force between all other parts and the floor, mean over the steps."""
     power_w: float
-    """Power that the motors put into the joints, mean over the steps; what they brake does not
-    count."""
+    """Power that the motors put into the joints, mean over the steps; braking does not count."""
     contact_w_m: Floats
-    """(legs, 2) centre of each shank's contact in the plane of the floor, weighted by the force of
-    the steps; 0 without contact."""
+    """(legs, 2) centre of each shank's contact in the plane of the floor, mean over the steps with
+    their forces as weights; 0 without contact."""
     grip_n: Floats
     """(legs,) normal force in the last step."""
     slip_m_s: Floats
@@ -67,7 +66,7 @@ class Sensed:
 
 @dataclass(frozen=True)
 class Walk:
-    """A trial of `ticks` ticks of 20 ms; index k of each array is the state after tick k."""
+    """The measurements of a trial in ticks of 20 ms; index k of an array is after tick k."""
 
     legs: tuple[str, ...]
     """Labels of the legs, in leg order."""
@@ -104,6 +103,6 @@ class Walk:
     tip_m: Floats
     """(ticks, legs) height of each foot's lowest point above the floor."""
     digests: tuple[bytes, ...]
-    """State hash after each tick, as in a match's frames."""
+    """State hash after each tick, as in the frames of a match."""
     fault: Phrase | None = None
     """Why physics stopped before the end; None: it did not."""

@@ -1,7 +1,7 @@
-"""A world of one robot that also measures its contact with the floor, step by step.
+"""A world of one robot that also measures the robot's contact with the floor in each step.
 
-Sensors change no path: `tests/server/test_trial.py` compares the state hashes with those of a world
-without them.
+The sensors do not change how the robot moves: `tests/server/test_trial.py` compares the state
+hashes with those of a world without sensors.
 """
 
 import mujoco
@@ -22,11 +22,11 @@ _FORCE, _POSITION = (
 )
 _NO_FORCE_N = 1e-300
 _NET_FORCE = 3
-"""MuJoCo's reduction of all contacts of a pair to one: their net force, at its centre."""
+"""MuJoCo's mode that reduces all contacts of two bodies to one: their net force, at its centre."""
 
 
 def make_course(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
-    """Make the course for a robot's trials; `steps` as in `SensedWorld`."""
+    """Make the floor for a robot's trials; `steps` as in `SensedWorld`."""
     arena = practice_field()
     world = SensedWorld(arena, Entry(robot, Gait()), steps)
     return Course(world, robot, arena)
@@ -102,7 +102,7 @@ class SensedWorld(World):
         self._feel(spec, mujoco.mjtObj.mjOBJ_XBODY, "body", _FORCE)
 
     def _feel(self, spec: mujoco.MjSpec, kind: mujoco.mjtObj, name: str, fields: int) -> None:
-        """Add a sensor of a body's contact with the floor; XBODY includes the bodies below it."""
+        """Add a sensor of a body's contact with the floor; with XBODY also of its child bodies'."""
         spec.add_sensor(
             name=f"floor:{name}",
             type=mujoco.mjtSensor.mjSENS_CONTACT,

@@ -168,11 +168,11 @@ def load(path: Path) -> Contest:
 
 
 def loads(data: bytes, path: Path) -> Contest:
-    """Read the content of a contest file, which may not be written yet.
+    """Read the bytes of a contest file; the file itself need not exist yet.
 
     Args:
-        data: its bytes.
-        path: the file's path.
+        data: the bytes.
+        path: path of the file, for messages; relative paths in the file start at its folder.
 
     Raises:
         UserError: at the first wrong entry.

@@ -13,7 +13,7 @@ import { chanceOf, sample, walking } from "./design_sample.mjs";
 
 const area = (top, left, bottom = top, right = left) => ({ top, left, bottom, right });
 
-/** A spreadsheet's ways to write a block: what is on the clipboard of each. */
+/** How each spreadsheet program puts a block of cells on the clipboard. */
 const WAYS = {
   "this page": (cells) => [writeBlock(cells)],
   "CR LF at the end of rows": (cells) => [
@@ -70,7 +70,7 @@ function excel(cells) {
 ${rows.join("")}<!--EndFragment--><![if supportMisalignedColumns]><tr height=0 style='display:none'><td width=64 style='width:48pt'></td></tr><![endif]></table></body></html>`;
 }
 
-/** How a spreadsheet shows an angle. */
+/** The forms in which spreadsheets show an angle. */
 const SHOWN = [
   (angle) => String(angle),
   (angle) => String(angle).replace(".", ","),
@@ -90,7 +90,7 @@ const REMARKS = [
   "=A1",
 ];
 
-test("10,000 blocks of every spreadsheet come without loss", () => {
+test("10,000 blocks in the forms of all spreadsheets are read without loss", () => {
   const chance = chanceOf(7);
   const below = (count) => Math.floor(chance() * count);
   const ways = Object.entries(WAYS);
@@ -106,14 +106,15 @@ test("10,000 blocks of every spreadsheet come without loss", () => {
     const pasted = paste(sample, at, readBlock(...way(cells)));
     assert.ok(pasted.table, `${name}: ${JSON.stringify(cells)} ${JSON.stringify(pasted.bad)}`);
     assert.deepEqual(t.cellsOf(pasted.table, pasted.area), angles, name);
-    // Remarks beside the numbers, too, as they are; HTML knows no spaces at the ends.
+    // Remarks between the numbers are also read unchanged. They have no spaces at their ends,
+    // because HTML removes such spaces.
     const mixed = cells.map((row) => row.map((cell) => (below(3) ? cell : REMARKS[below(9)])));
     if (name === "LF between rows") mixed.at(-1)[0] ||= "x";
     assert.deepEqual(readBlock(...way(mixed)), mixed, name);
   }
 });
 
-test("what is on a clipboard is read", () => {
+test("text and HTML of a clipboard are read as cells", () => {
   const cases = [
     ["", "", []],
     ["", "<p>no table</p>", []],
@@ -160,7 +161,7 @@ test("what is on a clipboard is read", () => {
   }
 });
 
-test("one bad cell keeps the whole block out", () => {
+test("if one cell of a block is bad, nothing is pasted", () => {
   const pasted = paste(sample, area(1, 16), [
     ["1", "x"],
     ["200", ""],
@@ -201,7 +202,7 @@ test("one number fills the selection, and empty edges do not count", () => {
   assert.equal(paste(sample, area(1, 6), [["", ""]]).table, sample);
 });
 
-test("numbers between spaces are a row", () => {
+test("numbers with spaces between them are read as cells of a row", () => {
   const pasted = paste(sample, area(1, 0), readBlock("1 2  -3,5\n4 5 6\n"));
   assert.deepEqual(t.cellsOf(pasted.table, pasted.area), [
     [1, 2, -3.5],
@@ -209,7 +210,7 @@ test("numbers between spaces are a row", () => {
   ]);
 });
 
-test("rows with the names of their keys go to these keys", () => {
+test("rows that begin with the name of a key are pasted into this key", () => {
   const angles = Array.from({ length: 18 }, (_, id) => String(id));
   const legend = ["ID of Joint", ...angles];
   const block = [["9 Key", ...angles], ["２ key", ...angles], legend];
@@ -226,7 +227,7 @@ test("rows with the names of their keys go to these keys", () => {
   );
 });
 
-test("a key that comes twice is no row for a key", () => {
+test("if a key comes twice, its name is pasted as a bad cell", () => {
   const angles = Array(18).fill("1");
   const pasted = paste(sample, area(1, 0), [
     ["1 Key", ...angles],
@@ -235,7 +236,7 @@ test("a key that comes twice is no row for a key", () => {
   assert.deepEqual([pasted.bad[0].text, pasted.bad[0].why], ["1 Key", "number"]);
 });
 
-test("a whole file is told from a block", () => {
+test("a whole gait file is distinguished from a block of cells", () => {
   const whole = [
     "Num of Posture\t9\r\n0 Key\t45\t0\r\n",
     "num of postures\t2\n0 Key\t1",
@@ -249,7 +250,7 @@ test("a whole file is told from a block", () => {
   assert.ok(!isWholeSheet(readBlock(writeBlock(walking.rows.map(({ cells }) => cells)))));
 });
 
-test("of a paste that is much too large a thousand cells are told", () => {
+test("a paste that is much too large lists a thousand bad cells", () => {
   for (const piece of ["1\n", "x\t", "1 2\n", "\n"]) {
     const pasted = paste(sample, area(0, 0), readBlock(piece.repeat(20_000)));
     if (piece === "\n") assert.equal(pasted.table, sample);
@@ -257,7 +258,7 @@ test("of a paste that is much too large a thousand cells are told", () => {
   }
 });
 
-test("megabytes are read, also where quotes and tags never end", () => {
+test("megabytes are read quickly, also if quotes and tags never end", () => {
   const count = 100_000;
   const cases = { '"a\t': count + 1, '""\t': count + 1, "1\t": count + 1, '"': 1, "\r\n": 1 };
   for (const [piece, width] of Object.entries(cases)) {

@@ -35,7 +35,7 @@ function editOf(chance) {
 }
 
 for (const [name, first] of Object.entries({ postures: sample, locomotion: walking })) {
-  test(`1,000 random steps are undone and done again: ${name}`, () => {
+  test(`1,000 random steps can be undone and redone: ${name}`, () => {
     const chance = chanceOf(11);
     const history = new History(first);
     const seen = () => JSON.stringify([history.table.value, history.version.value]);
@@ -71,7 +71,7 @@ for (const [name, first] of Object.entries({ postures: sample, locomotion: walki
 
 const turn = (by) => (table) => t.nudge(table, t.areaOf({ row: 1, col: 0 }), by);
 
-test("the same content has the same version, however it came about", () => {
+test("equal contents have the same version, whichever steps led to them", () => {
   const history = new History(sample);
   const first = history.version.value;
   history.apply("up", turn(5));
@@ -84,7 +84,7 @@ test("the same content has the same version, however it came about", () => {
   assert.equal(history.canRedo.value, false);
 });
 
-test("an edit that changes nothing is no step and forgets no steps", () => {
+test("an edit that changes nothing is no step, and redo still works", () => {
   const history = new History(sample);
   history.apply("up", turn(5));
   history.undo();
@@ -112,7 +112,7 @@ test("a drag that ends where it began is no step", () => {
   assert.equal(history.table.value, sample);
 });
 
-test("another robot's columns apply to all steps, and are no step", () => {
+test("a change of the robot changes the columns of all steps, and is no step", () => {
   const history = new History(sample);
   history.apply("up", turn(5));
   const version = history.version.value;
@@ -129,7 +129,7 @@ test("another robot's columns apply to all steps, and are no step", () => {
   assert.deepEqual(history.table.value.legs, COLUMNS.legs);
 });
 
-test("another file begins its own steps", () => {
+test("another file begins without steps to undo", () => {
   const history = new History(sample);
   history.apply("up", turn(5));
   const version = history.version.value;

@@ -10,7 +10,7 @@ import { COLUMNS, SEQUENCES, sample, walking } from "./design_sample.mjs";
 const names = (table) => table.rows.map(({ key, posture }) => `${key}.${posture}`).join(" ");
 const one = (row, col) => t.areaOf({ row, col });
 
-test("what is typed is an angle, or is kept with the reason", () => {
+test("a typed text becomes an angle, or stays a text with a reason", () => {
   const typed = {
     45: 45,
     "-22.5": -22.5,
@@ -44,7 +44,7 @@ test("what is typed is an angle, or is kept with the reason", () => {
   }
 });
 
-test("a cell that is no angle stays in the table and keeps it from the wire", () => {
+test("a table with a cell without an angle can't be sent", () => {
   const table = t.setCell(t.setCell(sample, 2, 3, "99 bottles"), 4, 0, "200");
   assert.deepEqual(t.badCells(table), [
     { row: 2, col: 3, why: "number" },
@@ -56,13 +56,13 @@ test("a cell that is no angle stays in the table and keeps it from the wire", ()
   assert.equal(t.refit(table, { legs: ["a", "b", "c", "d"], ranges: [] }), null);
 });
 
-test("a table comes back from the wire as it was", () => {
+test("a table that is written for the wire and read again is the same", () => {
   for (const table of [sample, walking]) {
     assert.deepEqual(t.fromWire(structuredClone(t.toWire(table)), COLUMNS), table);
   }
 });
 
-test("a table for other legs than the robot's can be shown", () => {
+test("a table with another number of legs than the robot can be shown", () => {
   const wire = {
     kind: "postures",
     legs: 4,
@@ -72,7 +72,7 @@ test("a table for other legs than the robot's can be shown", () => {
   assert.deepEqual([table.legs.length, table.ranges.length, t.badCells(table)], [4, 12, []]);
 });
 
-test("angles turn to the ends of their ranges at most", () => {
+test("nudged angles stay within their ranges", () => {
   const all = t.areaOf({ row: 1, col: 0 }, { row: 2, col: 17 });
   const turned = t.nudge(t.setCell(sample, 1, 0, "x"), all, 120);
   assert.deepEqual(turned.rows[1].cells.slice(0, 3), ["x", 120, 75]);
@@ -85,13 +85,13 @@ test("angles turn to the ends of their ranges at most", () => {
   assert.equal(tenths.rows[0].cells[1], 0.3);
 });
 
-test("an edit without a change gives the same table", () => {
+test("an edit that changes nothing returns the same table object", () => {
   assert.equal(t.setCell(sample, 0, 0, "45"), sample);
   assert.equal(t.nudge(sample, one(0, 0), 0), sample);
   assert.deepEqual(t.nudge(t.nudge(sample, one(0, 0), 5), one(0, 0), -5), sample);
 });
 
-test("rows of postures come and go by their keys", () => {
+test("rows of postures are added with the lowest free key, and removed", () => {
   const without = rows.removeRow(sample, 3);
   assert.equal(names(without), "0.0 1.0 2.0 4.0 5.0 6.0 7.0 8.0");
   const again = rows.addRow(without, 1);
@@ -152,7 +152,7 @@ test("linked halves follow each other in both directions", () => {
     assert.deepEqual(tools.halvesOf(sequence), []);
 });
 
-test("a leg takes the angles of another one", () => {
+test("a leg gets the angles of another leg", () => {
   const copied = tools.copyLeg(sample, [1, 3], 0, 5);
   for (const row of [1, 3]) {
     const { cells } = copied.rows[row];

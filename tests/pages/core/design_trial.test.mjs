@@ -27,7 +27,7 @@ const robots = Object.entries(decode(new Uint8Array(written))).map(([name, repli
   };
 });
 
-/** For each leg its root hinge, its other hinges and its tip [m, world]. */
+/** For each leg, the places of its three hinges and its tip [m, world]. */
 function chains(scene, fk, legs) {
   return Array.from({ length: legs }, (_, leg) => {
     const bodies = parts.jointsOfLeg(leg, legs).map((id) => parts.bodyOf(scene, id));
@@ -72,7 +72,7 @@ each("runs of postures fill the trial, and a cycle begins a run", ({ reply, tria
   for (const start of reply.starts) assert.ok(runs.some(({ from }) => from === start));
 });
 
-/** The support margin of a polygon, from its edges. */
+/** The support margin, computed from the edges of the polygon. */
 function marginOf(corners, [x, y]) {
   const edges = corners.map((from, index) => [from, corners[(index + 1) % corners.length]]);
   const aparts = edges.map(([[ax, ay], [bx, by]]) => {
@@ -108,7 +108,7 @@ each("the path is as long as the speed says", ({ reply, trial }) => {
   assert.equal(figure("duty"), null);
 });
 
-test("arrays may lie at any byte, and must be as long as the ticks", () => {
+test("arrays may begin at any byte, and their lengths must fit the ticks", () => {
   const { reply, trial, legs } = robots[0];
   for (const offset of [1, 2, 3]) {
     const moved = new Uint8Array(reply.poses.length + offset);
@@ -120,7 +120,7 @@ test("arrays may lie at any byte, and must be as long as the ticks", () => {
   assert.throws(() => t.readTrial(reply, legs - 1), RangeError);
 });
 
-test("hulls", () => {
+test("a convex hull has the right corners", () => {
   const square = [
     [0, 0],
     [1, 0],
@@ -166,7 +166,7 @@ each("a robot at rest is level and touches the floor", ({ robot, trial }) => {
     const tips = chains(robot.scene, fk, trial.legs).flat();
     assert.ok(Math.min(...tips.map(([, , z]) => z)) > -1e-6);
   }
-  // As it stands in physics before a key is pressed, but for what its servos yield.
+  // Compare with the robot that stands in physics before a key is pressed; its servos yield a bit.
   const width = trial.poses.length / trial.ticks;
   const standing = trial.poses.subarray(24 * width, 25 * width);
   const stood = rest.poses(
@@ -214,7 +214,7 @@ each("a view shows a trial at a tick, and a posture", ({ robot, trial }) => {
   assert.ok(Math.abs(posesOf(second.before)[8] - (10 * Math.PI) / 180) < 1e-6);
 });
 
-test("one view goes from a posture to a trial, and to another robot", () => {
+test("one source shows a posture, then a trial, then another robot", () => {
   const [one, other] = robots;
   const [robot, shown] = [signal(null), signal(null)];
   const view = source(robot, shown);
@@ -248,7 +248,7 @@ each("each joint has its link, and turns what hangs on it", ({ robot, legs }) =>
       const first = chain.findIndex((part, index) => Math.abs(part - after[leg][index]) > 1e-9);
       return first < 0 ? [] : [[leg, Math.floor(first / 3)]];
     });
-    // The hinge itself stays; the next one, or the tip, is the first that moves.
+    // The joint's own hinge stays in its place; the next hinge, or the tip, moves first.
     assert.deepEqual(moved, [[id % legs, Math.floor(id / legs) + 1]]);
   }
   assert.equal(parts.bodyOf(scene, start_deg.length), -1);
@@ -259,7 +259,10 @@ each("each joint has its link, and turns what hangs on it", ({ robot, legs }) =>
 const minus = (one, other) => one.map((part, axis) => part - other[axis]);
 const dot = (one, other) => one.reduce((sum, part, axis) => sum + part * other[axis], 0);
 
-/** How near a ray comes to a part of the line from one point to another; Infinity: behind the eye. */
+/**
+ * The distance between a ray and a part of the line from one point to another; Infinity if this part
+ * is behind the eye.
+ */
 function apartOf(eye, ray, [from, to], first, last) {
   const aparts = Array.from({ length: 41 }, (_, index) => {
     const share = first + (index / 40) * (last - first);
@@ -287,7 +290,8 @@ each("a ray finds the link that it hits", ({ robot, legs }) => {
     const eye = random(1).map((part) => part + Math.sign(part) * 0.3);
     const ray = minus(random(0.15), eye);
     const id = parts.pickJoint(scene, fk, eye, ray, 0);
-    // A link has round ends, and a root link hardly more than these: the others, in their middle.
+    // Root links are so short that they are hardly more than their round ends. So only the middle
+    // parts of the other links must have been missed.
     if (id === null) {
       for (const other of start_deg.keys()) {
         const isMissed = apartOf(eye, ray, linkOf(other), 0.25, 0.75) > 0.9 * radiusM;
@@ -299,7 +303,7 @@ each("a ray finds the link that it hits", ({ robot, legs }) => {
     }
   }
   assert.equal(found.size, start_deg.length);
-  // From outside, a leg hides the one on the other side.
+  // Seen from outside, a leg hides the leg on the other side.
   for (const [leg, [, from, to]] of links.entries()) {
     const eye = [20 * to[0], 20 * to[1], to[2]];
     const middle = from.map((part, axis) => (part + to[axis]) / 2);
@@ -312,7 +316,7 @@ each("a ray finds the link that it hits", ({ robot, legs }) => {
   assert.equal(parts.pickJoint(scene, fk, beside, [0, 0, -1], 0.03), 2 * legs);
 });
 
-test("guesses are judged by what the trials showed", () => {
+test("guesses are compared with the figures of the trials", () => {
   const run = (speed_mm_s, drift_deg_s = 0) => ({ speed_mm_s, drift_deg_s });
   const paces = [
     [60, 70, "faster"],

@@ -1,1 +1,1 @@
-"""The six phases on the page: `diary` keeps what a student does, `learner` sees it happen."""
+"""The six phases on the page: `learner` makes evidence of what a student does, `diary` keeps it."""

@@ -1,4 +1,4 @@
-"""What one student has done, kept while it happens."""
+"""Keeps the evidence of what one student does, and the student's newest table."""
 
 import asyncio
 import time
@@ -27,27 +27,27 @@ class PhaseState(msgspec.Struct, frozen=True, kw_only=True):
     """From 1 to 6."""
     state: State
     share: float
-    """How much of the task is done, from 0 to 1."""
+    """Part of the task that is done, from 0 to 1."""
     title: Phrase
     task: Phrase
     question: Phrase
     hint: Phrase
     explanation: Phrase
     missing: tuple[Phrase, ...]
-    """What is still missing, the most useful first."""
+    """Sentences that say what is still missing, the most useful first."""
 
 
 class Phases(msgspec.Struct, frozen=True, kw_only=True):
-    """How far a student is."""
+    """How far a student is in the six phases."""
 
     phase: int
-    """Number of the phase that the student is at."""
+    """Number of the phase that the student is at, from 1 to 6."""
     word: str
-    """The word that the robot shall walk like; "": none yet."""
+    """The word that the student chose for how the robot should walk; "": none yet."""
     hand_up: bool
-    """Whether the student asks for help."""
+    """Whether the student asks for help now."""
     trouble: Phrase | None
-    """Why progress is not kept, or what happened to its file; None: all is well."""
+    """Why progress is not kept, or that its file was damaged; None: all is well."""
     phases: tuple[PhaseState, ...]
     rules: Rules
 
@@ -55,11 +55,12 @@ class Phases(msgspec.Struct, frozen=True, kw_only=True):
 class Diary:
     """The evidence and the draft of one student; used from the event loop only.
 
-    Where they can't be written, they last as long as the program, and `Keeper.trouble` says why.
+    If the file can't be opened, both are kept in memory until the program ends, and
+    `Keeper.trouble` says why.
 
     Args:
-        keeper: the file.
-        student: name of the student; "": whoever designs alone.
+        keeper: keeps the file open.
+        student: name of the student; "": a student who designs alone.
     """
 
     def __init__(self, keeper: Keeper, student: str = "") -> None:
@@ -73,12 +74,12 @@ class Diary:
         """The newest table; None: there is none."""
 
     async def read(self) -> None:
-        """Read what was kept before, if there is a file."""
+        """Read the evidence and the draft that earlier runs kept, if there is a file."""
         if await asyncio.to_thread(self._keeper.path.exists):
             await self._opened()
 
     async def add(self, *evidence: Evidence) -> None:
-        """Keep evidence; it is on the disk when this returns, unless there is trouble."""
+        """Keep evidence; when this returns, it is on the disk, or `Phases.trouble` says why not."""
         if not evidence:
             return
         self._take(evidence)
@@ -89,7 +90,7 @@ class Diary:
             await _kept(asyncio.gather(*done))
 
     async def vote(self, poll: str, choice: str) -> None:
-        """Keep a vote; for a poll in which the student has voted before, nothing is kept."""
+        """Keep a vote, unless the student has voted in this poll before."""
         if Voted(poll=poll) in self._evidence:
             return
         self._take([Voted(poll=poll)])
@@ -103,7 +104,7 @@ class Diary:
 
         Args:
             draft: the table.
-            version: name of its content.
+            version: name of the table's content.
         """
         self.draft = draft
         store = await self._opened()
@@ -112,27 +113,27 @@ class Diary:
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
-        """All that the student did, in order."""
+        """All evidence of the student, in order."""
         return tuple(self._evidence)
 
     @property
     def progress(self) -> Progress:
-        """How far the student is."""
+        """How far the student is in the six phases."""
         if self._progress is None or self._progress.seen != len(self._evidence):
             self._progress = progress(self._evidence, self._progress)
         return self._progress
 
     @property
     def word(self) -> str:
-        """The word that the robot shall walk like; "": none yet."""
+        """The word that the student chose for how the robot should walk; "": none yet."""
         words = (one.word for one in reversed(self._evidence) if isinstance(one, Named))
         return next(words, "")
 
     def phases(self, rules: Rules) -> Phases:
-        """Say how far the student is, for a page.
+        """Describe for a page how far the student is.
 
         Args:
-            rules: what the teacher allows.
+            rules: the teacher's choices for the class.
         """
         now = self.progress
         return Phases(
@@ -158,7 +159,7 @@ class Diary:
         )
 
     async def _opened(self) -> ClassStore | None:
-        """Return the file, after what it has of this student was read."""
+        """Open the file, read what it has of this student, and return it; None if this fails."""
         store = await self._keeper.opened()
         async with self._reading:
             if store is not None and not self._is_read:
@@ -166,7 +167,7 @@ class Diary:
                 try:
                     kept = await asyncio.wrap_future(store.evidence(self._student))
                 except UserError:
-                    return store  # `trouble` has the reason
+                    return store  # `Keeper.trouble` says why
                 self._evidence[:0] = [one.evidence for one in kept]
                 self._progress = None
                 if self.draft is None:
@@ -186,4 +187,4 @@ async def _kept(work: Awaitable[_T]) -> None:
     try:
         await work
     except UserError:
-        return  # `trouble` has the reason
+        return  # `Keeper.trouble` says why

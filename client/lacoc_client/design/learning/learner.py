@@ -33,11 +33,11 @@ from lacoc_shared.studio import TrialReply
 
 
 class Judged(msgspec.Struct, frozen=True, kw_only=True):
-    """What came of a guess where a foot goes."""
+    """Whether a guess of where a foot goes was right."""
 
     said: str
     was: tuple[str, ...]
-    """All right answers, the strongest first."""
+    """All right answers, that of the foot's largest motion first."""
     right: bool
 
 
@@ -45,23 +45,23 @@ class EditReply(msgspec.Struct, frozen=True, kw_only=True):
     """The answer to an edit."""
 
     guess: Judged | None = None
-    """None: no guess, or the edit moved no foot that can be judged."""
+    """None: the student guessed nothing, or the guess can't be judged."""
 
 
 class CheckReply(msgspec.Struct, frozen=True, kw_only=True):
     """The answer to a check."""
 
     keys: int
-    """Number of keys of level B that do different things."""
+    """Number of keys of level B; keys that share one sequence of postures count once."""
     mistakes: tuple[Mistake, ...] = ()
 
 
 class Learner:
-    """What one page does; used from the event loop only.
+    """Makes evidence of what one page does; used from the event loop only.
 
     Args:
-        student: whose page it is.
-        sample: lets the sample gait walk as a trial did; None: the robot has none.
+        student: the student whose page it is.
+        sample: repeats a trial with the sample gait; returns None if the robot has no sample.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class Learner:
         self._samples: dict[tuple[str, SentFile | None], TrialFacts | None] = {}
 
     async def edited(self, asked: requests.EditAsk) -> EditReply:
-        """Take in the table after an edit, and judge the guess that was made before it.
+        """Take in the table after an edit, and judge the guess that the student made before it.
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
@@ -112,7 +112,7 @@ class Learner:
         return EditReply(guess=judged)
 
     async def tried(self, asked: requests.TrialAsk, reply: TrialReply) -> None:
-        """Take in a trial, and judge what was foretold."""
+        """Take in a trial, and judge the guesses that were made before it."""
         facts = _facts(reply, asked.keys)
         if asked.table is None or facts is None:
             return
@@ -129,10 +129,10 @@ class Learner:
         await self._diary.add(*evidence)
 
     async def compared(self, asked: requests.TrialAsk) -> bool:
-        """Compare the last trial of a key of level B with the same one of the sample.
+        """Compare the last trial of a key of level B with the same trial of the sample gait.
 
         Returns:
-            Whether that is evidence.
+            Whether the comparison was kept as evidence.
         """
         own = self._last.get(asked.keys)
         if asked.table is None or own is None or not own.keys[-1].startswith("B"):
@@ -142,7 +142,7 @@ class Learner:
             try:
                 reply = await self._sample(asked)
             except (UserError, FileRefused):
-                return False  # perhaps the next time
+                return False  # the sample can't be tried now; the next trial asks again
             self._samples[place] = None if reply is None else _facts(reply, asked.keys)
         sample = self._samples[place]
         differs = differences(own, sample) if sample is not None else ()
@@ -152,10 +152,10 @@ class Learner:
         return bool(differs)
 
     async def checked(self, asked: requests.CheckAsk) -> CheckReply:
-        """Check a table for its robot, as `lacoc gait check` does.
+        """Check a table against its robot's joints, as `lacoc gait check` does.
 
         Raises:
-            FileRefused: with every mistake of the robot.
+            FileRefused: with every mistake of the robot file; those of the table are returned.
         """
         spec = await asyncio.to_thread(_robot, asked.robot)
         table = asked.table
@@ -176,7 +176,7 @@ class Learner:
 
 
 def _version(table: FileTable, sequences: object) -> str:
-    """Name the content of a table.
+    """Return a name for the content of a table and its sequences: equal contents, equal names.
 
     Raises:
         FileRefused: with every mistake of the table.
@@ -196,7 +196,7 @@ def _robot(robot: SentFile | None) -> RobotSpec:
 
 
 def _foot_ways(edit: Edited, before: Rows, spec: RobotSpec) -> tuple[str, ...]:
-    """Say where the foot went that an edit moved; of several the first counts."""
+    """Return where an edit moved the foot of the first leg that it changed; () if unknown."""
     leg = edit.legs[0]
     old = before.get((leg.key, leg.posture))
     if old is None or len(old) != 3 * len(spec.legs):

@@ -10,7 +10,7 @@ _HELPS: tuple[Help, ...] = ("none", "matters", "cell", "three", "table")
 
 
 class Rules(msgspec.Struct, frozen=True, kw_only=True):
-    """What is allowed; whoever designs alone may do everything."""
+    """Rules for students. Whoever designs alone may do everything (`FREE`)."""
 
     closed: tuple[Annotated[int, msgspec.Meta(ge=1, le=6)], ...] = ()
     """Numbers of the phases to which nobody can go."""
@@ -19,7 +19,11 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True):
     """Whether students read the explanation of a phase before its task."""
 
     def allows(self, size: str | None) -> bool:
-        """Return whether the coach may search for a change of a size; None: it only weighs."""
+        """Return whether the coach may search for a change of this size.
+
+        Args:
+            size: cell, three or table; None: the coach only says which numbers matter.
+        """
         return (size or "matters") in _HELPS[1 : _HELPS.index(self.coach) + 1]
 
 

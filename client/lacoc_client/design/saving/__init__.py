@@ -1,1 +1,1 @@
-"""Saving into files that a person works with, so that nothing of theirs is lost."""
+"""Saves tables into a student's own files, and loses nothing else that is in them."""

@@ -1,4 +1,4 @@
-"""Replace a file as a whole: after a failure, or a power cut, the old file is still there."""
+"""Replaces a file as a whole: after a failure or a power cut, the old or the new file is there."""
 
 import errno
 import os
@@ -12,15 +12,17 @@ from lacoc_shared.words import say
 
 
 def replace_file(path: Path, data: bytes) -> None:
-    """Write a file, or replace it; if it is a link, replace what it points to.
+    """Write a file, or replace it; if it is a link, replace the file that it points to.
 
     Raises:
-        UserError: if it can't be written; the old file is as it was.
+        UserError: if the file can't be written; then the old file is as it was.
     """
     target = path.resolve()
     written = target.with_name(f".lacoc-{secrets.token_hex(8)}.tmp")
     try:
-        if target.exists() and not os.access(target, os.W_OK):  # a rename would not care
+        if target.exists() and not os.access(
+            target, os.W_OK
+        ):  # `os.replace` would replace a read-only file
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         with written.open("xb") as file:
             file.write(data)
@@ -38,7 +40,7 @@ def replace_file(path: Path, data: bytes) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Write the folder's list of files to the disk too, where the system can do that."""
+    """Force the folder's list of files to the disk, on systems that can do that."""
     if os.name != "posix":
         return
     with suppress(OSError):

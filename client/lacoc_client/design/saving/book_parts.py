@@ -18,13 +18,13 @@ _BEFORE_CALCULATION = re.compile(
 
 
 class BookParts:
-    """The parts of a workbook, which an earlier check has found harmless.
+    """The parts of a workbook.
 
     Args:
-        data: the .xlsx file.
+        data: the .xlsx file; the reader of gait files has checked it and found it harmless.
 
     Raises:
-        Exception: any, if the workbook is broken.
+        Exception: of any kind, if the workbook is broken.
     """
 
     def __init__(self, data: bytes) -> None:
@@ -40,7 +40,7 @@ class BookParts:
         return self._parts[name]
 
     def defined_names(self) -> dict[str, str]:
-        """Return the workbook's names and what they stand for."""
+        """Return the names that the workbook defines: name -> the formula that it stands for."""
         book = ElementTree.fromstring(self._parts[self._book])
         found = (one for one in book.iter() if one.tag.endswith("}definedName"))
         return {one.get("name", ""): one.text or "" for one in found}
@@ -50,9 +50,9 @@ class BookParts:
 
         Args:
             changed: name of each changed part -> its content.
-            formulas: whether programs must calculate all formulas when they open it.
-            chain: whether the order of calculation, which programs find anew, must go, because
-                cells with formulas have changed places.
+            formulas: whether programs must calculate all formulas when they open the workbook.
+            chain: whether to remove the stored list of cells with formulas (calcChain), because a
+                formula has become a number. Programs make this list again.
         """
         parts = {**self._parts, **changed}
         if formulas:
@@ -89,7 +89,7 @@ class BookParts:
         return [target for _, target in self._relations(part, kind)]
 
     def _relations(self, part: str, kind: str) -> list[tuple[str, str]]:
-        """Return the id and the part of each relation of a part; the part "" is the file itself."""
+        """Return id and target part of a part's relations of one kind; part "": the whole file."""
         name = _relations_name(part)
         if name not in self._parts:
             return []
@@ -112,7 +112,7 @@ def _joined(part: str, target: str) -> str:
 
 
 def _calculated(book: str) -> str:
-    """Return a workbook's XML that asks programs to calculate all formulas when they open it."""
+    """Change a workbook's XML so that programs calculate all formulas when they open it."""
     found = _CALCULATION.search(book)
     full = ' fullCalcOnLoad="1"'
     if found is not None:
@@ -130,6 +130,6 @@ def _calculated(book: str) -> str:
 
 
 def _without(xml: bytes, element: bytes, ending: bytes) -> bytes:
-    """Return XML without the empty elements that have an attribute with this ending."""
+    """Return XML without the elements of this name that have an attribute with this ending."""
     pattern = rb"<(?:\w+:)?" + element + rb"\b[^>]*" + re.escape(ending) + rb"\"[^>]*/>"
     return re.sub(pattern, b"", xml)

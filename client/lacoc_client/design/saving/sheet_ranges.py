@@ -1,4 +1,4 @@
-"""The ranges of a worksheet: input help, colours by rule, merged headings, its size."""
+"""Ranges of cells in a worksheet: input checks, colour rules, merged headings, the used area."""
 
 import re
 
@@ -14,10 +14,10 @@ _SIZE = re.compile(r'(<(?:\w+:)?dimension\b[^>]*\sref=")([^"]*)"')
 
 
 def with_ranges(xml: bytes, layout: Layout) -> bytes:
-    """Return a sheet's XML whose ranges fit the changed table.
+    """Return a sheet's XML with ranges that fit the changed table.
 
-    Input help and colours by rule reach to the new last row; merged headings move with the
-    legend.
+    Input checks and colour rules of the table reach to its new last row. Merged headings move down
+    with the legend.
     """
     text = xml.decode()
     last = max((row for row, _ in layout.wanted if layout.wanted[row, 2] is not None), default=0)
@@ -37,7 +37,7 @@ def with_ranges(xml: bytes, layout: Layout) -> bytes:
 
 
 def _longer(one: str, layout: Layout, last: int) -> str:
-    """Let a range that ends with the table's last row reach to another row."""
+    """Return a range; if it ends at the table's old last row, it ends at `last` instead."""
     left, top, right, bottom = range_boundaries(one)
     if bottom != layout.bottom or top >= bottom or right > layout.columns:
         return one
@@ -45,7 +45,7 @@ def _longer(one: str, layout: Layout, last: int) -> str:
 
 
 def _moved(reference: str, layout: Layout) -> str:
-    """Move a range that lies in the legend."""
+    """Return a range; if it lies in the legend, it moves down with the legend."""
     left, top, right, bottom = range_boundaries(reference)
     first, stop = layout.legend
     if not (first <= top and bottom < stop and right <= layout.columns):

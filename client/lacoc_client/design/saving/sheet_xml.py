@@ -1,8 +1,8 @@
-"""The XML of a worksheet, changed in place: all bytes that are not about a changed cell stay.
+"""Changes cells in the XML of a worksheet; all bytes outside the changed rows stay as they are.
 
 A library that reads a workbook and writes it again loses what it does not know: pictures, charts,
-themes, what newer programs have added. So the places of rows and cells are found with a parser,
-and only these places are written anew.
+and what newer programs have added. So a parser finds where rows and cells stand in the XML, and
+only the rows with changed cells are written anew.
 """
 
 import re
@@ -26,12 +26,12 @@ _NO_UTF_8 = re.compile(
 
 
 class NotEditable(Exception):
-    """The sheet is written in a way in which it can't be changed in place."""
+    """The sheet can't be changed in place without losing something."""
 
 
 @dataclass
 class Formula:
-    """A formula of a cell."""
+    """A formula of a cell; `start` and `end` are byte offsets of its element."""
 
     attributes: Mapping[str, str]
     start: int
@@ -41,7 +41,7 @@ class Formula:
 
 @dataclass
 class Cell:
-    """A cell of the XML; places are byte offsets."""
+    """A cell in the XML; `start`, `inner_start`, `inner_end` and `end` are byte offsets."""
 
     place: Place
     attributes: Mapping[str, str]
@@ -51,7 +51,7 @@ class Cell:
     end: int = 0
     formula: Formula | None = None
     value: str = ""
-    """Text of its stored value: a number, a text, or the number of a shared text."""
+    """Its stored value, as text: a number, a text, or the index of a shared text."""
 
 
 @dataclass
@@ -64,24 +64,24 @@ class _Line:
 
 
 class Content(NamedTuple):
-    """What a cell is to have."""
+    """The new content of a cell."""
 
     inner: str = ""
-    """XML between the cell's tags; the prefix of the namespace is `Sheet.prefix`."""
+    """XML between the cell's tags; its elements have the prefix `SheetXml.prefix`."""
     kind: str = ""
-    """Its type (`t`); "": a number."""
+    """Type of the cell, its attribute `t`; "": a number."""
     style: str | None = None
-    """Number of its style; None: that of the cell that is there."""
+    """Index of the cell's style, "": none; None: the cell keeps the style that it has."""
 
 
 class SheetXml:
     """A worksheet's XML.
 
     Args:
-        data: the file, which a harmlessness check has passed: it defines no entities.
+        data: the file; an earlier check has made sure that it defines no XML entities.
 
     Raises:
-        NotEditable: if it can't be changed in place.
+        NotEditable: if the file can't be changed in place.
     """
 
     def __init__(self, data: bytes) -> None:
@@ -91,7 +91,7 @@ class SheetXml:
         self._lines: dict[int, _Line] = {}
         self._data_end = -1
         self.prefix = ""
-        """Prefix of the namespace in the names of elements, with its colon."""
+        """Prefix of the elements' names with its colon, such as "x:"; often ""."""
         try:
             _Indexer(self, data)
         except expat.ExpatError as error:
@@ -122,7 +122,7 @@ class SheetXml:
         return Content(inner, cell.attributes.get("t", ""), cell.attributes.get("s", ""))
 
     def edited(self, contents: Mapping[Place, Content]) -> bytes:
-        """Return the file with new contents of cells; rows and cells that are missing are added."""
+        """Return the file with new contents of cells; missing rows and cells are added."""
         pieces: list[tuple[int, int, bytes]] = []
         rows: dict[int, dict[int, Content]] = {}
         for (row, column), content in contents.items():
@@ -179,7 +179,7 @@ class SheetXml:
         )
 
     def _named(self, cell: Cell) -> str:
-        """Return a cell as it is, but with its name: a cell after others may have none."""
+        """Return a cell's XML with its address, such as B2, which some programs leave out."""
         raw = self.raw(cell.start, cell.end)
         if "r" in cell.attributes:
             return raw
@@ -200,7 +200,7 @@ class _Indexer:
         self._row = 0
         self._column = 0
         self._alone: list[int | None] = []
-        """For each open element the end of its tag, if it has no end tag."""
+        """For each open element: the end of its tag if it is of the form <a/>, else None."""
         self._parser = parser = expat.ParserCreate()
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
@@ -237,7 +237,7 @@ class _Indexer:
             self._in_value = True
 
     def _end(self, name: str) -> None:
-        # For <a/> the parser is behind the tag already.
+        # For <a/> the parser's position is already behind the tag.
         alone = self._alone.pop()
         start = self._parser.CurrentByteIndex if alone is None else alone
         end = self._tag_end() if alone is None else alone

@@ -1,4 +1,4 @@
-"""Saves postures into a text file that a person works with: legend, remarks and encoding stay."""
+"""Saves postures into a student's text file; its legend, remarks and encoding stay."""
 
 from lacoc_shared.gait.cells import angle_of, leg_labels, narrow, number_of
 from lacoc_shared.gait.legend import KEY
@@ -8,15 +8,15 @@ from lacoc_shared.mistakes import FileRefused
 
 
 def edit_text(data: bytes, name: str, table: PostureTable) -> bytes:
-    """Return a Loco-data text with other postures.
+    """Return the bytes of a Loco-data text file with other postures.
 
-    Lines of postures that do not change, and what stands below the postures, stay as they are. A
-    file for another robot, or with mistakes, is written anew.
+    Lines of unchanged postures, and all lines below the postures, stay as they are. A file with
+    another number of legs, or with mistakes, is written anew as a whole.
 
     Args:
         data: the file as it is now.
-        name: its name, for messages.
-        table: the postures that it is to have.
+        name: name of the file, for messages.
+        table: the new postures.
     """
     fresh = write_gait(table, leg_labels(table.joints // JOINTS_PER_LEG))
     try:

@@ -1,8 +1,8 @@
-"""Saves postures into a workbook that a person works with: only the table's own cells change.
+"""Saves postures into a student's workbook; only the cells of the table change.
 
 Other sheets, colours, widths, pictures, and formulas beside the table stay. Formulas in the table
-become the numbers that the page shows. Values that other formulas have stored are removed where
-they may be old, so that every program calculates them anew.
+become the numbers that the page shows. A formula that may depend on the table loses its stored
+result, so that every program calculates it again.
 """
 
 import re
@@ -33,19 +33,19 @@ def edit_workbook(data: bytes, name: str, table: PostureTable) -> bytes:
 
     Args:
         data: the .xlsx file as it is now.
-        name: its name, for messages.
-        table: the postures that it is to have.
+        name: name of the file, for messages.
+        table: the new postures.
 
     Raises:
         FileRefused: if the file is no workbook with postures.
-        UserError: if it can't have these postures without losing something else.
+        UserError: if the postures can't be saved without losing something else in the file.
     """
     title, rows = sheet_rows(data, name)
     layout = find_layout(rows, name, table)
     try:
         edited = _Edit(BookParts(data), title, layout).result() or data
         right = edited == data or read_workbook(edited, name) == table
-    except Exception:  # a broken workbook may raise any; what can't be kept raises NotEditable
+    except Exception:  # NotEditable, or any other exception if the workbook is broken
         right = False
     if not right:
         raise UserError(say("design.cannot-edit", name=name))
@@ -57,14 +57,14 @@ def formulas_in(data: bytes, name: str) -> int:
 
     Args:
         data: an .xlsx file that can be read as postures.
-        name: its name, for messages.
+        name: name of the file, for messages.
     """
     title, rows = sheet_rows(data, name)
     postures = {row.number for row in rows if KEY.fullmatch(row.cells[0].strip())}
     try:
         book = BookParts(data)
         cells = SheetXml(book.part(book.sheets[title])).cells()
-    except Exception:  # the reader can read it, but it can't be edited here
+    except Exception:  # the workbook can be read, but not edited in place
         return 0
     return sum(cell.formula is not None and cell.place[0] in postures for cell in cells)
 
@@ -75,7 +75,7 @@ class _Edit:
     Args:
         book: the workbook.
         title: title of the sheet with the table.
-        layout: what its cells are to have.
+        layout: where the table's cells are, and their new contents.
     """
 
     def __init__(self, book: BookParts, title: str, layout: Layout) -> None:
@@ -119,7 +119,7 @@ class _Edit:
         return cell is not None and cell.formula is not None
 
     def _contents(self) -> dict[Place, Content]:
-        """Return the new contents of the table's cells, and of the legend if it moves."""
+        """Return the new contents of the table's cells, and of the legend's cells if it moves."""
         layout = self._layout
         contents: dict[Place, Content] = {}
         changes = {place: wanted for place, wanted in layout.wanted.items() if self._differs(place)}
@@ -165,7 +165,7 @@ class _Edit:
         return made(text)._replace(style=style)
 
     def _unshared(self, contents: Mapping[Place, Content]) -> dict[Place, Content]:
-        """Give cells their own formulas whose shared formula stands in a cell that changes.
+        """Give a cell its own formula if it shares its formula with a cell that changes.
 
         Raises:
             NotEditable: if a changed cell is part of a formula over several cells.
@@ -199,10 +199,13 @@ class _Edit:
         return Content(f"<{p}f>{escape(text)}</{p}f>", style=cell.attributes.get("s", ""))
 
     def _forget_values(self, edits: dict[str, dict[Place, Content]]) -> bool:
-        """Remove stored values of formulas that may depend on the table; return if there are any.
+        """Remove stored results of formulas that may depend on the table.
 
-        The sheet that shows the table's cells gets its new values instead, because programs that
-        do not calculate read it.
+        The mirror sheet, which shows the table's cells by formulas, gets the new numbers as stored
+        results, because programs that can't calculate read them.
+
+        Returns:
+            Whether there are such formulas.
         """
         depend = self._dependent()
         for name, sheet in self._sheets.items():
@@ -221,14 +224,14 @@ class _Edit:
         return bool(depend)
 
     def _mirrors(self, cell: Cell) -> bool:
-        """Return whether a cell has the same stored value as the table's cell at the same place."""
+        """Return whether a cell's stored result equals the table's cell at the same address."""
         there = self._layout.texts.get(cell.place, "")
         if number_of(there) is not None:
             return number_of(cell.value) == number_of(there)
         return cell.value == there
 
     def _dependent(self) -> set[str]:
-        """Return the titles of sheets with formulas that may depend on the table."""
+        """Return the titles of the sheets that have formulas which may depend on the table."""
         formulas = {
             name: [cell.formula.text for cell in sheet.cells() if cell.formula]
             for name, sheet in self._sheets.items()
@@ -259,7 +262,7 @@ def _translated(formula: str, origin: Place, place: Place) -> str:
 
 
 def _with_value(sheet: SheetXml, cell: Cell, value: str) -> Content:
-    """Return a cell with its formula and this stored value; "": none."""
+    """Return a cell's content with its formula and a stored result; "": no stored result."""
     assert cell.formula is not None
     p, kind = sheet.prefix, ""
     inner = sheet.raw(cell.formula.start, cell.formula.end)

@@ -1,4 +1,4 @@
-"""Where the postures of a workbook's sheet are, and where others go."""
+"""Finds the postures in a workbook's sheet, and chooses rows for new postures."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -14,24 +14,24 @@ from lacoc_shared.words import say
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the cells of a sheet's table are, and what they are to have."""
+    """Where the cells of a sheet's table are, and their new contents."""
 
     texts: Mapping[Place, str]
-    """What the cells have now, as text."""
+    """The present contents of all cells of the sheet that are not empty, as text."""
     columns: int
-    """Columns of the table."""
+    """Number of columns of the table."""
     bottom: int
-    """Row of the last posture now."""
+    """Row of the last posture before the change."""
     legend: tuple[int, int]
-    """First row of the legend, and the row after it."""
+    """First row of the legend, and the row after its last; (0, 0): there is no legend."""
     down: int
-    """Rows by which the legend moves down."""
+    """Number of rows by which the legend moves down."""
     wanted: Mapping[Place, str | float | None]
-    """Text, number or nothing of each cell of the table."""
+    """New content of the table's cells: a text, a number, or None for an empty cell."""
 
 
 def find_layout(rows: Sequence[Row], name: str, table: PostureTable) -> Layout:
-    """Find where each posture goes.
+    """Find the row of each posture, and a free row for each new one.
 
     Raises:
         UserError: if the postures do not fit into the sheet.
@@ -46,7 +46,7 @@ def find_layout(rows: Sequence[Row], name: str, table: PostureTable) -> Layout:
     _check_robot(row_of.values(), name, table)
     first = legend[0].number if legend else 0
     stop = first
-    while stop in {row.number for row in legend}:  # words further below are a person's own
+    while stop in {row.number for row in legend}:  # texts below a gap are the student's remarks
         stop += 1
     end = first or filled[-1].number + len(table.postures) + 1
     used = {row.number for row in filled}
@@ -88,7 +88,7 @@ def _check_robot(rows: Iterable[Row], name: str, table: PostureTable) -> None:
     """Check that the sheet has the columns of the table's robot.
 
     Raises:
-        UserError: if it is for another number of legs.
+        UserError: if the sheet is for another number of legs.
     """
     counts = Counter(len(row.cells) - 1 for row in rows).most_common(1)
     joints = counts[0][0] if counts else table.joints
@@ -112,5 +112,11 @@ def _place_new(place_of: dict[int, int], table: PostureTable, free: list[int]) -
 
 
 def _disorder(place_of: Mapping[int, int], key: int, row: int) -> int:
-    """Count the postures that a key in this row would be out of order with."""
+    """Count the postures whose order by key would differ from their order by row.
+
+    Args:
+        place_of: row of each placed posture, by key.
+        key: key of the posture to place.
+        row: row that it would get.
+    """
     return sum((other < key) != (place < row) for other, place in place_of.items())

@@ -1,4 +1,4 @@
-"""Asks a studio for a page: finds one, sends a request, tells how far a search is."""
+"""Finds a studio, sends it a page's requests, and tells the page how far a search is."""
 
 import asyncio
 import threading
@@ -37,12 +37,12 @@ _SLOWER = 1.1
 
 
 class Asker:
-    """The way to a studio; `start` it, and `close` it at the end.
+    """The connection to a studio; call `start` first and `close` at the end.
 
-    A thread keeps looking for a studio, so one that comes later, or comes back, is found.
+    A thread keeps looking for a studio. So a studio that starts later, or starts again, is found.
 
     Args:
-        connect: address of a studio, or of a router that leads to it.
+        connect: address of a studio, or of a Zenoh router that leads to a studio.
 
     Raises:
         UserError: if the address is wrong.
@@ -55,14 +55,14 @@ class Asker:
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._look, name="studio", daemon=True)
         self.studio: str | None = None
-        """Name of the studio that is there; None: there is none."""
+        """Name of the studio that was found; None: no studio was found."""
         self.why: Phrase | None = None
-        """Why there is no connection; None: there is one, or nobody has tried yet."""
+        """Why no studio was found; None: one was found, or the thread has not looked yet."""
         self.open = 0
         """Number of requests that wait for their answer."""
 
     def start(self) -> None:
-        """Begin to look for a studio."""
+        """Start to look for a studio."""
         self._thread.start()
 
     def close(self) -> None:
@@ -73,22 +73,22 @@ class Asker:
     async def ask(
         self, what: str, message: msgspec.Struct, reply: type[T], timeout_s: float
     ) -> tuple[T, bytes]:
-        """Ask the studio.
+        """Send a request to the studio and wait for the answer.
 
         Args:
             what: name of the request.
             message: the request.
             reply: type of the answer.
-            timeout_s: how long to wait.
+            timeout_s: how long to wait for the answer [s].
 
         Returns:
             The answer, and its bytes.
 
         Raises:
             FileRefused: if the studio found mistakes in files.
-            NotNow: if there is no studio, or it can't do this now.
-            NoAnswer: if it was asked, and does not answer.
-            UserError: if it refuses for good.
+            NotNow: if there is no studio, or the studio can't do this now.
+            NoAnswer: if the studio received the request, but does not answer in time.
+            UserError: if the studio refuses the request, and would refuse it again.
         """
         self.open += 1
         try:
@@ -101,7 +101,7 @@ class Asker:
             raise UserError(say("design.bad-answer", error=str(error))) from None
 
     async def progress(self, job: str, tell: Callable[[Progress], None]) -> "Listening":
-        """Call a function, on another thread, for each report on a search, until closed.
+        """Call a function for each report on a search, on another thread, until it is closed.
 
         Raises:
             NotNow: if there is no studio.
@@ -110,7 +110,7 @@ class Asker:
         return Listening(session, keys.progress(job), tell)
 
     async def _found(self) -> tuple[Session, StudioKeys]:
-        """Return the way to the studio; wait a moment for one that just starts."""
+        """Return the session and the studio's keys; wait a moment for a studio that just starts."""
         deadline_s = time.monotonic() + _PATIENCE_S
         while True:
             session, studio = self._session, self.studio
@@ -123,8 +123,8 @@ class Asker:
     async def _answered(self, what: str, request: bytes, timeout_s: float) -> bytes:
         """Send a request and wait for its answer.
 
-        A studio that has just come can't be asked for a moment after it is seen, so a request that
-        nobody has received is sent again.
+        A studio that has just started can't receive requests for a moment after it is found. So a
+        request that nobody received is sent again.
         """
         end_s = time.monotonic() + _COMING_BACK_S
         while True:
@@ -141,7 +141,7 @@ class Asker:
                 raise refusal_of(refused.payload) from None
 
     def _look(self) -> None:
-        """Connect, and keep looking which studios there are."""
+        """Connect, and keep looking for studios, until `close`."""
         with ExitStack() as stack:
             while not self._ending.is_set():
                 began_s = time.monotonic()
@@ -165,7 +165,7 @@ class Asker:
 
 
 async def _wait(question: Question) -> bytes:
-    """Wait for an answer; raises the same errors as `Question.take`."""
+    """Wait for an answer; raise the same errors as `Question.take`."""
     pause_s = _FIRST_POLL_S
     while (payload := question.take()) is None:
         await asyncio.sleep(pause_s)
@@ -178,8 +178,8 @@ class Listening:
 
     Args:
         session: the connection.
-        key: key expression of the reports.
-        tell: called for each report, on another thread.
+        key: key expression on which the studio sends the reports.
+        tell: called with each report, on another thread.
     """
 
     def __init__(self, session: Session, key: str, tell: Callable[[Progress], None]) -> None:

@@ -1,8 +1,9 @@
-"""A page's requests to a studio: tables become files, names of jobs become the page's own."""
+"""Sends a page's requests to a studio: tables become files, and names of searches become unique."""
 
 import asyncio
 import secrets
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import msgspec
@@ -16,6 +17,7 @@ from lacoc_client.gateway import wire
 from lacoc_client.gateway.answers import in_loop
 from lacoc_client.gateway.wire import Kind
 from lacoc_shared.messages import PROTOCOL, Done, SentFile
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.studio import (
     CancelRequest,
     CoachReply,
@@ -32,16 +34,16 @@ _ROBOT_S = 20.0
 _TRIAL_S = 120.0
 _CANCEL_S = 5.0
 _COACH_MORE_S = 300.0
-"""How much longer than its search a coach may take: it may wait for another, and it undoes what
-hardly helps."""
+"""How much longer than its search time a coach's reply may take [s]: the search may have to wait
+for others, and after it the coach undoes changes that hardly help."""
 
 
 class StudioDesk:
-    """What one page asks of the studios.
+    """Sends the requests of one page to the studios.
 
     Args:
-        studios: the ways to them.
-        send: sends a message to the page, if the page keeps up.
+        studios: the connections to the studios.
+        send: sends a message to the page; drops it if the page reads too slowly.
     """
 
     def __init__(self, studios: Studios, send: Callable[[bytes], None]) -> None:
@@ -50,16 +52,16 @@ class StudioDesk:
         self._page = secrets.token_hex(4)
         self._trying = asyncio.Lock()
         self._jobs: dict[str, Asker] = {}
-        """The searches that run -> the way to the studio that does it."""
+        """Name of each search that runs -> the connection to the studio that runs it."""
 
     async def robot(self, asked: requests.RobotAsk) -> msgspec.Raw:
-        """Ask what a robot file describes; see `Asker.ask` for the errors of this class."""
+        """Ask what a robot file describes; all methods here raise the errors of `Asker.ask`."""
         request = RobotRequest(protocol=PROTOCOL, robot=asked.robot)
         asker = self._studios.free()
         return msgspec.Raw((await asker.ask("robot", request, RobotReply, _ROBOT_S))[1])
 
     async def trial(self, asked: requests.TrialAsk) -> tuple[TrialReply, bytes]:
-        """Let the robot walk; while one trial of the page runs, the next one waits.
+        """Let the robot walk; a page's second trial waits until its first one ends.
 
         Returns:
             The answer, and its bytes.
@@ -74,7 +76,7 @@ class StudioDesk:
             return await self._studios.free().ask("trial", request, TrialReply, _TRIAL_S)
 
     async def coach(self, asked: requests.CoachAsk) -> msgspec.Raw:
-        """Search, and tell the page how far it is; end the search if nobody waits any more."""
+        """Search for better numbers, and tell the page several times a second how far this is."""
         job = self._job(asked.job)
         request = CoachRequest(
             protocol=PROTOCOL,
@@ -98,19 +100,18 @@ class StudioDesk:
         try:
             timeout_s = asked.seconds + _COACH_MORE_S
             return msgspec.Raw((await asker.ask("coach", request, CoachReply, timeout_s))[1])
+        except asyncio.CancelledError:  # the page has gone, so nobody waits for the search
+            with suppress(UserError):
+                await self._cancel(job)
+            raise
         finally:
             self._jobs.pop(job, None)
             await asyncio.shield(asyncio.to_thread(listening.close))
 
     async def cancel(self, job: str) -> dict[str, Any]:
-        """End a search of this page early; its own reply has the best so far."""
+        """End a search of this page early; the reply to `coach` has the best table so far."""
         await self._cancel(self._job(job))
         return {}
-
-    async def gone(self) -> None:
-        """End the searches that the page has left running."""
-        for job in list(self._jobs):
-            await self._cancel(job)
 
     async def _cancel(self, job: str) -> None:
         request = CancelRequest(protocol=PROTOCOL, job=job)
@@ -118,7 +119,7 @@ class StudioDesk:
         await asker.ask("cancel", request, Done, _CANCEL_S)
 
     def _job(self, name: str) -> str:
-        """Return a name that no other page's search has."""
+        """Make a name for a search of this page that no search of another page has."""
         return f"{self._page}-{name}"
 
 

@@ -28,7 +28,7 @@ class Studios:
 
     @property
     def present(self) -> int:
-        """How many studios are there."""
+        """Number of studios that are there."""
         return sum(asker.studio is not None for asker in self._askers)
 
     @property

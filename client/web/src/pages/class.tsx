@@ -3,7 +3,7 @@
 import { type Signal, useSignal, useSignalEffect } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { t } from "../i18n";
-import { useDrop } from "../ui/drop";
+import { Dropping, useDrop } from "../ui/drop";
 import { isNarrow } from "../ui/screen";
 import { Settings } from "../ui/settings";
 import { Toasts } from "../ui/toasts";
@@ -72,7 +72,7 @@ export default function Class() {
           }}
         />
       )}
-      {dragging.value && <div class="dropping">{t("class.drop")}</div>}
+      <Dropping dragging={dragging}>{t("class.drop")}</Dropping>
       <Toasts />
     </main>
   );

@@ -12,9 +12,10 @@ import { type MessageName, t } from "../i18n";
 import { BEATS_PER_S, team } from "../i18n/words";
 import { View } from "../scene/View";
 import { Board } from "../ui/board";
-import { useDrop } from "../ui/drop";
+import { Dropping, useDrop } from "../ui/drop";
 import { Icon, IconButton } from "../ui/icons";
 import { Countdown } from "../ui/opening";
+import { PlayButton, SpeedChooser } from "../ui/playback";
 import { ResultCard } from "../ui/result";
 import { Hint, ScoreBug } from "../ui/score";
 import { isNarrow } from "../ui/screen";
@@ -145,7 +146,7 @@ export default function Replay() {
       )}
       {now.is === "loading" && <Loading name={now.name} part={now.part} />}
       {now.is === "open" && <Show key={now.player} player={now.player} server={now.server} />}
-      {dragging.value && <div class="dropping">{t("replay.drop")}</div>}
+      <Dropping dragging={dragging}>{t("replay.drop")}</Dropping>
       <Toasts />
     </>
   );
@@ -223,41 +224,17 @@ function Show({ player, server }: { player: Player; server: string | null }) {
 }
 
 function Transport({ player }: { player: Player }) {
-  const playWord = t(player.playing.value ? "replay.pause" : "replay.play");
   return (
     <section class="transport" aria-label={t("replay.transport")}>
       <SeekBar player={player} />
       <div class="controls">
         <Step name="previous" onClick={() => player.jump(-1)} />
         <Step name="back" onClick={() => player.step(-1)} />
-        <button
-          class="button strong"
-          type="button"
-          aria-label={playWord}
-          title={t("replay.playKey", { what: playWord })}
-          onClick={() => player.toggle()}
-        >
-          <Icon name={player.playing.value ? "pause" : "play"} />
-        </button>
+        <PlayButton playback={player} title={(what) => t("replay.playKey", { what })} />
         <Step name="ahead" onClick={() => player.step(1)} />
         <Step name="next" onClick={() => player.jump(1)} />
         <Position recording={player.recording} />
-        <label class="speed">
-          <span class="hidden-text">{t("replay.speed")}</span>
-          <select
-            title={t("replay.speed")}
-            value={player.speed.value}
-            onChange={(event) => {
-              player.speed.value = Number(event.currentTarget.value);
-            }}
-          >
-            {SPEEDS.map((speed) => (
-              <option key={speed} value={speed}>
-                {speed}×
-              </option>
-            ))}
-          </select>
-        </label>
+        <SpeedChooser playback={player} speeds={SPEEDS} />
       </div>
     </section>
   );

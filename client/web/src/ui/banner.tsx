@@ -1,15 +1,23 @@
 /** Says across the top what the page waits for; nothing while all is well. */
 
 import { useComputed } from "@preact/signals";
+import type { ComponentChildren } from "preact";
+import type { SocketState } from "../core/connection";
 import type { Court } from "../core/court";
 import { Phase } from "../core/wire";
 import { said, t } from "../i18n";
 
+/** A sentence that says why the gateway is not there for this page; "" if it is. */
+export function waitsForGateway({ open, attempt, refused }: SocketState): string {
+  if (refused) return said(refused);
+  if (open) return "";
+  return attempt > 1 ? t("link.page", { attempt }) : t("link.connecting");
+}
+
 /** A sentence that says what the page waits for; "" if it waits for nothing. */
 export function waitsFor(court: Court): string {
-  const { open, attempt, refused } = court.connection.state.value;
-  if (refused) return said(refused);
-  if (!open) return attempt > 1 ? t("link.page", { attempt }) : t("link.connecting");
+  const waits = waitsForGateway(court.connection.state.value);
+  if (waits) return waits;
   const link = court.link.value;
   if (link && !link.connected) {
     const seconds = Math.round(link.silent_s);
@@ -38,29 +46,34 @@ function makeRoom(banner: HTMLElement | null): void {
   }).observe(banner);
 }
 
+interface Props {
+  role?: "status" | "alert";
+  calm?: boolean;
+  children: ComponentChildren;
+}
+
+/** A line across the top, for which the page below makes room. */
+export function Banner({ role = "status", calm = false, children }: Props) {
+  return (
+    <div class={calm ? "banner calm" : "banner"} role={role} ref={makeRoom}>
+      {children}
+    </div>
+  );
+}
+
 export function LinkBanner({ court }: { court: Court }) {
   const over = useComputed(() => isOver(court)).value;
   if (court.outdated.value) {
     return (
-      <div class="banner" role="alert" ref={makeRoom}>
+      <Banner role="alert">
         {t("link.outdated")}
         <button class="button" type="button" onClick={() => location.reload()}>
           {t("link.reload")}
         </button>
-      </div>
+      </Banner>
     );
   }
   const text = waitsFor(court);
-  if (text && over) {
-    return (
-      <div class="banner calm" role="status" ref={makeRoom}>
-        {t("link.over")}
-      </div>
-    );
-  }
-  return text ? (
-    <div class="banner" role="status" ref={makeRoom}>
-      {text}
-    </div>
-  ) : null;
+  if (!text) return null;
+  return over ? <Banner calm>{t("link.over")}</Banner> : <Banner>{text}</Banner>;
 }

@@ -1,4 +1,4 @@
-"""The coach at work: what matters, then a search, then fewer changes; and it says how far it is."""
+"""Runs a search of the coach: ranks the numbers, searches, undoes changes, and tells progress."""
 
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -20,30 +20,32 @@ from lacoc_shared.studio import CellPlace, Change, CoachReply, Progress, Weight
 from lacoc_shared.words import say
 
 _UNDO_TRIALS = 50
-"""About so many trials undo the changes that hardly help."""
+"""About how many trials the stage takes that undoes changes; for its progress."""
 _TURNS = {Goal.LEFT: 1, Goal.RIGHT: 3}
 """The sample's keys for turning (workshop Fig. 4-2)."""
 
 Tell = Callable[[Progress], None]
-"""Takes how far a search is; called several times a second."""
+"""Takes the progress of a search; called several times a second."""
 
 
 class Found(NamedTuple):
     """What the coach found."""
 
     matters: list[Matter]
-    """All numbers of the key, those that matter most first; empty if it was stopped before."""
+    """All numbers of the key, those that matter most first; empty if they were not ranked before
+    the search was stopped."""
     best: Improved | None
-    """None: nothing was searched for."""
+    """The best table; None: no search for a better table has begun."""
     before: Figures
+    """Figures of the student's own gait."""
     after: Figures
-    """Figures of the own gait and of the best one."""
+    """Figures of the best gait."""
     trials: int
     stopped: bool
 
 
 def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
-    """Choose the key to change: the one that is given, or the sample's key for the goal.
+    """Choose the key to change: `key`, or if this is None, the sample's key for the goal.
 
     Raises:
         UserError: if the gait has no such key at level B.
@@ -60,14 +62,15 @@ def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
 def task_of(
     robot: RobotSpec, gait: Gait, key: int, goal: Goal, sequences: Sequence[Sequence[int]] | None
 ) -> Task:
-    """Make the task to change a key of level B.
+    """Make the task to improve a key of level B.
 
     Args:
         robot: the robot.
-        gait: its gait, which has the key.
-        key: the key's digit.
+        gait: the robot's gait, which has the key.
+        key: digit of the key.
         goal: what the key is for.
-        sequences: for each key the digits of its postures, if they are those of a Loco-data file.
+        sequences: for each key the digits of its postures in the Loco-data file; None if the gait
+            has a LocoTra-data file.
     """
     stand = gait.sequence(Level.LOCOMOTION, 0) or (robot.start_posture,)
     digits = None if sequences is None else sequences[key]
@@ -76,14 +79,14 @@ def task_of(
 
 
 def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Tell) -> Found:
-    """Find which numbers of a table matter, and a better table.
+    """Find which numbers of a table matter, and search for a better table.
 
     Args:
         trials: tries tables for the task.
-        size: how many numbers may change; None: only say which numbers matter.
-        seconds: how long to search [s]; what comes before and after it is not counted.
+        size: how many numbers may change; None: only rank the numbers, without a search.
+        seconds: how long to search [s]. The ranking before and the undoing after do not count.
         seed: seed of all random numbers.
-        tell: is told how far the search is.
+        tell: called with the progress of the search.
 
     Raises:
         WorkerDied: if a process for trials ended.
@@ -109,7 +112,7 @@ def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Te
 
 
 def reply_of(task: Task, key: int, found: Found) -> CoachReply:
-    """Describe what the coach found as a message."""
+    """Make the message that tells what the coach found."""
     own = task.table.angles_deg
     best = own if found.best is None else found.best.angles_deg
     return CoachReply(
@@ -132,7 +135,7 @@ def reply_of(task: Task, key: int, found: Found) -> CoachReply:
 
 
 def place(table: KeyTable, index: int) -> CellPlace:
-    """Return the place of a number: the first posture of the sequence that has it."""
+    """Return the place of a number in the key's sequence, in the first posture that has it."""
     row, joint = table.cell(index)
     return CellPlace(posture=table.order.index(row), joint=joint)
 
@@ -146,7 +149,7 @@ def _better(
     seed: int,
     tell: Tell,
 ) -> Iterator[Improved]:
-    """Search, then undo what hardly helps; yield the table to show, again and again."""
+    """Search, then undo changes that hardly help; yield the best table after each round."""
     begin_s = time.monotonic()
 
     def passed_s() -> float:
@@ -169,7 +172,15 @@ def _better(
 def _follow(
     trials: Trials, tell: Tell, stage: str, expected: int, best: float | None = None
 ) -> None:
-    """Tell how far a stage is that has about so many trials."""
+    """Tell the progress of a stage from now on, by the number of its trials.
+
+    Args:
+        trials: counts the trials.
+        tell: called with the progress.
+        stage: name of the stage.
+        expected: about how many trials the stage takes.
+        best: score of the best table so far.
+    """
     begin = trials.count
 
     def on_done() -> None:

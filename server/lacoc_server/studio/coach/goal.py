@@ -1,4 +1,4 @@
-"""The goals that a coach can have, and the score of a walk."""
+"""The goals that the coach can work for, and the score of a walk for a goal."""
 
 from enum import StrEnum
 
@@ -13,7 +13,7 @@ _DRIFT_FREE_DEG_S = 3.0
 
 
 class Goal(StrEnum):
-    """What the key is for."""
+    """What the robot should do while the key is pressed."""
 
     FORWARD = "forward"
     RIGHT = "right"
@@ -24,8 +24,8 @@ class Goal(StrEnum):
 def score(figures: Figures, goal: Goal) -> float:
     """Return the score of a walk [mm/s].
 
-    It is negative if the robot rests on its body or tips over, or if no cycle was complete, because
-    physics stopped or the sequence never begins again.
+    The score is negative if the robot rests on its body or tips over. It is also negative if no
+    cycle was completed, because physics stopped or the key's sequence never begins again.
 
     Args:
         figures: figures of the walk.

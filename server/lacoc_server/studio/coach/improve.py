@@ -1,7 +1,7 @@
-"""Search for a better table; a size says how many of its numbers may change.
+"""Searches for a better table; a `Size` says how many of its numbers may change.
 
-A rough score finds the tables that may be better. Only those are tried exactly, and only an exact
-score makes a table the best.
+A rough score, which is cheap, finds tables that may be better. Only these are tried with the exact
+score, and only a table with a better exact score becomes the best.
 """
 
 import random
@@ -17,16 +17,16 @@ from lacoc_server.studio.coach.table import Angles, differing
 
 _STEPS_DEG = (5, 10, 15, 20, 30)
 _SIGMA_DEG = 8.0
-"""Standard deviation of the first changes of a whole table."""
+"""Standard deviation of the first random changes, when all numbers may change."""
 _POPULATION = 16
 _FEW = 24
-"""For the sizes "cell" and "three" only so many numbers are tried: those that matter most."""
+"""How many numbers, those that matter most, the sizes "cell" and "three" try to change."""
 _CONFIRMED = 8
-"""So many of the tables with one more change are tried exactly."""
+"""How many of the tables with one more change, the best by rough score, are tried exactly."""
 _HOPEFUL = 0.9
-"""Of a round of whole tables the best are tried exactly if their rough score is at least this share
-of the best score."""
+"""A whole table is tried exactly only if its rough score is above this part of the best score."""
 _HOPEFULS = 2
+"""Most whole tables of a round that are tried exactly."""
 
 
 class Size(StrEnum):
@@ -52,14 +52,14 @@ def improve(
     is_over: IsOver,
     seed: int,
 ) -> Iterator[Improved]:
-    """Search for a better table; yield the best one so far, again and again.
+    """Search for a better table; yield the best table so far after each round of trials.
 
     Args:
-        search: the search, which has tried the student's own table.
+        search: the search, which has already tried the student's own table.
         size: how many numbers may change.
         matters: the numbers of the table, those that matter most first.
-        rough: a score that is cheap, to find tables that may be better.
-        is_over: called after each round of trials.
+        rough: a cheap score, to find tables that may be better.
+        is_over: called after each round; returns whether the time is over.
         seed: seed of all random numbers.
     """
     yield search.best
@@ -93,7 +93,7 @@ def _few(
         changed += differing(before.angles_deg, search.best.angles_deg)
         if is_over():
             return
-    # The numbers are chosen; now each is turned to its best degree.
+    # The numbers to change are chosen. Now find the best whole degree for each.
     for index in changed:
         angles = search.best.angles_deg
         search.tried([search.turned(angles, index, angles[index] + by) for by in range(-4, 5)])
@@ -101,7 +101,7 @@ def _few(
 
 
 def _ranked(tables: Sequence[Angles], scores: Sequence[float]) -> list[tuple[float, Angles]]:
-    """Return tables with their scores, the best first."""
+    """Return pairs of score and table, the best first."""
     return sorted(zip(scores, tables, strict=True), reverse=True)
 
 

@@ -1,4 +1,4 @@
-"""Find which numbers of a table matter: each number is changed a little, up and down."""
+"""Finds which numbers of a table matter, by small changes of each number up and down."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -22,7 +22,7 @@ class Matter(NamedTuple):
 
     @property
     def size(self) -> float:
-        """The larger of both changes without its sign; numbers are ranked by it."""
+        """The larger of the two changes, without its sign; the numbers are ranked by this."""
         return max(abs(self.up), abs(self.down))
 
 

@@ -1,4 +1,4 @@
-"""The best table that a search has found so far, and all tables that it has tried."""
+"""Keeps the tables that a search has tried, their scores, and the best table so far."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lacoc_server.studio.coach.table import Angles
 
 Score = Callable[[Sequence[Angles]], list[float]]
-"""Tries tables and returns how good each is."""
+"""Tries tables and returns the score of each; a higher score is better."""
 
 
 class Improved(NamedTuple):
@@ -18,7 +18,7 @@ class Improved(NamedTuple):
 
 
 class Search:
-    """A search that begins with a student's own table.
+    """The state of a search that begins with a student's own table.
 
     Args:
         table: the student's own angles [deg].
@@ -37,7 +37,7 @@ class Search:
         self.tried([table])
 
     def tried(self, tables: Sequence[Angles]) -> list[float]:
-        """Try tables all at once and return their scores; none is tried twice."""
+        """Try tables at the same time and return their scores; no table is ever tried twice."""
         new = list(dict.fromkeys(one for one in tables if one not in self._known))
         self._known.update(zip(new, self._score(new), strict=True))
         for one in new:

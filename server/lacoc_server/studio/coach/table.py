@@ -1,8 +1,8 @@
-"""A key's sequence as cells with whole degrees, as the file has them.
+"""A key's sequence as the rows of its gait file, with whole degrees in cells.
 
-In a Loco-data file each posture is a row with a digit. A sequence may have the same digit more than
-once, and changing its row changes all of them. In a LocoTra-data file each posture of a sequence is
-a row of its own. Rows that are equal by chance stay different rows.
+In a Loco-data file each posture is a row with a digit. A sequence may use the same digit more than
+once; a change of the row then changes all these postures. In a LocoTra-data file each posture of a
+sequence is a row of its own, also if two rows are equal by chance.
 """
 
 import math
@@ -12,7 +12,7 @@ from typing import NamedTuple
 from lacoc_shared.gait.tables import Posture
 
 Angles = tuple[int, ...]
-"""All rows of a table, one after another [deg]."""
+"""The angles of all rows of a table, one row after another [deg]."""
 
 
 class Cell(NamedTuple):
@@ -23,10 +23,10 @@ class Cell(NamedTuple):
 
 
 class KeyTable(NamedTuple):
-    """The rows of a key, and how the key runs through them."""
+    """The rows that a key uses, and the order in which its sequence uses them."""
 
     rows: tuple[Posture, ...]
-    """Postures of the rows in order of first use [rad]."""
+    """Posture of each row [rad], in the order in which the sequence first uses them."""
     order: tuple[int, ...]
     """Index of the row for each posture of the sequence."""
 
@@ -36,7 +36,7 @@ class KeyTable(NamedTuple):
 
         Args:
             sequence: the postures [rad].
-            digits: digits of the postures, if they are those of a Loco-data file.
+            digits: digits of the postures in a Loco-data file; None: each posture is its own row.
         """
         names = range(len(sequence)) if digits is None else digits
         rows = dict(zip(names, sequence, strict=True))
@@ -58,7 +58,7 @@ class KeyTable(NamedTuple):
         return Cell(*divmod(index, self.joints))
 
     def sequence(self, angles_deg: Angles) -> tuple[Posture, ...]:
-        """Return the sequence with new angles [rad]; an angle that did not change stays exact."""
+        """Return the sequence with new angles [rad]; angles that did not change are not rounded."""
         joints = self.joints
         rows = []
         for index, row in enumerate(self.rows):

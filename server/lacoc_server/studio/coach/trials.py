@@ -1,4 +1,4 @@
-"""Run many trials of one robot in several processes at the same time."""
+"""Runs many trials of one robot in several processes at the same time."""
 
 import threading
 from collections.abc import Callable, Sequence
@@ -22,7 +22,7 @@ _CYCLES, _QUICK_CYCLES = 3, 2
 _ROUGH_STEPS, _ROUGH_CYCLES = 4, 1
 """A rough trial has physics steps of 5 ms and measures one cycle."""
 _MOST_AT_ONCE = 4
-"""Most trials that a process gets at once; fewer would cost time, more would delay a stop."""
+"""Most trials in one job of a process; fewer would cost time, more would delay a stop."""
 _LOOK_S = 0.05
 
 
@@ -31,7 +31,7 @@ class Stopped(Exception):
 
 
 class Task(NamedTuple):
-    """What is the same in all trials of a search."""
+    """The things that are the same in all trials of a search."""
 
     robot: RobotSpec
     stand: tuple[Posture, ...]
@@ -45,15 +45,15 @@ class Trials:
     """Tries tables in processes.
 
     Args:
-        task: what is the same in all trials.
+        task: the robot, the table and the goal.
         workers: the processes.
-        stop: once it is set, nothing more is scored.
+        stop: the search ends with `Stopped` as soon as this is set.
     """
 
     def __init__(self, task: Task, workers: Workers, stop: threading.Event) -> None:
         self.task = task
         self.on_done: Callable[[], None] = lambda: None
-        """Called several times a second while tables are tried."""
+        """Called many times a second while tables are tried."""
         self.count = 0
         """Number of trials so far."""
         self._workers = workers
@@ -68,7 +68,7 @@ class Trials:
         return self._score(tables, SUBSTEPS, _CYCLES)
 
     def quick(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables with the physics of the contest, over fewer cycles: good enough to rank.
+        """Score tables with the contest's physics over fewer cycles; this is enough for a ranking.
 
         Raises:
             Stopped: if the search was stopped.
@@ -76,7 +76,7 @@ class Trials:
         return self._score(tables, SUBSTEPS, _QUICK_CYCLES)
 
     def rough(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables even more cheaply: good enough to find those that may be better.
+        """Score tables with larger physics steps; this is enough to find those that may be better.
 
         Raises:
             Stopped: if the search was stopped.
@@ -84,7 +84,7 @@ class Trials:
         return self._score(tables, _ROUGH_STEPS, _ROUGH_CYCLES)
 
     def figures(self, tables: Sequence[Angles]) -> list[Figures]:
-        """Return the figures of walks, with the physics of the contest; a stop changes nothing."""
+        """Return the figures of walks with the contest's physics, also after a stop."""
         jobs = [self._workers.submit(_figures, self.task, table) for table in tables]
         return [job.result() for job in jobs]
 

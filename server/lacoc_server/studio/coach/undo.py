@@ -1,8 +1,9 @@
-"""Undo the changes that hardly help, so that what is left is small and can be understood.
+"""Undoes the changes that hardly help, so that few changes are left and can be understood.
 
-Changes are undone many at a time, those that help least first: that is much quicker than one after
-the other, and the trials of a round run at the same time. A first pass guesses from what mattered
-before the search which changes help least. Then there are few, and a second pass tries each.
+Many changes are undone at a time, those that help least first. This is much quicker than one after
+the other, because the trials of a round run at the same time. The first pass guesses which changes
+help least, from how much each number mattered before the search. Then few changes are left, and
+the second pass tries to undo each of them.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,19 +14,19 @@ from lacoc_server.studio.coach.search import Improved, Score, Search
 from lacoc_server.studio.coach.table import Angles, differing
 
 _EACH, _ALL = 0.02, 0.2
-"""Undoing a change may cost the first share of the score, and undoing all of them the second share
-of what the search has gained."""
+"""To undo one change may cost the first part of the score. To undo several may cost together at
+most the second part of what the search has gained."""
 _AT_ONCE = 8
-"""Numbers of changes that are tried in one round."""
+"""Most tables, each with another count of undone changes, that are tried in one round."""
 
 
 def undo(search: Search, matters: Sequence[Matter], rough: Score) -> Iterator[Improved]:
-    """Undo changes of a search's best table; yield each table that has fewer of them.
+    """Undo changes of a search's best table; yield each table that has fewer changes.
 
     Args:
         search: the search.
-        matters: what a change of each number did to the student's own table.
-        rough: a score that is cheap, to find the changes that help least.
+        matters: how much each number of the student's own table matters.
+        rough: a cheap score, to find the changes that help least.
     """
     best = found = search.best
     (own_score,) = search.tried([search.own])
@@ -53,26 +54,26 @@ def undo(search: Search, matters: Sequence[Matter], rough: Score) -> Iterator[Im
 
 
 def _guessed(matters: Sequence[Matter], own: Angles, table: Angles) -> list[int]:
-    """List the numbers that differ, those first that probably help least."""
+    """List the changed numbers; first those whose change probably helps least."""
     size = {one.number: one.size for one in matters}
     numbers = differing(own, table)
     return sorted(numbers, key=lambda number: size[number] * abs(table[number] - own[number]))
 
 
 def _tried(rough: Score, own: Angles, table: Angles) -> list[int]:
-    """List the numbers that differ, those first without which the rough score is best."""
+    """List the changed numbers; first those that can be undone with the best rough score."""
     numbers = differing(own, table)
     without = rough([_back(own, table, [number]) for number in numbers])
     return [number for _, number in sorted(zip(without, numbers, strict=True), reverse=True)]
 
 
 def _back(own: Angles, table: Angles, numbers: Sequence[int]) -> Angles:
-    """Return a table with the student's own angles in some cells."""
+    """Return a table with the student's own angles in the cells with these numbers."""
     mine = set(numbers)
     return tuple(own[i] if i in mine else angle for i, angle in enumerate(table))
 
 
 def _spread(low: int, high: int) -> list[int]:
-    """Return up to `_AT_ONCE` numbers from above `low` to `high`, in equal steps."""
+    """Return up to `_AT_ONCE` counts in equal steps, above `low` and up to `high`."""
     steps = min(_AT_ONCE, high - low)
     return [low + (high - low) * step // steps for step in range(1, steps + 1)]

@@ -1,4 +1,4 @@
-/** Blocks of cells from and to a spreadsheet, as its clipboard has them. */
+/** Reads and writes blocks of cells in the form in which spreadsheets put them on the clipboard. */
 
 import { htmlCells } from "./html_block";
 import { rowsOfKey } from "./rows";
@@ -22,10 +22,10 @@ export interface BadPaste {
   why: Wrong | "outside";
 }
 
-/** What came of a paste: all of it, or why nothing was changed. */
+/** The result of a paste: the changed table, or the cells because of which nothing was changed. */
 export type Pasted = { table: Table; area: Area } | { bad: BadPaste[] };
 
-/** Bad cells that are told of one paste. */
+/** Most bad cells that one paste lists. */
 const MOST_BAD = 1000;
 
 const KEY = /^(\d)\s*key$/i;
@@ -35,8 +35,8 @@ const LEGEND = /^(id of joint|position)?$/i;
 /**
  * Read what is on the clipboard.
  *
- * @param plain As `text/plain`.
- * @param html As `text/html`; only looked at if there is no plain text.
+ * @param plain The clipboard's `text/plain`.
+ * @param html The clipboard's `text/html`; it is only read if there is no plain text.
  * @returns Rows of equal length; [] if there is nothing.
  */
 export function readBlock(plain: string, html = ""): string[][] {
@@ -44,12 +44,12 @@ export function readBlock(plain: string, html = ""): string[][] {
   return even(text === "" && html ? htmlCells(html) : tabbedCells(text));
 }
 
-/** Write cells as spreadsheets do: tabs, and each row ends with CR LF. */
+/** Write cells as spreadsheets do: a tab between cells, CR LF at the end of each row. */
 export function writeBlock(cells: readonly (readonly (string | number)[])[]): string {
   return cells.map((row) => `${row.map(quoted).join("\t")}\r\n`).join("");
 }
 
-/** Whether a block is a whole gait file, with its header: then the reader of files reads it. */
+/** Whether a block is a whole gait file with its header, which the gateway must read as a file. */
 export function isWholeSheet(block: readonly (readonly string[])[]): boolean {
   const [first, second] = block
     .map((row) => row.map((cell) => cell.normalize("NFKC").trim()))
@@ -62,10 +62,10 @@ export function isWholeSheet(block: readonly (readonly string[])[]): boolean {
 }
 
 /**
- * Put a block into a table: all of it, or nothing.
+ * Put a block into a table, as a whole or not at all.
  *
- * One cell fills the whole selection; other blocks begin at its first cell. Rows that begin with
- * the name of their key ("2 Key") go to that key of a table of postures.
+ * A single cell fills the whole selection. A larger block begins at the first selected cell. In a
+ * table of postures, a row that begins with the name of a key ("2 Key") goes to this key.
  *
  * @param at The selection.
  */
@@ -96,7 +96,7 @@ function pasteAt(table: Table, top: number, left: number, cells: string[][]): Pa
   return { table: setArea(table, { row: top, col: left }, cells), area };
 }
 
-/** Paste rows that begin with the name of their key; null if they do not, or a key comes twice. */
+/** Paste rows that begin with names of keys; null if one has no name, or a key comes twice. */
 function namedRows(table: Table, cells: string[][]): Pasted | null {
   const named = cells
     .filter((line) => !LEGEND.test(line[0]!.trim()))
@@ -127,7 +127,7 @@ function namedRows(table: Table, cells: string[][]): Pasted | null {
 
 const joints = (table: Table) => joint(0, LEVELS.length, table.legs.length);
 
-/** The table with a row for a key. */
+/** The table; if it has no row for a key yet, with such a row. */
 function withKey(table: Table, key: number): Table {
   if (rowsOfKey(table, key).length) return table;
   const added = { key, posture: 0, cells: table.rows[0]!.cells };
@@ -139,7 +139,7 @@ function filling({ top, left, bottom, right }: Area, text: string): string[][] {
   return Array.from({ length: bottom - top + 1 }, () => Array(right - left + 1).fill(text));
 }
 
-/** Numbers between spaces, as in a text file: no cell of a table is several numbers. */
+/** Split each row of numbers at spaces, as in a text file, if all rows are such rows. */
 function spacedCells(block: readonly (readonly string[])[]): string[][] {
   const split = (row: readonly string[]) => row[0]!.trim().split(/\s+/);
   const areNumbers = (row: readonly string[]) =>
@@ -149,7 +149,7 @@ function spacedCells(block: readonly (readonly string[])[]): string[][] {
   return even(block.every(areNumbers) ? block.map(split) : block);
 }
 
-/** Without the empty rows and columns at the end. */
+/** Remove empty rows at the bottom and empty columns on the right. */
 function withoutBlankEdge(cells: string[][]): string[][] {
   const isBlank = (cell: string | undefined) => cell === undefined || cell.trim() === "";
   const height = cells.findLastIndex((row) => !row.every(isBlank)) + 1;
@@ -157,18 +157,18 @@ function withoutBlankEdge(cells: string[][]): string[][] {
   return cells.slice(0, height).map((row) => row.slice(0, width));
 }
 
-/** Rows of equal length. */
+/** Fill rows with empty cells, so that all have the same length. */
 function even(rows: readonly (readonly string[])[]): string[][] {
   const width = most(rows, (row) => row.length);
   return rows.map((row) => [...row, ...Array<string>(width - row.length).fill("")]);
 }
 
-/** The largest of some numbers; there may be millions. */
+/** The largest number that `of` gives for a row; `Math.max` can't take millions of numbers. */
 function most<T>(rows: readonly T[], of: (row: T) => number): number {
   return rows.reduce((largest, row) => Math.max(largest, of(row)), 0);
 }
 
-/** Split text at tabs and ends of lines; a cell in quotes may have both in it. */
+/** Split text into cells at tabs and line ends, except those inside a cell in quotes. */
 function tabbedCells(text: string): string[][] {
   const rows: string[][] = [];
   let row: string[] = [];
@@ -189,14 +189,14 @@ function tabbedCells(text: string): string[][] {
   return rows;
 }
 
-/** Where a cell ends that does not stand in quotes. */
+/** The index at which a cell without quotes ends. */
 function cellEnd(text: string, from: number): number {
   let at = from;
   while (at < text.length && !"\t\r\n".includes(text[at]!)) at++;
   return at;
 }
 
-/** Where a cell in quotes ends; null: it is none. */
+/** The index at which a cell in quotes ends; null: the cell is not in quotes. */
 function quoteEnd(text: string, from: number): number | null {
   if (text[from] !== '"') return null;
   for (let at = text.indexOf('"', from + 1); at >= 0; at = text.indexOf('"', at + 2)) {
@@ -205,7 +205,7 @@ function quoteEnd(text: string, from: number): number | null {
   return null;
 }
 
-/** The content of a cell in quotes; text with a quote at its begin only stays. */
+/** The text of a cell without its quotes; a text with a quote only at its beginning stays. */
 function unquoted(cell: string): string {
   const isQuoted = quoteEnd(cell, 0) === cell.length;
   return isQuoted ? cell.slice(1, -1).replaceAll('""', '"') : cell;

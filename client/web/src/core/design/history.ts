@@ -1,14 +1,14 @@
-/** The table that is edited, with every step that led to it. */
+/** Keeps the table that is edited, and all its steps for undo and redo. */
 
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
 import { type Columns, type Row, refit, type Table } from "./table";
 
 interface Step {
-  /** What the step was, for the buttons; "" for the first table. */
+  /** Name of the step, for the buttons; "" for the first table. */
   readonly name: string;
   readonly table: Table;
   readonly version: number;
-  /** Names a movement of the hand that is one step, however often it edits. */
+  /** Name of a gesture, such as one drag of a slider; all its edits together are one step. */
   readonly gesture: string | null;
 }
 
@@ -16,10 +16,10 @@ export class History {
   readonly table: ReadonlySignal<Table>;
   readonly canUndo: ReadonlySignal<boolean>;
   readonly canRedo: ReadonlySignal<boolean>;
-  /** The names of the steps that would be undone and done again; "": none. */
+  /** Names of the steps that undo and redo would take; "": there is no such step. */
   readonly undoName: ReadonlySignal<string>;
   readonly redoName: ReadonlySignal<string>;
-  /** The same number for the same content, so that trials belong to versions. */
+  /** Number of the table's content: equal contents have equal numbers. Trials belong to it. */
   readonly version: ReadonlySignal<number>;
   private readonly steps = signal<readonly Step[]>([]);
   private readonly at = signal(0);
@@ -38,7 +38,7 @@ export class History {
     this.redoName = computed(() => this.steps.value[this.at.value + 1]?.name ?? "");
   }
 
-  /** Begin with another table, such as that of another file; versions go on. */
+  /** Begin again with another table, such as that of another file; version numbers go on. */
   open(table: Table): void {
     batch(() => {
       this.steps.value = [{ name: "", table, version: this.numberOf(table), gesture: null }];
@@ -46,7 +46,7 @@ export class History {
     });
   }
 
-  /** Take all steps over to another robot of as many legs; no step by itself. */
+  /** Give all steps the columns of another robot with as many legs; this is no step to undo. */
   refit(columns: Columns): void {
     this.steps.value = this.steps.peek().map((step) => {
       const table = refit(step.table, columns) ?? step.table;
@@ -57,7 +57,9 @@ export class History {
   /**
    * Edit the table: one step, unless the edit changes nothing.
    *
-   * @param gesture Edits in a row with the same gesture, such as one drag of a slider, are one step.
+   * @param name Name of the step, for the buttons.
+   * @param edit Returns the changed table.
+   * @param gesture Edits in a row with the same gesture, such as a drag of a slider, are one step.
    */
   apply(name: string, edit: (table: Table) => Table, gesture: string | null = null): void {
     const before = this.steps.peek()[this.at.peek()]!;
@@ -90,7 +92,7 @@ export class History {
     return number;
   }
 
-  /** The same number for the same row: a long table costs a short text for each version. */
+  /** Number of a row's content; with it, the content of a long table is named by a short text. */
   private rowNumber(row: Row): number {
     let number = this.rowNumbers.get(row);
     if (number === undefined) {

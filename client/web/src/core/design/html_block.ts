@@ -1,4 +1,4 @@
-/** The table in a piece of HTML, as spreadsheets put it onto the clipboard; no document is made. */
+/** Reads the table in HTML that a spreadsheet put on the clipboard, without making a document. */
 
 const TOKEN =
   /<!--[\s\S]*?(?:-->|$)|<(style|script|title)\b[\s\S]*?(?:<\/\1\s*>|$)|<[^<>]*>|[^<]+|</gi;
@@ -12,13 +12,13 @@ const ENTITIES: Readonly<Record<string, string>> = {
   nbsp: " ",
   minus: "\u2212",
 };
-/** Rows and columns of a merged cell that count: a table of a gait has fewer. */
+/** Most rows or columns of a merged cell that are read; no gait's table has so many. */
 const MOST_SPAN = 200;
 
-/** The cells of the first table; a merged cell stands in its first place. [] without a table. */
+/** The cells of the first table; a merged cell's text is in its first place. [] without a table. */
 export function htmlCells(html: string): string[][] {
   const rows: string[][] = [];
-  /** For each column, how many of the next rows a cell from above covers. */
+  /** For each column, how many of the next rows a merged cell above still covers. */
   const covered: number[] = [];
   let row: string[] | null = null;
   let cell: string | null = null;

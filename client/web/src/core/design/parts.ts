@@ -1,4 +1,4 @@
-/** Which part of the drawn robot belongs to which joint of the table, and back. */
+/** Finds the part of the drawn robot that belongs to a joint of the table, and the reverse. */
 
 import type { ForwardKinematics } from "../fk";
 import type { Scene } from "../wire";
@@ -6,7 +6,7 @@ import { joint, LEVELS } from "./table";
 
 type Three = readonly [number, number, number];
 
-/** The body that a joint turns, as an index of the scene; -1: none. */
+/** The index in the scene of the body that a joint turns; -1: there is none. */
 export function bodyOf(scene: Scene, id: number, seat = 0): number {
   return scene.bodies.findIndex(
     (body, index) => body.joint === id && body.seat < 0 && seatOf(scene, index) === seat,
@@ -33,11 +33,11 @@ function seatOf(scene: Scene, body: number): number {
 }
 
 /**
- * The joint of the link that a ray hits first, or passes nearest.
+ * The joint of the link that a ray hits first; if it hits none, of the link that it passes nearest.
  *
  * @param eye Where the ray begins [m, world].
  * @param ray Its direction, of any length.
- * @param nearM How far beside a link still counts, for fingers.
+ * @param nearM Largest distance at which the ray may pass a link [m]; fingers are not exact.
  * @returns The joint id; null if no link is near.
  */
 export function pickJoint(
@@ -59,7 +59,7 @@ export function pickJoint(
     const half = type === "capsule" || type === "cylinder" ? size[1] : 0;
     const { apart, far } = nearest(eye, way, middle, along, half);
     const beside = Math.max(0, apart - size[0]);
-    // What is hit comes before what is only near; of those that are hit, the nearest to the eye.
+    // Links that are hit come before links that are only near; the first is the nearest to the eye.
     const rank = beside > 0 ? 1e3 + beside : far;
     if (beside <= nearM && far > 0 && rank < best) {
       best = rank;
@@ -82,7 +82,7 @@ function turned(quat: ArrayLike<number>, at: number, [x, y, z]: Three): Three {
   return [x + w * tx + j * tz - k * ty, y + w * ty + k * tx - i * tz, z + w * tz + i * ty - j * tx];
 }
 
-/** How near a ray comes to a segment, and how far from the eye. */
+/** The distance between a ray and a segment (`apart`), and how far from the eye it is (`far`). */
 function nearest(
   eye: Three,
   way: Three,

@@ -1,4 +1,4 @@
-/** Guesses before a trial, and what came of them. */
+/** Compares guesses that were made before a trial with what the trial shows. */
 
 import { SAME_MM_S, SAME_SHARE, STRAIGHT_DEG_S } from "../wire";
 import { figure } from "./trial";
@@ -9,7 +9,7 @@ export type Guess = { about: "pace"; is: Pace } | { about: "way"; is: Way };
 
 export interface Verdict {
   right: boolean;
-  /** What happened. */
+  /** The right answer. */
   was: Pace | Way;
 }
 
@@ -29,7 +29,7 @@ export function paceOf(before: Figures, after: Figures): Pace | null {
   return by > 0 ? "faster" : "slower";
 }
 
-/** Where a robot turns; null if the trial does not say. */
+/** To which side a robot turns; null if the trial has no turning speed. */
 export function wayOf(figures: Figures): Way | null {
   const drift = figure(figures, "drift_deg_s");
   if (drift === null) return null;
@@ -37,7 +37,7 @@ export function wayOf(figures: Figures): Way | null {
   return drift > 0 ? "left" : "right";
 }
 
-/** Compare a guess with what happened; null if the trials do not say. */
+/** Compare a guess with what happened; null if the trials can't decide it. */
 export function verdict(guess: Guess, before: Figures | null, after: Figures): Verdict | null {
   const was = guess.about === "way" ? wayOf(after) : before && paceOf(before, after);
   return was && { right: was === guess.is, was };

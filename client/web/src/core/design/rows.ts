@@ -1,4 +1,4 @@
-/** The rows of a table: add and remove them, and find those of a key. */
+/** Adds and removes rows of a table, and finds the rows of a key. */
 
 import { MAX_KEYS, MAX_POSTURES_PER_KEY } from "../wire";
 import type { Row, Table } from "./table";
@@ -11,8 +11,8 @@ export function canAdd(table: Table, after: number): boolean {
 }
 
 /**
- * Add a copy of a row: in a table of postures under the lowest free key, in one of locomotion right
- * after the row, in the same key. Without room the table stays as it is.
+ * Add a copy of a row. In a table of postures the copy gets the lowest free key. In a table of
+ * locomotion it stands right after the row, in the same key. Without room the table stays as it is.
  */
 export function addRow(table: Table, after: number): Table {
   const row = table.rows[after];
@@ -51,15 +51,16 @@ export function keysOf(table: Table): number[] {
   return [...new Set(table.rows.map(({ key }) => key))];
 }
 
-/** The rows of a key, as indices. */
+/** The indices of the rows of a key. */
 export function rowsOfKey(table: Table, key: number): number[] {
   return [...table.rows.keys()].filter((row) => table.rows[row]!.key === key);
 }
 
 /**
- * The rows that a key of level B runs through, as indices; null if it has none.
+ * The indices of the rows that a key of level B runs through; null if the key has none, or if the
+ * table lacks one of them.
  *
- * @param sequences For each key from 0 on the digits of its postures; for a table of postures.
+ * @param sequences For a table of postures: for each key from 0 on, the digits of its postures.
  */
 export function sequenceOf(
   table: Table,

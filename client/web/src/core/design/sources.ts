@@ -1,4 +1,4 @@
-/** What the 3D view shows on this page: a robot at rest in a posture, or in a trial. */
+/** Makes what the 3D view shows on this page: a robot in a posture, or in a trial. */
 
 import { computed, type ReadonlySignal } from "@preact/signals";
 import { ForwardKinematics } from "../fk";
@@ -11,7 +11,7 @@ import type { Trial } from "./trial";
 /** The `Source` of scene/View.tsx. */
 export type Source = Pick<Match, "sheet" | "scene" | "sample">;
 
-/** What is shown: a trial at a tick, with its fraction, or angles [deg] by joint id. */
+/** What is shown: a trial at a tick (may have a fraction), or angles by joint id [deg]. */
 export type Shown = { trial: Trial; tick: number } | { cells: readonly Cell[] };
 
 const RADIANS = Math.PI / 180;
@@ -24,7 +24,7 @@ export function trialSource(robot: RobotReply, trial: Trial, tick: ReadonlySigna
   );
 }
 
-/** Show whatever is to be shown now; the view goes on with its picture when that changes. */
+/** Show a posture or a trial, whichever `shown` says now; the same source stays when it changes. */
 export function source(
   robot: ReadonlySignal<RobotReply | null>,
   shown: ReadonlySignal<Shown | null>,
@@ -50,7 +50,7 @@ export function source(
   };
 }
 
-/** The frames of a trial, made when they are shown. */
+/** The frames of a trial; each is made when it is shown first. */
 class TrialFrames {
   private readonly frames: (Frame | undefined)[] = [];
 
@@ -74,7 +74,7 @@ class TrialFrames {
   }
 }
 
-/** Puts a robot on the floor: level, and its lowest part touches the floor. */
+/** Puts a robot on the floor: its body is level, and its lowest part touches the floor. */
 export class Rest {
   private readonly fk: ForwardKinematics;
 
@@ -82,7 +82,7 @@ export class Rest {
     this.fk = new ForwardKinematics(robot.scene, [robot.start_deg.length]);
   }
 
-  /** `Frame.poses` of a posture [deg]; a cell without an angle is as at the start. */
+  /** `Frame.poses` of a posture [deg]; a cell without an angle has that of the start posture. */
   poses(cells: readonly Cell[]): Float32Array {
     const { start_deg, scene } = this.robot;
     const angles = start_deg.map((start, id) => {
@@ -111,7 +111,7 @@ export function lowestM(scene: Scene, fk: ForwardKinematics): number {
   return Number.isFinite(lowest) ? lowest : 0;
 }
 
-/** How far below its middle a shape reaches; `up`: world's up along its axes. */
+/** How far below its middle a shape reaches [m]; `up`: the world's up in the shape's axes. */
 function reach(type: string, size: readonly [number, number, number], up: Three): number {
   const [x, y, z] = up.map(Math.abs) as Three;
   if (type === "sphere") return size[0];

@@ -1,12 +1,12 @@
 /**
- * The table of a gait, as the page edits it: rows of angles in degrees, by joint id (rules 1 and 2).
+ * The table of a gait that the page edits: rows of angles in degrees, by joint id (rules 1 and 2).
  *
- * A table never changes: every edit returns another one, and rows that stay are the same objects.
+ * A table is never changed: every edit returns a new table. Unchanged rows are the same objects.
  */
 
 import type { FileTable, RobotReply } from "../wire";
 
-/** An angle [deg]; text where no angle within the joint's range was typed: kept, and shown red. */
+/** An angle [deg]; a text if what was typed is no angle in the joint's range: it is shown red. */
 export type Cell = number | string;
 
 export interface Row {
@@ -31,7 +31,7 @@ export interface Table {
   readonly rows: readonly Row[];
 }
 
-/** Cells from one corner to the other, both included; rows and joint ids. */
+/** A rectangle of cells: first and last row, first and last joint id. */
 export interface Area {
   readonly top: number;
   readonly left: number;
@@ -39,7 +39,7 @@ export interface Area {
   readonly right: number;
 }
 
-/** What a table has its columns from. */
+/** The numbers of a robot that make the columns of a table. */
 export interface Columns {
   readonly legs: readonly string[];
   readonly ranges: readonly Range[];
@@ -57,15 +57,17 @@ export interface BadCell {
 
 /** The joints of a leg, from the body outward. */
 export const LEVELS = ["Root", "1st", "2nd"] as const;
+/** Postures of a table to begin with. */
+const STANDING_KEYS = 9;
 /** The range of a joint if no robot says another (workshop 3-1) [deg]. */
 export const USUAL_RANGE: Range = [-150, 150];
-/** Sums of decimal fractions are rounded to this. */
+/** Sums of angles are rounded to a multiple of 1 / EXACT degrees. */
 const EXACT = 1e9;
-/** Characters kept of what was typed into a cell. */
+/** Most characters that a cell keeps of a typed text. */
 const MOST_TEXT = 100;
 
 const NUMBER = /^[+-]?(\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?$/i;
-/** Dashes, the minus sign, and the long vowel. */
+/** Characters that count as a minus: dashes, the minus sign, and the Japanese long vowel mark. */
 const MINUS = /^[\u2010-\u2015\u2212\u30FC]/;
 
 /** The joint id of a leg's joint (rules 1). */
@@ -78,8 +80,9 @@ export const legAndLevel = (id: number, legs: number) => ({
 });
 
 /**
- * The number in a text, with a decimal point or comma and in any width; null: none. The keys for
- * minus, point and comma of a Japanese keyboard count as these: an input method types "ー", "。", "、".
+ * The number in a text; null: the text is no number. It may have a decimal point or a comma, and
+ * full-width digits. "ー", "。" and "、" count as minus and decimal points, because a Japanese
+ * input method types them for these keys.
  */
 export function numberOf(text: string): number | null {
   const plain = text
@@ -120,7 +123,7 @@ export function columnsOf(robot: RobotReply): Columns {
   return { legs: robot.legs, ranges: robot.ranges_deg };
 }
 
-/** Make a table of one on the wire; angles outside the ranges become text. */
+/** Make a table from a table of the wire format; angles outside the ranges become texts. */
 export function fromWire(wire: FileTable, columns: Columns): Table {
   const fits = wire.legs === columns.legs.length;
   const legs = fits ? columns.legs : Array.from({ length: wire.legs }, (_, leg) => String(leg));
@@ -133,7 +136,17 @@ export function fromWire(wire: FileTable, columns: Columns): Table {
   return { kind: wire.kind, legs, ranges, rows };
 }
 
-/** A table for the wire; null while a cell has no angle. */
+/** Make a table to begin with: all postures are that in which the robot stands. */
+export function standing(robot: RobotReply): Table {
+  const rows = Array.from({ length: STANDING_KEYS }, (_, key) => ({
+    key,
+    posture: 0,
+    angles_deg: robot.start_deg,
+  }));
+  return fromWire({ kind: "postures", legs: robot.legs.length, rows }, columnsOf(robot));
+}
+
+/** The table in the wire format; null while a cell has no angle. */
 export function toWire(table: Table): FileTable | null {
   if (badCells(table).length) return null;
   const rows = table.rows.map(({ key, posture, cells }) => ({
@@ -144,7 +157,7 @@ export function toWire(table: Table): FileTable | null {
   return { kind: table.kind, legs: table.legs.length, rows };
 }
 
-/** The table under a robot's labels and ranges; null: the robot has another number of legs. */
+/** The table with another robot's labels and ranges; null: it has another number of legs. */
 export function refit(table: Table, { legs, ranges }: Columns): Table | null {
   if (legs.length !== table.legs.length) return null;
   const rows = table.rows.map((row) =>
@@ -153,7 +166,7 @@ export function refit(table: Table, { legs, ranges }: Columns): Table | null {
   return { ...table, legs, ranges, rows };
 }
 
-/** The area between two cells, in whatever order. */
+/** The area with two cells as opposite corners. */
 export function areaOf(one: { row: number; col: number }, other = one): Area {
   return {
     top: Math.min(one.row, other.row),
@@ -175,7 +188,7 @@ export function setCell(table: Table, row: number, col: number, text: string): T
   return change(table, areaOf({ row, col }), (_, range) => readCell(text, range));
 }
 
-/** Put cells into a table, from a corner on; what would lie outside is left out. */
+/** Put a block into a table, its first cell at a place; cells outside the table are left out. */
 export function setArea(
   table: Table,
   at: { row: number; col: number },
@@ -190,7 +203,7 @@ export function setArea(
   });
 }
 
-/** Turn the angles of an area, to the ends of their ranges at most; text stays. */
+/** Add degrees to the angles of an area, but keep them in their ranges; texts stay. */
 export function nudge(table: Table, area: Area, byDeg: number): Table {
   return change(table, area, (cell, [low, high]) => {
     if (typeof cell === "string") return cell;
@@ -203,7 +216,7 @@ export function clear(table: Table, area: Area): Table {
   return change(table, area, () => "");
 }
 
-/** Change the cells of an area, each for itself. */
+/** Change each cell of an area with a function. */
 export function change(
   table: Table,
   { top, left, bottom, right }: Area,
@@ -217,13 +230,13 @@ export function change(
   });
 }
 
-/** Change rows, each for itself; without a change the table stays the same object. */
+/** Change each row with a function; if none changes, return the same table. */
 export function mapRows(table: Table, edit: (row: Row, index: number) => Row): Table {
   const rows = table.rows.map(edit);
   return rows.every((row, index) => row === table.rows[index]) ? table : { ...table, rows };
 }
 
-/** A row with other cells; the same object if none differs. */
+/** Change each cell of a row with a function; if none changes, return the same row. */
 export function withCells(row: Row, edit: (cell: Cell, col: number) => Cell): Row {
   const cells = row.cells.map(edit);
   return cells.every((cell, col) => cell === row.cells[col]) ? row : { ...row, cells };

@@ -3,28 +3,28 @@
 import { SEAM_DEG, SEAM_RATIO } from "../wire";
 import { type Cell, joint, LEVELS, mapRows, type Row, type Table, withCells } from "./table";
 
-/** A row that is the mirror of another one; rows as indices. */
+/** The row `to` is, or becomes, the mirror of the row `from`; both are indices. */
 export interface Half {
   readonly from: number;
   readonly to: number;
 }
 
-/** What a joint does where a sequence begins again. */
+/** The motion of a joint where a sequence begins again. */
 export interface Seam {
-  /** How far it turns from the last posture to the first [deg]; NaN without an angle. */
+  /** How far the joint turns from the last posture to the first [deg]; NaN without an angle. */
   stepDeg: number;
-  /** The largest of its other steps [deg]. */
+  /** The largest other step of the joint in the sequence [deg]. */
   otherDeg: number;
-  /** Whether that is a jump, as `lacoc trial` says it (docs/studio.md 3). */
+  /** Whether the step at the seam is a jump, by the rule of `lacoc trial` (docs/studio.md 3). */
   jumps: boolean;
 }
 
-/** The leg on the other side: legs are numbered clockwise from the right front (rules 1). */
+/** The leg opposite to a leg; legs are numbered clockwise from the right front (rules 1). */
 export const mirrorLeg = (leg: number, legs: number) => legs - 1 - leg;
 
 /**
- * The cells of the posture as a mirror between left and right shows it. No angle changes its sign:
- * a positive root angle swings a leg forward on both sides (workshop 3-1).
+ * The cells of a posture with its left and right side swapped. No angle changes its sign, because a
+ * positive root angle swings a leg forward on both sides (workshop 3-1).
  */
 export function mirrored(cells: readonly Cell[], legs: number): Cell[] {
   return cells.map((_, id) => {
@@ -33,19 +33,19 @@ export function mirrored(cells: readonly Cell[], legs: number): Cell[] {
   });
 }
 
-/** Mirror rows in their places. */
+/** Replace rows by their own mirror. */
 export function mirrorRows(table: Table, rows: readonly number[]): Table {
   return mapRows(table, (row, index) => (rows.includes(index) ? mirrorOf(table, row, row) : row));
 }
 
-/** The second half of a sequence as mirrors of its first; [] if there is no such half. */
+/** Pair each row of a sequence's first half with one of its second half; [] if it has no halves. */
 export function halvesOf(sequence: readonly number[]): Half[] {
   const half = sequence.length / 2;
   if (!Number.isInteger(half) || new Set(sequence).size < sequence.length) return [];
   return sequence.slice(0, half).map((from, index) => ({ from, to: sequence[half + index]! }));
 }
 
-/** Make the second half of a sequence the mirror of its first. */
+/** Make each row `to` the mirror of its row `from`. */
 export function otherHalf(table: Table, halves: readonly Half[]): Table {
   const sources = new Map(halves.map(({ from, to }) => [to, from]));
   return mapRows(table, (row, index) => {
@@ -55,7 +55,7 @@ export function otherHalf(table: Table, halves: readonly Half[]): Table {
 }
 
 /**
- * Keep halves each other's mirror after an edit: what changed in one changes in the other.
+ * After an edit of a row, make its partner in the other half its mirror again.
  *
  * @param before The table before the edit, with as many rows.
  * @param after The table after it.
@@ -68,7 +68,7 @@ export function follow(before: Table, after: Table, halves: readonly Half[]): Ta
   return otherHalf(after, ways);
 }
 
-/** Give a leg the angles of another one, in some rows. */
+/** Give the leg `to` the angles of the leg `from`, in some rows. */
 export function copyLeg(table: Table, rows: readonly number[], from: number, to: number): Table {
   const legs = table.legs.length;
   return mapRows(table, (row, index) => {
@@ -79,7 +79,7 @@ export function copyLeg(table: Table, rows: readonly number[], from: number, to:
   });
 }
 
-/** The seam of a sequence, by joint id; [] if the sequence has fewer than two postures. */
+/** The seam of each joint, by joint id; [] if the sequence has fewer than two postures. */
 export function seam(table: Table, sequence: readonly number[]): Seam[] {
   const rows = sequence.map((row) => table.rows[row]!.cells);
   const [first, last] = [rows[0], rows.at(-1)];

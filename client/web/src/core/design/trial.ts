@@ -1,4 +1,4 @@
-/** A trial, tick by tick: a tick is 20 ms. */
+/** Reads a trial's measurements, tick by tick; a tick is 20 ms. */
 
 import { ROOT_FLOATS, type Sentence, type TrialReply } from "../wire";
 import { LEVELS } from "./table";
@@ -9,25 +9,25 @@ export interface Trial {
   readonly ticks: number;
   /** (ticks,) index of the target posture in the key's sequence. */
   readonly posture: Uint8Array;
-  /** (ticks,) bit i: the foot of leg i is down. */
+  /** (ticks,) bit i is set while the foot of leg i is down. */
   readonly down: Uint8Array;
   /** (ticks, 7 + joints) as `Frame.poses`. */
   readonly poses: Float32Array;
-  /** (ticks, joints) */
+  /** (ticks, joints) commanded joint angles. */
   readonly commandedRad: Float32Array;
   /** (ticks, legs, 2) where each shank touches the floor [m, world]; 0 without contact. */
   readonly contactM: Float32Array;
   /** (ticks, 2) centre of mass in the plane of the floor [m, world]. */
   readonly centreM: Float32Array;
-  /** (ticks,) support margin; NaN while no foot is down. */
+  /** (ticks,) support margin [m]; NaN while no foot is down. */
   readonly marginM: Float32Array;
-  /** (ticks, legs) speed of each shank along the floor. */
+  /** (ticks, legs) speed of each shank along the floor [m/s]. */
   readonly slipMS: Float32Array;
-  /** (ticks, legs) height of each foot's lowest point. */
+  /** (ticks, legs) height of each foot's lowest point [m]. */
   readonly tipM: Float32Array;
 }
 
-/** Ticks from `from` to before `to`. */
+/** The ticks from `from` up to, but without, `to`. */
 export interface Run {
   readonly from: number;
   readonly to: number;
@@ -35,11 +35,11 @@ export interface Run {
 
 export type Point = readonly [number, number];
 
-/** What carries the robot at a tick, in the plane of the floor [m, world]. */
+/** The feet that carry the robot at a tick, in the plane of the floor [m, world]. */
 export interface Support {
-  /** Where the feet stand that are down; `leg` says whose they are. */
+  /** The legs whose feet are down, and where each foot stands. */
   readonly feet: readonly { leg: number; at: Point }[];
-  /** Corners of their convex hull, counter-clockwise. */
+  /** Corners of the feet's convex hull, counter-clockwise. */
   readonly corners: readonly Point[];
   readonly centre: Point;
   /** Null while no foot is down. */
@@ -49,7 +49,7 @@ export interface Support {
 /**
  * Read the reply to a trial.
  *
- * @throws RangeError If an array does not have as many numbers as the ticks and legs ask for.
+ * @throws RangeError If the length of an array does not fit the number of ticks and legs.
  */
 export function readTrial(reply: TrialReply, legs: number): Trial {
   const { ticks } = reply;
@@ -79,14 +79,14 @@ export function isDown(trial: Trial, leg: number, tick: number): boolean {
   return ((trial.down[tick]! >> leg) & 1) === 1;
 }
 
-/** For each leg, when its foot is down, among the ticks from `from` to before `to`. */
+/** For each leg, the runs of ticks in which its foot is down, within the ticks of a range. */
 export function footBars(trial: Trial, from = 0, to = trial.ticks): Run[][] {
   return Array.from({ length: trial.legs }, (_, leg) =>
     runsOf(from, to, (tick) => isDown(trial, leg, tick)),
   );
 }
 
-/** For each part of the key's sequence, when it was the target: runs of equal `posture`. */
+/** The runs of ticks with the same target posture; a new cycle begins a new run. */
 export function postureRuns(trial: Trial): (Run & { posture: number })[] {
   const found: (Run & { posture: number })[] = [];
   for (let from = 0; from < trial.ticks; ) {
@@ -99,7 +99,7 @@ export function postureRuns(trial: Trial): (Run & { posture: number })[] {
   return found;
 }
 
-/** What carries the robot at a tick. */
+/** Find the feet that carry the robot at a tick. */
 export function support(trial: Trial, tick: number): Support {
   const feet = Array.from({ length: trial.legs }, (_, leg) => leg)
     .filter((leg) => isDown(trial, leg, tick))
@@ -113,14 +113,14 @@ export function support(trial: Trial, tick: number): Support {
   };
 }
 
-/** What is drawn on the floor at a tick: what carries the robot, and its way. */
+/** What is drawn on the floor at a tick: what carries the robot, and its path. */
 export function floorMarks(trial: Trial, tick: number, way: Float32Array) {
   const { corners, centre, marginM } = support(trial, tick);
   const isStable = marginM !== null && marginM > 0;
   return { polygon: corners, centre, isStable, way, done: tick };
 }
 
-/** The way of the body seen from above, a point for each tick [m, world]. */
+/** The path of the body seen from above: a point for each tick [m, world]. */
 export function pathOf(trial: Trial): Point[] {
   const width = trial.poses.length / Math.max(1, trial.ticks);
   return Array.from({ length: trial.ticks }, (_, tick) => [
@@ -129,13 +129,13 @@ export function pathOf(trial: Trial): Point[] {
   ]);
 }
 
-/** A number among the figures; null where the trial has none. */
+/** A figure by its name; null if the trial has no such number. */
 export function figure(figures: Record<string, unknown>, name: string): number | null {
   const value = figures[name];
   return typeof value === "number" && Number.isFinite(value) ? value : null;
 }
 
-/** The leg of a sentence; null: it is about the whole robot. */
+/** The index of the leg that a sentence is about; null: it is about the whole robot. */
 export function legOf({ leg }: Sentence): number | null {
   return leg < 0 ? null : leg;
 }

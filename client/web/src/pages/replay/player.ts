@@ -1,6 +1,6 @@
-/** Plays a recording: time, speed, and the ways to another moment. */
+/** Plays a recording, with the ways to another moment of the match. */
 
-import { computed, signal } from "@preact/signals";
+import { Playback } from "../../core/playback";
 import type { Recording } from "../../core/recording";
 import type { Event } from "../../core/wire";
 import { BEATS_PER_S } from "../../i18n/words";
@@ -13,53 +13,21 @@ const RUN_UP_BEATS = BEATS_PER_S;
 /** "The previous event" is the one before that, if this one was only just reached. */
 const JUST_BEATS = 1.5 * BEATS_PER_S;
 
-export class Player {
-  readonly playing = signal(false);
-  readonly speed = signal(1);
+export class Player extends Playback {
   /** The events that one jumps to, and that have a mark. */
   readonly marks: readonly Event[];
-  readonly atEnd = computed(() => this.recording.beat.value >= this.recording.lastBeat);
-  private lastMs = 0;
-  private handle = 0;
 
   constructor(readonly recording: Recording) {
+    super(recording);
     const { firstBeat, lastBeat } = recording;
     this.marks = recording.record.events.filter(
       (event) => event.beat >= firstBeat && event.beat <= lastBeat && isMarked(event),
     );
   }
 
-  toggle(): void {
-    if (this.playing.value) this.pause();
-    else this.play();
-  }
-
-  play(): void {
-    if (this.playing.value) return;
-    if (this.atEnd.value) this.recording.seek(this.recording.firstBeat);
-    this.playing.value = true;
-    this.lastMs = performance.now();
-    this.handle = requestAnimationFrame(this.tick);
-  }
-
-  pause(): void {
-    this.playing.value = false;
-    cancelAnimationFrame(this.handle);
-  }
-
-  seek(beat: number): void {
-    this.recording.seek(beat);
-  }
-
   /** Go on by some seconds of the match. */
   skip(seconds: number): void {
     this.seek(this.recording.beat.value + seconds * BEATS_PER_S);
-  }
-
-  /** Go to the beat before or after, and stand there. */
-  step(beats: number): void {
-    this.pause();
-    this.seek(Math.floor(this.recording.beat.value) + beats);
   }
 
   faster(steps: number): void {
@@ -83,16 +51,6 @@ export class Player {
   show(event: Event): void {
     this.seek(event.beat - RUN_UP_BEATS);
   }
-
-  private readonly tick = (nowMs: number): void => {
-    // A hidden tab gets no pictures: what passed meanwhile is not made up for.
-    const passedMs = Math.min(250, Math.max(0, nowMs - this.lastMs));
-    this.lastMs = nowMs;
-    const beats = (passedMs / 1000) * BEATS_PER_S * this.speed.value;
-    this.seek(this.recording.beat.value + beats);
-    if (this.atEnd.value) this.pause();
-    else this.handle = requestAnimationFrame(this.tick);
-  };
 }
 
 function isMarked(event: Event): boolean {

@@ -1,9 +1,9 @@
 /** What will happen? Foretold before the trial shows it. */
 
 import { useEffect } from "preact/hooks";
-import type { Guess } from "../../core/design/predict";
-import { t } from "../../i18n";
-import type { Studio } from "./studio";
+import type { Guess } from "../../../core/design/predict";
+import { t } from "../../../i18n";
+import type { Trials } from "../trials/trials";
 
 const PACES = ["faster", "same", "slower"] as const;
 const WAYS = ["left", "straight", "right"] as const;
@@ -14,22 +14,21 @@ export function guessName(is: Guess["is"]): string {
 }
 
 interface Props {
-  studio: Studio;
-  onTry: () => void;
+  trials: Trials;
   onClose: () => void;
 }
 
-export function Foretell({ studio, onTry, onClose }: Props) {
+export function Foretell({ trials, onClose }: Props) {
   useEffect(() => {
     const press = (event: KeyboardEvent) => event.key === "Escape" && onClose();
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);
   }, [onClose]);
-  const before = studio.lastOf(studio.pressed());
-  const guesses = studio.guesses.value;
+  const before = trials.lastOf(trials.pressed());
+  const guesses = trials.guesses.value;
   const choose = (guess: Guess) => {
     const others = guesses.filter(({ about }) => about !== guess.about);
-    studio.guesses.value = [...others, guess];
+    trials.guesses.value = [...others, guess];
   };
   return (
     <section class="foretell" aria-label={t("design.predict")}>
@@ -48,7 +47,15 @@ export function Foretell({ studio, onTry, onClose }: Props) {
           <Choice key={is} about="way" is={is} guesses={guesses} onChoose={choose} />
         ))}
       </fieldset>
-      <button class="button strong" type="button" disabled={!guesses.length} onClick={onTry}>
+      <button
+        class="button strong"
+        type="button"
+        disabled={!guesses.length}
+        onClick={() => {
+          onClose();
+          void trials.tryIt();
+        }}
+      >
         {t("design.try")}
       </button>
     </section>

@@ -1,30 +1,40 @@
 /** The history of trials; each belongs to a version of the table. */
 
-import { t } from "../../i18n";
+import { t } from "../../../i18n";
+import { classes } from "../names";
+import type { Showing } from "../walk/showing";
 import { difference, TILES, written } from "./figures";
-import { classes } from "./rows";
-import type { Studio, Tried } from "./studio";
+import type { Trials } from "./trials";
+import type { Tried } from "./tried";
+import "./trials.css";
 
 const [SPEED, DRIFT, STABLE] = TILES;
 
-export function Trials({ studio }: { studio: Studio }) {
-  const trials = studio.trials.value;
-  if (!trials.length) return <p class="muted empty">{t("design.noTrials")}</p>;
+interface ListProps {
+  trials: Trials;
+  showing: Showing;
+  /** The version of the table. */
+  version: number;
+}
+
+export function TrialList(props: ListProps) {
+  const all = props.trials.all.value;
+  if (!all.length) return <p class="muted empty">{t("design.noTrials")}</p>;
   return (
     <ol class="trials" reversed>
-      {trials.toReversed().map((tried) => (
-        <TrialRow key={tried.number} studio={studio} tried={tried} />
+      {all.toReversed().map((tried) => (
+        <TrialRow key={tried.number} {...props} tried={tried} />
       ))}
     </ol>
   );
 }
 
-function TrialRow({ studio, tried }: { studio: Studio; tried: Tried }) {
-  const isShown = studio.shown.value === tried;
-  const isOther = studio.other.value === tried;
-  const isCurrent = tried.version === studio.version.value;
+function TrialRow({ trials, showing, version, tried }: ListProps & { tried: Tried }) {
+  const isShown = showing.shown.value === tried;
+  const isOther = showing.other.value === tried;
+  const isCurrent = tried.version === version;
   const { figures } = tried.trial.reply;
-  const before = studio.trials.value.findLast(
+  const before = trials.all.value.findLast(
     (one) => one.number < tried.number && one.key === tried.key,
   );
   const by = before && difference(SPEED!, before.trial.reply.figures, figures);
@@ -36,7 +46,7 @@ function TrialRow({ studio, tried }: { studio: Studio; tried: Tried }) {
         type="button"
         aria-current={isShown}
         aria-label={t("design.showTrial", { name })}
-        onClick={() => studio.look(tried)}
+        onClick={() => showing.look(tried)}
       >
         <b class="number">{tried.number}</b>
         <span class="what">
@@ -58,7 +68,7 @@ function TrialRow({ studio, tried }: { studio: Studio; tried: Tried }) {
             class="button quiet small"
             type="button"
             aria-label={t("design.restoreTrial", { name })}
-            onClick={() => studio.restore(tried)}
+            onClick={() => trials.restore(tried)}
           >
             {t("design.restore")}
           </button>
@@ -70,7 +80,7 @@ function TrialRow({ studio, tried }: { studio: Studio; tried: Tried }) {
             aria-pressed={isOther}
             aria-label={t("design.compareTrial", { name })}
             onClick={() => {
-              studio.other.value = isOther ? null : tried;
+              showing.other.value = isOther ? null : tried;
             }}
           >
             {t("design.compare")}

@@ -1,6 +1,7 @@
 /** Files dropped on the page: anywhere, as a browser would leave the page for what misses a frame. */
 
-import type { Signal } from "@preact/signals";
+import type { ReadonlySignal, Signal } from "@preact/signals";
+import type { ComponentChildren } from "preact";
 import { useEffect } from "preact/hooks";
 
 /**
@@ -33,6 +34,16 @@ export function useDrop(dragging: Signal<boolean>, take: (files: readonly File[]
       removeEventListener("drop", drop);
     };
   }, []);
+}
+
+interface Props {
+  dragging: ReadonlySignal<boolean>;
+  children: ComponentChildren;
+}
+
+/** What is said over the whole page while files are over it. */
+export function Dropping({ dragging, children }: Props) {
+  return dragging.value ? <div class="dropping">{children}</div> : null;
 }
 
 /** False for a word that is dragged into a field. */

@@ -1,7 +1,7 @@
 /** The figures of a trial: which are shown, how they are written, and which way is better. */
 
-import { figure } from "../../core/design/trial";
-import type { MessageName } from "../../i18n";
+import { figure } from "../../../core/design/trial";
+import type { MessageName } from "../../../i18n";
 
 type Figures = Record<string, unknown>;
 

@@ -1,6 +1,6 @@
 /** The cells of the grid: head, rows, and what their colours say. */
 
-import { useComputed } from "@preact/signals";
+import { type ReadonlySignal, useComputed } from "@preact/signals";
 import {
   type Cell,
   LEVELS,
@@ -8,14 +8,24 @@ import {
   type Row,
   type Table,
   wrongOf,
-} from "../../core/design/table";
-import { seam } from "../../core/design/tools";
-import { type MessageName, t } from "../../i18n";
-import { type Marked, weightsShown } from "./coach";
-import { jointName, type Place, type Studio } from "./studio";
+} from "../../../core/design/table";
+import { seam } from "../../../core/design/tools";
+import { type MessageName, t } from "../../../i18n";
+import type { Marked } from "../coach/coach";
+import { cellId, classes, jointName, rowName } from "../names";
+import type { Place, Sheet } from "./sheet";
+
+/** What others show in the table. */
+export interface Overlay {
+  /** What the coach says of cells, by row and column; null: nothing. */
+  marks: ReadonlySignal<ReadonlyMap<number, ReadonlyMap<number, Marked>> | null>;
+  /** The row whose posture is the target at the moment shown; -1: none. */
+  target: ReadonlySignal<number>;
+}
 
 interface TableProps {
-  studio: Studio;
+  sheet: Sheet;
+  overlay: Overlay;
   table: Table;
   /** Give the input the focus. */
   focus: () => void;
@@ -25,14 +35,14 @@ interface TableProps {
   edit: () => void;
 }
 
-export function GridTable({ studio, table, focus, commit, edit }: TableProps) {
-  const area = studio.area.value;
-  const active = studio.active.value;
-  const lit = new Set(studio.lit.value);
-  const sequence = studio.sequence.value ?? [];
-  const target = useComputed(() => targetRow(studio)).value;
-  const weights = weightsShown(studio);
-  const unpasted = byRow(studio.unpasted.value);
+export function GridTable({ sheet, overlay, table, focus, commit, edit }: TableProps) {
+  const area = sheet.area.value;
+  const active = sheet.active.value;
+  const lit = new Set(sheet.lit.value);
+  const sequence = sheet.sequence.value ?? [];
+  const target = overlay.target.value;
+  const weights = overlay.marks.value;
+  const unpasted = byRow(sheet.unpasted.value);
   const last = table.rows.length - 1;
   const isSequence = table.kind === "locomotion";
 
@@ -41,29 +51,29 @@ export function GridTable({ studio, table, focus, commit, edit }: TableProps) {
     if (!place || event.button !== 0 || event.pointerType === "touch") return;
     event.preventDefault(); // the input keeps the focus
     commit();
-    studio.select(place, event.shiftKey ? studio.anchor.peek() : place);
+    sheet.select(place, event.shiftKey ? sheet.anchor.peek() : place);
     focus();
   };
   const onPointerMove = (event: PointerEvent) => {
     const place = placeOf(event);
-    if (place) studio.point([place.col]);
+    if (place) sheet.point([place.col]);
     const isDragging = event.buttons & 1 && event.pointerType !== "touch";
-    const now = studio.active.peek();
+    const now = sheet.active.peek();
     if (!place || !isDragging || (place.row === now.row && place.col === now.col)) return;
-    studio.select(place, studio.anchor.peek());
+    sheet.select(place, sheet.anchor.peek());
   };
   const onClick = (event: MouseEvent) => {
     const place = placeOf(event);
     if (!place || (event as PointerEvent).pointerType !== "touch") return;
-    const now = studio.active.peek();
+    const now = sheet.active.peek();
     const isAgain = now.row === place.row && now.col === place.col;
     commit();
-    studio.select(place);
+    sheet.select(place);
     // Only a second tap types: the first one must not bring up a keyboard.
     if (isAgain) edit();
   };
   const selectColumns = (left: number, right: number) => {
-    studio.select({ row: 0, col: left }, { row: last, col: right });
+    sheet.select({ row: 0, col: left }, { row: last, col: right });
     focus();
   };
   return (
@@ -74,11 +84,11 @@ export function GridTable({ studio, table, focus, commit, edit }: TableProps) {
       aria-multiselectable="true"
       onPointerDown={onPointerDown}
       onPointerMove={onPointerMove}
-      onPointerLeave={() => studio.point([])}
+      onPointerLeave={() => sheet.point([])}
       onClick={onClick}
       onDblClick={(event) => placeOf(event) && edit()}
     >
-      <Head studio={studio} table={table} lit={lit} onSelect={selectColumns} />
+      <Head sheet={sheet} table={table} lit={lit} onSelect={selectColumns} />
       <tbody>
         {table.rows.map((row, index) => (
           <GridRow
@@ -98,7 +108,7 @@ export function GridTable({ studio, table, focus, commit, edit }: TableProps) {
             weights={weights?.get(index) ?? null}
             unpasted={unpasted.get(index) ?? null}
             onSelect={() => {
-              studio.select({ row: index, col: 0 }, { row: index, col: row.cells.length - 1 });
+              sheet.select({ row: index, col: 0 }, { row: index, col: row.cells.length - 1 });
               focus();
             }}
           />
@@ -109,23 +119,23 @@ export function GridTable({ studio, table, focus, commit, edit }: TableProps) {
 }
 
 interface HeadProps {
-  studio: Studio;
+  sheet: Sheet;
   table: Table;
   lit: ReadonlySet<number>;
   onSelect: (left: number, right: number) => void;
 }
 
-function Head({ studio, table, lit, onSelect }: HeadProps) {
+function Head({ sheet, table, lit, onSelect }: HeadProps) {
   const legs = table.legs.length;
   const jumps = useComputed(() => {
-    const now = studio.table.value;
-    return now ? seam(now, studio.sequence.value ?? []).map((one) => one.jumps) : [];
+    const now = sheet.table.value;
+    return now ? seam(now, sheet.sequence.value ?? []).map((one) => one.jumps) : [];
   }).value;
   const headOf = (col: number) => ({
     class: classes(col % legs === 0 && "first", lit.has(col) && "lit", jumps[col] && "jumps"),
     title: jumps[col] ? t("design.seamJump") : jointName(table.legs, col),
     onClick: () => onSelect(col, col),
-    onPointerEnter: () => studio.point([col]),
+    onPointerEnter: () => sheet.point([col]),
   });
   const columns = table.ranges.map((_, col) => col);
   return (
@@ -240,20 +250,7 @@ function GridRow(props: RowProps) {
   );
 }
 
-/** "1", or "2 · 3" for the third posture of key 2. */
-export function rowName({ key, posture }: Row, isSequence: boolean): string {
-  return isSequence ? `${key} · ${posture + 1}` : String(key);
-}
-
-export function cellId({ row, col }: Place): string {
-  return `cell-${row}-${col}`;
-}
-
-export function classes(...names: (string | false | undefined | null)[]): string {
-  return names.filter(Boolean).join(" ");
-}
-
-function byRow(cells: Studio["unpasted"]["value"]): Map<number, Map<number, string>> {
+function byRow(cells: Sheet["unpasted"]["value"]): Map<number, Map<number, string>> {
   const found = new Map<number, Map<number, string>>();
   for (const { row, col, why } of cells) {
     found.set(row, (found.get(row) ?? new Map()).set(col, why));
@@ -271,12 +268,4 @@ function wrongProps(cell: Cell, [low, high]: Range) {
 function placeOf({ target }: Event): Place | null {
   const cell = (target as HTMLElement | null)?.closest<HTMLElement>("td[data-row]");
   return cell ? { row: Number(cell.dataset.row), col: Number(cell.dataset.col) } : null;
-}
-
-/** The row whose posture is the target at the moment shown; -1 if none is. */
-function targetRow({ shown, watching, version, clock }: Studio): number {
-  const tried = shown.value;
-  if (!tried || !watching.value || tried.version !== version.value) return -1;
-  const posture = tried.trial.posture[Math.floor(clock.tick.value)];
-  return tried.rows[posture ?? -1] ?? -1;
 }

@@ -1,24 +1,31 @@
 /** What a trial showed: figures, and at most three sentences that say why. */
 
-import { useComputed } from "@preact/signals";
-import { jointsOfLeg } from "../../core/design/parts";
-import { legOf } from "../../core/design/trial";
-import type { Sentence } from "../../core/wire";
-import { said, t } from "../../i18n";
+import { jointsOfLeg } from "../../../core/design/parts";
+import { legOf } from "../../../core/design/trial";
+import type { Sentence } from "../../../core/wire";
+import { said, t } from "../../../i18n";
+import { guessName } from "../head/foretell";
+import { classes } from "../names";
+import type { Sheet } from "../table/sheet";
+import type { Showing } from "../walk/showing";
 import { difference, FIGURES, TILES, titleOf, written } from "./figures";
-import { guessName } from "./guess";
-import { classes } from "./rows";
-import type { Studio, Tried } from "./studio";
+import type { Trials } from "./trials";
+import type { Tried } from "./tried";
+import "./result.css";
 
-export function Result({ studio }: { studio: Studio }) {
-  const tried = studio.shown.value;
-  const before = useComputed(() => {
-    const [now, other] = [studio.shown.value, studio.other.value];
-    return other ?? studio.trials.value.findLast((one) => now && one.number < now.number) ?? null;
-  }).value;
-  if (!tried) return <First studio={studio} />;
+interface ResultProps {
+  sheet: Sheet;
+  trials: Trials;
+  showing: Showing;
+}
+
+export function Result({ sheet, trials, showing }: ResultProps) {
+  const tried = showing.shown.value;
+  const other = showing.other.value;
+  const before = other ?? trials.beforeShown();
+  if (!tried) return <First onTry={() => void trials.tryIt()} />;
   const { figures, notes = [], fault } = tried.trial.reply;
-  const isOld = tried.version !== studio.version.value;
+  const isOld = tried.version !== sheet.version.value;
   return (
     <section class="result" aria-label={t("design.result")}>
       <header>
@@ -45,7 +52,7 @@ export function Result({ studio }: { studio: Studio }) {
       <ol class="sentences" aria-label={t("design.explained")}>
         {tried.trial.reply.explained.map((sentence, index) => (
           <li key={index}>
-            <Explained studio={studio} tried={tried} sentence={sentence} />
+            <Explained sheet={sheet} tried={tried} sentence={sentence} />
           </li>
         ))}
       </ol>
@@ -54,13 +61,13 @@ export function Result({ studio }: { studio: Studio }) {
           {said(note)}
         </p>
       ))}
-      {studio.other.value && <Differences tried={tried} other={studio.other.value} />}
+      {other && <Differences tried={tried} other={other} />}
     </section>
   );
 }
 
 /** How it is done, until something was tried. */
-function First({ studio }: { studio: Studio }) {
+function First({ onTry }: { onTry: () => void }) {
   return (
     <section class="result first" aria-label={t("design.result")}>
       <h2>{t("design.first")}</h2>
@@ -69,7 +76,7 @@ function First({ studio }: { studio: Studio }) {
         <li>{t("design.first.2")}</li>
         <li>{t("design.first.3")}</li>
       </ol>
-      <button class="button strong" type="button" onClick={() => void studio.tryIt()}>
+      <button class="button strong" type="button" onClick={onTry}>
         {t("design.try")}
       </button>
     </section>
@@ -77,12 +84,12 @@ function First({ studio }: { studio: Studio }) {
 }
 
 interface ExplainedProps {
-  studio: Studio;
+  sheet: Sheet;
   tried: Tried;
   sentence: Sentence;
 }
 
-function Explained({ studio, tried, sentence }: ExplainedProps) {
+function Explained({ sheet, tried, sentence }: ExplainedProps) {
   const leg = legOf(sentence);
   const legs = tried.robot.legs.length;
   const joints = sentence.cell ? [sentence.cell.joint] : leg === null ? [] : jointsOfLeg(leg, legs);
@@ -93,11 +100,11 @@ function Explained({ studio, tried, sentence }: ExplainedProps) {
     <button
       type="button"
       title={t("design.showCell")}
-      onPointerEnter={() => studio.point(joints)}
-      onPointerLeave={() => studio.point([])}
-      onFocus={() => studio.point(joints)}
-      onBlur={() => studio.point([])}
-      onClick={() => studio.select({ row, col: joints[0]! })}
+      onPointerEnter={() => sheet.point(joints)}
+      onPointerLeave={() => sheet.point([])}
+      onFocus={() => sheet.point(joints)}
+      onBlur={() => sheet.point([])}
+      onClick={() => sheet.select({ row, col: joints[0]! })}
     >
       {text}
     </button>

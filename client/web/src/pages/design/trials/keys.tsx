@@ -1,31 +1,29 @@
 /** The keys of level B: what each runs through, and which of them a trial presses. */
 
 import { useSignal } from "@preact/signals";
-import { keysOf, rowsOfKey } from "../../core/design/rows";
-import { digitsOf, sequences } from "../../core/files";
-import { MAX_KEYS } from "../../core/wire";
-import { type MessageName, t } from "../../i18n";
-import { classes } from "./rows";
-import type { Studio } from "./studio";
-
-/** The sample's meaning of a key (Fig. 4-2). */
-const NAMED = 4;
-
-/** "2 forward" */
-export function keyName(key: number): string {
-  return key < NAMED ? `${key} ${t(`design.key.${key}` as MessageName)}` : String(key);
-}
+import { keysOf, rowsOfKey } from "../../../core/design/rows";
+import { digitsOf, sequences } from "../../../core/files";
+import { MAX_KEYS } from "../../../core/wire";
+import { t } from "../../../i18n";
+import { classes, keyMeaning, keyName } from "../names";
+import type { Sheet } from "../table/sheet";
+import "./keys.css";
 
 /** The keys that can be tried. */
-export function triedKeys(studio: Studio): number[] {
-  const table = studio.table.value;
+export function triedKeys(sheet: Sheet): number[] {
+  const table = sheet.table.value;
   if (!table) return [];
   if (table.kind === "locomotion") return keysOf(table);
   return sequences.value.flatMap((digits, key) => (digits ? [key] : []));
 }
 
-export function Keys({ studio }: { studio: Studio }) {
-  const table = studio.table.value;
+interface Props {
+  sheet: Sheet;
+  onChoose: (key: number) => void;
+}
+
+export function Keys({ sheet, onChoose }: Props) {
+  const table = sheet.table.value;
   if (!table) return null;
   const isMade = table.kind === "postures";
   const shown = isMade
@@ -36,23 +34,22 @@ export function Keys({ studio }: { studio: Studio }) {
       <h2 id="keys-title">{t("design.keys")}</h2>
       <ul>
         {shown.map((key) => (
-          <li key={key} class={classes(studio.key.value === key && "chosen")}>
+          <li key={key} class={classes(sheet.key.value === key && "chosen")}>
             <button
               type="button"
-              aria-pressed={studio.key.value === key}
+              aria-pressed={sheet.key.value === key}
               aria-label={t("design.chooseKey", { name: keyName(key) })}
               onClick={() => {
-                studio.key.value = key;
-                studio.pose.value = null;
-                const row = studio.sequence.peek()?.[0];
-                if (row !== undefined) studio.select({ row, col: studio.active.peek().col });
+                onChoose(key);
+                const row = sheet.sequence.peek()?.[0];
+                if (row !== undefined) sheet.select({ row, col: sheet.active.peek().col });
               }}
             >
               <b>{key}</b>
-              <span>{key < NAMED ? t(`design.key.${key}` as MessageName) : ""}</span>
+              <span>{keyMeaning(key)}</span>
             </button>
             {isMade ? (
-              <Sequence studio={studio} digit={key} />
+              <Sequence sheet={sheet} digit={key} />
             ) : (
               <small>{t("design.postures", { count: rowsOfKey(table, key).length })}</small>
             )}
@@ -65,10 +62,10 @@ export function Keys({ studio }: { studio: Studio }) {
 }
 
 /** The postures of a key. What is being typed stays, also when the page is drawn again meanwhile. */
-function Sequence({ studio, digit }: { studio: Studio; digit: number }) {
+function Sequence({ sheet, digit }: { sheet: Sheet; digit: number }) {
   const draft = useSignal<string | null>(null);
   const digits = sequences.value[digit] ?? "";
-  const there = new Set(keysOf(studio.table.value!).map(String));
+  const there = new Set(keysOf(sheet.table.value!).map(String));
   const isWrong = [...digits].some((one) => !there.has(one));
   return (
     <input

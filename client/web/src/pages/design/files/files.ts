@@ -1,0 +1,253 @@
+/** The file that the table comes from: open, take in, save, and what to do where it has changed. */
+
+import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
+import { columnsOf, fromWire, standing, type Table, toWire } from "../../../core/design/table";
+import { download } from "../../../core/files";
+import type { Phrase } from "../../../core/phrase";
+import type { FileTable, FolderFile, Mistake } from "../../../core/wire";
+import { t } from "../../../i18n";
+import { toast } from "../../../ui/toasts";
+import type { Can } from "../can";
+import type { Gateway } from "../gateway";
+import type { ReadRobot, RobotInUse } from "../robot/robot";
+import type { Sheet } from "../table/sheet";
+
+/** The file that the table was read from. */
+export interface OpenFile {
+  /** "" while the table has no file. */
+  name: string;
+  /** The file's version when it was read or saved last. */
+  version: string;
+  /** The table's version that the file has. */
+  saved: number;
+}
+
+/** A file that has another content than the page thought. */
+export interface Conflict {
+  name: string;
+  version: string;
+  table: FileTable | null;
+  mistakes: readonly Mistake[];
+  /** Saving over a file that was opened or over another one, or the file changed while it is open. */
+  when: "saving" | "existing" | "open";
+}
+
+/** A parsed file or pasted sheet: a gait or a robot. */
+export interface Parsed {
+  table: FileTable | null;
+  robot: string | null;
+  notes: Phrase[];
+}
+
+/** A file of the folder. */
+export interface Read extends Parsed {
+  version: string;
+}
+
+const NO_FILE = { name: "", version: "" };
+const POSTURES = "Loco-data.txt";
+const LOCOMOTION = "LocoTra-data.txt";
+
+export class Files {
+  readonly folder = signal<{ folder: string; files: readonly FolderFile[] }>({
+    folder: "",
+    files: [],
+  });
+  readonly file = signal<OpenFile>({ ...NO_FILE, saved: 0 });
+  readonly conflict = signal<Conflict | null>(null);
+  readonly isSaved = computed(() => this.file.value.saved === this.sheet.version.value);
+  /** Whether somebody chose to begin with a new table or the sample: no file takes its place. */
+  isAskedFor = false;
+
+  constructor(
+    private readonly gateway: Gateway,
+    private readonly sheet: Sheet,
+    private readonly robot: RobotInUse,
+    private readonly can: ReadonlySignal<Can>,
+  ) {}
+
+  /** The name under which the table is saved without asking. */
+  usualName(): string {
+    const { name } = this.file.peek();
+    return name || (this.sheet.table.peek()?.kind === "locomotion" ? LOCOMOTION : POSTURES);
+  }
+
+  // Open
+
+  /** Open a file of the folder. */
+  async open(name: string): Promise<void> {
+    const slot = this.folder.peek().files.find((file) => file.name === name)?.slot;
+    try {
+      const read = await this.gateway.ask<Read>("read", { name });
+      if (read.robot !== null || slot === "robot") await this.useRobot(name, read.robot ?? "");
+      else if (read.table) this.show(read.table, { name, version: read.version });
+      this.gateway.tell(read.notes);
+    } catch (error) {
+      this.gateway.refuse(error);
+    }
+  }
+
+  /** Begin with the sample gait of the robot, where it has one. */
+  async openSample(): Promise<void> {
+    this.isAskedFor = true;
+    try {
+      const { table } = await this.gateway.ask<Parsed>("sample");
+      if (table && table.legs === this.robot.robot.peek()?.legs.length) this.show(table);
+    } catch (error) {
+      this.gateway.refuse(error);
+    }
+  }
+
+  /** Begin with a table in which all postures are that of the robot at its start. */
+  openNew(): void {
+    this.isAskedFor = true;
+    const robot = this.robot.robot.peek();
+    if (robot) this.begin(standing(robot));
+  }
+
+  /** Take a dropped file, or the text of a pasted sheet. */
+  async parse(name: string, data: Uint8Array): Promise<void> {
+    try {
+      const parsed = await this.gateway.ask<Parsed>("parse", { name, data });
+      if (parsed.robot !== null && parsed.robot !== undefined) {
+        await this.useRobot(name, parsed.robot);
+      } else if (parsed.table) this.replace(parsed.table, name);
+      this.gateway.tell(parsed.notes);
+    } catch (error) {
+      this.gateway.refuse(error);
+    }
+  }
+
+  /** Walk with the workshop's hexapod. */
+  async openWorkshopRobot(): Promise<void> {
+    try {
+      await this.useRobot("", null);
+    } catch (error) {
+      this.gateway.refuse(error);
+    }
+  }
+
+  /** Begin with a robot and a table, where there is one for its legs. */
+  beginWith(robot: ReadRobot, table: FileTable | null, file = NO_FILE): void {
+    batch(() => {
+      this.robot.use(robot);
+      if (table?.legs === robot.reply.legs.length) this.show(table, file);
+      else this.begin(standing(robot.reply));
+    });
+  }
+
+  /** Walk with the robot of a file, or, where its text is null, with the workshop's hexapod. */
+  private async useRobot(name: string, text: string | null): Promise<void> {
+    const read = await this.robot.read(name, text);
+    batch(() => {
+      this.robot.use(read);
+      if (this.sheet.table.peek()?.legs.length !== read.reply.legs.length) {
+        this.begin(standing(read.reply));
+        return;
+      }
+      const isSaved = this.isSaved.peek();
+      this.sheet.refit(columnsOf(read.reply));
+      if (isSaved) this.file.value = { ...this.file.peek(), saved: this.sheet.version.peek() };
+    });
+  }
+
+  private begin(table: Table, file = NO_FILE): void {
+    batch(() => {
+      this.sheet.open(table);
+      this.file.value = { ...file, saved: this.sheet.version.peek() };
+    });
+  }
+
+  private show(wire: FileTable, file = NO_FILE): void {
+    const robot = this.robot.robot.peek();
+    if (!robot) return;
+    if (wire.legs !== robot.legs.length) {
+      toast(t("design.otherLegs", { legs: wire.legs, robot: robot.name }), "no");
+    }
+    this.begin(fromWire(wire, columnsOf(robot)), file);
+  }
+
+  /** Put a table in place of this one, in one step. */
+  private replace(wire: FileTable, name: string): void {
+    const robot = this.robot.robot.peek();
+    if (!robot) return;
+    const table = fromWire(wire, columnsOf(robot));
+    if (table.kind !== this.sheet.table.peek()?.kind || wire.legs !== robot.legs.length) {
+      this.begin(table);
+    } else this.sheet.edit(t("design.step.take", { name }), () => table, null, "paste");
+  }
+
+  // Save
+
+  /** Save the table where it belongs: in its file, or, without a folder, as a download. */
+  async keep(): Promise<void> {
+    if (this.can.peek().save) await this.save(this.usualName());
+    else await this.download();
+  }
+
+  /** Save the table under a name of the folder. */
+  async save(name: string, force = false): Promise<void> {
+    const table = this.sent();
+    if (!table) return;
+    const saved = this.sheet.version.peek();
+    const own = this.file.peek();
+    // Over a file that was not opened here nothing is saved unasked.
+    const version = own.name === name ? own.version : "";
+    try {
+      const reply = await this.gateway.ask<{
+        version?: string;
+        conflict?: { table: FileTable | null; version: string; mistakes?: Mistake[] };
+      }>("save", { name, table, version, force });
+      if (reply.conflict) {
+        const when = own.name === name ? "saving" : "existing";
+        this.conflict.value = { mistakes: [], ...reply.conflict, name, when };
+        return;
+      }
+      this.file.value = { name, version: reply.version ?? "", saved };
+      this.conflict.value = null;
+      toast(t("design.saved", { name }), "yes");
+    } catch (error) {
+      this.gateway.refuse(error);
+    }
+  }
+
+  /** Hand the table to the person as a file. */
+  async download(suffix = ".txt"): Promise<void> {
+    const table = this.sent();
+    if (!table) return;
+    const name = this.usualName().replace(/\.[^.]*$/, "") + suffix;
+    try {
+      const { data } = await this.gateway.ask<{ data: Uint8Array }>("write", { name, table });
+      download(name, [data.slice()], "application/octet-stream");
+    } catch (error) {
+      this.gateway.refuse(error);
+    }
+  }
+
+  /** Take what the file has now; what was on the page can be had back by undo. */
+  takeTheirs(): void {
+    const conflict = this.conflict.peek();
+    const robot = this.robot.robot.peek();
+    if (!conflict?.table || !robot) return;
+    const { name, version } = conflict;
+    const table = fromWire(conflict.table, columnsOf(robot));
+    this.sheet.edit(t("design.step.theirs"), () => table, null, null);
+    this.file.value = { name, version, saved: this.sheet.version.peek() };
+    this.conflict.value = null;
+  }
+
+  /** Keep what is on the page; the next save writes over the file. */
+  keepMine(): void {
+    const conflict = this.conflict.peek();
+    if (!conflict) return;
+    this.file.value = { ...this.file.peek(), name: conflict.name, version: conflict.version };
+    this.conflict.value = null;
+  }
+
+  private sent(): FileTable | null {
+    const table = this.sheet.table.peek();
+    const wire = table && toWire(table);
+    if (table && !wire) toast(t("design.badCells", { count: this.sheet.bad.peek().length }), "no");
+    return wire;
+  }
+}

@@ -1,0 +1,33 @@
+/** The gait and its robot, as requests send them. */
+
+import { keysOf } from "../../../core/design/rows";
+import { type Table, toWire } from "../../../core/design/table";
+import { sequences } from "../../../core/files";
+import type { FileTable, SentFile } from "../../../core/wire";
+import type { RobotInUse } from "../robot/robot";
+import type { Sheet } from "../table/sheet";
+
+export interface SentGait {
+  table: FileTable;
+  robot: SentFile | null;
+  /** The digits of each key of level B; null where the table itself has them. */
+  sequences: number[][] | null;
+}
+
+/** The table as it is now; null while a cell has no angle. */
+export function sentGait(sheet: Sheet, robot: RobotInUse): SentGait | null {
+  const table = sheet.table.peek();
+  const wire = table && toWire(table);
+  return wire && { table: wire, robot: robot.sent(), sequences: digitsOf(table) };
+}
+
+function digitsOf(table: Table): number[][] | null {
+  if (table.kind === "locomotion") return null;
+  const keys = new Set(keysOf(table));
+  // Each key needs postures, also one that is not tried, and whose own are not all there.
+  const filler = [table.rows[0]!.key];
+  return sequences.peek().map((digits) => {
+    const found = [...digits].map(Number);
+    return found.length && found.every((digit) => keys.has(digit)) ? found : filler;
+  });
+}

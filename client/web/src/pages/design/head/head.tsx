@@ -1,0 +1,142 @@
+/** The head of the page: the file, the task, and what lets the robot walk. */
+
+import { useComputed, useSignal, useSignalEffect } from "@preact/signals";
+import { type MessageName, t } from "../../../i18n";
+import { IconButton } from "../../../ui/icons";
+import { isNarrow } from "../../../ui/screen";
+import { PhaseDots } from "../learning/dots";
+import { keyName } from "../names";
+import type { Studio } from "../studio";
+import type { Sheet } from "../table/sheet";
+import { triedKeys } from "../trials/keys";
+import { POSES, type Trials } from "../trials/trials";
+import type { Showing } from "../walk/showing";
+import { FileButtons } from "./file_buttons";
+import { Foretell } from "./foretell";
+import "./head.css";
+
+interface Props {
+  studio: Studio;
+  onFiles: () => void;
+  onPhase: () => void;
+  onSettings: () => void;
+}
+
+export function Head({ studio, onFiles, onPhase, onSettings }: Props) {
+  const { sheet, trials, showing } = studio;
+  const can = studio.can.value;
+  const asks = useSignal(false);
+  const close = () => {
+    asks.value = false;
+  };
+  useSignalEffect(() => {
+    if (trials.trying.value) close();
+  });
+  return (
+    <header class="bar">
+      <FileButtons sheet={sheet} files={studio.files} can={can} onFiles={onFiles} />
+      <div class="where">
+        {can.learn && <PhaseDots learning={studio.learning} onOpen={onPhase} />}
+        <Task sheet={sheet} trials={trials} />
+      </div>
+      <div class="acts">
+        <button
+          class="button"
+          type="button"
+          aria-expanded={asks.value}
+          title={t("design.predictHint")}
+          onClick={() => {
+            asks.value = !asks.value;
+          }}
+        >
+          {t("design.predict")}
+        </button>
+        <KeyChooser sheet={sheet} trials={trials} />
+        <button
+          class="button strong try"
+          type="button"
+          disabled={!studio.present.value}
+          aria-busy={trials.trying.value}
+          title={t("design.tryKey")}
+          onClick={() => void trials.tryIt()}
+        >
+          {t(trials.trying.value ? "design.trying" : "design.try")}
+          {!isNarrow.value && <kbd>Ctrl+Enter</kbd>}
+        </button>
+        <CompareButton trials={trials} showing={showing} />
+        <IconButton name="settings" label={t("settings.title")} onClick={onSettings} />
+      </div>
+      {asks.value && <Foretell trials={trials} onClose={close} />}
+    </header>
+  );
+}
+
+interface TaskProps {
+  sheet: Sheet;
+  trials: Trials;
+}
+
+/** What to do next, in a sentence. */
+function Task({ sheet, trials }: TaskProps) {
+  const name = useComputed<MessageName>(() => {
+    if (sheet.bad.value.length) return "design.task.bad";
+    const last = trials.all.value.at(-1);
+    if (!last) return sheet.history.value?.canUndo.value ? "design.task.try" : "design.task.edit";
+    return last.version === sheet.version.value ? "design.task.read" : "design.task.again";
+  }).value;
+  return (
+    <p class="task" role="status">
+      {t(name, { count: sheet.bad.value.length })}
+    </p>
+  );
+}
+
+/** What the next trial presses. */
+function KeyChooser({ sheet, trials }: TaskProps) {
+  const keys = triedKeys(sheet);
+  return (
+    <label class="chooser">
+      <span class="hidden-text">{t("design.pressed")}</span>
+      <select
+        value={trials.pressed()}
+        title={t("design.pressed")}
+        onChange={(event) => {
+          const { value } = event.currentTarget;
+          trials.press(POSES.find((pose) => pose === value) ?? Number(value));
+        }}
+      >
+        {keys.map((key) => (
+          <option key={key} value={key}>
+            {t("design.keyOption", { name: keyName(key) })}
+          </option>
+        ))}
+        {sheet.table.value?.kind === "postures" &&
+          POSES.map((pose) => (
+            <option key={pose} value={pose}>
+              {t("design.keyOption", { name: pose })}
+            </option>
+          ))}
+      </select>
+    </label>
+  );
+}
+
+/** Compare the shown trial with the one before it, or stop comparing. */
+function CompareButton({ trials, showing }: { trials: Trials; showing: Showing }) {
+  const { other } = showing;
+  const before = trials.beforeShown();
+  return (
+    <button
+      class="button"
+      type="button"
+      aria-pressed={other.value !== null}
+      disabled={!before && !other.value}
+      title={t("design.compareHint")}
+      onClick={() => {
+        other.value = other.value ? null : before;
+      }}
+    >
+      {t("design.compare")}
+    </button>
+  );
+}

@@ -1,0 +1,98 @@
+/** The task of the phase that the student is at (workshop 4-2). */
+
+import { said, t } from "../../../i18n";
+import { classes } from "../names";
+import type { Sheet } from "../table/sheet";
+import type { Pose, Trials } from "../trials/trials";
+import { stateName } from "./dots";
+import type { Learning } from "./learning";
+import { Check, Concept, FootGuess } from "./tasks";
+import "./learning.css";
+
+/** What is to be tried in a phase. */
+const POSE_OF: Readonly<Record<number, Pose>> = { 2: "A1", 3: "A1, A2" };
+const ONE_LEG = 1;
+const CONCEPT = 5;
+const CREATIVE = 6;
+
+interface Props {
+  learning: Learning;
+  sheet: Sheet;
+  trials: Trials;
+  canTry: boolean;
+}
+
+export function PhasePanel({ learning, sheet, trials, canTry }: Props) {
+  const now = learning.phases.value;
+  const phase = now?.phases[now.phase - 1];
+  if (!now || !phase) return <p class="muted">{t("design.loading")}</p>;
+  const { number, state } = phase;
+  const percent = Math.round(100 * phase.share);
+  const pose = POSE_OF[number];
+  return (
+    <section class="learn" aria-label={t("design.phases")}>
+      {now.trouble && (
+        <p class="learn-trouble" role="status">
+          {t("design.phase.notKept")} {said(now.trouble)}
+        </p>
+      )}
+      <h3>
+        {number}. {said(phase.title)} <span data-state={state}>{stateName(state)}</span>
+      </h3>
+      <p class="learn-task">{said(phase.task)}</p>
+      <p>{said(phase.question)}</p>
+      {number === ONE_LEG && <FootGuess learning={learning} />}
+      {pose && sheet.table.value?.kind === "postures" && (
+        <button
+          class="button"
+          type="button"
+          disabled={!canTry}
+          onClick={() => {
+            trials.press(pose);
+            void trials.tryIt();
+          }}
+        >
+          {t("design.phase.tryPose", { pose })}
+        </button>
+      )}
+      {number === CONCEPT && <Concept learning={learning} word={now.word} />}
+      {number === CREATIVE && <Check learning={learning} sheet={sheet} />}
+      <progress max={100} value={percent} aria-label={t("design.phase.share")}>
+        {percent} %
+      </progress>
+      {phase.missing.length > 0 && (
+        <ul class="learn-missing" aria-label={t("design.phase.missing")}>
+          {phase.missing.map((one, index) => (
+            <li key={index}>{said(one)}</li>
+          ))}
+        </ul>
+      )}
+      <details>
+        <summary>{t("design.phase.hint")}</summary>
+        <p>{said(phase.hint)}</p>
+      </details>
+      <details key={`${number} ${state}`} open={state === "met"}>
+        <summary>{t("design.phase.explanation")}</summary>
+        <p>{said(phase.explanation)}</p>
+      </details>
+      <div class="row">
+        <button
+          class="button"
+          type="button"
+          disabled={number === 1}
+          onClick={() => void learning.goTo(number - 1)}
+        >
+          {t("design.phase.back")}
+        </button>
+        <button
+          class={classes("button", state === "met" && "strong")}
+          type="button"
+          disabled={number === now.phases.length}
+          onClick={() => void learning.goTo(number + 1)}
+        >
+          {t("design.phase.next")}
+        </button>
+      </div>
+    </section>
+  );
+}

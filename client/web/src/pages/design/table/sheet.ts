@@ -1,0 +1,180 @@
+/** The table that is edited: its steps, the place in it, and the key whose rows are worked on. */
+
+import { batch, computed, signal } from "@preact/signals";
+import { History } from "../../../core/design/history";
+import { sequenceOf } from "../../../core/design/rows";
+import {
+  type Area,
+  areaOf,
+  badCells,
+  type Cell,
+  type Columns,
+  type Table,
+} from "../../../core/design/table";
+import { follow, halvesOf } from "../../../core/design/tools";
+import { sequences } from "../../../core/files";
+
+/** A place in the table. */
+export interface Place {
+  row: number;
+  col: number;
+}
+
+/** How an edit was made; null: none that counts as one's own work. */
+export type By = "hand" | "tool" | "paste" | "coach" | null;
+
+/** Who is told what happens to the table. */
+export interface Followers {
+  /** A step comes. What was done before can be told now; edits made `by` the same may wait. */
+  before(by?: By): void;
+  /** The table has changed. */
+  changed(by: By, size: string | null): void;
+  /** Another table with another number of legs was opened. */
+  legsChanged(): void;
+  /** Somebody works on the table, and looks at a posture. */
+  worked(): void;
+}
+
+const FORWARD = 2;
+
+export class Sheet {
+  readonly history = signal<History | null>(null);
+  readonly table = computed<Table | null>(() => this.history.value?.table.value ?? null);
+  readonly version = computed(() => this.history.value?.version.value ?? 0);
+  readonly bad = computed(() => (this.table.value ? badCells(this.table.value) : []));
+
+  readonly active = signal<Place>({ row: 0, col: 0 });
+  readonly anchor = signal<Place>({ row: 0, col: 0 });
+  readonly area = computed<Area>(() => areaOf(this.anchor.value, this.active.value));
+  /** What is being typed into the active cell: the picture shows it already; null: nothing. */
+  readonly draft = signal<Cell | null>(null);
+  /** Cells where what was pasted can't stand, with the reason; until the next edit or move. */
+  readonly unpasted = signal<readonly (Place & { why: string })[]>([]);
+  /** Joints that are pointed at; empty: those of the active cell are lit. */
+  private readonly pointed = signal<readonly number[]>([]);
+  /** Joints that glow and whose columns are marked. */
+  readonly lit = computed<readonly number[]>(() =>
+    this.pointed.value.length ? this.pointed.value : [this.active.value.col],
+  );
+
+  /** The chosen key of level B. */
+  readonly key = signal(FORWARD);
+  /** The rows that the chosen key runs through; null if it has none. */
+  readonly sequence = computed<readonly number[] | null>(() => {
+    const table = this.table.value;
+    return table && sequenceOf(table, this.key.value, sequences.value);
+  });
+  /** Whether the second half of the key's sequence follows the first as its mirror. */
+  readonly mirrors = signal(false);
+
+  constructor(private readonly followers: Followers) {}
+
+  /** Begin with another table. Versions go on, so that trials stay with their tables. */
+  open(table: Table): void {
+    const before = this.table.peek();
+    if (before) this.followers.before();
+    batch(() => {
+      if (before) this.history.peek()!.open(table);
+      else this.history.value = new History(table);
+      if (before?.legs.length !== table.legs.length) this.followers.legsChanged();
+      this.key.value = sequenceOf(table, FORWARD, sequences.peek()) ? FORWARD : 0;
+      this.select({ row: this.sequence.peek()?.[0] ?? 0, col: 0 });
+    });
+    this.followers.changed(null, null);
+  }
+
+  /** Take the table over to another robot of as many legs. */
+  refit(columns: Columns): void {
+    this.history.peek()?.refit(columns);
+  }
+
+  /**
+   * Edit the table: one step that can be undone.
+   *
+   * @param gesture Edits in a row with the same gesture are one step.
+   * @param size How much the coach was allowed to change.
+   */
+  edit(
+    name: string,
+    change: (table: Table) => Table,
+    gesture: string | null = null,
+    by: By = "hand",
+    size: string | null = null,
+  ): void {
+    const history = this.history.peek();
+    if (!history) return;
+    this.followers.before(by);
+    const version = this.version.peek();
+    const halves = this.mirrors.peek() ? halvesOf(this.sequence.peek() ?? []) : [];
+    const whole = (before: Table) => {
+      const after = change(before);
+      const fits = after.rows.length === before.rows.length;
+      return halves.length && fits ? follow(before, after, halves) : after;
+    };
+    batch(() => {
+      this.unpasted.value = [];
+      history.apply(name, whole, gesture);
+      this.stayInside();
+      this.followers.worked();
+    });
+    if (this.version.peek() !== version) this.followers.changed(by, size);
+  }
+
+  undo(): void {
+    this.go((history) => history.undo());
+  }
+
+  redo(): void {
+    this.go((history) => history.redo());
+  }
+
+  /** Go to a cell, and let the picture show its posture. */
+  select(place: Place, from: Place = place): void {
+    batch(() => {
+      this.unpasted.value = [];
+      this.active.value = this.inside(place);
+      this.anchor.value = this.inside(from);
+      this.followers.worked();
+    });
+  }
+
+  /** Go to a cell, and go on looking at the trial. */
+  selectBeside(row: number, col: number): void {
+    batch(() => {
+      this.active.value = this.anchor.value = this.inside({ row, col });
+    });
+  }
+
+  /** Light joints because something of theirs is pointed at; none: those of the active cell. */
+  point(joints: readonly number[]): void {
+    const now = this.pointed.peek();
+    const isSame = now.length === joints.length && now.every((one, at) => one === joints[at]);
+    if (!isSame) this.pointed.value = joints;
+  }
+
+  private go(step: (history: History) => void): void {
+    const history = this.history.peek();
+    if (!history) return;
+    this.followers.before();
+    batch(() => {
+      step(history);
+      this.stayInside();
+      this.followers.worked();
+    });
+    this.followers.changed(null, null);
+  }
+
+  private inside({ row, col }: Place): Place {
+    const rows = this.table.peek()?.rows.length ?? 1;
+    const cols = 3 * (this.table.peek()?.legs.length ?? 1);
+    return {
+      row: Math.min(rows - 1, Math.max(0, row)),
+      col: Math.min(cols - 1, Math.max(0, col)),
+    };
+  }
+
+  private stayInside(): void {
+    this.active.value = this.inside(this.active.peek());
+    this.anchor.value = this.inside(this.anchor.peek());
+  }
+}

@@ -1,0 +1,160 @@
+/** Trials: what is pressed, what is foretold, and what came of it. */
+
+import { batch, computed, signal } from "@preact/signals";
+import { type Guess, verdict } from "../../../core/design/predict";
+import type { Table } from "../../../core/design/table";
+import { readTrial } from "../../../core/design/trial";
+import type { TrialReply } from "../../../core/wire";
+import { t } from "../../../i18n";
+import { toast } from "../../../ui/toasts";
+import { sentGait } from "../files/gait";
+import type { Gateway } from "../gateway";
+import type { Learning } from "../learning/learning";
+import type { RobotInUse } from "../robot/robot";
+import type { Sheet } from "../table/sheet";
+import type { Showing } from "../walk/showing";
+import type { Tried } from "./tried";
+
+/** What can be tried of level A: a posture, or one posture after another. */
+export const POSES = ["A1", "A1, A2"] as const;
+export type Pose = (typeof POSES)[number];
+
+/** The keys that a trial presses for this, for how long, and the posture that it measures. */
+const PRESSED: Record<Pose, { keys: string; seconds: number; measured: number }> = {
+  A1: { keys: "A1", seconds: 3, measured: 1 },
+  "A1, A2": { keys: "A1:1, A2", seconds: 1.5, measured: 2 },
+};
+const MOST_TRIALS = 40;
+
+export class Trials {
+  /** In the order in which they were made. */
+  readonly all = signal<readonly Tried[]>([]);
+  readonly trying = signal(false);
+  /** What is pressed of level A instead of the chosen key; null: the key is. */
+  readonly pose = signal<Pose | null>(null);
+  /** What the next trial is foretold to do. */
+  readonly guesses = signal<readonly Guess[]>([]);
+  /** The row whose posture is the target at the moment shown; -1 if none is. */
+  readonly target = computed(() => this.targetRow());
+  /** Whether a trial was asked for while another one ran. */
+  private again = false;
+
+  constructor(
+    private readonly gateway: Gateway,
+    private readonly sheet: Sheet,
+    private readonly robot: RobotInUse,
+    private readonly learning: Learning,
+    private readonly showing: Showing,
+  ) {}
+
+  /** Choose what the next trials press. */
+  press(what: number | Pose): void {
+    this.pose.value = typeof what === "number" ? null : what;
+    if (typeof what === "number") this.sheet.key.value = what;
+  }
+
+  /** What the next trial presses. */
+  pressed(): number | string {
+    return this.pose.value ?? this.sheet.key.value;
+  }
+
+  /** Let the robot walk with the table as it is now. */
+  async tryIt(): Promise<void> {
+    const { gateway, sheet } = this;
+    const [table, robot] = [sheet.table.peek(), this.robot.robot.peek()];
+    if (!table || !robot) return;
+    if (this.trying.peek()) {
+      this.again = true;
+      return;
+    }
+    const gait = sentGait(sheet, this.robot);
+    if (!gait) {
+      sheet.select(sheet.bad.peek()[0]!);
+      toast(t("design.badCells", { count: sheet.bad.peek().length }), "no");
+      return;
+    }
+    const pose = this.pose.peek() && PRESSED[this.pose.peek()!];
+    const rows = pose ? rowOf(table, pose.measured) : sheet.sequence.peek();
+    const key = this.pressed();
+    if (!rows) {
+      toast(t("design.noSequence", { key }), "no");
+      return;
+    }
+    this.trying.value = true;
+    gateway.trouble.value = null;
+    const version = sheet.version.peek();
+    try {
+      this.learning.tell();
+      const reply = await gateway.ask<TrialReply>("trial", {
+        ...gait,
+        keys: pose ? pose.keys : String(key),
+        seconds: pose ? pose.seconds : null,
+        guesses: this.guesses.peek().map(({ about, is }) => ({ about, said: is })),
+      });
+      const trial = readTrial(reply, robot.legs.length);
+      const number = (this.all.peek().at(-1)?.number ?? 0) + 1;
+      const verdicts = this.judge(key, reply.figures);
+      this.add({ number, version, table, key, rows, robot, trial, verdicts });
+    } catch (error) {
+      gateway.refuse(error);
+    } finally {
+      this.trying.value = false;
+      if (this.again) {
+        this.again = false;
+        void this.tryIt();
+      }
+    }
+  }
+
+  /** The last trial of a key: what the next one is compared with. */
+  lastOf(key: number | string): Tried | null {
+    return this.all.peek().findLast((tried) => tried.key === key) ?? null;
+  }
+
+  /** The trial that was made before the shown one; before any is shown, the last one. */
+  beforeShown(): Tried | null {
+    const now = this.showing.shown.value;
+    return this.all.value.findLast((one) => !now || one.number < now.number) ?? null;
+  }
+
+  /** Put the table of a trial back, in one step. */
+  restore(tried: Tried): void {
+    const name = t("design.step.restore", { number: tried.number });
+    this.sheet.edit(name, () => tried.table, null, null);
+  }
+
+  /** Forget all trials: they are of another robot. */
+  forget(): void {
+    this.all.value = [];
+    this.showing.forget();
+  }
+
+  private add(tried: Tried): void {
+    batch(() => {
+      this.guesses.value = [];
+      this.all.value = [...this.all.peek(), tried].slice(-MOST_TRIALS);
+      this.showing.look(tried);
+    });
+  }
+
+  private targetRow(): number {
+    const { shown, watching, tick } = this.showing;
+    const tried = shown.value;
+    if (!tried || !watching.value || tried.version !== this.sheet.version.value) return -1;
+    return tried.rows[tried.trial.posture[Math.floor(tick.value)] ?? -1] ?? -1;
+  }
+
+  private judge(key: number | string, after: Record<string, unknown>): Tried["verdicts"] {
+    const before = this.lastOf(key)?.trial.reply.figures ?? null;
+    return this.guesses.peek().flatMap((guess) => {
+      const found = verdict(guess, before, after);
+      return found ? [{ guess, verdict: found }] : [];
+    });
+  }
+}
+
+/** The row of a posture of level A; null if there is none. */
+function rowOf(table: Table, key: number): number[] | null {
+  const row = table.kind === "postures" ? table.rows.findIndex((one) => one.key === key) : -1;
+  return row < 0 ? null : [row];
+}
