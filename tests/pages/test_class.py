@@ -227,3 +227,34 @@ def test_the_page_goes_on_after_the_gateways_end(
     desk.page.click(".forget .danger")
     desk.misses(desk.card("Kim"))
     assert desk.order() == ["Lea"]
+
+
+def test_a_tournament_ends_in_large_standings(
+    open_page: OpenPage, room: ClassRoom, closing: ExitStack
+) -> None:
+    """Gaits of the class play; matches lead to their replays; projector mode shows the result."""
+    for name in ("Mia", "Nils"):
+        edits(comes(closing, room, name))
+    desk = Desk(open_page, room.url, viewport={"width": 1280, "height": 720})
+    desk.begin(room.key)
+    desk.focuses("#tab-rules")
+    desk.press("ArrowRight")
+    expect(desk.find("#tab-play")).to_be_focused()
+    desk.page.get_by_label("Opponents each").fill("1")
+    desk.page.get_by_label("Seconds a match").fill("10")
+    desk.page.click(".projector")
+    desk.page.click(".start button[type=submit]")
+    desk.sees(".big-standings tbody tr")
+    expect(desk.find("body")).not_to_contain_text("Nils")
+    assert not violations(desk.page)
+    desk.press("Escape")
+    desk.misses(".screen")
+    desk.misses(".matches a")
+    desk.page.click(".projector")
+    left, _, right = desk.find(".matches .sides").first.inner_text().partition(" – ")
+    with desk.page.expect_popup() as opened:
+        desk.page.click(".matches a >> nth=0")
+    replay = opened.value
+    for name in (left, right):
+        expect(replay.locator("body")).to_contain_text(name, timeout=TIMEOUT_MS)
+    replay.close()
