@@ -262,10 +262,11 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     teacher.ask("rules", rules={"closed": [6], "coach": "three"})
     teacher.ask("hand_out", title="The sample")
     _until_kept(tmp_path, b"The sample")
+    children = psutil.Process(room.process.pid).children(recursive=True)
     os.kill(room.process.pid, signal.SIGKILL)
-    for child in psutil.Process(room.process.pid).children(recursive=True):
-        child.kill()
     room.process.communicate()
+    _, left = psutil.wait_procs(children, timeout=60)
+    assert left == []  # the studio has ended with it
 
     again = ClassRoom(tmp_path, room.listen)
     closing.callback(again.close)
