@@ -2,9 +2,11 @@
 
 import csv
 import io
+import json
 import os
 import signal
 import time
+import urllib.request
 import zipfile
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -18,6 +20,7 @@ from lacoc_process import run_lacoc
 from page_connection import Refused
 
 from lacoc_client.gateway.wire import Kind
+from lacoc_robots.library import find_robot
 
 pytestmark = pytest.mark.slow
 
@@ -202,6 +205,29 @@ def test_the_big_screen_and_the_exports(
             "Loco-data.txt",
             "LocoTra-data.txt",
         ]
+
+
+def test_the_class_plays_a_tournament(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """The gaits of the class meet; a table for another robot is left out."""
+    for name in ("Uma", "りく"):
+        page = comes(closing, room, name)
+        edit(page, page.sample(), 3.0)
+    page = comes(closing, room, "Vik")
+    other = {"name": "mine.toml", "data": find_robot("quadruped")[1]}
+    page.ask("edit", table=page.sample(), sequences=SEQUENCES, robot=other, by="hand")
+    teacher.ask("play", arena="othello", rounds=1, seconds=1)
+    teacher.until(lambda: teacher.last(Kind.TOURNAMENT)["state"] in ("done", "stopped"))
+    played = teacher.last(Kind.TOURNAMENT)
+    assert (played["state"], played["trouble"]) == ("done", None)
+    assert played["done"] == played["of"] == len(played["matches"]) >= 1
+    assert {"Uma", "りく"} <= {one["name"] for one in played["standings"]}
+    (vik,) = (one for one in played["left_out"] if one["name"] == "Vik")
+    assert vik["mistakes"][0]["file"] == "Loco-data.txt"
+    with urllib.request.urlopen(f"{room.url}/recordings") as listed:
+        names = json.load(listed)
+    assert all(one["record"] in str(names) for one in played["matches"])
 
 
 def test_a_student_is_let_in_again_and_forgotten(
