@@ -246,8 +246,6 @@ async def _hold(options: argparse.Namespace, folder: Path) -> tuple[Lesson, floa
             continue
         lesson.killed_s.append(time.monotonic())
         os.kill(running.pid, signal.SIGKILL)
-        for child in children:
-            child.kill()
         process.__exit__(None, None, None)
         where = lesson.url.removeprefix("http://")
         process = started(LACOC, *words, where, quiet=True)

@@ -6,25 +6,18 @@
 import contextlib
 import json
 import random
-import re
 import statistics
-import subprocess
 import sys
-import tempfile
 import threading
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Browser, Page, TimeoutError, sync_playwright
+from playwright.sync_api import Browser, Page, TimeoutError
 from websockets.sync.server import ServerConnection
 from websockets.sync.server import serve as serve_websocket
 
+from benchmarks.own_page import chromium, own_page
 from lacoc_shared.seat import BEAT_S
-
-sys.path.append(str(Path(__file__).parents[1] / "tests" / "pages"))
-
-from chromium import FLAGS, find_chromium
 
 FRAME_BYTES = 200
 """Length of the echo's messages, about that of a frame of practice."""
@@ -60,14 +53,7 @@ def page_latency(keys: int = 100) -> dict[str, float]:
     turns = 5
     key_ms: list[float] = []
     echo_ms: list[float] = []
-    with (
-        sync_playwright() as playwright,
-        contextlib.closing(
-            playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
-        ) as browser,
-        _practice() as url,
-        _echo() as echo,
-    ):
+    with chromium() as browser, own_page("practice") as url, _echo() as echo:
         page = _walking(browser, url)
         bare = browser.new_page()
         for _ in range(turns):
@@ -124,34 +110,6 @@ def _press(page: Page, count: int) -> list[float]:
         times_ms.append(float(shown.get_attribute("data-trip") or "nan"))
         page.wait_for_timeout(random.uniform(20, 60))  # so as not to keep in step with the beat
     return times_ms
-
-
-@contextlib.contextmanager
-def _practice() -> Iterator[str]:
-    """Run `lacoc practice`; give the address of its page."""
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        subprocess.Popen(
-            [sys.executable, "-u", "-m", "lacoc_shared", "practice", "--no-open"],
-            cwd=folder,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        ) as practice,
-    ):
-        try:
-            assert practice.stdout is not None
-            said = ""
-            for line in practice.stdout:
-                said += line
-                if found := re.search(r"http://\S+#key=\S+", line):
-                    yield found[0]
-                    break
-            else:
-                raise RuntimeError(f"practice did not open: {said}")
-        finally:
-            practice.terminate()
-            practice.wait(30)
 
 
 @contextlib.contextmanager

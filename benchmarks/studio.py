@@ -54,8 +54,8 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
     rng = random.Random(1)
-    bare_s = _bare_s(rng)
-    print(f"bare trial, in one process            {bare_s:.3f} s")
+    alone_s = bare_s(rng)
+    print(f"bare trial, in one process            {alone_s:.3f} s")
     words = ("studio", "--json", "--jobs", str(options.jobs), "--listen", "tcp/127.0.0.1:0")
     with started(LACOC, *words) as process:
         opened = read_line(process)
@@ -68,7 +68,7 @@ def main() -> None:
                 begin_s = time.perf_counter()
                 session.ask(key, _request(rng), _LIMIT_S)
                 alone.append(time.perf_counter() - begin_s)
-            _print("one student alone", alone, bare_s)
+            _print("one student alone", alone, alone_s)
             begin_s = time.perf_counter()
             students = [
                 Student(begin_s + _EVERY_S * index / options.students)
@@ -85,7 +85,7 @@ def main() -> None:
                         student.question = None
                 time.sleep(_LOOK_S)
     together = [took for student in students for took in student.took_s]
-    _print(f"{options.students} students, each every {_EVERY_S:.0f} s", together, bare_s)
+    _print(f"{options.students} students, each every {_EVERY_S:.0f} s", together, alone_s)
     sys.exit(_p95(alone) > _ALONE_AIM_S or _p95(together) > _CLASS_AIM_S)
 
 
@@ -105,7 +105,7 @@ def _request(rng: random.Random) -> bytes:
     return encode(TrialRequest(protocol=PROTOCOL, files=GaitFiles(locomotion=sent)))
 
 
-def _bare_s(rng: random.Random) -> float:
+def bare_s(rng: random.Random) -> float:
     """Measure how long such a trial takes in this process, with a floor that is compiled."""
     course = course_of(_ROBOT)
     times = []

@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
-from lacoc_shared.command import screen
+from lacoc_shared.command import parent, screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, current, render, say
 
@@ -31,13 +31,14 @@ def command_line(words: Sequence[str]) -> list[str]:
 def apart() -> dict[str, Any]:
     """Return the options of `subprocess` with which a `lacoc` process is started.
 
-    The process gets only the language from this process's LACOC_ variables, and reads no keys.
-    Ctrl-C does not reach it: the command that started it ends it.
+    The process gets only the language from this process's LACOC_ variables. Ctrl-C does not reach
+    it: the command that started it ends it. It also ends if this process is killed, because its
+    standard input ends then (`lacoc_shared.command.parent`).
     """
     environment = {name: value for name, value in os.environ.items() if name[:6] != "LACOC_"}
     return {
-        "env": environment | {"LACOC_LANGUAGE": current()},
-        "stdin": subprocess.DEVNULL,
+        "env": environment | {"LACOC_LANGUAGE": current(), parent.VARIABLE: "pipe"},
+        "stdin": subprocess.PIPE,
         "start_new_session": True,
     }
 
@@ -90,6 +91,8 @@ class Child:
 
     def close(self) -> None:
         """End the process."""
+        assert self._process.stdin is not None
+        self._process.stdin.close()
         self._process.terminate()
         try:
             self._process.wait(_CLOSE_S)

@@ -2,6 +2,8 @@
 
 import sys
 
+from lacoc_shared.command import parent
 from lacoc_shared.command.cli import main
 
+parent.follow()
 sys.exit(main())

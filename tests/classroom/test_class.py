@@ -2,8 +2,10 @@
 
 import csv
 import io
+import json
 import os
 import signal
+import urllib.request
 import zipfile
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -17,6 +19,7 @@ from lacoc_process import run_lacoc
 from page_connection import Refused
 
 from lacoc_client.gateway.wire import Kind
+from lacoc_robots.library import find_robot
 
 pytestmark = pytest.mark.slow
 
@@ -203,6 +206,29 @@ def test_the_big_screen_and_the_exports(
         ]
 
 
+def test_the_class_plays_a_tournament(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """The gaits of the class meet; a table for another robot is left out."""
+    for name in ("Uma", "りく"):
+        page = comes(closing, room, name)
+        edit(page, page.sample(), 3.0)
+    page = comes(closing, room, "Vik")
+    other = {"name": "mine.toml", "data": find_robot("quadruped")[1]}
+    page.ask("edit", table=page.sample(), sequences=SEQUENCES, robot=other, by="hand")
+    teacher.ask("play", arena="othello", rounds=1, seconds=1)
+    teacher.until(lambda: teacher.last(Kind.TOURNAMENT)["state"] in ("done", "stopped"))
+    played = teacher.last(Kind.TOURNAMENT)
+    assert (played["state"], played["trouble"]) == ("done", None)
+    assert played["done"] == played["of"] == len(played["matches"]) >= 1
+    assert {"Uma", "りく"} <= {one["name"] for one in played["standings"]}
+    (vik,) = (one for one in played["left_out"] if one["name"] == "Vik")
+    assert vik["mistakes"][0]["file"] == "Loco-data.txt"
+    with urllib.request.urlopen(f"{room.url}/recordings") as listed:
+        names = json.load(listed)
+    assert all(one["record"] in str(names) for one in played["matches"])
+
+
 def test_a_student_is_let_in_again_and_forgotten(
     room: ClassRoom, teacher: TeacherPage, closing: ExitStack
 ) -> None:
@@ -261,10 +287,11 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     teacher.ask("rules", rules={"closed": [6], "coach": "three"})
     teacher.ask("hand_out", title="The sample")
     until_kept(tmp_path, b"The sample")
+    children = psutil.Process(room.process.pid).children(recursive=True)
     os.kill(room.process.pid, signal.SIGKILL)
-    for child in psutil.Process(room.process.pid).children(recursive=True):
-        child.kill()
     room.process.communicate()
+    _, left = psutil.wait_procs(children, timeout=60)
+    assert left == []  # the studio has ended with it
 
     again = ClassRoom(tmp_path, room.listen)
     closing.callback(again.close)

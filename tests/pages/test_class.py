@@ -7,7 +7,6 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 from chromium import OpenPage
 from class_room import ClassRoom, StudentPage, until_kept
@@ -212,8 +211,6 @@ def test_the_page_goes_on_after_the_gateways_end(
     desk = Desk(open_page, room.url)
     desk.begin(room.key)
     until_kept(tmp_path, room.key.encode())
-    for child in psutil.Process(room.process.pid).children(recursive=True):
-        child.kill()
     os.kill(room.process.pid, signal.SIGKILL)
     room.process.communicate()
     desk.sees(".banner")

@@ -31,7 +31,6 @@ export function Tournament({ teacher }: { teacher: Teacher }) {
       )}
       {state.standings.length > 0 && (
         <section aria-label={t("class.play.standings")}>
-          <Standings teacher={teacher} />
           <button
             class="button"
             type="button"
@@ -41,6 +40,7 @@ export function Tournament({ teacher }: { teacher: Teacher }) {
           >
             <Icon name="full" /> {t("class.play.big")}
           </button>
+          <Standings teacher={teacher} />
         </section>
       )}
       {state.left_out.length > 0 && <Left teacher={teacher} out={state.left_out} />}

@@ -1,0 +1,55 @@
+"""A command that serves a page to one person, and a browser for it, as the tests of pages use."""
+
+import contextlib
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from playwright.sync_api import Browser, sync_playwright
+
+sys.path.append(str(Path(__file__).parents[1] / "tests" / "pages"))
+
+from chromium import FLAGS, find_chromium
+
+
+@contextlib.contextmanager
+def own_page(*words: str) -> Iterator[str]:
+    """Run a `lacoc` command in an empty folder; give the address of its page, with the key."""
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        subprocess.Popen(
+            [sys.executable, "-u", "-m", "lacoc_shared", *words, "--no-open"],
+            cwd=folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        ) as process,
+    ):
+        try:
+            assert process.stdout is not None
+            said = ""
+            for line in process.stdout:
+                said += line
+                if found := re.search(r"http://\S+#key=\S+", line):
+                    yield found[0]
+                    break
+            else:
+                raise RuntimeError(f"{words} did not open: {said}")
+        finally:
+            process.terminate()
+            process.wait(30)
+
+
+@contextlib.contextmanager
+def chromium() -> Iterator[Browser]:
+    """Run a browser that draws without a graphics card."""
+    with (
+        sync_playwright() as playwright,
+        contextlib.closing(
+            playwright.chromium.launch(executable_path=find_chromium(), args=list(FLAGS))
+        ) as browser,
+    ):
+        yield browser

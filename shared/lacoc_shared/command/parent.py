@@ -1,0 +1,24 @@
+"""Lets a process end when the process that started it has gone, however that one ended.
+
+The parent keeps one end of a pipe open, and the system closes it with the parent, also after
+kill -9. Windows and macOS have no other means for this.
+"""
+
+import os
+import signal
+import threading
+
+VARIABLE = "LACOC_PARENT"
+"""Environment variable that is set if this process's standard input is such a pipe."""
+
+
+def follow() -> None:
+    """End this process with SIGTERM when its parent has gone, if its parent asked for this."""
+    if os.environ.pop(VARIABLE, None) is not None:
+        threading.Thread(target=_wait, name="parent", daemon=True).start()
+
+
+def _wait() -> None:
+    while os.read(0, 1024):
+        pass  # nobody writes; only the end of the pipe matters
+    os.kill(os.getpid(), signal.SIGTERM)
