@@ -24,8 +24,8 @@ export const classroom = {
   "class.studios": ["Studio ready", "スタジオ稼働中"],
   "class.studiosMany": ["{count} studios ready", "スタジオ {count} 台稼働中"],
   "class.noStudio": [
-    "No studio answers: students can edit, but not try.",
-    "スタジオの応答がありません。編集はできますが、歩かせることはできません。",
+    "Waiting for a studio. Students can edit, but not try yet.",
+    "スタジオを待っています。編集はできますが、まだ歩かせることはできません。",
   ],
   "class.projector": ["Projector mode", "投影モード"],
   "class.projectorHint": [
@@ -123,6 +123,7 @@ export const classroom = {
   "class.handOut.title": ["Title that students read", "生徒に表示する題名"],
   "class.handOut.rows": ["{count} rows for {legs} legs", "{count} 行・{legs} 脚"],
   "class.handOut.go": ["Hand out to all", "全員に配る"],
+  "class.handOut.of": ["Table of {name}", "{name} の表"],
   "class.handOut.done": ["Handed out: {title}", "配りました：{title}"],
   "class.handOut.last": ["Last: {title}", "前回：{title}"],
   "class.handOut.robot": [

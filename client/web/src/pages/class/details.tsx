@@ -173,7 +173,7 @@ function Acts({ teacher, card, onClose }: ActsProps) {
         title={t("class.act.handOutHint")}
         onClick={() => {
           onClose();
-          void teacher.handOut(name, { student });
+          void teacher.handOut(t("class.handOut.of", { name }), { student });
         }}
       >
         {t("class.act.handOut")}

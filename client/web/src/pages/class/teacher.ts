@@ -82,7 +82,9 @@ export class Teacher {
     return order;
   });
   readonly here = computed(() => this.cards.value.filter(({ online }) => online).length);
-  readonly hands = computed(() => this.cards.value.filter((card) => card.need === "hand").length);
+  readonly hands = computed(
+    () => this.cards.value.filter((card) => card.online && card.need === "hand").length,
+  );
 
   constructor() {
     this.connection = new Connection(
