@@ -58,7 +58,7 @@ export default function Class() {
         />
         <div class="body">
           <Cards teacher={teacher} />
-          {panel.value && <Panel teacher={teacher} tab={tab} />}
+          {panel.value && teacher.state.value && <Panel teacher={teacher} tab={tab} />}
         </div>
       </div>
       <Details teacher={teacher} />
