@@ -2,6 +2,7 @@
 
 import json
 import subprocess
+import time
 from pathlib import Path
 from typing import Any
 
@@ -97,3 +98,11 @@ class TeacherPage(PageConnection):
     def card(self, name: str) -> dict[str, Any]:
         """Return the newest card of a student; {}: there is none yet."""
         return self.cards.get(name, {})
+
+
+def until_kept(folder: Path, data: bytes) -> None:
+    """Wait until something stands in the class file, which is at most about a second later."""
+    deadline_s = time.monotonic() + 60
+    while not any(data in path.read_bytes() for path in folder.glob("lacoc-class.sqlite*")):
+        assert time.monotonic() < deadline_s
+        time.sleep(0.05)

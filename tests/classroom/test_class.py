@@ -5,7 +5,6 @@ import io
 import json
 import os
 import signal
-import time
 import urllib.request
 import zipfile
 from collections.abc import Iterator
@@ -15,7 +14,7 @@ from typing import Any
 
 import psutil
 import pytest
-from class_room import ClassRoom, StudentPage, TeacherPage
+from class_room import ClassRoom, StudentPage, TeacherPage, until_kept
 from lacoc_process import run_lacoc
 from page_connection import Refused
 
@@ -287,7 +286,7 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     student.ask("hand", up=True)
     teacher.ask("rules", rules={"closed": [6], "coach": "three"})
     teacher.ask("hand_out", title="The sample")
-    _until_kept(tmp_path, b"The sample")
+    until_kept(tmp_path, b"The sample")
     children = psutil.Process(room.process.pid).children(recursive=True)
     os.kill(room.process.pid, signal.SIGKILL)
     room.process.communicate()
@@ -305,14 +304,6 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     closing.callback(desk.close)
     assert desk.card("Jo")["need"] == "hand"
     assert desk.card("Jo")["hand_up_s"] > 1e9
-
-
-def _until_kept(folder: Path, data: bytes) -> None:
-    """Wait until something stands in the class file, which is at most about a second later."""
-    deadline_s = time.monotonic() + 60
-    while not any(data in path.read_bytes() for path in folder.glob("lacoc-class.sqlite*")):
-        assert time.monotonic() < deadline_s
-        time.sleep(0.05)
 
 
 def test_the_commands_export_and_forget(tmp_path: Path) -> None:

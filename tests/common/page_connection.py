@@ -34,7 +34,8 @@ class PageConnection:
 
     def __init__(self, url: str, path: str) -> None:
         address = f"{url.replace('http', 'ws', 1)}{path}"
-        self.socket = connect(address, max_size=None, legacy=True)  # closed by `close`
+        # Unread messages never block the answers to pings. `close` closes it.
+        self.socket = connect(address, max_size=None, max_queue=None, legacy=True)
         self._ids = itertools.count(1)
         self._replies: dict[int, dict[str, Any]] = {}
         self.told: dict[Kind, list[dict[str, Any]]] = {kind: [] for kind in Kind}

@@ -19,6 +19,7 @@ from playwright.sync_api import (
 
 sys.path.append(str(Path(__file__).parent))
 sys.path.append(str(Path(__file__).parents[1] / "gateway"))
+sys.path.append(str(Path(__file__).parents[1] / "classroom"))
 sys.path.append(str(Path(__file__).parents[1] / "client"))
 sys.path.append(str(Path(__file__).parents[1] / "server"))
 

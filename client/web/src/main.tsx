@@ -15,6 +15,7 @@ const PAGES: Record<string, () => Promise<{ default: ComponentType }>> = {
   "/watch": () => import("./pages/watch"),
   "/overlay": () => import("./pages/overlay"),
   "/design": () => import("./pages/design"),
+  "/class": () => import("./pages/class"),
   "/replay": () => import("./pages/replay"),
 };
 

@@ -3,6 +3,7 @@
 import { decode, encode } from "@msgpack/msgpack";
 import type { Phrase } from "./phrase";
 import {
+  type Card,
   type Event,
   type FolderFile,
   FRAME_FIELDS,
@@ -13,10 +14,14 @@ import {
   type Mistake,
   type Phases,
   type Progress,
+  type RobotReply,
+  type Rules,
   type Scene,
   SEATFRAME_FIELDS,
   type SeatFrame,
   type Sheet,
+  type TournamentState,
+  type TrialReply,
 } from "./wire.gen";
 
 export * from "./wire.gen";
@@ -101,6 +106,27 @@ export interface StudioState {
   why: Phrase | null;
 }
 
+/** The class; its cards come only with the first of these messages. */
+export interface ClassState {
+  code: string;
+  /** What students type into their browsers. */
+  addresses: string[];
+  rules: Rules;
+  trouble: Phrase | null;
+  studios: number;
+  /** Why there is no studio. */
+  why: Phrase | null;
+  handed: { number: number; title: string } | null;
+  cards: Card[] | null;
+}
+
+/** A student's robot on the big screen. */
+export interface ShowReply {
+  name: string;
+  robot: RobotReply;
+  trial: TrialReply;
+}
+
 interface GoodReply {
   id: number;
   ok: true;
@@ -136,7 +162,11 @@ export type Message =
   | { kind: "folder"; body: Folder }
   | { kind: "progress"; body: Progress & { job: string } }
   | { kind: "studio"; body: StudioState }
-  | { kind: "phases"; body: Phases };
+  | { kind: "phases"; body: Phases }
+  | { kind: "class"; body: ClassState }
+  | { kind: "card"; body: Card }
+  | { kind: "gone"; body: { name: string } }
+  | { kind: "tournament"; body: TournamentState };
 
 /** What a page asks for; each request is answered by a reply with its id. */
 export type Request =
@@ -150,7 +180,8 @@ export type Request =
   | "enter"
   | "take_over"
   | "decide"
-  | DesignRequest;
+  | DesignRequest
+  | ClassRequest;
 
 /** What a page of /design asks for. */
 type DesignRequest =
@@ -169,6 +200,19 @@ type DesignRequest =
   | "phase"
   | "name"
   | "vote";
+
+/** What the teacher's page asks for. */
+type ClassRequest =
+  | "rules"
+  | "hand_out"
+  | "lower"
+  | "admit"
+  | "forget"
+  | "new_code"
+  | "show"
+  | "export"
+  | "play"
+  | "stop_play";
 
 /** A file on its way to the court. */
 export interface SentFile {

@@ -4,6 +4,7 @@ import { computed } from "@preact/signals";
 import { setting } from "../core/address";
 import type { Phrase } from "../core/phrase";
 import { remembered } from "../core/settings";
+import { classroom } from "./class";
 import { common } from "./common";
 import { design } from "./design";
 import { play } from "./play";
@@ -16,7 +17,15 @@ export const LANGUAGES = { en: "English", ja: "日本語" } as const;
 export type Language = keyof typeof LANGUAGES;
 
 /** All messages by name: in the order of `LANGUAGES`. */
-export const catalogue = { ...common, ...play, ...referee, ...watch, ...replay, ...design };
+export const catalogue = {
+  ...common,
+  ...play,
+  ...referee,
+  ...watch,
+  ...replay,
+  ...design,
+  ...classroom,
+};
 export type MessageName = keyof typeof catalogue;
 
 /** What was chosen; "" follows the browser. */

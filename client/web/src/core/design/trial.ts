@@ -113,6 +113,13 @@ export function support(trial: Trial, tick: number): Support {
   };
 }
 
+/** What is drawn on the floor at a tick: what carries the robot, and its path. */
+export function floorMarks(trial: Trial, tick: number, way: Float32Array) {
+  const { corners, centre, marginM } = support(trial, tick);
+  const isStable = marginM !== null && marginM > 0;
+  return { polygon: corners, centre, isStable, way, done: tick };
+}
+
 /** The path of the body seen from above: a point for each tick [m, world]. */
 export function pathOf(trial: Trial): Point[] {
   const width = trial.poses.length / Math.max(1, trial.ticks);

@@ -4,7 +4,7 @@ import { computed, type ReadonlySignal, useComputed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { bodyOf, jointsOfLeg } from "../../../core/design/parts";
 import { type Source, trialSource } from "../../../core/design/sources";
-import { pathOf, support } from "../../../core/design/trial";
+import { floorMarks, pathOf } from "../../../core/design/trial";
 import { quality } from "../../../core/settings";
 import type { RobotReply } from "../../../core/wire";
 import { t } from "../../../i18n";
@@ -107,14 +107,6 @@ function marksOf(showing: Showing): () => FloorMarks | null {
     if (way?.of !== tried) {
       way = { of: tried, points: new Float32Array(pathOf(tried.trial).flat()) };
     }
-    const tick = Math.floor(showing.tick.peek());
-    const { corners, centre, marginM } = support(tried.trial, tick);
-    return {
-      polygon: corners,
-      centre,
-      isStable: marginM !== null && marginM > 0,
-      way: way.points,
-      done: tick,
-    };
+    return floorMarks(tried.trial, Math.floor(showing.tick.peek()), way.points);
   };
 }

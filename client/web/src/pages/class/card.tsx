@@ -1,0 +1,127 @@
+/** A student at a glance: one small card. */
+
+import { barsPath, elapsed, PHASES } from "../../core/class";
+import type { Card } from "../../core/wire";
+import { said, t } from "../../i18n";
+import { Icon } from "../../ui/icons";
+import type { Teacher } from "./teacher";
+
+/** A mark for each state of a phase, so that nobody has to tell colours apart. */
+const MARKS = { met: "✓", open: "", skipped: "–" } as const;
+
+interface Props {
+  teacher: Teacher;
+  card: Card;
+  /** Whether Tab leads to it. */
+  isStop: boolean;
+}
+
+export function StudentCard({ teacher, card, isStop }: Props) {
+  const name = teacher.name(card.name);
+  const what = news(teacher, card);
+  return (
+    <li>
+      <button
+        type="button"
+        class="student"
+        tabIndex={isStop ? 0 : -1}
+        data-student={card.name}
+        data-need={card.need}
+        data-online={card.online}
+        aria-label={`${name}: ${summary(teacher, card)}`}
+        title={summary(teacher, card)}
+        onClick={() => {
+          teacher.opened.value = card.name;
+        }}
+      >
+        <span class="who">
+          {card.hand_up_s !== null && <Icon name="hand" />}
+          <b>{name}</b>
+          {card.coached && <i class="coached">C</i>}
+        </span>
+        <Dots card={card} />
+        <span class="walk">
+          <Feet card={card} />
+          <span class="speeds">
+            <b>{speed(card.best_mm_s)}</b>
+            <small>{speed(card.last_mm_s)}</small>
+          </span>
+        </span>
+        {what && <span class="news">{what}</span>}
+      </button>
+    </li>
+  );
+}
+
+/** The six phases as dots: how far, what was left out, and where the student is. */
+export function Dots({ card }: { card: Card }) {
+  return (
+    <span class="dots">
+      {PHASES.map((phase) => {
+        const state = card.states[phase - 1] ?? "open";
+        return (
+          <i key={phase} data-state={state} data-now={phase === card.phase}>
+            {phase === card.phase && state !== "met" ? phase : MARKS[state]}
+          </i>
+        );
+      })}
+    </span>
+  );
+}
+
+/** When each foot was down in the last trial, a row for each leg. */
+export function Feet({ card }: { card: Card }) {
+  const { feet } = card;
+  if (!feet?.length) return <span class="feet empty">{t("class.noTrial")}</span>;
+  return (
+    <svg
+      class="feet"
+      viewBox={`0 0 100 ${feet.length}`}
+      preserveAspectRatio="none"
+      role="img"
+      aria-label={t("class.feet")}
+    >
+      <path d={barsPath(feet)} />
+    </svg>
+  );
+}
+
+/** A speed as a card writes it [mm/s]; "–" where there is none. */
+export function speed(mmS: number | null): string {
+  return mmS === null ? "–" : String(Math.round(mmS)).replace("-", "−");
+}
+
+/** "3 min" */
+export function since(teacher: Teacher, thenS: number): string {
+  const { unit, count } = elapsed(teacher.nowS.value, thenS);
+  return t(`class.${unit}`, { count });
+}
+
+/** The one thing that a teacher should know now; "" if there is none. */
+export function news(teacher: Teacher, card: Card): string {
+  if (!card.online) return t("class.offline", { since: since(teacher, card.seen_s) });
+  if (card.hand_up_s !== null) {
+    return t("class.hand", { since: since(teacher, card.hand_up_s) });
+  }
+  if (card.stuck) return said(card.stuck);
+  if (card.need === "quiet") return t("class.quiet", { since: since(teacher, card.seen_s) });
+  return "";
+}
+
+/** A card in words. */
+function summary(teacher: Teacher, card: Card): string {
+  const parts = [
+    news(teacher, card),
+    card.hand_up_s !== null && card.stuck && said(card.stuck),
+    t("class.atPhase", { number: card.phase, percent: Math.round(100 * card.share) }),
+    ...PHASES.filter((phase) => card.states[phase - 1] !== "open").map((number) =>
+      t("class.state", { number, state: t(`class.legend.${card.states[number - 1]!}`) }),
+    ),
+    card.best_mm_s === null
+      ? t("class.noTrial")
+      : t("class.bestText", { speed: speed(card.best_mm_s) }),
+    card.last_mm_s !== null && t("class.lastText", { speed: speed(card.last_mm_s) }),
+    card.coached && t("class.coached"),
+  ];
+  return parts.filter(Boolean).join(", ");
+}
