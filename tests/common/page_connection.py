@@ -12,6 +12,8 @@ from websockets.sync.client import connect
 from lacoc_client.gateway.wire import Kind
 
 TIMEOUT_S = 60.0
+_OF_COURTS = (Kind.FRAME, Kind.EVENT, Kind.SHEET, Kind.SCENE, Kind.HEALTH)
+"""Kinds that a gateway passes on from a court; they are not kept."""
 
 
 class Refused(Exception):
@@ -37,7 +39,7 @@ class PageConnection:
         self._ids = itertools.count(1)
         self._replies: dict[int, dict[str, Any]] = {}
         self.told: dict[Kind, list[dict[str, Any]]] = {kind: [] for kind in Kind}
-        """All messages of each kind, but replies."""
+        """All messages of the gateway's own kinds, but replies."""
 
     def last(self, kind: Kind) -> dict[str, Any]:
         """Return the newest message of a kind; {}: there is none yet."""
@@ -81,7 +83,10 @@ class PageConnection:
 
     def _take(self, message: str | bytes) -> None:
         assert isinstance(message, bytes)
-        kind, body = Kind(message[0]), msgpack.unpackb(message[1:])
+        kind = Kind(message[0])
+        if kind in _OF_COURTS:
+            return
+        body = msgpack.unpackb(message[1:])
         if kind is Kind.REPLY:
             self._replies[body["id"]] = body
         else:

@@ -16,10 +16,11 @@ from design_client import DesignClient, Refused
 from hypothesis import given
 from hypothesis import strategies as st
 from lacoc_process import Lacoc, run_lacoc
+from page_connection import PageConnection
 from ports import free_port
 
 from lacoc_client.design import requests
-from lacoc_client.gateway.wire import Unreadable
+from lacoc_client.gateway.wire import Kind, Unreadable
 from lacoc_robots.library import find_robot
 from lacoc_shared.studio import STUDIO_MAX_BYTES
 
@@ -227,6 +228,28 @@ def test_garbage_closes_the_connection(opens: Opens, garbage: bytes) -> None:
     page = opens()
     page.socket.send(garbage)
     assert page.code() == 1008
+
+
+def test_a_table_is_taken_to_practice(page: DesignClient) -> None:
+    """Practice has the table of the page, and later its newer one; a table with mistakes stays."""
+    table = sample(page)
+    sequences = [[0], [4, 3, 2, 1], [1, 2, 3, 4]]
+    bad = {**table, "rows": [{**table["rows"][0], "angles_deg": [999.0] * 18}, *table["rows"][1:]]}
+    reply = refused(page, "play", table=bad, sequences=sequences)
+    assert reply["mistakes"]
+    url = page.ask("play", table=table, sequences=sequences)["url"]
+    address, key = url.split("/practice#key=")
+    practice = PageConnection(address, "/ws")
+    try:
+        practice.ask("watch", key=key)
+        practice.until(lambda: practice.last(Kind.FILES))
+        first = practice.last(Kind.FILES)
+        assert "Loco-data.txt" in str(first)
+        rows = [{**table["rows"][0], "angles_deg": [7.0] * 18}, *table["rows"][1:]]
+        assert page.ask("play", table={**table, "rows": rows}, sequences=sequences)["url"] == url
+        practice.until(lambda: practice.last(Kind.FILES) != first)
+    finally:
+        practice.close()
 
 
 def test_a_studio_that_dies_comes_back(page: DesignClient, gateway: Gateway) -> None:

@@ -23,6 +23,7 @@ from lacoc_client.design.learning.diary import Diary
 from lacoc_client.design.learning.keeper import Keeper
 from lacoc_client.design.learning.rules import Rules
 from lacoc_client.design.learning.student import Student
+from lacoc_client.design.playing import Playing
 from lacoc_client.design.studios.studios import Studios
 from lacoc_client.design.table import FileTable
 from lacoc_client.gateway import wire
@@ -65,6 +66,7 @@ class Classroom:
     """
 
     folder: Folder | None = None
+    playing: Playing | None = None
 
     def __init__(
         self,

@@ -47,6 +47,15 @@ def design_command(
             help="Address of a studio that runs elsewhere, such as tcp/192.168.1.20:7448.",
         ),
     ] = None,
+    invitation: Annotated[
+        Path | None,
+        typer.Option(
+            envvar="LACOC_INVITATION",
+            metavar="FILE",
+            help="Your invitation to a match: the page takes your gait there instead of to "
+            "practice.",
+        ),
+    ] = None,
     listen: Annotated[
         str,
         typer.Option(
@@ -66,7 +75,7 @@ def design_command(
     pages.check_pages(terminal=False)
     files = Folder(folder)
     with nullcontext(connect) if connect else own_studio() as address:
-        designer = Designer(files, Studios([Asker(address)]), robot)
+        designer = Designer(files, Studios([Asker(address)]), robot, invitation)
         site = design_site(designer, PageFiles())
         pages.show_app(site, f"{PATH}#key={designer.key}", browser, listen, MESSAGE_BYTES)
 

@@ -41,19 +41,20 @@ def check_pages(*, terminal: bool = True) -> None:
         raise UserError(say("pages.not-built-for-play", why=NOT_BUILT) if terminal else NOT_BUILT)
 
 
-def show_page(home: Home, path: str, browser: bool) -> None:
+def show_page(home: Home, path: str, browser: bool, json: bool = False) -> None:
     """Serve a page of courts to this person's browser until Ctrl-C.
 
     Args:
         home: the gateway's settings.
         path: path of the page, with its fragment.
         browser: whether to open the page in the browser.
+        json: print the address as JSON.
 
     Raises:
         UserError: if the pages are not built.
     """
     check_pages()
-    show_app(site(home, PageFiles()), path, browser)
+    show_app(site(home, PageFiles()), path, browser, json=json)
 
 
 def show_app(
@@ -62,6 +63,7 @@ def show_app(
     browser: bool,
     listen: str = server.LOOPBACK,
     most_bytes: int = JOIN_BYTES,
+    json: bool = False,
 ) -> None:
     """Serve an application to this person's browser until Ctrl-C.
 
@@ -71,6 +73,7 @@ def show_app(
         browser: whether to open the page in the browser.
         listen: "HOST:PORT"; see `server.listen`.
         most_bytes: longest message of a page.
+        json: print the address as JSON.
 
     Raises:
         UserError: if the address is wrong, or can't be listened on.
@@ -81,6 +84,9 @@ def show_app(
 
     def ready() -> None:
         shown = browser and open_browser(stack.enter_context(unseen(address)))
+        if json:
+            screen.print_json({"kind": "open", "url": address})
+            return
         # Said in any case: a browser may open in a place where nobody looks.
         screen.show(say("web.opened", url=address) if shown else say("web.open", url=address))
         screen.note(say("web.keep-running"))

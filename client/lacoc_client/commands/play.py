@@ -66,6 +66,7 @@ def play_command(
         typer.Option("--ready", help="With --terminal: say ready at once, without the key r."),
     ] = False,
     browser: pages.Browser = True,
+    json: options.Json = False,
 ) -> None:
     """Hold a seat and steer your robot with the keyboard.
 
@@ -90,7 +91,7 @@ def play_command(
     access = entrance.perhaps_seat(invitation, contest, court, connect, seat, token)
     prefill = Prefill(access.seat, access.token, name, own_files(robot, gait or []))
     home = player_home(access, prefill, "player", None)
-    pages.show_page(home, f"/play#key={home.key}", browser)
+    pages.show_page(home, f"/play#key={home.key}", browser, json)
 
 
 def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:

@@ -14,6 +14,7 @@ from lacoc_client.commands import pages
 from lacoc_client.commands.play import Gaits, Robot, TeamName, own_files, play
 from lacoc_client.gateway.home import Prefill, player_home
 from lacoc_client.seat_files import SeatFiles
+from lacoc_shared.command import options
 from lacoc_shared.contest.invitation import Access
 from lacoc_shared.words import render, say
 
@@ -34,6 +35,7 @@ def practice_command(
     ] = None,
     terminal: pages.Terminal = False,
     browser: pages.Browser = True,
+    json: options.Json = False,
 ) -> None:
     """Walk your robot on a field of its own, with all keys, as long as you like.
 
@@ -55,7 +57,7 @@ def practice_command(
             return
         prefill = Prefill(access.seat, access.token, name or "Practice", files)
         home = player_home(access, prefill, "practice", recordings)
-        pages.show_page(home, f"/practice#key={home.key}", browser)
+        pages.show_page(home, f"/practice#key={home.key}", browser, json)
 
 
 def _greeting(files: SeatFiles) -> Text:

@@ -10,13 +10,14 @@ from lacoc_client.design import requests
 from lacoc_client.design.files import file_bytes, read_file
 from lacoc_client.design.folder import Folder
 from lacoc_client.design.host import Host
+from lacoc_client.design.learning.draft import Draft
 from lacoc_client.design.learning.learner import Learner
 from lacoc_client.design.studios.studio_desk import StudioDesk
 from lacoc_client.gateway.answers import Answers
 from lacoc_client.gateway.page_requests import GARBAGE, serve_requests
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_client.phases.evidence import Hand, Moved, Named
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import say
 
@@ -82,6 +83,7 @@ class DesignPage:
             "student": student.name or None,
             "token": entered.token,
             "draft": student.diary.draft,
+            "court": _court(self._host),
         }
         self._answers.reply(hello.id, value)
         self._host.greet(student, self._viewer)
@@ -105,6 +107,8 @@ class DesignPage:
                 answers.later(asked.id, self._studio.coach(asked))
             case requests.CancelAsk():
                 answers.later(asked.id, self._studio.cancel(asked.job))
+            case requests.PlayAsk():
+                answers.later(asked.id, self._play(asked, learner))
             case (
                 requests.EditAsk()
                 | requests.CheckAsk()
@@ -138,6 +142,25 @@ class DesignPage:
             return None
         sample = msgspec.structs.replace(asked, table=table, sequences=None, guesses=())
         return (await self._studio.trial(sample))[0]
+
+    async def _play(self, asked: requests.PlayAsk, learner: Learner) -> dict[str, str]:
+        """Take a table without mistakes to a court.
+
+        Raises:
+            FileRefused: with every mistake of the table or of the robot.
+            UserError: if there is no way to a court.
+        """
+        if self._host.playing is None:
+            raise UserError(say("class.no-court"))
+        check = requests.CheckAsk(
+            id=0, table=asked.table, robot=asked.robot, sequences=asked.sequences
+        )
+        if mistakes := (await learner.checked(check)).mistakes:
+            raise FileRefused(list(mistakes))
+        draft = Draft(
+            table=asked.table, sequences=asked.sequences, robot=asked.robot or self._host.robot
+        )
+        return {"url": await asyncio.to_thread(self._host.playing.open, draft.files())}
 
     async def _learn(self, asked: requests.Asked, learner: Learner) -> Any:
         """Answer a request about the phases."""
@@ -196,3 +219,10 @@ def parsed(asked: requests.ParseAsk) -> Any:
     if not isinstance(data, bytes):
         raise UserError(say("gateway.bad-message", error=type(data).__name__))
     return read_file(asked.name, data)
+
+
+def _court(host: Host) -> str | None:
+    """Return where a page can take its table: to practice or to a contest; None: nowhere."""
+    if host.playing is None:
+        return None
+    return "practice" if host.playing.invitation is None else "contest"

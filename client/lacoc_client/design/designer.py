@@ -4,6 +4,7 @@ import asyncio
 import hmac
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 
 from lacoc_client.design import requests
 from lacoc_client.design.files import FileContent, read_file
@@ -13,6 +14,7 @@ from lacoc_client.design.learning.diary import Diary
 from lacoc_client.design.learning.keeper import Keeper
 from lacoc_client.design.learning.rules import FREE
 from lacoc_client.design.learning.student import Student
+from lacoc_client.design.playing import Playing
 from lacoc_client.design.studios.studios import Studios
 from lacoc_client.gateway import wire
 from lacoc_client.gateway.home import new_key
@@ -39,14 +41,22 @@ class Designer:
     Args:
         folder: the files.
         studios: the connection to the studio; this class starts and closes it.
+        invitation: an invitation to a seat, to which pages take their gait; None: practice.
         robot: the robot that pages begin with, as on the command line; None: the workshop's.
 
     Raises:
         UserError: if there is no such robot.
     """
 
-    def __init__(self, folder: Folder, studios: Studios, robot: str | None = None) -> None:
+    def __init__(
+        self,
+        folder: Folder,
+        studios: Studios,
+        robot: str | None = None,
+        invitation: Path | None = None,
+    ) -> None:
         self.folder: Folder | None = folder
+        self.playing: Playing | None = Playing(invitation)
         self.studios = studios
         self.robot = SentFile(*find_robot(robot)) if robot else None
         self.key = new_key()
@@ -92,6 +102,8 @@ class Designer:
             yield
         finally:
             looking.cancel()
+            if self.playing is not None:
+                await asyncio.to_thread(self.playing.close)
             await self._keeper.close()
             await asyncio.to_thread(self.studios.close)
 

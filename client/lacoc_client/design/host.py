@@ -6,6 +6,7 @@ from lacoc_client.design import requests
 from lacoc_client.design.files import FileContent
 from lacoc_client.design.folder import Folder
 from lacoc_client.design.learning.student import Student
+from lacoc_client.design.playing import Playing
 from lacoc_client.design.studios.studios import Studios
 from lacoc_client.gateway.viewer import Viewer
 from lacoc_shared.messages import SentFile
@@ -20,6 +21,8 @@ class Host(Protocol):
     studios: Studios
     folder: Folder | None
     """The folder with the student's files; None: pages have no folder."""
+    playing: Playing | None
+    """The way to a court; None: pages have none."""
 
     async def enter(self, hello: requests.Hello, viewer: Viewer, where: str) -> "Entered":
         """Let a page in.

@@ -132,6 +132,14 @@ class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
     sequences: _Sequences | None = None
 
 
+class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
+    """Check the table, and take it to a court: to practice, or to the seat of an invitation."""
+
+    table: FileTable
+    robot: SentFile | None = None
+    sequences: _Sequences | None = None
+
+
 class PhaseAsk(Ask, frozen=True, kw_only=True, tag="phase"):
     """Go to a phase, forward or back."""
 
@@ -191,6 +199,7 @@ Asked = (
     | CancelAsk
     | EditAsk
     | CheckAsk
+    | PlayAsk
     | PhaseAsk
     | NameAsk
     | VoteAsk

@@ -582,6 +582,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "class.failed-stand": ["Three times in a row, the robot did not stand firmly on half of its legs.", "3 回続けて、ロボットは半分の脚でしっかり立てませんでした。"],
   "class.failed-turns": ["Three times in a row, the robot turned instead of walking straight.", "3 回続けて、ロボットはまっすぐ進まずに曲がりました。"],
   "class.failed-slow": ["Three times in a row, the robot hardly moved forward.", "3 回続けて、ロボットはほとんど前に進みませんでした。"],
+  "class.no-court": ["In a class there is no court to practise on. Download your files, and use them with 'lacoc practice'.", "クラスには練習用のコートがありません。ファイルをダウンロードして、「lacoc practice」で使ってください。"],
   "tournament.no-key": ["The table has no key that walks: fill in at least one posture of key 1, 2 or 3.", "歩くキーがありません。キー 1、2、3 のどれかに姿勢を 1 つ以上入れてください。"],
   "tournament.too-few": ["A tournament needs at least two gaits that walk.< Left out: {left_out}.>", "トーナメントには、歩ける歩容が 2 つ以上必要です。<外れた人：{left_out}>"],
   "tournament.runs": ["A tournament is being played. Wait until it is over, or stop it.", "トーナメントの試合中です。終わるまで待つか、止めてください。"],

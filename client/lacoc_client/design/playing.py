@@ -1,0 +1,71 @@
+"""The way from a table on /design to a court: to practice, or to a seat of a contest."""
+
+import tempfile
+import threading
+from pathlib import Path
+
+from lacoc_client.child import Child
+from lacoc_client.seat_files import USUAL_NAMES, SeatFiles
+from lacoc_shared.words import say
+
+
+class Playing:
+    """A `lacoc practice` or `lacoc play` with the table of /design; any thread may use it.
+
+    Args:
+        invitation: an invitation to a seat; None: practice.
+    """
+
+    def __init__(self, invitation: Path | None = None) -> None:
+        self.invitation = None if invitation is None else invitation.resolve()
+        self._folder = tempfile.TemporaryDirectory(prefix="lacoc-playing-")
+        self._child: Child | None = None
+        self._url = ""
+        self._lock = threading.Lock()
+
+    def open(self, files: SeatFiles) -> str:
+        """Hand files to the page of the court; start it if it does not run. Blocks meanwhile.
+
+        A page that is open already notices the new files, and asks whether to use them.
+
+        Returns:
+            The address of the page, with its key.
+
+        Raises:
+            UserError: if it does not become ready.
+        """
+        with self._lock:
+            paths = self._write(files)
+            if self._child is None or self._child.ended:
+                self._child = Child(self._words(paths), Path(self._folder.name), say("child.court"))
+                self._url = self._child.opened()["url"]
+            return self._url
+
+    def close(self) -> None:
+        """End the command, and delete the files."""
+        with self._lock:
+            if self._child is not None:
+                self._child.close()
+            self._folder.cleanup()
+
+    def _write(self, files: SeatFiles) -> list[Path]:
+        """Write the files; return their paths: of the robot, level A, level B."""
+        paths = [Path(self._folder.name) / name for name in USUAL_NAMES]
+        for path, file in zip(paths, files, strict=True):
+            if file is None:
+                path.unlink(missing_ok=True)
+            else:
+                path.write_bytes(file.data)
+        return paths
+
+    def _words(self, paths: list[Path]) -> list[str]:
+        robot, *gaits = paths
+        words = ["practice"] if self.invitation is None else ["play"]
+        if self.invitation is not None:
+            words += ["--invitation", str(self.invitation)]
+        words += ["--json", "--no-open"]
+        if robot.exists():
+            words += ["--robot", str(robot)]
+        for gait in gaits:
+            words += ["--gait", str(gait)] if gait.exists() else []
+        return words
