@@ -569,7 +569,7 @@ export const WORDS: Record<string, readonly [string, string]> = {
   "class.name-taken": ["Somebody in this class already has the nickname {name}. Choose another one. If this is you on another device, ask your teacher to let you in.", "{name} というニックネームの人がすでにクラスにいます。別のニックネームにしてください。別の端末を使っている本人なら、先生に入れてもらってください。"],
   "class.unknown-token": ["This browser is not in the class any more. Type the class code and your nickname again.", "このブラウザーはクラスから外れています。クラスコードとニックネームをもう一度入力してください。"],
   "class.full": ["This class is full: it has {most} students. Tell your teacher.", "このクラスは満員（{most} 人）です。先生に伝えてください。"],
-  "class.phase-closed": ["Your teacher has not opened phase {number} yet.", "フェーズ {number} は、先生がまだ開いていません。"],
+  "class.phase-closed": ["Your teacher has not opened phase {number} yet.", "段階 {number} は、先生がまだ開いていません。"],
   "class.coach-closed": ["Your teacher does not allow this help of the coach now. First try it yourself.", "コーチのこの機能は、今は先生が使えないようにしています。まず自分でやってみましょう。"],
   "class.no-folder": ["In a class there is no folder in which you can open or save files. Your table is saved automatically. You can also download it.", "クラスには、ファイルを開いたり保存したりするフォルダーがありません。表は自動で保存されます。ダウンロードもできます。"],
   "class.wrong-key": ["This address does not open the teacher's page. Use the address that 'lacoc class' printed.", "このアドレスでは先生のページを開けません。「lacoc class」が表示したアドレスを使ってください。"],
