@@ -39,7 +39,7 @@ function Phases({ teacher }: { teacher: Teacher }) {
           <label key={phase}>
             <input type="checkbox" checked={isOpen} onChange={() => teacher.toggle(phase)} />
             <span>
-              {phase} {phaseTitle(phase)}
+              {phase}. {phaseTitle(phase)}
             </span>
             <small>{t(isOpen ? "class.phaseOpen" : "class.phaseClosed")}</small>
           </label>
