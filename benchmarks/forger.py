@@ -46,8 +46,8 @@ class Forger:
         """Make a forged copy.
 
         Returns:
-            The name of the forgery, and the copy. Some copies also lie about the arithmetic that
-            made the record.
+            The name of the forgery, and the copy. Some copies also claim that the record was
+            made with another arithmetic (`Header.arithmetic`).
         """
         while True:
             name = chance.choice(sorted(_FORGERIES))

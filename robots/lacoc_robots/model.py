@@ -60,7 +60,10 @@ def collision_bits(seat: int, seats: int) -> tuple[int, int]:
 
 
 def accent_colour(rgba: Sequence[float]) -> list[float]:
-    """Mix a colour in equal parts with white (a bright one with black), for the accent legs."""
+    """Return the colour of the legs that show where the front is (`accent` in the robot file).
+
+    It is a mixture in equal parts with white, or with black if the robot's colour is bright.
+    """
     red, green, blue, alpha = rgba
     toward = 1.0 if 0.299 * red + 0.587 * green + 0.114 * blue < 0.6 else 0.0
     return [(red + toward) / 2, (green + toward) / 2, (blue + toward) / 2, alpha]

@@ -49,7 +49,7 @@ class Student(Designer):
 def test_two_phases_are_done_by_keyboard(
     open_page: OpenPage, tmp_path: Path, built_pages: Path
 ) -> None:
-    """Guesses and edits of a leg do phase 1, a trial of one posture phase 2; nothing locks."""
+    """A student completes phases 1 and 2 with the keyboard alone, and may open any other phase."""
     write_sample(tmp_path)
     with own_page(tmp_path, "design") as (url, key):
         page = Student(open_page, url, viewport={"width": 1280, "height": 800})

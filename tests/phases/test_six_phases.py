@@ -89,7 +89,7 @@ def test_phase_2_needs_an_own_tripod(try_gait: Tries, sample: Sample) -> None:
 
 
 def test_phase_3_needs_two_postures_on_the_same_feet(try_gait: Tries, sample: Sample) -> None:
-    """Phase 3 is met by two postures that move forward on the same feet, not back or on others."""
+    """Phase 3 is met if two postures move the robot forward while the same feet stay down."""
     table = {key: sample[key] for key in range(5)}
     made = edit(standing(sample, range(5)), table)
 

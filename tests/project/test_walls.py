@@ -49,7 +49,7 @@ def tree(tmp_path: Path) -> Path:
 
 
 def test_the_walls_stand(tree: Path) -> None:
-    """No import in the project breaks a contract."""
+    """No import in the project breaks one of the walls (the contracts in pyproject.toml)."""
     assert broken_walls(tree) == []
 
 

@@ -87,7 +87,10 @@ def test_a_start_in_that_beat_finds_it_at_its_place() -> None:
 
 
 def test_one_who_leaves_or_comes_anew_on_the_way_back_disturbs_nothing() -> None:
-    """If a team leaves or changes its robot while the robot is away, the field becomes empty."""
+    """A team that gives its seat up, or joins anew, ends READY while its robot is put back.
+
+    The match is in the lobby then, and its frames have no robots.
+    """
     for item in (LeaveSeat(LEFT), join(LEFT, robot="octopod")):
         stage = straying(3).to_ready()
         stage.run(2)

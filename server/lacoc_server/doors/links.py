@@ -102,7 +102,7 @@ class Links:
         return self._links[seat].trip
 
     def late(self, seat: int) -> int:
-        """Return how many of a seat's keys came too late for the common delay."""
+        """Return how many of a seat's keys came after the end of the common delay."""
         return self._links[seat].late
 
     def begin(self, now_s: float, match: int, beat: int) -> None:

@@ -74,7 +74,7 @@ class Match(MatchState):
         """Let one beat pass.
 
         Args:
-            inputs: inputs of the beat, in any order; each has a rank.
+            inputs: inputs of the beat, in any order. They are applied in the order of their ranks.
 
         Returns:
             The results of the beat, with an outcome for each input.
