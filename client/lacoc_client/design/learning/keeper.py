@@ -39,8 +39,8 @@ class Keeper:
 
     async def close(self) -> None:
         """Close the file."""
-        if self._opening is not None:
-            await self._opening
+        if self._opening is not None and not self._opening.done():
+            await asyncio.wait({self._opening})
         if self._store is not None:
             await asyncio.to_thread(self._store.close)
 
