@@ -4,7 +4,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lacoc_client.classroom.admission import Guesses, new_code, read_code, read_name, same_name
+from lacoc_client.classroom.admission import (
+    _UNSEEN,
+    Guesses,
+    new_code,
+    read_code,
+    read_name,
+    same_name,
+)
 from lacoc_shared.mistakes import UserError
 
 
@@ -26,7 +33,8 @@ def test_a_name_is_short_text_that_can_be_seen(text: str) -> None:
     except UserError:
         name = None
     if name is None:
-        assert not 1 <= len(" ".join(text.split())) <= 20 or not text.isprintable()
+        signs = " ".join(text.split())
+        assert not 1 <= len(signs) <= 20 or not text.isprintable() or not _UNSEEN.sub("", signs)
     else:
         assert 1 <= len(name) <= 20
         assert name.isprintable()
@@ -35,11 +43,29 @@ def test_a_name_is_short_text_that_can_be_seen(text: str) -> None:
 
 @pytest.mark.parametrize(
     ("one", "other"),
-    [("Anna", "ANNA"), ("ｱﾝﾅ", "アンナ"), ("Ｂｅｎ", "ben"), ("Jose\u0301", "José")],
+    [
+        ("Anna", "ANNA"),
+        ("ｱﾝﾅ", "アンナ"),
+        ("Ｂｅｎ", "ben"),
+        ("Jose\u0301", "José"),
+        ("Anna", "An\ufe0fna\u3164"),
+        ("An na", "An \u2800na"),
+        ("❤", "❤\ufe0f"),
+    ],
 )
 def test_names_that_look_alike_are_the_same(one: str, other: str) -> None:
     """Two students can't have names that people take for the same one."""
     assert same_name(read_name(one)) == same_name(read_name(other))
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["\u3164", "\u2800", "\ufe0f", "\u115f \u1160", "An\u202ena", "An\u200bna", "\x07", "\u00ad"],
+)
+def test_a_name_that_nobody_sees_is_refused(name: str) -> None:
+    """A name can't be empty on the screen, and can't turn round the text beside it."""
+    with pytest.raises(UserError):
+        read_name(name)
 
 
 def test_a_thousand_guesses_disturb_nobody_else() -> None:

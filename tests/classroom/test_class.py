@@ -156,6 +156,11 @@ def test_the_teacher_closes_phases_and_the_coach(
 
     teacher.ask("rules", rules={"closed": [], "coach": "table", "explain_first": False})
     assert student.ask("phase", number=4) == {}
+    student.until(lambda: student.last(Kind.STUDIO).get("present"))
+    for seconds in (float("nan"), float("inf"), 1e308):
+        with pytest.raises(Refused) as refusal:
+            student.ask("coach", job="a", table=table, size="cell", seconds=seconds)
+        assert code_of(refusal) == "studio.coach-seconds"
 
 
 def test_the_teacher_hands_out_a_table(

@@ -177,3 +177,13 @@ def test_all_texts_are_in_both_languages() -> None:
             assert not faults(phrase)
             assert render(phrase, "ja") != render(phrase, "en")
     assert [phase.number for phase in PHASES] == [1, 2, 3, 4, 5, 6]
+
+
+def test_evidence_that_no_task_asks_for_changes_no_task() -> None:
+    """What is computed from the last result equals what is computed from all evidence."""
+    evidence: list[Evidence] = [Named(word="calm")]
+    before = progress(evidence)
+    for one in (Moved(phase=5), Hand(up=True), Voted(poll="calm"), Hand(up=False), Moved(phase=2)):
+        evidence.append(one)
+        before = progress(evidence, before)
+        assert before == progress(evidence)

@@ -1,5 +1,6 @@
 """Who may come into a class: class codes, nicknames, tokens and guesses."""
 
+import re
 import secrets
 import unicodedata
 from collections import OrderedDict
@@ -12,6 +13,12 @@ _LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
 """Letters of class codes: none that looks like another one."""
 _CODE_LENGTH = 6
 _LONGEST_NAME = 20
+_UNSEEN = re.compile(
+    "[\u00ad\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u2800\u3164\ufe00-\ufe0f\uffa0"
+    "\U0001d159\U000e0100-\U000e01ef]"
+)
+"""Signs that Python calls printable, but that nobody sees, as the Hangul filler. In an emoji one
+of them is usual, so a name may have them; but they make no name, and no other name."""
 _GUESSES_HZ, _GUESSES_BURST = 0.5, 20
 """Wrong codes of a machine that are answered at once."""
 _LATER_S = 1.0
@@ -38,14 +45,15 @@ def read_name(text: str) -> str:
         UserError: if it is empty, too long, or has signs that can't be seen.
     """
     name = " ".join(unicodedata.normalize("NFC", text).split())
-    if not name or len(name) > _LONGEST_NAME or not name.isprintable():
+    if not _UNSEEN.sub("", name).strip() or len(name) > _LONGEST_NAME or not name.isprintable():
         raise UserError(say("class.bad-name", most=_LONGEST_NAME))
     return name
 
 
 def same_name(name: str) -> str:
-    """Return a form of a name in which "Anna" and "ANNA" are equal."""
-    return unicodedata.normalize("NFKC", name).casefold()
+    """Return a form of a name in which names that look alike, as "Anna" and "ANNA", are equal."""
+    seen = unicodedata.normalize("NFKC", _UNSEEN.sub("", name))
+    return " ".join(seen.casefold().split())
 
 
 class Guesses:

@@ -8,6 +8,7 @@ from lacoc_client.design.learning.diary import Diary
 from lacoc_client.design.learning.rules import Rules
 from lacoc_client.design.learning.student import Student
 from lacoc_client.phases.class_file import KeptTable
+from lacoc_client.phases.evidence import Joined
 from lacoc_shared.studio import TrialReply
 
 TOKEN = "token"
@@ -33,6 +34,12 @@ class ClassStudent(Student):
         """Time since when the hand is up."""
         self._trial: TrialReply | None = None
         self._last: Card | None = None
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether the student is not there, and has never done more than come in."""
+        did = any(not isinstance(one, Joined) for one in self.diary.evidence)
+        return not (self.viewers or did or self.diary.draft)
 
     def learned(self, trial: TrialReply | None) -> None:
         """Note that the student did something; `trial` is the trial if it was one."""

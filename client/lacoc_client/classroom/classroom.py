@@ -87,6 +87,8 @@ class Classroom:
         self._keeper = Keeper(folder / CLASS_FILE)
         self._robot_name = robot or WORKSHOPS_ROBOT
         self._guesses = Guesses()
+        self._coming = asyncio.Lock()
+        """Held while a student gets a nickname."""
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
@@ -131,7 +133,9 @@ class Classroom:
         else:
             student, token = await self._newcomer(hello, where), new_token()
             student.token_hash = hash_token(token)
-            (await self._store()).keep(student.kept_token())
+            await student.diary.keep_table(student.kept_token())
+        if self.students.get(same_name(student.name)) is not student:
+            raise UserError(say("class.enter"))  # forgotten while it came in
         return Entered(student, token)
 
     def greet(self, student: Student, viewer: Viewer) -> None:
@@ -207,17 +211,18 @@ class Classroom:
     async def admit(self, student: ClassStudent) -> None:
         """Let the next browser that shows the class code in under this student's name."""
         student.token_hash = ""
-        (await self._store()).keep(student.kept_token())
+        await student.diary.keep_table(student.kept_token())
 
     async def forget(self, student: ClassStudent) -> None:
         """Delete all that is kept of a student.
 
         Raises:
-            UserError: if the class file can't be written.
+            UserError: if the class file can't be written; then the student stays.
         """
-        del self.students[same_name(student.name)]
+        await student.diary.forget()
+        if self.students.get(same_name(student.name)) is student:  # else another page was quicker
+            del self.students[same_name(student.name)]
         self._send_away(student, forgotten=True)
-        await asyncio.wrap_future((await self._store()).forget(student.name))
         self._tell(wire.map_message(Kind.GONE, {"name": student.name}))
 
     async def evidence(self) -> list[Kept]:
@@ -255,16 +260,31 @@ class Classroom:
             await asyncio.sleep(self._guesses.wait_s(where, time.monotonic()))
             raise UserError(say("class.wrong-code"))
         name = read_name(hello.name)
-        student = self.students.get(same_name(name))
-        if student is None:
-            if len(self.students) >= _MOST_STUDENTS:
-                raise UserError(say("class.full", most=_MOST_STUDENTS))
-            student = self._new(name)
-        elif student.token_hash:
-            raise UserError(say("class.name-taken", name=name))
-        student.token_hash = "-"  # nobody else takes the name while this is written
+        async with self._coming:
+            if same_name(name) not in self.students and len(self.students) >= _MOST_STUDENTS:
+                await self._make_room()
+            student = self.students.get(same_name(name))
+            if student is None:
+                student = self._new(name)
+            elif student.token_hash:
+                raise UserError(say("class.name-taken", name=name))
+            student.token_hash = "-"  # nobody else takes the name while this is written
         await student.diary.add(Joined())
         return student
+
+    async def _make_room(self) -> None:
+        """Forget the first nickname with which nobody has done anything, and nobody is in.
+
+        So whoever comes in under a hundred names does not keep the others out.
+
+        Raises:
+            UserError: if there is no such nickname.
+        """
+        idle = (student for student in self.students.values() if student.is_idle)
+        student = next(idle, None)
+        if student is None:
+            raise UserError(say("class.full", most=_MOST_STUDENTS))
+        await self.forget(student)
 
     def _new(self, name: str) -> ClassStudent:
         diary = Diary(self._keeper, name)

@@ -85,7 +85,9 @@ class TeacherPage:
             case requests.AdmitAsk():
                 await group.admit(group.find(asked.student))
             case requests.ForgetAsk():
-                await group.forget(group.find(asked.student))
+                # A teacher who closes the page at once wants the student forgotten, too.
+                forgetting = group.forget(group.find(asked.student))
+                await asyncio.shield(asyncio.ensure_future(forgetting))
             case requests.NewCodeAsk():
                 await group.set_code()
             case requests.ShowAsk():
@@ -113,8 +115,9 @@ class TeacherPage:
     async def _show(self, student: ClassStudent) -> dict[str, Any]:
         """Let a student's robot walk; the big screen needs robot, trial and table."""
         draft = _draft(student)
-        trial = TrialAsk(id=0, table=draft.table, robot=draft.robot, sequences=draft.sequences)
-        robot = await self._studio.robot(RobotAsk(id=0, robot=draft.robot or self._class.robot))
+        file = draft.robot or self._class.robot
+        trial = TrialAsk(id=0, table=draft.table, robot=file, sequences=draft.sequences)
+        robot = await self._studio.robot(RobotAsk(id=0, robot=file))
         _, payload = await self._studio.trial(trial)
         return {
             "name": student.name,

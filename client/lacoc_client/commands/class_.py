@@ -136,7 +136,7 @@ def forget_command(
 ) -> None:
     """Delete everything that is kept of a class: evidence, tables, nicknames, its matches.
 
-    Files that you exported elsewhere stay.
+    Files that you exported stay.
     """
     path = folder / CLASS_FILE
     if not path.exists():

@@ -14,6 +14,9 @@ from lacoc_shared.words import say
 
 _Digit = Annotated[int, msgspec.Meta(ge=0, lt=MAX_KEYS)]
 _Index = Annotated[int, msgspec.Meta(ge=0, lt=MAX_POSTURES_PER_KEY)]
+_MOST_LEGS = 32
+"""Most legs of a table that a page sends. The time to check a table grows with this number, so
+without a limit one small message could keep a whole class waiting for minutes."""
 
 
 class FileRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -22,7 +25,7 @@ class FileRow(msgspec.Struct, frozen=True, kw_only=True):
     key: _Digit
     posture: _Index = 0
     """Index in the key's sequence; 0 in a table of postures."""
-    angles_deg: tuple[float, ...]
+    angles_deg: Annotated[tuple[float, ...], msgspec.Meta(max_length=_MOST_LEGS * JOINTS_PER_LEG)]
     """(joints,) by joint id."""
 
 
@@ -30,8 +33,8 @@ class FileTable(msgspec.Struct, frozen=True, kw_only=True):
     """The table of a gait file."""
 
     kind: Literal["postures", "locomotion"]
-    legs: int
-    rows: tuple[FileRow, ...]
+    legs: Annotated[int, msgspec.Meta(ge=1, le=_MOST_LEGS)]
+    rows: Annotated[tuple[FileRow, ...], msgspec.Meta(max_length=MAX_KEYS * MAX_POSTURES_PER_KEY)]
 
     @property
     def file_name(self) -> str:

@@ -17,6 +17,8 @@ GARBAGE = 1008
 """WebSocket close code (policy violation) for a page whose message can't be decoded."""
 
 _FIRST_S = 10.0
+_COST_BYTES = 4096
+"""A message counts as one request for each so many bytes: large tables cost much time to check."""
 
 
 class Numbered(Protocol):
@@ -55,10 +57,12 @@ async def serve_requests(
         # A connection that never sends a request must not stay open.
         message = await asyncio.wait_for(websocket.receive(), _FIRST_S)
         while message["type"] == "websocket.receive":
-            if not await _take(message.get("bytes") or b"", websocket, answers, read, answer):
+            data = message.get("bytes") or b""
+            if not await _take(data, websocket, answers, read, answer):
                 return
+            cost = min(burst, 1 + len(data) // _COST_BYTES)
             # A page that asks too much is not read for a while; no other page notices.
-            while not asks.take(1, time.monotonic()):
+            while cost := cost - asks.take(cost, time.monotonic()):
                 await asyncio.sleep(1 / most_hz)
             message = await websocket.receive()
 

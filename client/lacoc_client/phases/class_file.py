@@ -152,6 +152,7 @@ class ClassFile:
         with self._db:
             self._db.execute("DELETE FROM evidence WHERE student = ?", (student,))
             self._db.execute("DELETE FROM tables WHERE student = ?", (student,))
+        self._db.execute("PRAGMA wal_checkpoint(TRUNCATE)")  # the log still has it otherwise
 
     def close(self) -> None:
         """Close the file."""
@@ -188,6 +189,7 @@ class ClassFile:
         if self._number("schema_version") and (application, version) != (_APPLICATION, _VERSION):
             raise UserError(say("class.newer", file=text_of(self._path)))
         db.execute("PRAGMA journal_mode = WAL")
+        db.execute("PRAGMA secure_delete = ON")  # what is forgotten can't be read in the file
         db.execute("PRAGMA synchronous = FULL")  # a commit is on the disk, also if power fails
         # One transaction makes all tables or none. A file without tables counts as a new one.
         with db:
@@ -244,7 +246,8 @@ def forget(path: Path) -> list[Path]:
     with suppress(Damaged):  # a damaged file can be deleted too
         ClassFile(path).close()
     old = path.parent.glob(f"{_escaped(path.stem)}.damaged-*{_escaped(path.suffix)}")
-    found = [Path(f"{one}{end}") for one in (path, *old) for end in _BESIDE]
+    # The file itself is last: if another one can't be deleted now, the command can be used again.
+    found = [Path(f"{one}{end}") for one in (*old, path) for end in reversed(_BESIDE)]
     found = [one for one in found if one.exists()]
     for one in found:
         try:

@@ -4,9 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from lacoc_client.phases.evidence import Coached, Evidence, Hand, Moved
+from lacoc_client.phases.evidence import Coached, Evidence, Hand, Joined, Moved
 from lacoc_client.phases.phases import PHASES
 from lacoc_client.phases.predicates import Outcome
+
+_UNCOUNTED = (Joined, Moved, Hand)
+"""Evidence that no task asks for: a page may send much of it, so it must cost little."""
 
 State = Literal["open", "met", "skipped"]
 """A phase is "skipped" if the student went on without doing its task. The student can come back at
@@ -43,8 +46,10 @@ def progress(evidence: Sequence[Evidence], before: Progress | None = None) -> Pr
     visited = [number for number in visited if 1 <= number <= len(PHASES)]
     hands = [one.up for one in evidence if isinstance(one, Hand)]
     known = before.outcomes if before is not None else (None,) * len(PHASES)
+    new = evidence[before.seen :] if before is not None else evidence
+    counts = any(not isinstance(one, _UNCOUNTED) for one in new)
     outcomes = tuple(
-        old if old is not None and old.met else phase.look(evidence)
+        old if old is not None and (old.met or not counts) else phase.look(evidence)
         for phase, old in zip(PHASES, known, strict=True)
     )
     farthest = max(visited, default=1)

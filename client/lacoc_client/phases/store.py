@@ -117,12 +117,12 @@ class ClassStore:
         """Delete all that is kept of a student."""
 
         def work(file: ClassFile) -> None:
+            file.forget(student)  # first: if this fails, everything is as before
             with self._lock:
                 gone = [key for key in self._tables if key[0] == student]
                 for key in gone:
                     del self._tables[key]
                     self._waiting.discard(key)
-            file.forget(student)
 
         return self._do(work, writes=True)
 

@@ -2,7 +2,7 @@
 
 import asyncio
 import time
-from collections.abc import Awaitable, Iterable
+from collections.abc import Iterable
 from typing import TypeVar
 
 import msgspec
@@ -10,12 +10,13 @@ import msgspec
 from lacoc_client.design.learning.draft import NAME, Draft, read_draft
 from lacoc_client.design.learning.keeper import Keeper
 from lacoc_client.design.learning.rules import Rules
+from lacoc_client.phases.class_file import KeptTable
 from lacoc_client.phases.evidence import Evidence, Named, Voted
 from lacoc_client.phases.phases import PHASES
 from lacoc_client.phases.progress import Progress, State, progress
 from lacoc_client.phases.store import ClassStore
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import Phrase
+from lacoc_shared.words import Phrase, say
 
 _T = TypeVar("_T")
 
@@ -70,6 +71,7 @@ class Diary:
         self._evidence: list[Evidence] = []
         self._progress: Progress | None = None
         self._reading = asyncio.Lock()
+        self._is_forgotten = False
         self.draft: Draft | None = None
         """The newest table; None: there is none."""
 
@@ -80,22 +82,22 @@ class Diary:
 
     async def add(self, *evidence: Evidence) -> None:
         """Keep evidence; when this returns, it is on the disk, or `Phases.trouble` says why not."""
-        if not evidence:
+        if not evidence or self._is_forgotten:
             return
         self._take(evidence)
         store = await self._opened()
-        if store is not None:
+        if store is not None and not self._is_forgotten:
             now_s = time.time()
             done = [asyncio.wrap_future(store.add(self._student, one, now_s)) for one in evidence]
             await _kept(asyncio.gather(*done))
 
     async def vote(self, poll: str, choice: str) -> None:
         """Keep a vote, unless the student has voted in this poll before."""
-        if Voted(poll=poll) in self._evidence:
+        if self._is_forgotten or Voted(poll=poll) in self._evidence:
             return
         self._take([Voted(poll=poll)])
         store = await self._opened()
-        if store is not None:
+        if store is not None and not self._is_forgotten:
             vote = store.vote(self._student, poll, choice, time.time())
             await _kept(asyncio.wrap_future(vote))
 
@@ -107,9 +109,31 @@ class Diary:
             version: name of the table's content.
         """
         self.draft = draft
+        await self.keep_table(draft.kept(self._student, version, time.time()))
+
+    async def keep_table(self, table: KeptTable) -> None:
+        """Keep something else of the student; it is on the disk about a second later."""
         store = await self._opened()
-        if store is not None:
-            store.keep(draft.kept(self._student, version, time.time()))
+        if store is not None and not self._is_forgotten:
+            store.keep(table)
+
+    async def forget(self) -> None:
+        """Delete all that is kept of the student; nothing more is kept from now on.
+
+        A trial may still run, and a page may still be coming in: what they bring is dropped.
+
+        Raises:
+            UserError: if the file can't be opened or written; then all is as before.
+        """
+        store = await self._keeper.opened()
+        if store is None:
+            raise UserError(self._keeper.trouble or say("class.closed"))
+        self._is_forgotten = True
+        try:
+            await asyncio.shield(asyncio.wrap_future(store.forget(self._student)))
+        except UserError:
+            self._is_forgotten = False
+            raise
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
@@ -183,8 +207,9 @@ def _newest(store: ClassStore, student: str) -> Draft | None:
     return drafts[0] if drafts else None
 
 
-async def _kept(work: Awaitable[_T]) -> None:
+async def _kept(work: asyncio.Future[_T]) -> None:
     try:
-        await work
+        # Whoever asked may go before it is written. It counts already, so it must be kept.
+        await asyncio.shield(work)
     except UserError:
         return  # `Keeper.trouble` says why

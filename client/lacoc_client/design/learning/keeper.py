@@ -21,7 +21,7 @@ class Keeper:
         self.path = path
         self._store: ClassStore | None = None
         self._refused: Phrase | None = None
-        self._lock = asyncio.Lock()
+        self._opening: asyncio.Task[None] | None = None
 
     @property
     def trouble(self) -> Phrase | None:
@@ -30,15 +30,22 @@ class Keeper:
 
     async def opened(self) -> ClassStore | None:
         """Return the file, after it was opened; None if it can't be."""
-        async with self._lock:
-            if self._store is None and self._refused is None:
-                try:
-                    self._store = await asyncio.to_thread(ClassStore, self.path)
-                except UserError as error:
-                    self._refused = error.phrase
+        if self._store is None and self._refused is None:
+            if self._opening is None:
+                self._opening = asyncio.get_running_loop().create_task(self._open())
+            # The page that asks first may go. Its file would then be open, and nobody would know.
+            await asyncio.shield(self._opening)
         return self._store
 
     async def close(self) -> None:
         """Close the file."""
+        if self._opening is not None and not self._opening.done():
+            await asyncio.wait({self._opening})
         if self._store is not None:
             await asyncio.to_thread(self._store.close)
+
+    async def _open(self) -> None:
+        try:
+            self._store = await asyncio.to_thread(ClassStore, self.path)
+        except UserError as error:
+            self._refused = error.phrase

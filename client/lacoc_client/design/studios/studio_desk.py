@@ -33,6 +33,7 @@ from lacoc_shared.studio import (
 _ROBOT_S = 20.0
 _TRIAL_S = 120.0
 _CANCEL_S = 5.0
+_COACH_MOST_S = 3600.0
 _COACH_MORE_S = 300.0
 """How much longer than its search time a coach's reply may take [s]: the search may have to wait
 for others, and after it the coach undoes changes that hardly help."""
@@ -98,7 +99,9 @@ class StudioDesk:
         listening = await asker.progress(job, tell)
         self._jobs[job] = asker
         try:
-            timeout_s = asked.seconds + _COACH_MORE_S
+            # The studio refuses a time that is too long, or no number; its refusal must come.
+            search_s = asked.seconds if 0 <= asked.seconds <= _COACH_MOST_S else 0.0
+            timeout_s = search_s + _COACH_MORE_S
             return msgspec.Raw((await asker.ask("coach", request, CoachReply, timeout_s))[1])
         except asyncio.CancelledError:  # the page has gone, so nobody waits for the search
             with suppress(UserError):

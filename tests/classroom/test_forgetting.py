@@ -1,0 +1,175 @@
+"""A forgotten student is gone, whatever happens at the same moment."""
+
+import asyncio
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from lacoc_client.classroom.class_student import ClassStudent
+from lacoc_client.classroom.classroom import CLASS_FILE, Classroom
+from lacoc_client.design.learning.diary import Diary
+from lacoc_client.design.learning.draft import Draft
+from lacoc_client.design.learning.keeper import Keeper
+from lacoc_client.design.requests import Hello
+from lacoc_client.design.studios.asker import Asker
+from lacoc_client.design.studios.studios import Studios
+from lacoc_client.design.table import FileTable
+from lacoc_client.gateway.page_socket import PageSocket
+from lacoc_client.gateway.viewer import Viewer
+from lacoc_client.phases.class_file import ClassFile
+from lacoc_client.phases.evidence import Moved, Named
+from lacoc_shared.mistakes import UserError
+
+WORD = "a-word-that-only-ada-has"
+DRAFT = Draft(table=FileTable(kind="postures", legs=6, rows=()), file=WORD)
+
+
+def test_what_comes_later_is_not_kept(tmp_path: Path) -> None:
+    """A trial that ends after its student was forgotten brings nothing back, nor does an edit."""
+    path = tmp_path / CLASS_FILE
+
+    async def forget() -> None:
+        keeper = Keeper(path)
+        diary, other = Diary(keeper, "Ada"), Diary(keeper, "Bo")
+        await diary.add(Named(word=WORD))
+        await diary.keep(DRAFT, "1")
+        await asyncio.sleep(1.5)  # the table is on the disk
+        assert any(WORD.encode() in file.read_bytes() for file in tmp_path.iterdir())
+        await asyncio.gather(diary.forget(), diary.add(Moved(phase=2)))
+        await diary.add(Named(word=WORD))
+        await diary.vote(WORD, "A")
+        await diary.keep(DRAFT, "2")
+        await other.add(Moved(phase=1))
+        assert not any(WORD.encode() in file.read_bytes() for file in tmp_path.iterdir())
+        await keeper.close()
+
+    asyncio.run(forget())
+    file = ClassFile(path)
+    assert [one.student for one in file.evidence()] == ["Bo"]
+    assert file.tables() == []
+    assert file.votes(WORD) == {}
+    file.close()
+    assert WORD.encode() not in path.read_bytes()
+
+
+def test_whoever_is_forgotten_while_coming_in_is_not_in(tmp_path: Path) -> None:
+    """A nickname that is deleted while it comes in leaves no evidence and no token."""
+    room = Classroom(tmp_path, Studios([Asker("tcp/127.0.0.1:1")]))
+
+    async def forget() -> None:
+        await room.open()
+        viewer = Viewer(PageSocket.__new__(PageSocket))
+        hello = Hello(id=1, code=room.state.code, name="Ada")
+        coming = asyncio.create_task(room.enter(hello, viewer, "10.0.0.1"))
+        await asyncio.sleep(0)
+        ada: ClassStudent = room.find("Ada")
+        await room.forget(ada)
+        await asyncio.wait({coming})  # either refused, or in before and sent away
+        assert room.students == {}
+        back = await room.enter(hello, viewer, "10.0.0.1")
+        assert room.find("Ada") is back.student is not ada
+        await room.forget(room.find("Ada"))
+        await room._keeper.close()
+
+    asyncio.run(forget())
+    file = ClassFile(tmp_path / CLASS_FILE)
+    assert file.evidence() == []
+    assert {table.student for table in file.tables()} == {""}
+    file.close()
+
+
+def test_what_counts_is_kept_though_the_page_goes(tmp_path: Path) -> None:
+    """A page that goes at once takes nothing back, nor does it leave the file unused."""
+    path = tmp_path / CLASS_FILE
+
+    async def go() -> None:
+        keeper = Keeper(path)
+        first = asyncio.create_task(keeper.opened())
+        await asyncio.sleep(0)
+        first.cancel()
+        assert await keeper.opened() is not None, keeper.trouble
+        diary = Diary(keeper, "Ada")
+        await diary.add(Moved(phase=1))
+        for number in range(2, 7):
+            moving = asyncio.create_task(diary.add(Moved(phase=number)))
+            await asyncio.sleep(0)
+            moving.cancel()
+        await keeper.close()
+
+    asyncio.run(go())
+    file = ClassFile(path)
+    assert [one.evidence for one in file.evidence()] == [Moved(phase=n) for n in range(1, 7)]
+    file.close()
+
+
+def test_empty_nicknames_keep_nobody_out(tmp_path: Path) -> None:
+    """Whoever fills the class with nicknames only replaces these; work is never deleted."""
+    room = Classroom(tmp_path, Studios([Asker("tcp/127.0.0.1:1")]))
+
+    async def fill() -> None:
+        await room.open()
+        viewer = Viewer(PageSocket.__new__(PageSocket))
+
+        async def comes(name: str) -> ClassStudent:
+            await room.enter(Hello(id=1, code=room.state.code, name=name), viewer, "10.0.0.1")
+            return room.find(name)
+
+        ada = await comes("Ada")
+        await ada.diary.add(Moved(phase=2))
+        crowd = [comes(f"N{number}") for number in range(150)]
+        await asyncio.gather(*crowd, return_exceptions=True)  # some make room for others at once
+        bo = await comes("Bo")
+        assert len(room.students) == 100
+        assert room.find("Ada") is ada
+        assert room.find("Bo") is bo
+        for student in room.students.values():
+            student.diary.draft = DRAFT
+        with pytest.raises(UserError):
+            await comes("Cy")
+        await room._keeper.close()
+
+    asyncio.run(fill())
+
+
+FULL = """
+import asyncio, resource, signal, sys
+from pathlib import Path
+from lacoc_client.design.learning.diary import Diary
+from lacoc_client.design.learning.keeper import Keeper
+from lacoc_client.phases.evidence import Moved
+from lacoc_shared.mistakes import UserError
+
+async def forget(path):
+    keeper = Keeper(path)
+    diary = Diary(keeper, "Ada")
+    for phase in (1, 2):
+        await diary.add(Moved(phase=phase))
+    size = max(one.stat().st_size for one in path.parent.iterdir())
+    _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, most))
+    try:
+        await diary.forget()
+        print("forgotten")
+    except UserError as error:
+        print(error.phrase.code)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+    await diary.add(Moved(phase=3))
+    store = await keeper.opened()
+    print(len(await asyncio.wrap_future(store.evidence())))
+    await diary.forget()
+    print(len(await asyncio.wrap_future(store.evidence())))
+    await keeper.close()
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+asyncio.run(forget(Path(sys.argv[1])))
+"""
+
+
+@pytest.mark.slow
+def test_a_full_disk_forgets_later(tmp_path: Path) -> None:
+    """If the disk refuses it, the student stays as before, and can be forgotten later."""
+    words = [sys.executable, "-c", FULL, str(tmp_path / CLASS_FILE)]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["class.no-room", "3", "0"]

@@ -1,0 +1,39 @@
+"""Requests that a page can send: what is too large is refused before any work is done."""
+
+from typing import Any
+
+import msgspec
+import pytest
+
+from lacoc_client.design.requests import EditAsk, read
+from lacoc_client.gateway.wire import Unreadable
+
+ROW = {"key": 0, "posture": 0, "angles_deg": [0.0] * 18}
+
+
+def ask(**table: Any) -> bytes:
+    full = {"kind": "postures", "legs": 6, "rows": [ROW], **table}
+    return msgspec.msgpack.encode({"id": 1, "do": "edit", "table": full})
+
+
+def test_a_table_is_read() -> None:
+    asked = read(ask())
+    assert isinstance(asked, EditAsk)
+    assert asked.table.legs == 6
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        {"legs": 1_000_000},
+        {"legs": 0},
+        {"legs": -1},
+        {"rows": [{**ROW, "angles_deg": [0.0] * 10_000}]},
+        {"rows": [{**ROW, "angles_deg": []}] * 4_000},
+        {"rows": [{**ROW, "posture": 2**40}]},
+    ],
+)
+def test_a_table_that_no_robot_has_is_refused(table: dict[str, Any]) -> None:
+    """Checking a table of a million legs would take minutes, in which the whole class waits."""
+    with pytest.raises(Unreadable):
+        read(ask(**table))
