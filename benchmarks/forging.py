@@ -211,7 +211,7 @@ def _attack(
     honest: list[_Honest],
     people: dict[str, Access],
 ) -> tuple[int, Forged]:
-    """Make all attacks; return how many forged decisions the court made, and the forged commands."""
+    """Attack in all ways; return how many forged decisions the court made, and the commands."""
     answered: list[int] = []
     tokens = [people[seat].token for seat in SEATS]
     deciders = [

@@ -180,7 +180,7 @@ def test_level_b_is_never_made_against_what_there_is() -> None:
     for keys, expected in (
         ([[0], [2]], "Key 1 of level B uses posture 2, but few.txt has only 0, 1."),
         ([[0], []], "Key 1 of level B has no posture"),
-        ([], "There are 0 keys, and the longest has 0 postures"),
+        ([], "There are 0 keys, and the longest sequence has 0 postures"),
     ):
         with pytest.raises(UserError, match=expected):
             with_level_b(short, keys)

@@ -205,7 +205,7 @@ class Record:
         self._forget_from(header.first_beat)
 
     def _forget_from(self, beat: int) -> None:
-        """Drop all that earlier segments have of this beat and of later ones (`Header.first_beat`)."""
+        """Drop what earlier segments have of this beat and of later ones (`Header.first_beat`)."""
         if self.last_beat < beat:
             return
         self.last_beat = beat - 1
