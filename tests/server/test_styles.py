@@ -167,7 +167,12 @@ def test_only_sound_gaits_are_in_a_map() -> None:
 def test_arousal_is_height_over_period() -> None:
     """High and quick steps are more excited; the last cells of a map have no end."""
     assert arousal_mm_s(replace(walk(50.0, 30.0), cycle_s=2.0)) == 15.0
-    assert GRID.place(walk(50.0, 13.0)) == Place(2, 2)
+    assert GRID.place(walk(50.0, 13.0)) == Place(2, 1)
+    for value in range(1, 200):
+        place = GRID.place(walk(value, value))
+        assert place is not None
+        assert place.speed == sum(value >= low for low in GRID.speeds_mm_s) - 1
+        assert place.arousal == sum(value >= low for low in GRID.arousals_mm_s) - 1
     assert GRID.place(walk(1e4, 1e4)) == Place(5, 4)
     assert grid_of(entry_of("hexapod").robot, walk(60.4, 16.0)) == GRID
 

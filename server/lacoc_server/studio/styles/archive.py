@@ -34,7 +34,11 @@ class Place(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """The axes of a map; both begin at 0, and their last cells have no upper end."""
+    """The axes of a map; both begin at 0, and their last cells have no upper end.
+
+    The calmest cell is twice as wide as the others, because a robot that lifts its feet at all
+    hardly comes below its middle.
+    """
 
     speed_mm_s: float
     """Width of a cell along the axis of forward speed."""
@@ -50,8 +54,18 @@ class Grid(NamedTuple):
             return None
         return Place(
             min(int(figures.speed_mm_s / self.speed_mm_s), self.speeds - 1),
-            min(int(arousal / self.arousal_mm_s), self.arousals - 1),
+            max(0, min(int(arousal / self.arousal_mm_s) - 1, self.arousals - 1)),
         )
+
+    @property
+    def speeds_mm_s(self) -> tuple[float, ...]:
+        """Lower ends of the cells along the axis of speed."""
+        return tuple(index * self.speed_mm_s for index in range(self.speeds))
+
+    @property
+    def arousals_mm_s(self) -> tuple[float, ...]:
+        """Lower ends of the cells along the axis of arousal."""
+        return (0.0, *(index * self.arousal_mm_s for index in range(2, self.arousals + 1)))
 
 
 class Elite(NamedTuple):

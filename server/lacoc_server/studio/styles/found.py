@@ -22,8 +22,8 @@ def map_reply(task: Task, key: int, found: Mapped) -> MapReply:
     grid, styles = found.archive.grid, Styles(task.robot, task.table)
     return MapReply(
         key=key,
-        speeds_mm_s=tuple(index * grid.speed_mm_s for index in range(grid.speeds)),
-        arousals_mm_s=tuple(index * grid.arousal_mm_s for index in range(grid.arousals)),
+        speeds_mm_s=grid.speeds_mm_s,
+        arousals_mm_s=grid.arousals_mm_s,
         cells=tuple(
             MapCell(
                 speed=place.speed,
