@@ -198,9 +198,10 @@ def _trials(task: Task) -> Iterator[tuple[Trials, Tell]]:
         bar = progress.add_task("", total=1.0)
 
         def tell(how_far: Progress) -> None:
-            stage = _STAGES[how_far.stage]
             if how_far.stage == "map":
-                stage = say("coach.maps-filled", filled=how_far.filled or 0)
+                stage = say("coach.maps", filled=how_far.filled or 0)
+            else:
+                stage = _STAGES[how_far.stage]
             progress.update(bar, description=render(stage), completed=how_far.done)
 
         yield Trials(task, workers, stop), tell
