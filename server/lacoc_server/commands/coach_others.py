@@ -56,7 +56,9 @@ def variants_table(reply: VariantsReply) -> Table:
     for number, gait in enumerate(reply.variants, 1):
         figures = gait.figures
         looks = [
-            render(say("coach.more" if one.steps > 0 else "coach.less", way=one.way))
+            render(
+                say("coach.more", way=one.way) if one.steps > 0 else say("coach.less", way=one.way)
+            )
             for one in gait.differences[:_WAYS_SHOWN]
         ]
         table.add_row(
