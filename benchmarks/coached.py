@@ -2,7 +2,9 @@
 
 python -m benchmarks.coached matters            # rank the sample's numbers: time, Kendall's tau
 python -m benchmarks.coached beginners --tables 50 --size table
-python -m benchmarks.coached sample             # improve the sample, with both ways to advance
+python -m benchmarks.coached sample             # from the sample, under both ways to advance
+python -m benchmarks.coached map                # the sample's map of gaits
+python -m benchmarks.coached variants           # six variants of the sample, and six bred from two
 
 A beginner's table is the sample with smaller swings, other lifts, and an error in every number.
 Half of these tables also have a fault (benchmarks/explained.py). Only tables with which the robot
@@ -12,6 +14,7 @@ walks forward are used, because beginners ask the coach about a gait that alread
 import argparse
 import json
 import math
+import os
 import random
 import sys
 import threading
@@ -31,6 +34,9 @@ from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.matter import Matter, what_matters
 from lacoc_server.studio.coach.trials import Task, Trials, try_table
+from lacoc_server.studio.styles.archive import arousal_mm_s, is_sound
+from lacoc_server.studio.styles.gait_map import map_gaits
+from lacoc_server.studio.styles.variants import VARIANTS, vary
 from lacoc_server.studio.workers import Workers
 from lacoc_shared.gait.tables import Gait, LocomotionTable, Posture
 
@@ -45,7 +51,7 @@ _AIMS = {"matters_s": 10.0, "tau": 0.8, "table": 2.0, "three": 1.3, "reached": 8
 def main() -> None:
     """Measure, print, and exit with 1 if an aim is missed."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.coached", description=__doc__)
-    parser.add_argument("what", choices=("matters", "beginners", "sample"))
+    parser.add_argument("what", choices=("matters", "beginners", "sample", "map", "variants"))
     parser.add_argument("--tables", type=int, default=50)
     parser.add_argument("--size", type=Size, default=Size.TABLE)
     parser.add_argument("--seconds", type=float, default=30.0)
@@ -56,8 +62,13 @@ def main() -> None:
                 found, right = _matters(workers)
             case "sample":
                 found, right = _sample(workers, options.seconds)
+            case "map":
+                found, right = _map(workers, options.seconds)
+            case "variants":
+                found, right = _variants(workers)
             case _:
                 found, right = _beginners(workers, options)
+    found["processor_s"] = round(sum(os.times()[:4]), 1)  # also of the processes, which have ended
     print(json.dumps(found))
     sys.exit(not right)
 
@@ -93,6 +104,53 @@ def _sample(workers: Workers, seconds: float) -> tuple[dict[str, Any], bool]:
         stands = best.after.upright > 0.9 and best.after.belly_share < 0.005
         right &= stands and best.after.speed_mm_s >= _AIMS[way]
     return found, right
+
+
+def _map(workers: Workers, seconds: float) -> tuple[dict[str, Any], bool]:
+    """Fill the map of the sample's gaits."""
+    mapped = map_gaits(_sample_trials(workers), seconds, 0, lambda _: None)
+    grid, elites = mapped.archive.grid, mapped.archive.elites.values()
+    speeds = [one.figures.speed_mm_s for one in elites]
+    arousals = [arousal_mm_s(one.figures) or 0.0 for one in elites]
+    found = {
+        "filled": len(elites),
+        "cells": grid.speeds * grid.arousals,
+        "speed_mm_s": [round(min(speeds), 1), round(max(speeds), 1)],
+        "arousal_mm_s": [round(min(arousals), 1), round(max(arousals), 1)],
+        "trials": mapped.trials,
+    }
+    return found, all(is_sound(one.figures) for one in elites)
+
+
+def _variants(workers: Workers) -> tuple[dict[str, Any], bool]:
+    """Look for six variants of the sample, and for six more that are bred from the first two."""
+    trials = _sample_trials(workers)
+    own = trials.task.table.angles_deg
+    keep, before, rounds = [own], [own], []
+    right = True
+    for index in range(2):
+        begin_s = time.perf_counter()
+        variants = vary(trials, keep, before, 0, index, lambda _: None).variants
+        rounds.append(
+            {
+                "took_s": round(time.perf_counter() - begin_s, 2),
+                "variants": len(variants),
+                "upright": round(min(one.figures.upright for one in variants), 3),
+                "speed_mm_s": [round(one.figures.speed_mm_s, 1) for one in variants],
+            }
+        )
+        right &= len(variants) == VARIANTS and all(is_sound(one.figures) for one in variants)
+        keep = [one.angles_deg for one in variants[:2]]
+        before += [one.angles_deg for one in variants]
+    return {"rounds": rounds}, right
+
+
+def _sample_trials(workers: Workers) -> Trials:
+    entry = entry_of(_ROBOT)
+    task = task_of(entry.robot, entry.gait, _KEY, Goal.FORWARD, None)
+    trials = Trials(task, workers, threading.Event())
+    trials.figures([task.table.angles_deg] * 2 * workers.count)  # processes have their floors
+    return trials
 
 
 def _beginners(workers: Workers, options: argparse.Namespace) -> tuple[dict[str, Any], bool]:

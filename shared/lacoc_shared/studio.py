@@ -45,7 +45,11 @@ class StudioKeys:
         return f"lacoc/{self.studio}/live/studio"
 
     def request(self, what: str) -> str:
-        """Return the key expression of a request; `what`: robot, trial, coach, cancel, or `*`."""
+        """Return the key expression of a request.
+
+        Args:
+            what: robot, trial, coach, map, variants or cancel; `*` for all.
+        """
         return f"{self.root}/ask/{what}"
 
     def progress(self, job: str) -> str:
@@ -188,6 +192,38 @@ class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     """Seed of the search's random numbers."""
 
 
+class MapRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask for a map of gaits: one for each speed and arousal that the table can reach."""
+
+    protocol: int
+    job: str
+    """As in `CoachRequest`."""
+    files: GaitFiles
+    key: int | None = None
+    """Key of level B; None: the one for forward."""
+    seconds: float = 30.0
+    """How long to search: from 0 to 120."""
+    seed: int = 0
+
+
+class VariantsRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask for six gaits that look different, bred from one table or from two."""
+
+    protocol: int
+    job: str
+    """As in `CoachRequest`."""
+    files: GaitFiles
+    key: int | None = None
+    """Key of level B; None: the one for forward."""
+    keep: tuple[tuple[int, ...], ...] = ()
+    """`table` of one or two gaits to breed from; empty: from the table of `files`."""
+    before: tuple[tuple[int, ...], ...] = ()
+    """`table` of gaits that were shown before: new ones differ from them."""
+    round: int = 0
+    """How many rounds were before; later ones change less."""
+    seed: int = 0
+
+
 class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """End a search early: the reply is `Done`, and the search's own reply has the best so far.
 
@@ -202,12 +238,14 @@ class Progress(msgspec.Struct, frozen=True, kw_only=True):
     """The progress of a search; a studio sends it several times a second."""
 
     stage: str
-    """waiting (until earlier searches end), matters, search or undo."""
+    """waiting (until earlier searches end), matters, search, undo, map or variants."""
     done: float
     """Share of the stage, from 0 to 1."""
     trials: int
     score: float | None = None
     """Score of the best table so far."""
+    filled: int | None = None
+    """Cells of a map that have a gait, or variants that walk, so far."""
 
 
 class Weight(msgspec.Struct, frozen=True, kw_only=True):
@@ -242,5 +280,64 @@ class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
     """Figures of the best gait that was found."""
     score_before: float
     score_after: float
+    trials: int
+    cancelled: bool = False
+
+
+class Difference(msgspec.Struct, frozen=True, kw_only=True):
+    """A direction in which a gait looks different from the own one."""
+
+    way: str
+    """height, lift, stride, width, lean, limp, bob or sway (docs/studio.md 4)."""
+    steps: float
+    """How much: 1 can be seen; negative: the other way."""
+
+
+class OtherGait(msgspec.Struct, frozen=True, kw_only=True):
+    """A gait that was found."""
+
+    table: tuple[int, ...]
+    """All angles [deg], posture by posture in order of first use: 3 * legs each."""
+    changes: tuple[Change, ...]
+    """What differs from the table of the request's files."""
+    differences: tuple[Difference, ...]
+    """How it looks different from that table, what is easiest to see first."""
+    figures: dict[str, Any]
+    """Over three cycles."""
+
+
+class MapCell(msgspec.Struct, frozen=True, kw_only=True):
+    """A cell of a map, with the best gait that was found for it."""
+
+    speed: int
+    arousal: int
+    """Index along each axis."""
+    gait: OtherGait
+
+
+class MapReply(msgspec.Struct, frozen=True, kw_only=True):
+    """A map of gaits."""
+
+    key: int
+    speeds_mm_s: tuple[float, ...]
+    """Lower end of each cell along the axis of forward speed; the last has no upper end."""
+    arousals_mm_s: tuple[float, ...]
+    """The same for arousal: height of the feet over the period."""
+    cells: tuple[MapCell, ...]
+    """The cells that have a gait, by speed and then by arousal."""
+    own: tuple[int, int] | None
+    """Speed and arousal of the own gait, as indices; None if it goes backward or has no cycle."""
+    before: dict[str, Any]
+    """Figures of the own gait."""
+    trials: int
+    cancelled: bool = False
+
+
+class VariantsReply(msgspec.Struct, frozen=True, kw_only=True):
+    """Gaits to choose from."""
+
+    key: int
+    variants: tuple[OtherGait, ...]
+    """Six; fewer if the search was cancelled, or if too few walked upright."""
     trials: int
     cancelled: bool = False

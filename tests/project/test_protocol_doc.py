@@ -131,7 +131,9 @@ def test_every_key_expression() -> None:
 def test_every_key_expression_of_a_studio() -> None:
     """The key expressions in the studio's section are those of `lacoc_shared.studio`."""
     keys = studio.StudioKeys("main")
-    asked = [keys.request(what) for what in ("robot", "trial", "coach", "cancel")]
+    asked = [
+        keys.request(what) for what in ("robot", "trial", "coach", "map", "variants", "cancel")
+    ]
     found = [
         expression
         for row in rows(section("The studio"))

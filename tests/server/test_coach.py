@@ -1,9 +1,11 @@
 """Tests of the coach: it ranks the numbers of a table, and improves a gait by few changes."""
 
+import contextlib
 import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 from benchmarks.trials import entry_of
@@ -148,6 +150,28 @@ def sample_task(key: int) -> Task:
     assert entry.gait.locomotion is not None
     sequences = entry.gait.locomotion.sequences
     return Task(entry.robot, sequences[0], KeyTable.of(sequences[key]), Goal.FORWARD)
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_the_command_finds_other_gaits(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """`lacoc coach` writes a map and variants into folders, and breeds from files that are kept."""
+
+    def found(*words: str) -> Any:
+        with contextlib.suppress(SystemExit):
+            cli.main(["coach", str(SAMPLE), *words, "--json"])
+        return json.loads(capsys.readouterr().out)
+
+    cells = found("--map", "--seconds", "1", "--out", str(tmp_path / "map"))["cells"]
+    assert len(cells) == len([*(tmp_path / "map").iterdir()]) > 0
+    six = tmp_path / "six"
+    assert len(found("--variants", "--out", str(six))["variants"]) == 6
+    keep = [word for n in (2, 5) for word in ("--keep", str(six / f"variant-{n}.txt"))]
+    assert len(found("--variants", *keep)["variants"]) == 6
+    for wrong in (["--map", "--size", "cell"], ["--map", *keep], ["--variants", "--for", "left"]):
+        with pytest.raises(SystemExit) as stop:
+            cli.main(["coach", str(SAMPLE), *wrong])
+        assert stop.value.code != 0
 
 
 @pytest.mark.slow

@@ -38,12 +38,16 @@ from lacoc_shared.studio import (
     CoachReply,
     CoachRequest,
     GaitFiles,
+    MapReply,
+    MapRequest,
     Progress,
     RobotReply,
     RobotRequest,
     StudioKeys,
     TrialReply,
     TrialRequest,
+    VariantsReply,
+    VariantsRequest,
 )
 
 pytestmark = pytest.mark.slow
@@ -345,6 +349,51 @@ def test_a_search_with_wrong_wishes_is_refused(asker: Asker) -> None:
     ):
         request = coach_request(**{"job": "wrong", **wrong})
         assert asker.refusal("coach", request).why.code == code
+
+
+def test_other_gaits_can_be_asked_for(asker: Asker) -> None:
+    """A studio fills a map and breeds variants; a page sends back what it keeps as it came."""
+    files = files_of("quadruped")
+    asked = MapRequest(protocol=PROTOCOL, job="map", files=files, seconds=0)
+    found = decode(asker.begin("map", asked).wait(), MapReply, TRIAL_REPLY_MAX_BYTES)
+    assert found.cells
+    assert found.own is not None
+    wish = VariantsRequest(protocol=PROTOCOL, job="six", files=files, seed=2)
+    first = decode(asker.begin("variants", wish).wait(), VariantsReply, TRIAL_REPLY_MAX_BYTES)
+    tables = tuple(one.table for one in first.variants)
+    assert len(tables) == 6
+    again = msgspec.structs.replace(wish, keep=tables[:2], before=tables, round=1)
+    second = decode(asker.begin("variants", again).wait(), VariantsReply, TRIAL_REPLY_MAX_BYTES)
+    assert not {one.table for one in second.variants} & set(tables)
+    for wrong, code in (
+        ({"keep": tables[:3]}, "studio.wrong-tables"),
+        ({"keep": ((1, 2),)}, "studio.wrong-tables"),
+        ({"before": ((999,) * len(tables[0]),)}, "studio.wrong-tables"),
+        ({"round": -1}, "studio.negative"),
+        ({"seed": -1}, "studio.negative"),
+    ):
+        request = msgspec.structs.replace(wish, **wrong)
+        assert asker.refusal("variants", request).why.code == code
+
+
+def test_a_map_can_be_cancelled(asker: Asker) -> None:
+    """A cancelled map replies with the gaits that it has found; it tells how many cells it has."""
+    progress = asker.session.mailbox(KEYS.progress("atlas"), 1000)
+    asked = MapRequest(protocol=PROTOCOL, job="atlas", files=files_of("quadruped"), seconds=100)
+    question = asker.begin("map", asked)
+    told: list[Progress] = []
+
+    def fills() -> bool:
+        while (mail := progress.take()) is not None:
+            told.append(decode(mail.payload, Progress))
+        return bool(told and told[-1].stage == "map" and (told[-1].filled or 0) > 1)
+
+    until(fills)
+    cancel = CancelRequest(protocol=PROTOCOL, job="atlas")
+    assert decode(asker.begin("cancel", cancel).wait(), Done)
+    reply = decode(question.wait(), MapReply, TRIAL_REPLY_MAX_BYTES)
+    assert reply.cancelled
+    assert len(reply.cells) >= (told[-1].filled or 0)
 
 
 def test_nobody_else_speaks_for_a_studio(asker: Asker) -> None:

@@ -1,4 +1,4 @@
-"""`lacoc coach`: rank the numbers of a gait, and change few of them for a better walk."""
+"""`lacoc coach`: say which numbers of a gait matter, and search for better or other gaits."""
 
 import signal
 import threading
@@ -13,22 +13,33 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_robots.library import WORKSHOPS_ROBOT
-from lacoc_robots.robot import RobotSpec
+from lacoc_server.commands.coach_others import as_json as others_json
+from lacoc_server.commands.coach_others import (
+    kept_tables,
+    map_table,
+    named_gaits,
+    variants_table,
+    write_gaits,
+    written,
+)
 from lacoc_server.commands.trial import GaitFile, RobotName, read_robot_file, read_trial_gait
-from lacoc_server.studio.coach.coach import coach, coached_key, place, reply_of, task_of
+from lacoc_server.studio.coach.coach import Tell, coach, coached_key, place, reply_of, task_of
 from lacoc_server.studio.coach.goal import Goal
 from lacoc_server.studio.coach.improve import Size
 from lacoc_server.studio.coach.matter import STEP_DEG, Matter
 from lacoc_server.studio.coach.search import Improved
-from lacoc_server.studio.coach.table import Angles, KeyTable, differing
+from lacoc_server.studio.coach.table import differing
 from lacoc_server.studio.coach.trials import Task, Trials
+from lacoc_server.studio.styles.found import map_reply, variants_reply
+from lacoc_server.studio.styles.gait_map import map_gaits
+from lacoc_server.studio.styles.variants import VARIANTS, vary
 from lacoc_server.studio.workers import Workers
 from lacoc_server.trial.figures import Figures
 from lacoc_shared.command import options, screen
 from lacoc_shared.command.keep import save
-from lacoc_shared.gait.tables import LEVEL_NAMES, SAMPLE_KEYS, Gait, LocomotionTable
-from lacoc_shared.gait.text import write_gait
-from lacoc_shared.studio import CoachReply, Progress
+from lacoc_shared.gait.tables import LEVEL_NAMES, SAMPLE_KEYS, Gait
+from lacoc_shared.mistakes import UserError
+from lacoc_shared.studio import CoachReply, MapReply, Progress, VariantsReply
 from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer()
@@ -39,6 +50,7 @@ _STAGES = {
     "matters": say("coach.matters"),
     "search": say("coach.searches"),
     "undo": say("coach.undoes"),
+    "variants": say("coach.varies"),
 }
 
 
@@ -83,7 +95,29 @@ def coach_command(
     ] = 0,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="File for the better gait, as LocoTra-data text."),
+        typer.Option(
+            metavar="FILE",
+            help="File for the better gait, as LocoTra-data text; with --map or --variants a "
+            "folder for all gaits that were found.",
+        ),
+    ] = None,
+    map_: Annotated[
+        bool,
+        typer.Option(
+            "--map",
+            help="Search for a map of gaits instead: from slow to fast, from calm to excited.",
+        ),
+    ] = False,
+    variants: Annotated[
+        bool,
+        typer.Option("--variants", help="Show six gaits that look different instead."),
+    ] = False,
+    keep: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="With --variants: a gait file to keep. New variants are bred from one or two.",
+        ),
     ] = None,
     json: options.Json = False,
 ) -> None:
@@ -91,29 +125,41 @@ def coach_command(
 
     The coach makes each number 10 degrees larger and smaller, and lets the robot walk as in a
     contest. With --size the coach then searches for a better gait. A change that hardly helps is
-    undone, so that you can understand the changes that are left. Ctrl-C ends the search and keeps
-    the best gait so far.
+    undone, so that you can understand the changes that are left. With --map or --variants it looks
+    for gaits that are different instead. Ctrl-C ends the search and keeps what it has found.
     """
+    if sum((size is not None, map_, variants)) > 1:
+        raise UserError(say("coach.one-wish"))
+    if goal is not Goal.FORWARD and (map_ or variants):
+        raise UserError(say("coach.keep-forward"))
+    if keep and (not variants or len(keep) > 2):
+        raise UserError(say("coach.keep-variants"))
     spec = read_robot_file(robot)
     gait = read_trial_gait(file, spec)
     digit = coached_key(gait, goal, key)
     sequences = None if gait.postures is None else SAMPLE_KEYS
     task = task_of(spec, gait, digit, goal, sequences)
-    with screen.progress() as progress, Workers() as workers, _stop_on_interrupt() as stop:
-        bar = progress.add_task(render(_STAGES["matters"]), total=1.0)
-
-        def tell(how_far: Progress) -> None:
-            stage = render(_STAGES[how_far.stage])
-            progress.update(bar, description=stage, completed=how_far.done)
-
-        found = coach(Trials(task, workers, stop), size, seconds, seed, tell)
+    if map_ or variants:
+        kept = kept_tables(keep or [], spec, task, digit)
+        with _trials(task) as (trials, tell):
+            reply: MapReply | VariantsReply
+            if map_:
+                reply = map_reply(task, digit, map_gaits(trials, seconds, seed, tell))
+            else:
+                own = task.table.angles_deg
+                varied = vary(trials, kept or [own], [own], seed, int(bool(kept)), tell)
+                reply = variants_reply(task, digit, varied)
+        _show_others(reply, task, gait, out, json)
+        return
+    with _trials(task) as (trials, tell):
+        found = coach(trials, size, seconds, seed, tell)
     if found.stopped:
         if not found.matters:
             raise KeyboardInterrupt
         screen.warn(say("coach.stopped"))
     best = found.best
     if out is not None and best is not None:
-        save(out, _written(spec, gait, digit, task.table, best.angles_deg))
+        save(out, written(task, gait, digit, best.angles_deg))
     if json:
         screen.print_json(_as_json(reply_of(task, digit, found)))
         return
@@ -122,6 +168,43 @@ def coach_command(
         screen.show(_improved_table(task, digit, best, found.before, found.after))
         if out is not None:
             screen.note(say("coach.written", file=str(out)))
+
+
+def _show_others(
+    reply: MapReply | VariantsReply, task: Task, gait: Gait, out: Path | None, json: bool
+) -> None:
+    if reply.cancelled:
+        screen.warn(say("coach.stopped"))
+    named = named_gaits(reply)
+    if out is not None:
+        write_gaits(out, task, gait, reply.key, named)
+    if json:
+        screen.print_json(others_json(reply))
+        return
+    if isinstance(reply, MapReply):
+        screen.show(map_table(reply))
+    else:
+        screen.show(variants_table(reply))
+        if len(named) < VARIANTS:
+            screen.warn(say("coach.few-variants", count=len(named)))
+    if out is not None:
+        screen.note(say("coach.folder-written", count=len(named), folder=str(out)))
+
+
+@contextmanager
+def _trials(task: Task) -> Iterator[tuple[Trials, Tell]]:
+    """Run trials in processes, and show how far a search is; Ctrl-C stops it."""
+    with screen.progress() as progress, Workers() as workers, _stop_on_interrupt() as stop:
+        bar = progress.add_task("", total=1.0)
+
+        def tell(how_far: Progress) -> None:
+            if how_far.stage == "map":
+                stage = say("coach.maps", filled=how_far.filled or 0)
+            else:
+                stage = _STAGES[how_far.stage]
+            progress.update(bar, description=render(stage), completed=how_far.done)
+
+        yield Trials(task, workers, stop), tell
 
 
 @contextmanager
@@ -133,13 +216,6 @@ def _stop_on_interrupt() -> Iterator[threading.Event]:
         yield stop
     finally:
         signal.signal(signal.SIGINT, before)
-
-
-def _written(robot: RobotSpec, gait: Gait, digit: int, table: KeyTable, angles: Angles) -> bytes:
-    assert gait.locomotion is not None
-    sequences = list(gait.locomotion.sequences)
-    sequences[digit] = table.sequence(angles)
-    return write_gait(LocomotionTable(tuple(sequences)), robot.labels)
 
 
 def _place(task: Task, digit: int, index: int) -> Phrase:

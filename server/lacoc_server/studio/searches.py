@@ -4,30 +4,23 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from enum import StrEnum
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
-from lacoc_server.studio.answers import Answer, Busy, read_files, refusal
-from lacoc_server.studio.coach.coach import coach, coached_key, reply_of, task_of
-from lacoc_server.studio.coach.goal import Goal
-from lacoc_server.studio.coach.improve import Size
-from lacoc_server.studio.coach.trials import Trials
+from lacoc_server.studio.answers import Answer, Busy, refusal
+from lacoc_server.studio.wishes import SearchRequest, fulfil
 from lacoc_server.studio.workers import Workers
 from lacoc_shared.codec import encode
 from lacoc_shared.keyspace import check_name
 from lacoc_shared.messages import Refusal
 from lacoc_shared.mistakes import FileRefused, UserError
-from lacoc_shared.studio import CoachRequest, Progress
+from lacoc_shared.studio import Progress
 from lacoc_shared.words import say
 
-_MOST_S = 120.0
-"""Longest time that a search may ask for [s]."""
 _MOST_WAITING = 8
 _TELL_S = 0.2
 """How often a search sends its progress [s]."""
 _END_S = 10.0
 
-_Choice = TypeVar("_Choice", bound=StrEnum)
 Done = Callable[[Answer], None]
 """Takes the answer of a search; called on any thread."""
 Tell = Callable[[str, Progress], None]
@@ -35,7 +28,7 @@ Tell = Callable[[str, Progress], None]
 
 
 class _Search(NamedTuple):
-    request: CoachRequest
+    request: SearchRequest
     done: Done
     stop: threading.Event
 
@@ -64,7 +57,7 @@ class Searches:
         self._thread = threading.Thread(target=self._run, name="searches", daemon=True)
         self._thread.start()
 
-    def add(self, request: CoachRequest, done: Done) -> None:
+    def add(self, request: SearchRequest, done: Done) -> None:
         """Begin a search, or let it wait until earlier searches end.
 
         Raises:
@@ -151,31 +144,7 @@ class Searches:
                 self._tell(other.request.job, Progress(stage="waiting", done=0.0, trials=0))
 
         try:
-            goal, size = _chosen("goal", request.goal, Goal), None
-            if request.size is not None:
-                size = _chosen("size", request.size, Size)
-            if not 0 <= request.seconds <= _MOST_S:
-                said = say("studio.coach-seconds", seconds=request.seconds, most_s=_MOST_S)
-                raise UserError(said)
-            files = read_files(request.files)
-            key = coached_key(files.gait, goal, request.key)
-            task = task_of(files.robot, files.gait, key, goal, files.sequences)
-            trials = Trials(task, workers, search.stop)
-            found = coach(trials, size, request.seconds, request.seed, tell)
+            reply = fulfil(request, workers, search.stop, tell)
         except (FileRefused, UserError) as error:
             return Answer(False, encode(refusal(error)))
-        return Answer(True, encode(reply_of(task, key, found)))
-
-
-def _chosen(field: str, text: str, kind: type[_Choice]) -> _Choice:
-    """Read a field of a request that must be one of a few words.
-
-    Raises:
-        UserError: if the text is none of these words.
-    """
-    try:
-        return kind(text)
-    except ValueError:
-        options = [str(one) for one in kind]
-        said = say("studio.coach-choice", field=field, found=text[:40], options=options)
-        raise UserError(said) from None
+        return Answer(True, encode(reply))

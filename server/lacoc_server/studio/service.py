@@ -8,13 +8,14 @@ from typing import Self
 from lacoc_server.studio.answers import Answer, Busy, read, refusal
 from lacoc_server.studio.floors import answered
 from lacoc_server.studio.searches import Searches
+from lacoc_server.studio.wishes import REQUESTS
 from lacoc_server.studio.workers import WorkerDied, Workers
 from lacoc_shared.codec import BadMessage, encode
 from lacoc_shared.command import log
 from lacoc_shared.messages import PROTOCOL, Done, Refusal
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Request, open_studio
-from lacoc_shared.studio import CancelRequest, CoachRequest, Progress, RobotRequest, StudioKeys
+from lacoc_shared.studio import CancelRequest, Progress, RobotRequest, StudioKeys
 from lacoc_shared.words import render, say
 
 _MOST_WAITING = 128
@@ -61,8 +62,9 @@ class Studio:
         what, payload = request.key.rpartition("/")[2], request.payload
         try:
             match what:
-                case "coach":
-                    self._searches.add(read(payload, CoachRequest), partial(_answer, request))
+                case _ if what in REQUESTS:
+                    asked = read(payload, REQUESTS[what])
+                    self._searches.add(asked, partial(_answer, request))
                 case "cancel":
                     self._searches.cancel(read(payload, CancelRequest).job)
                     request.reply(encode(Done()))

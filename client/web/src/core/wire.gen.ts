@@ -356,6 +356,7 @@ export interface Progress {
   done: number;
   trials: number;
   score: number | null;
+  filled: number | null;
 }
 
 export interface Weight {

@@ -9,7 +9,7 @@ from lacoc_server.studio.coach.goal import Goal, score
 from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import Matter, what_matters
 from lacoc_server.studio.coach.search import Improved, Search
-from lacoc_server.studio.coach.table import KeyTable, differing
+from lacoc_server.studio.coach.table import Angles, KeyTable, differing
 from lacoc_server.studio.coach.trials import Stopped, Task, Trials
 from lacoc_server.studio.coach.undo import undo
 from lacoc_server.trial.figures import Figures
@@ -121,16 +121,21 @@ def reply_of(task: Task, key: int, found: Found) -> CoachReply:
             Weight(cell=place(task.table, one.number), up=one.up, down=one.down)
             for one in found.matters
         ),
-        changes=tuple(
-            Change(cell=place(task.table, index), from_deg=own[index], to_deg=best[index])
-            for index in differing(own, best)
-        ),
+        changes=changes(task.table, own, best),
         before=vars(found.before),
         after=vars(found.after),
         score_before=score(found.before, task.goal),
         score_after=score(found.after, task.goal),
         trials=found.trials,
         cancelled=found.stopped,
+    )
+
+
+def changes(table: KeyTable, before: Angles, after: Angles) -> tuple[Change, ...]:
+    """List the numbers that differ between two versions of a table."""
+    return tuple(
+        Change(cell=place(table, index), from_deg=before[index], to_deg=after[index])
+        for index in differing(before, after)
     )
 
 

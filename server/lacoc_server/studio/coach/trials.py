@@ -65,7 +65,7 @@ class Trials:
         Raises:
             Stopped: if the search was stopped.
         """
-        return self._score(tables, SUBSTEPS, _CYCLES)
+        return self._scores(self.walks(tables))
 
     def quick(self, tables: Sequence[Angles]) -> list[float]:
         """Score tables with the contest's physics over fewer cycles; this is enough for a ranking.
@@ -73,7 +73,7 @@ class Trials:
         Raises:
             Stopped: if the search was stopped.
         """
-        return self._score(tables, SUBSTEPS, _QUICK_CYCLES)
+        return self._scores(self._walks(tables, SUBSTEPS, _QUICK_CYCLES))
 
     def rough(self, tables: Sequence[Angles]) -> list[float]:
         """Score tables with larger physics steps; this is enough to find those that may be better.
@@ -81,24 +81,40 @@ class Trials:
         Raises:
             Stopped: if the search was stopped.
         """
-        return self._score(tables, _ROUGH_STEPS, _ROUGH_CYCLES)
+        return self._scores(self.walks(tables, rough=True))
+
+    def walks(self, tables: Sequence[Angles], *, rough: bool = False) -> list[Figures]:
+        """Return the figures of walks, as exactly as `exact` or as cheaply as `rough` scores them.
+
+        Raises:
+            Stopped: if the search was stopped.
+        """
+        if rough:
+            return self._walks(tables, _ROUGH_STEPS, _ROUGH_CYCLES)
+        return self._walks(tables, SUBSTEPS, _CYCLES)
 
     def figures(self, tables: Sequence[Angles]) -> list[Figures]:
-        """Return the figures of walks with the contest's physics, also after a stop."""
-        jobs = [self._workers.submit(_figures, self.task, table) for table in tables]
-        return [job.result() for job in jobs]
+        """Return the figures of walks, with the physics of the contest; a stop changes nothing."""
+        jobs = [
+            self._workers.submit(_figures, self.task, [table], SUBSTEPS, _CYCLES)
+            for table in tables
+        ]
+        return [found for job in jobs for found in job.result()]
 
-    def _score(self, tables: Sequence[Angles], steps: int, cycles: int) -> list[float]:
+    def _scores(self, walks: Sequence[Figures]) -> list[float]:
+        return [score(figures, self.task.goal) for figures in walks]
+
+    def _walks(self, tables: Sequence[Angles], steps: int, cycles: int) -> list[Figures]:
         size = min(_MOST_AT_ONCE, max(1, len(tables) // (4 * self._workers.count)))
         parts = [tables[first : first + size] for first in range(0, len(tables), size)]
-        jobs = [self._workers.submit(_scores, self.task, part, steps, cycles) for part in parts]
+        jobs = [self._workers.submit(_figures, self.task, part, steps, cycles) for part in parts]
         try:
             return [found for job in jobs for found in self._result(job)]
         finally:
             for job in jobs:
                 job.cancel()
 
-    def _result(self, job: "Future[list[float]]") -> list[float]:
+    def _result(self, job: "Future[list[Figures]]") -> list[Figures]:
         while True:
             if self._stop.is_set():
                 raise Stopped
@@ -122,9 +138,5 @@ def try_table(
     return measure(course.walk(Gait(None, LocomotionTable(tables)), [press], cycles=cycles))
 
 
-def _figures(task: Task, angles_deg: Angles) -> Figures:
-    return try_table(task, angles_deg)
-
-
-def _scores(task: Task, tables: Sequence[Angles], steps: int, cycles: int) -> list[float]:
-    return [score(try_table(task, table, steps, cycles), task.goal) for table in tables]
+def _figures(task: Task, tables: Sequence[Angles], steps: int, cycles: int) -> list[Figures]:
+    return [try_table(task, table, steps, cycles) for table in tables]

@@ -1,0 +1,69 @@
+"""A map and variants as messages."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from lacoc_server.studio.coach.coach import changes
+from lacoc_server.studio.coach.table import Angles
+from lacoc_server.studio.coach.trials import Task
+from lacoc_server.studio.styles.gait_map import Mapped
+from lacoc_server.studio.styles.style import WAYS, Styles
+from lacoc_server.studio.styles.variants import Varied
+from lacoc_server.trial.figures import Figures
+from lacoc_shared.studio import Difference, MapCell, MapReply, OtherGait, VariantsReply
+
+_SEEN = 0.4
+"""A difference of fewer steps can hardly be seen."""
+
+
+def map_reply(task: Task, key: int, found: Mapped) -> MapReply:
+    """Describe a map as a message."""
+    grid, styles = found.archive.grid, Styles(task.robot, task.table)
+    return MapReply(
+        key=key,
+        speeds_mm_s=grid.speeds_mm_s,
+        arousals_mm_s=grid.arousals_mm_s,
+        cells=tuple(
+            MapCell(
+                speed=place.speed,
+                arousal=place.arousal,
+                gait=other_gait(task, styles, elite.angles_deg, elite.figures),
+            )
+            for place, elite in sorted(found.archive.elites.items())
+        ),
+        own=grid.place(found.own),
+        before=vars(found.own),
+        trials=found.trials,
+        cancelled=found.stopped,
+    )
+
+
+def variants_reply(task: Task, key: int, found: Varied) -> VariantsReply:
+    """Describe variants as a message."""
+    styles = Styles(task.robot, task.table)
+    return VariantsReply(
+        key=key,
+        variants=tuple(other_gait(task, styles, *one) for one in found.variants),
+        trials=found.trials,
+        cancelled=found.stopped,
+    )
+
+
+def other_gait(task: Task, styles: Styles, table: Angles, figures: Figures) -> OtherGait:
+    """Describe a gait, and how it differs from the task's."""
+    own = task.table.angles_deg
+    return OtherGait(
+        table=table,
+        changes=changes(task.table, own, table),
+        differences=tuple(_differences(styles, own, table)),
+        figures=vars(figures),
+    )
+
+
+def _differences(styles: Styles, own: Angles, table: Angles) -> Iterator[Difference]:
+    """Yield how a table looks different, what is easiest to see first."""
+    steps = styles.look(table) - styles.look(own)
+    for index in np.argsort(-abs(steps), kind="stable"):
+        if abs(steps[index]) >= _SEEN:
+            yield Difference(way=WAYS[index], steps=round(float(steps[index]), 2))

@@ -1,0 +1,133 @@
+"""Fill a map of gaits from a student's own table."""
+
+import time
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from lacoc_server.studio.coach.coach import Tell
+from lacoc_server.studio.coach.table import Angles
+from lacoc_server.studio.coach.trials import Stopped, Trials
+from lacoc_server.studio.styles.archive import Archive, grid_of
+from lacoc_server.studio.styles.style import WAYS, Styles
+from lacoc_server.trial.figures import Figures
+from lacoc_shared.studio import Progress
+
+_ROUND = 16
+"""Tables that are tried roughly at the same time."""
+_STEPS = 1.4
+"""Standard deviation of the steps along each way that a new table takes."""
+_MIXED, _ALL_WAYS = 0.35, 0.25
+"""Share of the tables that begin between two others, and of those that are turned in all ways; the
+rest is turned in one to three."""
+_NOISY, _CELLS, _NOISE_DEG = 0.4, 0.3, 8.0
+"""Share of the tables in which single angles change as well, the share of those angles, and the
+standard deviation of their changes."""
+_FULL = 0.3
+"""How often a parent is taken from a cell with no empty cell beside it, against one for each."""
+_HOPEFULS = 6
+"""Most tables of a round that are tried exactly, those for empty cells first."""
+
+
+class Mapped(NamedTuple):
+    """A map, as far as it was filled."""
+
+    archive: Archive
+    own: Figures
+    trials: int
+    stopped: bool
+
+
+def map_gaits(trials: Trials, seconds: float, seed: int, tell: Tell) -> Mapped:
+    """Search for gaits of all speeds and arousals.
+
+    Args:
+        trials: tries tables for the task.
+        seconds: how long to search [s].
+        seed: seed of all random numbers.
+        tell: is told how far the search is.
+
+    Raises:
+        WorkerDied: if a process for trials ended.
+    """
+    task = trials.task
+    own = task.table.angles_deg
+    (figures,) = trials.figures([own])
+    archive = Archive(own, grid_of(task.robot, figures))
+    begin_s = time.monotonic()
+
+    def passed_s() -> float:
+        return time.monotonic() - begin_s
+
+    trials.on_done = lambda: tell(
+        Progress(
+            stage="map",
+            done=min(1.0, passed_s() / max(seconds, 1e-9)),
+            trials=trials.count,
+            filled=len(archive.elites),
+        )
+    )
+    archive.add(own, figures)
+    stopped = False
+    try:
+        for _ in fill(archive, Styles(task.robot, task.table), own, trials, seed):
+            if passed_s() >= seconds:
+                break
+    except Stopped:
+        stopped = True
+    trials.on_done = lambda: None
+    return Mapped(archive, figures, trials.count, stopped)
+
+
+def fill(
+    archive: Archive, styles: Styles, own: Angles, trials: Trials, seed: int
+) -> Iterator[None]:
+    """Fill a map, one round after another, for ever; yield after each.
+
+    A rough trial finds the tables that may be better than those of the map. Only those are tried
+    exactly, and only an exact trial puts a table into the map.
+    """
+    rng = np.random.default_rng(seed)
+    seen = {own}
+    while True:
+        tables: list[Angles] = []
+        for _ in range(4 * _ROUND):  # a table that the joints keep from moving gives no new ones
+            table = _offspring(archive, styles, own, rng)
+            if table not in seen:
+                seen.add(table)
+                tables.append(table)
+            if len(tables) == _ROUND:
+                break
+        rough = trials.walks(tables, rough=True)
+        new_first = sorted(
+            (archive.grid.place(figures) in archive.elites, index)
+            for index, figures in enumerate(rough)
+            if archive.would_take(tables[index], figures)
+        )
+        hopeful = [tables[index] for _, index in new_first[:_HOPEFULS]]
+        for table, figures in zip(hopeful, trials.walks(hopeful), strict=True):
+            archive.add(table, figures)
+        yield
+
+
+def _offspring(archive: Archive, styles: Styles, own: Angles, rng: np.random.Generator) -> Angles:
+    """Make a new table from one or two of the map."""
+    parents = [elite.angles_deg for elite in archive.elites.values()] or [own]
+    weights = np.array([archive.empty_beside(place) + _FULL for place in archive.elites] or [1.0])
+
+    def parent() -> Angles:
+        return parents[int(rng.choice(len(parents), p=weights / weights.sum()))]
+
+    table = parent()
+    if rng.random() < _MIXED:
+        table = styles.between(table, parent(), float(rng.uniform(-0.3, 1.3)))
+    steps = rng.normal(0.0, _STEPS, len(WAYS))
+    if rng.random() >= _ALL_WAYS:
+        keeps = rng.permutation(len(WAYS))[int(rng.integers(1, 4)) :]
+        steps[keeps] = 0.0
+    table = styles.turned(table, steps)
+    if rng.random() < _NOISY:
+        noise_deg = rng.normal(0.0, _NOISE_DEG, len(table)) * (rng.random(len(table)) < _CELLS)
+        table = styles.within(np.array(table) + noise_deg)
+    return table

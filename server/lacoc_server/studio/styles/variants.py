@@ -1,0 +1,143 @@
+"""Breed six gaits that differ visibly, from one table or from the two that a student has kept."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from lacoc_server.studio.coach.coach import Tell
+from lacoc_server.studio.coach.table import Angles
+from lacoc_server.studio.coach.trials import Stopped, Trials
+from lacoc_server.studio.styles.archive import is_sound
+from lacoc_server.studio.styles.style import WAYS, Styles, far_apart
+from lacoc_server.trial.figures import Figures
+from lacoc_server.trial.walk import Floats
+from lacoc_shared.studio import Progress
+
+VARIANTS = 6
+_DRAWN, _TRIED, _ROUNDS = 80, 16, 4
+"""Each round draws so many tables and tries the most different ones."""
+_ENOUGH, _LEAST = 10, 8
+"""A round tries at most so many exactly. No round follows once so many gaits are there to choose
+from."""
+_FAR, _NEAR = 2.0, 1.0
+"""How many steps a table is turned in the first round of breeding, and at least in later ones."""
+_CALMER = 0.85
+"""Each round of trials turns tables by this part of the steps before, so that more robots stay
+upright."""
+_WALKS = 0.25
+"""A variant goes forward with at least this part of its slower parent's speed."""
+_SIDE = 0.5
+"""A variant goes sideways with at most this part of its speed forward."""
+_PERIOD, _SPEED = 1.25, 1.35
+"""A period so many times longer, or a speed so many times higher, differs as much as one step."""
+
+
+class Variant(NamedTuple):
+    """A gait to choose."""
+
+    angles_deg: Angles
+    figures: Figures
+
+
+class Varied(NamedTuple):
+    """The variants of a round."""
+
+    variants: list[Variant]
+    """Six, or fewer if the search was stopped or too few walked; none is like another."""
+    trials: int
+    stopped: bool
+
+
+def vary(
+    trials: Trials,
+    parents: Sequence[Angles],
+    before: Sequence[Angles],
+    seed: int,
+    round_: int,
+    tell: Tell,
+) -> Varied:
+    """Find six variants of the parents that walk upright.
+
+    Args:
+        trials: tries tables for the task.
+        parents: one or two tables.
+        before: tables that were shown before; variants differ from them.
+        seed: seed of all random numbers.
+        round_: how many rounds were before; later ones change less.
+        tell: is told how far the search is.
+
+    Raises:
+        WorkerDied: if a process for trials ended.
+    """
+    task = trials.task
+    styles = Styles(task.robot, task.table)
+    rng = np.random.default_rng([seed, round_])
+    known = [styles.look(table) for table in dict.fromkeys((*parents, *before))]
+    seen = {*parents, *before}
+    found: list[Variant] = []
+    expected = len(parents) + _TRIED + _ENOUGH
+
+    def on_done() -> None:
+        done = min(1.0, trials.count / expected)
+        tell(Progress(stage="variants", done=done, trials=trials.count, filled=len(found)))
+
+    trials.on_done = on_done
+    stopped = False
+    try:
+        slowest = min(one.speed_mm_s for one in trials.walks(parents))
+        least_mm_s = min(slowest, _WALKS * slowest)
+        steps = max(_NEAR, _FAR * 0.8**round_)
+        for _ in range(_ROUNDS):
+            drawn = [_child(styles, parents, steps, rng) for _ in range(_DRAWN)]
+            drawn = [table for table in dict.fromkeys(drawn) if table not in seen]
+            seen.update(drawn)
+            looks = [styles.look(table) for table in drawn]
+            taken = [*known, *(styles.look(one.angles_deg) for one in found)]
+            tables = [drawn[index] for index in far_apart(looks, _TRIED, taken)]
+            for rough in (True, False):
+                walks = zip(tables, trials.walks(tables, rough=rough), strict=True)
+                good = [
+                    Variant(table, figures)
+                    for table, figures in walks
+                    if _walks(figures, least_mm_s)
+                ]
+                tables = [one.angles_deg for one in good][:_ENOUGH]
+            found += good
+            if len(found) >= _LEAST:
+                break
+            steps *= _CALMER
+    except Stopped:
+        stopped = True
+    trials.on_done = lambda: None
+    chosen = far_apart([_appearance(styles, one) for one in found], VARIANTS)
+    return Varied([found[index] for index in chosen], trials.count, stopped)
+
+
+def _child(
+    styles: Styles, parents: Sequence[Angles], steps: float, rng: np.random.Generator
+) -> Angles:
+    """Mix the parents, and turn the table in one to three ways."""
+    table = parents[0]
+    if len(parents) > 1:
+        table = styles.between(table, parents[1], float(rng.uniform(-0.25, 1.25)))
+    turns = np.zeros(len(WAYS))
+    some = rng.permutation(len(WAYS))[: int(rng.integers(1, 4))]
+    turns[some] = rng.choice([-1.0, 1.0], len(some)) * rng.uniform(0.5, 1.0, len(some)) * steps
+    return styles.turned(table, turns)
+
+
+def _walks(figures: Figures, least_mm_s: float) -> bool:
+    """Return whether a robot walks upright, fast enough and mostly forward."""
+    forward_mm_s = figures.speed_mm_s
+    if not is_sound(figures) or forward_mm_s < least_mm_s:
+        return False
+    return abs(figures.lateral_mm_s) <= max(5.0, _SIDE * forward_mm_s)
+
+
+def _appearance(styles: Styles, variant: Variant) -> Floats:
+    """Return how a gait looks when it walks: its ways, its period and its speed, in steps."""
+    figures = variant.figures
+    period = np.log(figures.cycle_s or 1.0) / np.log(_PERIOD)
+    speed = np.log(max(5.0, figures.speed_mm_s)) / np.log(_SPEED)
+    return np.array([*styles.look(variant.angles_deg), period, speed])
