@@ -121,10 +121,16 @@ def sample(folder: Path) -> Path:
 
 
 def designer(open_page: OpenPage, address: tuple[str, str], **options: Any) -> Designer:
-    """Open the page in its own browser profile."""
+    """Open the page in its own browser profile, and leave what another test has not saved."""
     settings = {"viewport": {"width": 1280, "height": 800}} | options
     page = Designer(open_page, address[0], **settings)
     page.begin(address[1])
+    page.until("window.__studio.learning.isTold.value")
+    if page.find("dialog[open]").count():
+        page.page.click("dialog >> .button:not(.quiet) >> nth=0")  # take the file's table
+    else:
+        page.press("Control+z")
+    page.until("window.__studio.files.isSaved.value")
     return page
 
 
@@ -320,7 +326,10 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     assert any(row[:2] == ("1 Key", 45) for row in rows)
     page.press("Escape")
 
-    page.page.evaluate("window.__studio.can.value = { save: false, coach: false, learn: false }")
+    page.page.evaluate(
+        "can => { can.value = { ...can.value, save: false, coach: false, learn: false } }",
+        page.page.evaluate_handle("window.__studio.can"),
+    )
     with page.page.expect_download() as coming:
         page.press("Control+s")
     assert coming.value.suggested_filename == "Loco-data.txt"
