@@ -12,7 +12,7 @@ export const design = {
     "Do not use your real name. What you do is kept under your nickname on your teacher's computer.",
     "本名は使わないでください。作ったものは、ニックネームとともに先生のコンピューターに保存されます。",
   ],
-  "design.class.kept": ["everything is kept", "自動で保存されています"],
+  "design.class.kept": ["everything is kept", "すべて保存済み"],
   "design.class.notKept": ["not kept yet", "まだ保存されていません"],
   "design.class.closed": ["closed", "閉じています"],
   "design.class.coachPart": [
