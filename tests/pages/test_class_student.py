@@ -3,6 +3,8 @@
 import json
 import os
 import signal
+import struct
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -160,7 +162,8 @@ def test_goes_on_after_the_gateway_was_killed(
     console.expect("ERR_CONNECTION|WebSocket")
     page = Pupil(open_page, room.url)
     page.joins(room, "Zoe")
-    page.changes("20")
+    page.changes("20.375")
+    until_kept(folder, 20.375)
     kill(room.process)
     page.sees(".banner")
     page.go(0, 1)
@@ -174,7 +177,16 @@ def test_goes_on_after_the_gateway_was_killed(
     other = again.student("Zoe", own["token"])
     first = other.hello["draft"]["table"]["rows"][0]["angles_deg"]
     other.close()
-    assert first[:2] == [20.0, 21.0]
+    assert first[:2] == [20.375, 21.0]
+
+
+def until_kept(folder: Path, angle_deg: float) -> None:
+    """Wait until a table with an angle is on the disk, which is about a second after it came."""
+    wanted = struct.pack(">d", angle_deg)  # as in a table that is kept
+    deadline_s = time.monotonic() + TIMEOUT_MS / 1000
+    while not any(wanted in path.read_bytes() for path in folder.glob("lacoc-*.sqlite*")):
+        assert time.monotonic() < deadline_s
+        time.sleep(0.05)
 
 
 def kill(process: Any) -> None:
@@ -196,9 +208,9 @@ def test_alone_changes_come_back_after_a_kill(
     page = Designer(open_page, url)
     page.begin(key)
     page.go(0, 0)
-    page.type("12")
+    page.type("12.375")
     page.until(TOLD)
-    page.page.wait_for_timeout(2500)  # a table is on the disk about a second later
+    until_kept(tmp_path, 12.375)
     kill(process)
     page.page.close()
 
@@ -206,14 +218,14 @@ def test_alone_changes_come_back_after_a_kill(
     try:
         page = Designer(open_page, url)
         page.begin(key)
-        page.cell_is(0, 0, "12")
+        page.cell_is(0, 0, "12.375")
         page.is_toasted("changes that were not saved are back")
         page.sees(".bar .name", "not saved")
         page.press("Control+z")
         page.cell_is(0, 0, "45")
         page.sees(".bar .name small", "saved")
         page.press("Control+y")
-        page.cell_is(0, 0, "12")
+        page.cell_is(0, 0, "12.375")
         page.until(TOLD)
 
         file = tmp_path / "Loco-data.txt"
@@ -223,11 +235,11 @@ def test_alone_changes_come_back_after_a_kill(
         page.sees("dialog[open]", "was saved by another program")
         other.begin(key)
         other.sees("dialog[open]", "was saved by another program")
-        other.cell_is(0, 0, "12")
+        other.cell_is(0, 0, "12.375")
         other.page.click("dialog >> text=Take the file's table")
         other.cell_is(1, 0, "7")
         other.press("Control+z")
-        other.cell_is(0, 0, "12")
+        other.cell_is(0, 0, "12.375")
     finally:
         process.terminate()
         process.communicate(timeout=60)
