@@ -8,11 +8,12 @@ from typing import Any
 import pytest
 from chromium import OpenPage
 from contestant import Contestant, own_page
+from drop import drop
 from openpyxl import load_workbook
 from playwright.sync_api import expect
 from show import violations
 
-from lacoc_robots.library import sample_gait_files
+from lacoc_robots.library import find_robot, sample_gait_files
 
 pytestmark = pytest.mark.slow
 
@@ -276,6 +277,20 @@ def test_what_is_pasted_dropped_and_composed(
     assert page.cell(3, 2) == "0"  # nothing is taken while it is being composed
     link.send("Input.insertText", {"text": "１２"})
     page.press("Enter")
+    page.cell_is(3, 2, "12")
+
+    # A robot with four legs begins a new table; undo brings back table, robot and file.
+    drop(page.page, dict([find_robot("quadruped")]))
+    page.misses("#cell-0-12")
+    page.sees(".bar .name b", "New gait")
+    page.press("Control+z")
+    page.cell_is(3, 2, "12")
+    page.sees(".bar .name b", "Loco-data.txt")
+    page.sees(".bar .name small", "not saved")
+    page.tries()
+    page.press("Control+y")
+    page.misses("#cell-0-12")
+    page.press("Control+z")
     page.cell_is(3, 2, "12")
 
 
