@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import { runKey } from "../../../core/address";
-import type { Refused } from "../../../core/connection";
+import { type Refused, Unanswered } from "../../../core/connection";
 import { SAMPLE_SEQUENCES, sequences } from "../../../core/files";
 import type { Phrase } from "../../../core/phrase";
 import { remembered } from "../../../core/settings";
@@ -72,7 +72,9 @@ export class Membership {
   }
 
   /** The gateway has not let the page in. */
-  refused({ why }: Refused): void {
+  refused(error: Refused): void {
+    if (error instanceof Unanswered) return; // the next connection shows the same
+    const { why } = error;
     const { typed } = this;
     this.typed = null;
     if (why.code === "class.unknown-token") kept.value = { ...kept.peek()!, token: "" };

@@ -1,6 +1,7 @@
 /** What is opened unasked: the first robot and gait, and what other programs save meanwhile. */
 
 import { columnsOf, fromWire } from "../../../core/design/table";
+import { SAMPLE_SEQUENCES, sequences } from "../../../core/files";
 import type { Draft, FolderFile, SentFile } from "../../../core/wire";
 import { t } from "../../../i18n";
 import { toast } from "../../../ui/toasts";
@@ -39,7 +40,10 @@ export class Opening {
       const robot = await this.firstRobot(given, own);
       if (student !== null && own) {
         this.files.beginWith(robot, own.table, undefined, own.sequences);
+        // Also a table for a robot with another number of legs.
+        this.files.take(t("design.step.newest"), own.table, own.sequences, null);
       } else {
+        if (student !== null) sequences.value = SAMPLE_SEQUENCES; // not those of another student
         const name = own ? own.file : this.firstGait();
         const read = await this.firstTable(this.find((file) => file.name === name)?.name ?? "");
         const file = read?.version ? { name, version: read.version } : undefined;

@@ -98,7 +98,9 @@ export class Sheet {
 
   /** Take the table over to another robot of as many legs. */
   refit(columns: Columns): void {
+    this.followers.before();
     this.history.peek()?.refit(columns);
+    this.followers.changed("tool", null);
   }
 
   /**
