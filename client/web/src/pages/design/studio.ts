@@ -36,7 +36,7 @@ export class Studio {
   readonly sheet: Sheet = new Sheet({
     before: (by) => this.learning.tell(by),
     changed: (by, size) => this.learning.edited(by, size),
-    turned: (before, now) => this.files.turned(before, now),
+    turned: (before, now) => this.files.shapes.turned(before, now),
     legsChanged: () => this.trials.forget(),
     worked: () => this.showing.rest(),
   });

@@ -12,16 +12,7 @@ import type { Gateway } from "../gateway";
 import type { ReadRobot, RobotInUse } from "../robot/robot";
 import type { By, Sheet } from "../table/sheet";
 import { type Base, keysFrom } from "./gait";
-
-/** The file that the table was read from. */
-export interface OpenFile {
-  /** "" while the table has no file. */
-  name: string;
-  /** The file's version when it was read or saved last. */
-  version: string;
-  /** The table's version that the file has. */
-  saved: number;
-}
+import { NO_FILE, type OpenFile, Shapes } from "./open_file";
 
 /** A file that has another content than the page thought. */
 export interface Conflict {
@@ -45,13 +36,6 @@ export interface Read extends Parsed {
   version: string;
 }
 
-/** What stays behind where a table of another kind, or with another number of legs, comes. */
-interface Left {
-  robot: ReadRobot | null;
-  file: OpenFile;
-}
-
-const NO_FILE = { name: "", version: "" };
 const POSTURES = "Loco-data.txt";
 const LOCOMOTION = "LocoTra-data.txt";
 
@@ -65,15 +49,16 @@ export class Files {
   readonly isSaved = computed(() => this.file.value.saved === this.sheet.version.value);
   /** Whether somebody chose to begin with a new table or the sample: no file takes its place. */
   isAskedFor = false;
-  /** By `shapeOf` of the tables to which a step may lead back. */
-  private readonly left = new Map<string, Left>();
+  readonly shapes: Shapes;
 
   constructor(
     private readonly gateway: Gateway,
     private readonly sheet: Sheet,
     private readonly robot: RobotInUse,
     private readonly can: ReadonlySignal<Can>,
-  ) {}
+  ) {
+    this.shapes = new Shapes(robot, this.file);
+  }
 
   /** The name under which the table is saved without asking. */
   usualName(): string {
@@ -178,15 +163,6 @@ export class Files {
     const isChanged = this.sheet.put(name, table, by, keysFrom(table, sent));
     this.checkLegs();
     return isChanged;
-  }
-
-  /** Take in that a step led to a table of another shape: its robot and file come back with it. */
-  turned(before: Table, now: Table): void {
-    this.left.set(shapeOf(before), { robot: this.robot.used.peek(), file: this.file.peek() });
-    const known = this.left.get(shapeOf(now));
-    const legs = this.robot.robot.peek()?.legs.length;
-    if (known?.robot && legs !== now.legs.length) this.robot.use(known.robot);
-    this.file.value = known?.file ?? { ...NO_FILE, saved: 0 };
   }
 
   /** What a gateway that keeps the table is told of its file. */
@@ -319,9 +295,4 @@ export class Files {
     if (table && !wire) toast(t("design.badCells", { count: this.sheet.bad.peek().length }), "no");
     return wire;
   }
-}
-
-/** Tables of the same shape can be steps of one another with the same robot and file. */
-function shapeOf({ kind, legs }: Table): string {
-  return `${kind} ${legs.length}`;
 }
