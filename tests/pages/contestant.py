@@ -119,6 +119,20 @@ class Contestant:
 @contextmanager
 def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
     """Run a command that opens a page for one person; give the gateway's address and page key."""
+    process, url, key = start_own_page(folder, *words)
+    try:
+        yield url, key
+    finally:
+        process.terminate()
+        process.communicate(timeout=30)
+
+
+def start_own_page(folder: Path, *words: str) -> tuple[Lacoc, str, str]:
+    """Start a command that opens a page for one person.
+
+    Returns:
+        The process, the gateway's address, and the page key.
+    """
     process = Lacoc(
         *(*words, "--no-open"),
         stdout=subprocess.PIPE,
@@ -128,15 +142,11 @@ def own_page(folder: Path, *words: str) -> Iterator[tuple[str, str]]:
         cwd=folder,
         env=environment(),
     )
-    try:
-        assert process.stdout is not None
-        said = re.search(r"http://\S+", process.stdout.readline())
-        assert said is not None
-        parts = urlsplit(said[0])
-        yield f"http://{parts.netloc}", parts.fragment.removeprefix("key=")
-    finally:
-        process.terminate()
-        process.communicate(timeout=30)
+    assert process.stdout is not None
+    said = re.search(r"http://\S+", process.stdout.readline())
+    assert said is not None
+    parts = urlsplit(said[0])
+    return process, f"http://{parts.netloc}", parts.fragment.removeprefix("key=")
 
 
 Sit = Callable[..., Contestant]

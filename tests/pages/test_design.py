@@ -8,11 +8,12 @@ from typing import Any
 import pytest
 from chromium import OpenPage
 from contestant import Contestant, own_page
+from drop import drop
 from openpyxl import load_workbook
 from playwright.sync_api import expect
 from show import violations
 
-from lacoc_robots.library import sample_gait_files
+from lacoc_robots.library import find_robot, sample_gait_files
 
 pytestmark = pytest.mark.slow
 
@@ -121,10 +122,16 @@ def sample(folder: Path) -> Path:
 
 
 def designer(open_page: OpenPage, address: tuple[str, str], **options: Any) -> Designer:
-    """Open the page in its own browser profile."""
+    """Open the page in its own browser profile, and leave what another test has not saved."""
     settings = {"viewport": {"width": 1280, "height": 800}} | options
     page = Designer(open_page, address[0], **settings)
     page.begin(address[1])
+    page.until("window.__studio.learning.isTold.value")
+    if page.find("dialog[open]").count():
+        page.page.click("dialog >> .button:not(.quiet) >> nth=0")  # take the file's table
+    else:
+        page.press("Control+z")
+    page.until("window.__studio.files.isSaved.value")
     return page
 
 
@@ -272,6 +279,20 @@ def test_what_is_pasted_dropped_and_composed(
     page.press("Enter")
     page.cell_is(3, 2, "12")
 
+    # A robot with four legs begins a new table; undo brings back table, robot and file.
+    drop(page.page, dict([find_robot("quadruped")]))
+    page.misses("#cell-0-12")
+    page.sees(".bar .name b", "New gait")
+    page.press("Control+z")
+    page.cell_is(3, 2, "12")
+    page.sees(".bar .name b", "Loco-data.txt")
+    page.sees(".bar .name small", "not saved")
+    page.tries()
+    page.press("Control+y")
+    page.misses("#cell-0-12")
+    page.press("Control+z")
+    page.cell_is(3, 2, "12")
+
 
 def test_a_file_that_changed_meanwhile_is_asked_about(
     open_page: OpenPage, address: tuple[str, str], sample: Path
@@ -320,7 +341,10 @@ def test_a_file_that_changed_meanwhile_is_asked_about(
     assert any(row[:2] == ("1 Key", 45) for row in rows)
     page.press("Escape")
 
-    page.page.evaluate("window.__studio.can.value = { save: false, coach: false, learn: false }")
+    page.page.evaluate(
+        "can => { can.value = { ...can.value, save: false, coach: false, learn: false } }",
+        page.page.evaluate_handle("window.__studio.can"),
+    )
     with page.page.expect_download() as coming:
         page.press("Control+s")
     assert coming.value.suggested_filename == "Loco-data.txt"

@@ -58,6 +58,8 @@ class DesignPage:
         """Answer a request of a page that was let in; close a page that sends no hello first."""
         if isinstance(asked, requests.Hello):
             await self._enter(asked)
+        elif isinstance(asked, requests.Ping):  # also while somebody types the class code
+            self._answers.reply(asked.id, {"t": asked.t})
         elif self._learner is not None and self._viewer.can_act:
             self._answer(asked, self._learner)
         else:
@@ -95,8 +97,6 @@ class DesignPage:
     def _answer(self, asked: requests.Asked, learner: Learner) -> None:
         answers = self._answers
         match asked:
-            case requests.Ping():
-                answers.reply(asked.id, {"t": asked.t})
             case requests.RobotAsk():
                 answers.later(asked.id, self._studio.robot(asked))
             case requests.TrialAsk():

@@ -122,6 +122,8 @@ class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
     """Name of the file that is open; "": none."""
     file_version: _Name = ""
     """Version of that file that the table was made from."""
+    saved: bool = False
+    """Whether the file has this table."""
 
 
 class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):

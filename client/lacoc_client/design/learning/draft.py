@@ -19,11 +19,13 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
     table: FileTable
     sequences: tuple[tuple[int, ...], ...] | None = None
     robot: SentFile | None = None
-    """None: the robot that pages begin with."""
+    """None: the workshop's."""
     file: str = ""
     """Name of the file that was open; "": none."""
     file_version: str = ""
     """Version of that file that the table was made from."""
+    saved: bool = False
+    """Whether that file has this table."""
 
     def kept(self, student: str, version: str, at_s: float) -> KeptTable:
         """Return the draft as a class file keeps it."""

@@ -90,6 +90,7 @@ class Learner:
                 robot=asked.robot,
                 file=asked.file,
                 file_version=asked.file_version,
+                saved=asked.saved,
             )
             await self._diary.keep(draft, version)
         before, self._before = self._before, asked.table

@@ -96,6 +96,12 @@ export class Connection {
     return reply;
   }
 
+  /** Greet once more, such as with what somebody has typed since. */
+  async greetAgain(): Promise<void> {
+    // Where it is not open now, it greets when it is.
+    if (this.socket?.readyState === WebSocket.OPEN) await this.begin(this.socket);
+  }
+
   /** Close for good. */
   end(): void {
     this.ended = true;

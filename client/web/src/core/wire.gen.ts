@@ -434,6 +434,7 @@ export interface Draft {
   robot: unknown | null;
   file: string;
   file_version: string;
+  saved: boolean;
 }
 
 export interface Card {

@@ -5,6 +5,7 @@ import type { Phrase } from "./phrase";
 import {
   type Card,
   type Event,
+  type FileTable,
   type FolderFile,
   FRAME_FIELDS,
   type Frame,
@@ -127,6 +128,16 @@ export interface ShowReply {
   trial: TrialReply;
 }
 
+/** A table that the teacher of a class handed out. */
+export interface HandedTable {
+  /** Counts the tables of the class, from 1. */
+  number: number;
+  title: string;
+  table: FileTable;
+  /** The digits of each key; null: the sample's, or the table itself has them. */
+  sequences: number[][] | null;
+}
+
 interface GoodReply {
   id: number;
   ok: true;
@@ -166,7 +177,9 @@ export type Message =
   | { kind: "class"; body: ClassState }
   | { kind: "card"; body: Card }
   | { kind: "gone"; body: { name: string } }
-  | { kind: "tournament"; body: TournamentState };
+  | { kind: "tournament"; body: TournamentState }
+  | { kind: "handed"; body: HandedTable }
+  | { kind: "elsewhere"; body: { forgotten: boolean } };
 
 /** What a page asks for; each request is answered by a reply with its id. */
 export type Request =
@@ -199,7 +212,8 @@ type DesignRequest =
   | "check"
   | "phase"
   | "name"
-  | "vote";
+  | "vote"
+  | "hand";
 
 /** What the teacher's page asks for. */
 type ClassRequest =

@@ -7,11 +7,13 @@ import { Banner, waitsForGateway } from "../ui/banner";
 import { Dropping, useDrop } from "../ui/drop";
 import { isNarrow } from "../ui/screen";
 import { Settings } from "../ui/settings";
-import { Toasts } from "../ui/toasts";
+import { Toasts, toast } from "../ui/toasts";
 import "./design/design.css";
+import { Elsewhere } from "./design/class/elsewhere";
+import { Join } from "./design/class/join";
+import { Offer } from "./design/class/offer";
 import { ConflictDialog, TroubleDialog } from "./design/files/conflict";
 import { FilesDialog, takeFiles } from "./design/files/dialog";
-import type { Files } from "./design/files/files";
 import { Head } from "./design/head/head";
 import { LegPicture } from "./design/robot/legs";
 import { Side, type Tab } from "./design/side";
@@ -33,7 +35,7 @@ const dragging = signal(false);
 
 export default function Design() {
   const studio = useMemo(() => new Studio(), []);
-  const { sheet, trials, showing, coach, files, robot, gateway } = studio;
+  const { sheet, trials, showing, coach, files, robot, gateway, membership } = studio;
   const open = useSignal<"" | "files" | "settings">("");
   const tab = useSignal<Tab>("trials");
   window.__studio = studio;
@@ -43,10 +45,28 @@ export default function Design() {
   const overlay = useMemo(() => ({ marks: coach.marks, target: trials.target }), [coach, trials]);
   useKeys(studio);
   useDrop(dragging, (taken) => void takeFiles(files, taken));
-  useLeaving(files);
+  useLeaving(studio);
+  const name = membership.name.value || files.file.value.name || t("design.unnamed");
   useEffect(() => {
-    document.title = `${files.file.value.name || t("design.unnamed")} – LACOC`;
-  }, [files.file.value.name]);
+    document.title = `${name} – LACOC`;
+  }, [name]);
+  const door = membership.door.value;
+  const settings = open.value === "settings" && <Settings onClose={close} />;
+  if (door) {
+    return (
+      <>
+        <Join
+          door={door}
+          membership={membership}
+          gateway={gateway}
+          onSettings={() => {
+            open.value = "settings";
+          }}
+        />
+        {settings}
+      </>
+    );
+  }
   return (
     <main class="design">
       <Waiting studio={studio} />
@@ -86,10 +106,13 @@ export default function Design() {
           robot={robot}
           sheet={sheet}
           can={studio.can.value}
+          membership={membership}
+          handed={studio.handed}
           onClose={close}
         />
       )}
-      {open.value === "settings" && <Settings onClose={close} />}
+      {settings}
+      <Elsewhere membership={membership} />
       <ConflictDialog files={files} />
       <TroubleDialog gateway={gateway} robot={robot} sheet={sheet} />
       <Dropping dragging={dragging}>{t("design.drop")}</Dropping>
@@ -98,17 +121,19 @@ export default function Design() {
   );
 }
 
-/** What the page waits for. */
+/** What the page waits for, or else what the teacher has handed out. */
 function Waiting({ studio }: { studio: Studio }) {
   const why = studio.why.value;
   const noStudio = why ? said(why) : t("design.noStudio");
   const text =
     waitsForGateway(studio.gateway.state.value) || (studio.present.value === false && noStudio);
-  return text ? <Banner>{text}</Banner> : null;
+  if (text) return <Banner>{text}</Banner>;
+  const offered = studio.sheet.table.value && studio.handed.offered.value;
+  return offered ? <Offer handed={studio.handed} offered={offered} /> : null;
 }
 
 /** Keys that work wherever the focus is. */
-function useKeys({ sheet, files, trials }: Studio): void {
+function useKeys({ sheet, files, trials, membership }: Studio): void {
   useEffect(() => {
     const press = (event: KeyboardEvent) => {
       if (event.isComposing || !(event.ctrlKey || event.metaKey) || event.altKey) return;
@@ -119,6 +144,7 @@ function useKeys({ sheet, files, trials }: Studio): void {
         "input:not(.cell-input):not([type=range])",
       );
       if (key === "enter") void trials.tryIt();
+      else if (key === "s" && membership.name.peek()) toast(t("design.class.kept"));
       else if (key === "s") void files.keep();
       else if (key === "z" && !isField) event.shiftKey ? sheet.redo() : sheet.undo();
       else if (key === "y" && !isField) sheet.redo();
@@ -127,16 +153,29 @@ function useKeys({ sheet, files, trials }: Studio): void {
     };
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);
-  }, [sheet, files, trials]);
+  }, [sheet, files, trials, membership]);
 }
 
-/** Ask before a table is lost. */
-function useLeaving(files: Files): void {
+/** Tell the gateway all before the page goes, and ask before a table is lost. */
+function useLeaving({ files, learning, gateway, membership }: Studio): void {
   useEffect(() => {
     const leave = (event: BeforeUnloadEvent) => {
-      if (!files.isSaved.peek()) event.preventDefault();
+      if (membership.elsewhere.peek()) return;
+      const isOpen = gateway.state.peek().open && learning.gait() !== null;
+      const isKept = membership.name.peek()
+        ? isOpen || learning.isTold.peek()
+        : files.isSaved.peek();
+      if (!isKept) event.preventDefault();
     };
+    // A tablet ends a page that is out of sight without another word.
+    const tell = () => learning.tell();
     addEventListener("beforeunload", leave);
-    return () => removeEventListener("beforeunload", leave);
-  }, [files]);
+    addEventListener("pagehide", tell);
+    document.addEventListener("visibilitychange", tell);
+    return () => {
+      removeEventListener("beforeunload", leave);
+      removeEventListener("pagehide", tell);
+      document.removeEventListener("visibilitychange", tell);
+    };
+  }, [files, learning, gateway, membership]);
 }

@@ -77,6 +77,11 @@ export class History {
     });
   }
 
+  /** Whether a table of this content was here before. */
+  has(table: Table): boolean {
+    return this.versions.has(this.contentOf(table));
+  }
+
   undo(): void {
     if (this.canUndo.peek()) this.at.value = this.at.peek() - 1;
   }
@@ -86,10 +91,14 @@ export class History {
   }
 
   private numberOf(table: Table): number {
-    const content = `${table.kind} ${table.rows.map((row) => this.rowNumber(row)).join(" ")}`;
+    const content = this.contentOf(table);
     const number = this.versions.get(content) ?? this.versions.size + 1;
     this.versions.set(content, number);
     return number;
+  }
+
+  private contentOf(table: Table): string {
+    return `${table.kind} ${table.rows.map((row) => this.rowNumber(row)).join(" ")}`;
   }
 
   /** Number of a row's content; with it, the content of a long table is named by a short text. */

@@ -30,6 +30,16 @@ export class Gateway {
     return this.connection.state;
   }
 
+  /** Say again who the page is, such as after somebody has typed it. */
+  greetAgain(): Promise<void> {
+    return this.connection.greetAgain();
+  }
+
+  /** Close the connection for good. */
+  end(): void {
+    this.connection.end();
+  }
+
   /** Ask the gateway; rejects with `Refused`. */
   ask<T = unknown>(what: Request, fields: object = {}): Promise<T> {
     return this.connection.ask<T>(what, fields);

@@ -68,10 +68,11 @@ export function Side({ studio, tab }: Props) {
             learning={studio.learning}
             sheet={sheet}
             trials={trials}
+            can={can}
             canTry={studio.present.value === true}
           />
         )}
-        {tab.value === "coach" && <CoachPanel coach={studio.coach} sheet={sheet} />}
+        {tab.value === "coach" && <CoachPanel coach={studio.coach} sheet={sheet} can={can} />}
         {tab.value === "robot" && <Robot robot={robot.robot.value} file={robot.name.value} />}
       </div>
     </aside>

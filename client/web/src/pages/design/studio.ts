@@ -1,11 +1,13 @@
 /** What the page knows, by nouns, and how the nouns hear of each other. */
 
 import { computed, signal } from "@preact/signals";
-import { runKey } from "../../core/address";
+import type { Refused } from "../../core/connection";
 import { type Shown, source } from "../../core/design/sources";
 import type { Phrase } from "../../core/phrase";
-import type { Message, SentFile } from "../../core/wire";
+import type { Message } from "../../core/wire";
 import { ALL, type Can } from "./can";
+import { Handed } from "./class/handed";
+import { type Greeting, Membership } from "./class/membership";
 import { Coach } from "./coach/coach";
 import { Files } from "./files/files";
 import { sentGait } from "./files/gait";
@@ -24,6 +26,7 @@ export class Studio {
   /** Why no studio answers. */
   readonly why = signal<Phrase | null>(null);
 
+  readonly membership = new Membership();
   readonly gateway = new Gateway(
     () => this.greet(),
     (message) => this.take(message),
@@ -33,10 +36,15 @@ export class Studio {
   readonly sheet: Sheet = new Sheet({
     before: (by) => this.learning.tell(by),
     changed: (by, size) => this.learning.edited(by, size),
+    turned: (before, now) => this.files.shapes.turned(before, now),
     legsChanged: () => this.trials.forget(),
     worked: () => this.showing.rest(),
   });
-  readonly learning: Learning = new Learning(this.gateway, () => sentGait(this.sheet, this.robot));
+  readonly learning: Learning = new Learning(
+    this.gateway,
+    () => sentGait(this.sheet, this.robot),
+    () => this.files.base(),
+  );
   readonly trials: Trials = new Trials(
     this.gateway,
     this.sheet,
@@ -45,7 +53,8 @@ export class Studio {
     this.showing,
   );
   readonly coach = new Coach(this.gateway, this.sheet, this.robot, this.trials);
-  readonly files = new Files(this.gateway, this.sheet, this.robot, this.can);
+  readonly files: Files = new Files(this.gateway, this.sheet, this.robot, this.can);
+  readonly handed = new Handed(this.membership, this.files);
 
   /** What the picture shows. */
   readonly picture = source(
@@ -67,38 +76,67 @@ export class Studio {
     this.gateway,
     this.files,
     this.robot,
+    this.sheet,
     () => this.trials.all.peek().length > 0,
   );
-  /** The robot of the command line, null where it names none; undefined: not greeted yet. */
-  private given: SentFile | null | undefined;
+  /** null: not greeted yet. */
+  private greeting: Greeting | null = null;
+
+  constructor() {
+    // A file that was saved, or another one that was opened: what is on the page is its table.
+    this.files.file.subscribe(() => {
+      if (this.sheet.table.peek()) this.learning.edited(null);
+    });
+  }
 
   private async greet(): Promise<void> {
-    const hello = { key: runKey() ?? "" };
-    const { robot } = await this.gateway.ask<{ robot: SentFile | null }>("hello", hello);
-    this.given = robot;
-    this.learning.greet();
-    this.openFirst();
+    let greeting: Greeting;
+    try {
+      greeting = await this.gateway.ask<Greeting>("hello", this.membership.shown());
+    } catch (error) {
+      this.membership.refused(error as Refused);
+      throw error;
+    }
+    const before = this.greeting?.student;
+    this.membership.entered(greeting);
+    // What is on the page is somebody else's.
+    if (before !== undefined && before !== greeting.student) location.reload();
+    const { student, draft } = greeting;
+    this.greeting = greeting;
+    this.can.value = { ...this.can.peek(), save: student === null };
+    if (this.opening.isOpen) {
+      if (student !== null && draft) this.opening.again(draft);
+      this.learning.greet();
+    } else void this.openFirst();
   }
 
   private take({ kind, body }: Message): void {
     if (kind === "studio") {
       this.present.value = body.present;
       this.why.value = body.why;
-      this.openFirst();
+      void this.openFirst();
     } else if (kind === "phases") {
       this.learning.phases.value = body;
+      this.can.value = { ...this.can.peek(), rules: body.rules };
     } else if (kind === "progress") {
       this.coach.progress.value = body;
+    } else if (kind === "handed") {
+      this.handed.newest.value = body;
+    } else if (kind === "elsewhere") {
+      this.gateway.end();
+      this.membership.elsewhere.value = body;
     } else if (kind === "folder") {
       const { folder, files, changed } = body;
       this.files.folder.value = { folder, files };
-      this.openFirst();
+      void this.openFirst();
       for (const name of changed) void this.opening.changed(name);
     }
   }
 
   /** Open the first things to see, as soon as there is a studio that knows robots. */
-  private openFirst(): void {
-    if (this.given !== undefined && this.present.peek()) void this.opening.first(this.given);
+  private async openFirst(): Promise<void> {
+    if (!this.greeting || !this.present.peek() || this.opening.isOpen) return;
+    await this.opening.first(this.greeting);
+    if (this.opening.isOpen) this.learning.greet();
   }
 }

@@ -1,6 +1,7 @@
 /** The coach: which numbers matter, and a better gait; both only after one's own guess. */
 
-import { t } from "../../../i18n";
+import { said, t } from "../../../i18n";
+import { allows, type Can } from "../can";
 import type { Sheet } from "../table/sheet";
 import { Better } from "./better";
 import { type Coach, type Found, GOALS, type Goal, SIZES } from "./coach";
@@ -12,8 +13,9 @@ interface Props {
   sheet: Sheet;
 }
 
-export function CoachPanel({ coach, sheet }: Props) {
+export function CoachPanel({ coach, sheet, can }: Props & { can: Can }) {
   const found = coach.found.value;
+  const sizes = SIZES.filter((size) => allows(can, size));
   const isCurrent = found?.version === sheet.version.value;
   return (
     <section class="coach" aria-label={t("design.coach")}>
@@ -34,18 +36,24 @@ export function CoachPanel({ coach, sheet }: Props) {
         <Working coach={coach} job={coach.job.value} />
       ) : (
         <div class="asks">
-          <button class="button" type="button" onClick={() => void coach.ask(null)}>
-            {t("design.coach.matters")}
-          </button>
-          <p class="muted">{t("design.coach.improve")}</p>
+          {allows(can, "matters") && (
+            <button class="button" type="button" onClick={() => void coach.ask(null)}>
+              {t("design.coach.matters")}
+            </button>
+          )}
+          {sizes.length > 0 && <p class="muted">{t("design.coach.improve")}</p>}
           <div class="sizes">
-            {SIZES.map((size) => (
+            {sizes.map((size) => (
               <button key={size} class="button" type="button" onClick={() => void coach.ask(size)}>
                 <b>{t(`design.coach.${size}`)}</b>
                 <small>{t(`design.coach.${size}.hint`)}</small>
               </button>
             ))}
           </div>
+          {!allows(can, "matters") && <p>{said({ code: "class.coach-closed" })}</p>}
+          {allows(can, "matters") && sizes.length < SIZES.length && (
+            <p class="muted">{t("design.class.coachPart")}</p>
+          )}
         </div>
       )}
       {found && !isCurrent && <p class="muted">{t("design.coach.old")}</p>}

@@ -7,6 +7,8 @@ import { t } from "../../../i18n";
 import { Dialog } from "../../../ui/dialog";
 import { toast } from "../../../ui/toasts";
 import type { Can } from "../can";
+import type { Handed } from "../class/handed";
+import type { Membership } from "../class/membership";
 import type { RobotInUse } from "../robot/robot";
 import type { Sheet } from "../table/sheet";
 import type { Files } from "./files";
@@ -33,10 +35,13 @@ interface Props {
   robot: RobotInUse;
   sheet: Sheet;
   can: Can;
+  membership: Membership;
+  handed: Handed;
   onClose: () => void;
 }
 
-export function FilesDialog({ files, robot, sheet, can, onClose }: Props) {
+export function FilesDialog({ files, robot, sheet, can, membership, handed, onClose }: Props) {
+  const newest = handed.newest.value;
   const inFolder = can.save ? files.folder.value.files : [];
   const gaits = inFolder.filter(({ slot }) => slot !== "robot");
   const robots = inFolder.filter(({ slot }) => slot === "robot");
@@ -50,7 +55,7 @@ export function FilesDialog({ files, robot, sheet, can, onClose }: Props) {
       <div class="design-files">
         <section aria-label={t("design.gaits")}>
           <h3>{t("design.gaits")}</h3>
-          {!files.isSaved.value && <p class="warning">{t("design.unsavedHint")}</p>}
+          {can.save && !files.isSaved.value && <p class="warning">{t("design.unsavedHint")}</p>}
           <ul>
             {gaits.map(({ name, slot }) => (
               <Choice
@@ -61,6 +66,13 @@ export function FilesDialog({ files, robot, sheet, can, onClose }: Props) {
                 onOpen={open(() => files.open(name))}
               />
             ))}
+            {newest && (
+              <Choice
+                label={newest.title}
+                hint={t("design.handed.hint")}
+                onOpen={open(() => handed.take(newest))}
+              />
+            )}
             <Choice
               label={t("design.sample")}
               hint={t("design.sampleHint")}
@@ -106,6 +118,15 @@ export function FilesDialog({ files, robot, sheet, can, onClose }: Props) {
               onOpen={open(() => files.openWorkshopRobot())}
             />
           </ul>
+          {membership.name.value && (
+            <>
+              <h3>{t("design.class.who", { name: membership.name.value })}</h3>
+              <p class="muted">{t("design.class.leaveHint")}</p>
+              <button class="button" type="button" onClick={() => membership.leave()}>
+                {t("design.class.leave")}
+              </button>
+            </>
+          )}
         </section>
       </div>
     </Dialog>

@@ -2,7 +2,7 @@
 
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
 import { columnsOf, fromWire, standing, type Table, toWire } from "../../../core/design/table";
-import { download } from "../../../core/files";
+import { download, sequences } from "../../../core/files";
 import type { Phrase } from "../../../core/phrase";
 import type { FileTable, FolderFile, Mistake } from "../../../core/wire";
 import { t } from "../../../i18n";
@@ -10,17 +10,9 @@ import { toast } from "../../../ui/toasts";
 import type { Can } from "../can";
 import type { Gateway } from "../gateway";
 import type { ReadRobot, RobotInUse } from "../robot/robot";
-import type { Sheet } from "../table/sheet";
-
-/** The file that the table was read from. */
-export interface OpenFile {
-  /** "" while the table has no file. */
-  name: string;
-  /** The file's version when it was read or saved last. */
-  version: string;
-  /** The table's version that the file has. */
-  saved: number;
-}
+import type { By, Sheet } from "../table/sheet";
+import { type Base, keysFrom } from "./gait";
+import { NO_FILE, type OpenFile, Shapes } from "./open_file";
 
 /** A file that has another content than the page thought. */
 export interface Conflict {
@@ -44,7 +36,6 @@ export interface Read extends Parsed {
   version: string;
 }
 
-const NO_FILE = { name: "", version: "" };
 const POSTURES = "Loco-data.txt";
 const LOCOMOTION = "LocoTra-data.txt";
 
@@ -58,13 +49,16 @@ export class Files {
   readonly isSaved = computed(() => this.file.value.saved === this.sheet.version.value);
   /** Whether somebody chose to begin with a new table or the sample: no file takes its place. */
   isAskedFor = false;
+  readonly shapes: Shapes;
 
   constructor(
     private readonly gateway: Gateway,
     private readonly sheet: Sheet,
     private readonly robot: RobotInUse,
     private readonly can: ReadonlySignal<Can>,
-  ) {}
+  ) {
+    this.shapes = new Shapes(robot, this.file);
+  }
 
   /** The name under which the table is saved without asking. */
   usualName(): string {
@@ -111,7 +105,12 @@ export class Files {
       const parsed = await this.gateway.ask<Parsed>("parse", { name, data });
       if (parsed.robot !== null && parsed.robot !== undefined) {
         await this.useRobot(name, parsed.robot);
-      } else if (parsed.table) this.replace(parsed.table, name);
+      } else if (parsed.table) {
+        const robot = this.robot.robot.peek();
+        const table = robot && fromWire(parsed.table, columnsOf(robot));
+        if (table) this.sheet.put(t("design.step.take", { name }), table, "paste");
+        this.checkLegs();
+      }
       this.gateway.tell(parsed.notes);
     } catch (error) {
       this.gateway.refuse(error);
@@ -127,24 +126,70 @@ export class Files {
     }
   }
 
-  /** Begin with a robot and a table, where there is one for its legs. */
-  beginWith(robot: ReadRobot, table: FileTable | null, file = NO_FILE): void {
+  /**
+   * Begin with a robot and a table, where there is one for its legs.
+   *
+   * @param sent The digits of each key, as they were sent; null: they stay as they are.
+   */
+  beginWith(
+    robot: ReadRobot,
+    table: FileTable | null,
+    file = NO_FILE,
+    sent: number[][] | null = null,
+  ): void {
     batch(() => {
       this.robot.use(robot);
-      if (table?.legs === robot.reply.legs.length) this.show(table, file);
-      else this.begin(standing(robot.reply));
+      if (table?.legs !== robot.reply.legs.length) {
+        this.begin(standing(robot.reply));
+        return;
+      }
+      const keys = sent && keysFrom(fromWire(table, columnsOf(robot.reply)), sent);
+      if (keys) sequences.value = keys;
+      this.show(table, file);
     });
+  }
+
+  /**
+   * Put a table in place of this one, in one step.
+   *
+   * @param name Of the step.
+   * @param sent The digits of each key, as they were sent.
+   * @returns Whether anything has changed.
+   */
+  take(name: string, wire: FileTable, sent: number[][] | null, by: By): boolean {
+    const robot = this.robot.robot.peek();
+    if (!robot) return false;
+    const table = fromWire(wire, columnsOf(robot));
+    const isChanged = this.sheet.put(name, table, by, keysFrom(table, sent));
+    this.checkLegs();
+    return isChanged;
+  }
+
+  /** What a gateway that keeps the table is told of its file. */
+  base(): Base {
+    const { name, version } = this.file.peek();
+    if (!this.can.peek().save) return { file: "", file_version: "", saved: false };
+    return { file: name, file_version: version, saved: this.isSaved.peek() };
   }
 
   /** Walk with the robot of a file, or, where its text is null, with the workshop's hexapod. */
   private async useRobot(name: string, text: string | null): Promise<void> {
     const read = await this.robot.read(name, text);
     batch(() => {
-      this.robot.use(read);
-      if (this.sheet.table.peek()?.legs.length !== read.reply.legs.length) {
-        this.begin(standing(read.reply));
+      const table = this.sheet.table.peek();
+      if (table && table.legs.length !== read.reply.legs.length) {
+        // The student's own table comes back with undo, and its robot with it.
+        this.sheet.put(
+          t("design.step.robot", { name: read.reply.name }),
+          standing(read.reply),
+          null,
+        );
+        this.robot.use(read);
+        this.file.value = { ...NO_FILE, saved: this.sheet.version.peek() };
         return;
       }
+      this.robot.use(read);
+      if (!table) return;
       const isSaved = this.isSaved.peek();
       this.sheet.refit(columnsOf(read.reply));
       if (isSaved) this.file.value = { ...this.file.peek(), saved: this.sheet.version.peek() };
@@ -153,7 +198,10 @@ export class Files {
 
   private begin(table: Table, file = NO_FILE): void {
     batch(() => {
-      this.sheet.open(table);
+      // Without a folder nothing else has the table that was here.
+      const isOnly = !this.can.peek().save && this.sheet.table.peek() !== null;
+      if (isOnly) this.sheet.put(t("design.step.open"), table, null);
+      else this.sheet.open(table);
       this.file.value = { ...file, saved: this.sheet.version.peek() };
     });
   }
@@ -161,20 +209,17 @@ export class Files {
   private show(wire: FileTable, file = NO_FILE): void {
     const robot = this.robot.robot.peek();
     if (!robot) return;
-    if (wire.legs !== robot.legs.length) {
-      toast(t("design.otherLegs", { legs: wire.legs, robot: robot.name }), "no");
-    }
     this.begin(fromWire(wire, columnsOf(robot)), file);
+    this.checkLegs();
   }
 
-  /** Put a table in place of this one, in one step. */
-  private replace(wire: FileTable, name: string): void {
+  /** Say if the table is for a robot with another number of legs. */
+  private checkLegs(): void {
     const robot = this.robot.robot.peek();
-    if (!robot) return;
-    const table = fromWire(wire, columnsOf(robot));
-    if (table.kind !== this.sheet.table.peek()?.kind || wire.legs !== robot.legs.length) {
-      this.begin(table);
-    } else this.sheet.edit(t("design.step.take", { name }), () => table, null, "paste");
+    const legs = this.sheet.table.peek()?.legs.length ?? 0;
+    if (robot && legs !== robot.legs.length) {
+      toast(t("design.otherLegs", { legs, robot: robot.name }), "no");
+    }
   }
 
   // Save
@@ -231,7 +276,7 @@ export class Files {
     if (!conflict?.table || !robot) return;
     const { name, version } = conflict;
     const table = fromWire(conflict.table, columnsOf(robot));
-    this.sheet.edit(t("design.step.theirs"), () => table, null, null);
+    this.sheet.put(t("design.step.theirs"), table, null);
     this.file.value = { name, version, saved: this.sheet.version.peek() };
     this.conflict.value = null;
   }

@@ -2,7 +2,7 @@
 
 import { keysOf } from "../../../core/design/rows";
 import { type Table, toWire } from "../../../core/design/table";
-import { sequences } from "../../../core/files";
+import { SAMPLE_SEQUENCES, sequences } from "../../../core/files";
 import type { FileTable, SentFile } from "../../../core/wire";
 import type { RobotInUse } from "../robot/robot";
 import type { Sheet } from "../table/sheet";
@@ -14,11 +14,32 @@ export interface SentGait {
   sequences: number[][] | null;
 }
 
+/** What is told of the file that the table was made from. */
+export interface Base {
+  /** Its name; "": none. */
+  file: string;
+  file_version: string;
+  /** Whether it has this table. */
+  saved: boolean;
+}
+
 /** The table as it is now; null while a cell has no angle. */
 export function sentGait(sheet: Sheet, robot: RobotInUse): SentGait | null {
   const table = sheet.table.peek();
   const wire = table && toWire(table);
   return wire && { table: wire, robot: robot.sent(), sequences: digitsOf(table) };
+}
+
+/**
+ * The sequences that came with a table, as the page keeps them; null: they are what is there.
+ *
+ * @param sent The digits of each key; null: the sample's.
+ */
+export function keysFrom(table: Table, sent: number[][] | null): readonly string[] | null {
+  if (table.kind === "locomotion") return null;
+  // What was typed for a key whose postures are not all there is not sent: it stays.
+  if (JSON.stringify(sent) === JSON.stringify(digitsOf(table))) return null;
+  return sent?.map((digits) => digits.join("")) ?? SAMPLE_SEQUENCES;
 }
 
 function digitsOf(table: Table): number[][] | null {

@@ -1,42 +1,74 @@
 /** What is opened unasked: the first robot and gait, and what other programs save meanwhile. */
 
-import type { FolderFile, SentFile } from "../../../core/wire";
+import { columnsOf, fromWire } from "../../../core/design/table";
+import { SAMPLE_SEQUENCES, sequences } from "../../../core/files";
+import type { Draft, FolderFile, SentFile } from "../../../core/wire";
 import { t } from "../../../i18n";
 import { toast } from "../../../ui/toasts";
+import type { Greeting } from "../class/membership";
 import type { Gateway } from "../gateway";
 import type { ReadRobot, RobotInUse } from "../robot/robot";
+import type { Sheet } from "../table/sheet";
 import type { Files, Parsed, Read } from "./files";
 
 export class Opening {
-  private isOpened = false;
+  /** How far the first things to see are opened. */
+  private is: "closed" | "opening" | "open" = "closed";
 
   /** @param isTried Whether a trial was made with the table that is there. */
   constructor(
     private readonly gateway: Gateway,
     private readonly files: Files,
     private readonly robot: RobotInUse,
+    private readonly sheet: Sheet,
     private readonly isTried: () => boolean,
   ) {}
 
+  get isOpen(): boolean {
+    return this.is === "open";
+  }
+
   /**
-   * Open the first things to see, once: a robot, and the folder's first gait, else the sample.
-   *
-   * @param given The robot of the command line.
+   * Open the first things to see, once: the robot and the table that somebody was working on, or
+   * the folder's first gait, else the sample.
    */
-  async first(given: SentFile | null): Promise<void> {
-    if (this.isOpened) return;
-    this.isOpened = true;
+  async first({ robot: given, student, draft }: Greeting): Promise<void> {
+    if (this.is !== "closed") return;
+    this.is = "opening";
     try {
-      const robot = await this.firstRobot(given);
-      const gait = this.ofFolder("postures") ?? this.ofFolder("locomotion");
-      const read = await this.firstTable(gait?.name ?? "");
-      const file = read?.version ? { name: gait!.name, version: read.version } : undefined;
-      this.files.beginWith(robot, read?.table ?? null, file);
-      this.gateway.tell(read?.notes);
+      const own = draft && (student !== null || !draft.saved) ? draft : null;
+      const robot = await this.firstRobot(given, own);
+      if (student !== null && own) {
+        this.files.beginWith(robot, own.table, undefined, own.sequences);
+        // Also a table for a robot with another number of legs.
+        this.files.take(t("design.step.newest"), own.table, own.sequences, null);
+      } else {
+        if (student !== null) sequences.value = SAMPLE_SEQUENCES; // not those of another student
+        const name = own ? own.file : this.firstGait();
+        const read = await this.firstTable(this.find((file) => file.name === name)?.name ?? "");
+        const file = read?.version ? { name, version: read.version } : undefined;
+        this.files.beginWith(robot, read?.table ?? null, file);
+        this.gateway.tell(read?.notes);
+        if (own) this.goOn(own, read);
+      }
+      this.is = "open";
     } catch (error) {
-      this.isOpened = false;
+      this.is = "closed";
       this.gateway.refuse(error);
     }
+  }
+
+  /**
+   * Take in, in a class, that the student worked on another page while this one was not connected:
+   * the newest table is one step from what is here.
+   */
+  again(draft: Draft): void {
+    const { sheet, files } = this;
+    const robot = this.robot.robot.peek();
+    const history = sheet.history.peek();
+    if (!robot || !history || history.has(fromWire(draft.table, columnsOf(robot)))) return;
+    files.take(t("design.step.newest"), draft.table, draft.sequences, null);
+    toast(t("design.newest"));
   }
 
   /** Take in that another program saved a file of the folder. */
@@ -71,18 +103,49 @@ export class Opening {
     }
   }
 
-  /** The robot of the command line, that of the folder, or the workshop's. */
-  private async firstRobot(given: SentFile | null): Promise<ReadRobot> {
+  /**
+   * Put what was not saved in place of the file's table, in one step. If the file has changed
+   * since, ask, as if the page had been open all the time.
+   */
+  private goOn(draft: Draft, read: (Parsed & { version: string }) | null): void {
+    const { files } = this;
+    if (!files.take(t("design.step.draft"), draft.table, draft.sequences, null)) return;
+    const { file: name, file_version: version } = draft;
+    const base = files.file.peek();
+    if (name && name !== base.name) files.file.value = { name, version: "", saved: 0 };
+    else if (name && read?.table && version !== base.version) {
+      files.file.value = { name, version, saved: 0 };
+      const { table, version: now } = read;
+      files.conflict.value = { name, version: now, table, mistakes: [], when: "open" };
+      return;
+    }
+    toast(t("design.draft"));
+  }
+
+  /** The robot of the draft, of the command line, of the folder, or the workshop's. */
+  private async firstRobot(given: SentFile | null, draft: Draft | null): Promise<ReadRobot> {
     try {
-      if (given) return await this.robot.read(given.name, new TextDecoder().decode(given.data));
-      const own = this.ofFolder("robot");
-      if (!own) return await this.robot.read("", null);
-      const { name } = own;
-      return await this.robot.read(name, (await this.gateway.ask<Read>("read", { name })).robot);
+      if (draft) {
+        const robot = draft.robot as SentFile | null;
+        const name = this.find((file) => file.slot === "robot" && file.name === robot?.name)?.name;
+        return await (name ? this.robotOf(name) : this.robotIn(robot));
+      }
+      if (given) return await this.robotIn(given);
+      const own = this.find((file) => file.slot === "robot");
+      return await (own ? this.robotOf(own.name) : this.robotIn(null));
     } catch (error) {
       this.gateway.refuse(error);
-      return await this.robot.read("", null);
+      return await this.robotIn(null);
     }
+  }
+
+  /** The robot of a file of the folder. */
+  private async robotOf(name: string): Promise<ReadRobot> {
+    return await this.robot.read(name, (await this.gateway.ask<Read>("read", { name })).robot);
+  }
+
+  private robotIn(file: SentFile | null): Promise<ReadRobot> {
+    return this.robot.read(file?.name ?? "", file && new TextDecoder().decode(file.data));
   }
 
   /** The table of a file, or of the sample; null where there is none without mistakes. */
@@ -96,8 +159,11 @@ export class Opening {
     }
   }
 
-  private ofFolder(slot: FolderFile["slot"]): FolderFile | undefined {
-    return this.find((file) => file.slot === slot);
+  private firstGait(): string {
+    const gait =
+      this.find(({ slot }) => slot === "postures") ??
+      this.find(({ slot }) => slot === "locomotion");
+    return gait?.name ?? "";
   }
 
   private find(wanted: (file: FolderFile) => boolean): FolderFile | undefined {

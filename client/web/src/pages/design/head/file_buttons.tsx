@@ -2,41 +2,37 @@
 
 import { t } from "../../../i18n";
 import { IconButton } from "../../../ui/icons";
-import type { Can } from "../can";
+import { HandButton, StudentName } from "../class/student";
 import type { Files } from "../files/files";
-import type { Sheet } from "../table/sheet";
+import type { Studio } from "../studio";
 
-interface FileProps {
-  sheet: Sheet;
-  files: Files;
-  can: Can;
+interface Props {
+  studio: Studio;
   onFiles: () => void;
 }
 
-export function FileButtons({ sheet, files, can, onFiles }: FileProps) {
+export function FileButtons({ studio, onFiles }: Props) {
+  const { sheet, learning } = studio;
   const history = sheet.history.value;
-  const name = files.file.value.name;
-  const isSaved = files.isSaved.value;
+  const student = studio.membership.name.value;
   const undo = history?.undoName.value ?? "";
   const redo = history?.redoName.value ?? "";
   return (
     <div class="file">
       <IconButton name="open" label={t("design.files")} onClick={onFiles} />
-      <button class="button name" type="button" title={t("design.files")} onClick={onFiles}>
-        <b>{name || t("design.unnamed")}</b>
-        <small class={isSaved ? "" : "unsaved"}>
-          {t(isSaved ? (name ? "design.isSaved" : "design.notFile") : "design.unsaved")}
-        </small>
-      </button>
-      <button
-        class="button"
-        type="button"
-        disabled={can.save && isSaved && name !== ""}
-        title={t("design.saveKey")}
-        onClick={() => void files.keep()}
-      >
-        {can.save ? t("design.save") : t("design.download", { kind: ".txt" })}
-      </button>
+      {student === null ? (
+        <OwnFile files={studio.files} canSave={studio.can.value.save} onFiles={onFiles} />
+      ) : (
+        <>
+          <StudentName
+            name={student}
+            learning={learning}
+            isOpen={studio.gateway.state.value.open}
+            onFiles={onFiles}
+          />
+          <HandButton learning={learning} />
+        </>
+      )}
       <button
         class="button icon-button"
         type="button"
@@ -58,6 +54,37 @@ export function FileButtons({ sheet, files, can, onFiles }: FileProps) {
         <Arrow turned />
       </button>
     </div>
+  );
+}
+
+interface OwnProps {
+  files: Files;
+  canSave: boolean;
+  onFiles: () => void;
+}
+
+/** The file of somebody who designs alone, and what saves it. */
+function OwnFile({ files, canSave, onFiles }: OwnProps) {
+  const name = files.file.value.name;
+  const isSaved = files.isSaved.value;
+  return (
+    <>
+      <button class="button name" type="button" title={t("design.files")} onClick={onFiles}>
+        <b>{name || t("design.unnamed")}</b>
+        <small class={isSaved ? "" : "unsaved"}>
+          {t(isSaved ? (name ? "design.isSaved" : "design.notFile") : "design.unsaved")}
+        </small>
+      </button>
+      <button
+        class="button"
+        type="button"
+        disabled={canSave && isSaved && name !== ""}
+        title={t("design.saveKey")}
+        onClick={() => void files.keep()}
+      >
+        {canSave ? t("design.save") : t("design.download", { kind: ".txt" })}
+      </button>
+    </>
   );
 }
 

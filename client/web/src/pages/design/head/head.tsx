@@ -34,9 +34,9 @@ export function Head({ studio, onFiles, onPhase, onSettings }: Props) {
   });
   return (
     <header class="bar">
-      <FileButtons sheet={sheet} files={studio.files} can={can} onFiles={onFiles} />
+      <FileButtons studio={studio} onFiles={onFiles} />
       <div class="where">
-        {can.learn && <PhaseDots learning={studio.learning} onOpen={onPhase} />}
+        {can.learn && <PhaseDots learning={studio.learning} can={can} onOpen={onPhase} />}
         <Task sheet={sheet} trials={trials} />
       </div>
       <div class="acts">

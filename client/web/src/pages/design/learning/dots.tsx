@@ -2,9 +2,17 @@
 
 import type { PhaseState } from "../../../core/wire";
 import { type MessageName, said, t } from "../../../i18n";
+import { toast } from "../../../ui/toasts";
+import { type Can, isClosed } from "../can";
 import type { Learning } from "./learning";
 
-export function PhaseDots({ learning, onOpen }: { learning: Learning; onOpen: () => void }) {
+interface Props {
+  learning: Learning;
+  can: Can;
+  onOpen: () => void;
+}
+
+export function PhaseDots({ learning, can, onOpen }: Props) {
   const now = learning.phases.value;
   if (!now) return null;
   return (
@@ -15,9 +23,14 @@ export function PhaseDots({ learning, onOpen }: { learning: Learning; onOpen: ()
           type="button"
           data-state={phase.state}
           aria-current={phase.number === now.phase ? "step" : undefined}
-          aria-label={phaseName(phase)}
-          title={phaseName(phase)}
+          aria-disabled={isClosed(can, phase.number) || undefined}
+          aria-label={phaseName(phase, can)}
+          title={phaseName(phase, can)}
           onClick={() => {
+            if (phase.number !== now.phase && isClosed(can, phase.number)) {
+              toast(closedText(phase.number), "no");
+              return;
+            }
             if (phase.number !== now.phase) void learning.goTo(phase.number);
             onOpen();
           }}
@@ -30,8 +43,14 @@ export function PhaseDots({ learning, onOpen }: { learning: Learning; onOpen: ()
 }
 
 /** "2 Three legs, done" */
-function phaseName({ number, title, state }: PhaseState): string {
-  return t("design.phase.name", { number, title: said(title), state: stateName(state) });
+function phaseName({ number, title, state }: PhaseState, can: Can): string {
+  const is = isClosed(can, number) ? t("design.class.closed") : stateName(state);
+  return t("design.phase.name", { number, title: said(title), state: is });
+}
+
+/** Why a phase can't be entered. */
+export function closedText(number: number): string {
+  return said({ code: "class.phase-closed", values: { number } });
 }
 
 export function stateName(state: string): string {

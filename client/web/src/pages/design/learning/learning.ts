@@ -2,12 +2,19 @@
 
 import { signal } from "@preact/signals";
 import type { Judged, Phases } from "../../../core/wire";
-import type { SentGait } from "../files/gait";
+import type { Base, SentGait } from "../files/gait";
 import type { Gateway } from "../gateway";
 import type { By } from "../table/sheet";
 
 /** Edits of the same kind within this time are told as one. */
 const TELL_MS = 250;
+
+/** The edits that the gateway does not know yet. */
+interface Untold {
+  by: By;
+  size: string | null;
+  timer: number;
+}
 
 export class Learning {
   /** How far the student is; null: not known yet. */
@@ -16,20 +23,34 @@ export class Learning {
   readonly footGuess = signal<string | null>(null);
   /** What came of the last such guess. */
   readonly judged = signal<Judged | null>(null);
-  /** The edits that the gateway does not know yet; null: none. */
-  private untold: { by: By; size: string | null; timer: number } | null = null;
+  /** Whether the gateway has the table as it is now. */
+  readonly isTold = signal(true);
+  private untold: Untold | null = null;
+  /** Count of edits whose reply is not there yet. */
+  private asked = 0;
+  /** The table that the gateway is known to have; null: none. */
+  private known: (SentGait & Base) | null = null;
   private greeted = false;
 
-  /** @param gait The table as it is now; null while a cell has no angle. */
+  /**
+   * @param gait The table as it is now; null while a cell has no angle.
+   * @param base What is told of its file.
+   */
   constructor(
     private readonly gateway: Gateway,
     readonly gait: () => SentGait | null,
+    private readonly base: () => Base,
   ) {}
 
-  /** The gateway knows this page, and may take evidence. */
+  /** The gateway knows this page and its student, and may take evidence. */
   greet(): void {
     this.greeted = true;
-    if (this.gait()) this.edited(null);
+    // A new connection compares an edit with what came before it: what was changed meanwhile counts.
+    if (this.known && this.untold) {
+      this.gateway.ask("edit", { ...this.known, by: null }).catch(() => undefined);
+    }
+    this.edited(null);
+    this.tell();
   }
 
   /** Go to a phase, forward or back. */
@@ -38,7 +59,10 @@ export class Learning {
   }
 
   /** Send something that counts as evidence; null: it was refused. */
-  async send<T>(what: "phase" | "name" | "vote" | "check", fields: object): Promise<T | null> {
+  async send<T>(
+    what: "phase" | "name" | "vote" | "check" | "hand",
+    fields: object,
+  ): Promise<T | null> {
     this.tell();
     try {
       return await this.gateway.ask<T>(what, fields);
@@ -52,9 +76,10 @@ export class Learning {
   edited(by: By, size: string | null = null): void {
     if (this.untold) clearTimeout(this.untold.timer);
     // What could not be told yet, because a cell has no angle, is told with this.
-    const first = this.untold ?? { by, size };
+    const first = this.untold?.by ? this.untold : { by, size };
     const timer = window.setTimeout(() => this.tell(), TELL_MS);
     this.untold = { ...first, timer };
+    this.isTold.value = false;
   }
 
   /**
@@ -72,13 +97,20 @@ export class Learning {
     const guess = untold.by === "hand" ? this.footGuess.peek() : null;
     if (guess) this.footGuess.value = null;
     const { by, size } = untold;
-    const fields = { ...gait, by, size, guess };
-    this.gateway.ask<{ guess: Judged | null }>("edit", fields).then(
+    const told = { ...gait, ...this.base() };
+    this.asked += 1;
+    this.gateway.ask<{ guess: Judged | null }>("edit", { ...told, by, size, guess }).then(
       (reply) => {
         if (guess) this.judged.value = reply.guess;
+        this.known = told;
+        this.asked -= 1;
+        this.isTold.value = !this.untold && !this.asked;
       },
-      // The next edit tells it, or the next connection.
-      () => {},
+      () => {
+        // The next edit tells it, or the next connection.
+        this.asked -= 1;
+        this.untold ??= untold;
+      },
     );
   }
 }

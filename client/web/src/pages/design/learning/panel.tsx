@@ -1,10 +1,11 @@
 /** The task of the phase that the student is at (workshop 4-2). */
 
 import { said, t } from "../../../i18n";
+import { type Can, isClosed } from "../can";
 import { classes } from "../names";
 import type { Sheet } from "../table/sheet";
 import type { Pose, Trials } from "../trials/trials";
-import { stateName } from "./dots";
+import { closedText, stateName } from "./dots";
 import type { Learning } from "./learning";
 import { Check, Concept, FootGuess } from "./tasks";
 import "./learning.css";
@@ -19,16 +20,26 @@ interface Props {
   learning: Learning;
   sheet: Sheet;
   trials: Trials;
+  can: Can;
   canTry: boolean;
 }
 
-export function PhasePanel({ learning, sheet, trials, canTry }: Props) {
+export function PhasePanel({ learning, sheet, trials, can, canTry }: Props) {
   const now = learning.phases.value;
   const phase = now?.phases[now.phase - 1];
   if (!now || !phase) return <p class="muted">{t("design.loading")}</p>;
   const { number, state } = phase;
   const percent = Math.round(100 * phase.share);
   const pose = POSE_OF[number];
+  const isFirst = can.rules.explain_first;
+  const explanation = (
+    <details key={`${number} ${state}`} open={isFirst || state === "met"}>
+      <summary>{t("design.phase.explanation")}</summary>
+      <p>{said(phase.explanation)}</p>
+    </details>
+  );
+  /** Whether the student can go to a phase that there is. */
+  const isOpen = (other: number) => !isClosed(can, other);
   return (
     <section class="learn" aria-label={t("design.phases")}>
       {now.trouble && (
@@ -39,6 +50,7 @@ export function PhasePanel({ learning, sheet, trials, canTry }: Props) {
       <h3>
         {number}. {said(phase.title)} <span data-state={state}>{stateName(state)}</span>
       </h3>
+      {isFirst && explanation}
       <p class="learn-task">{said(phase.task)}</p>
       <p>{said(phase.question)}</p>
       {number === ONE_LEG && <FootGuess learning={learning} />}
@@ -71,15 +83,19 @@ export function PhasePanel({ learning, sheet, trials, canTry }: Props) {
         <summary>{t("design.phase.hint")}</summary>
         <p>{said(phase.hint)}</p>
       </details>
-      <details key={`${number} ${state}`} open={state === "met"}>
-        <summary>{t("design.phase.explanation")}</summary>
-        <p>{said(phase.explanation)}</p>
-      </details>
+      {!isFirst && explanation}
+      {[number, number + 1]
+        .filter((one) => isClosed(can, one))
+        .map((one) => (
+          <p key={one} class="learn-trouble">
+            {closedText(one)}
+          </p>
+        ))}
       <div class="row">
         <button
           class="button"
           type="button"
-          disabled={number === 1}
+          disabled={number === 1 || !isOpen(number - 1)}
           onClick={() => void learning.goTo(number - 1)}
         >
           {t("design.phase.back")}
@@ -87,7 +103,7 @@ export function PhasePanel({ learning, sheet, trials, canTry }: Props) {
         <button
           class={classes("button", state === "met" && "strong")}
           type="button"
-          disabled={number === now.phases.length}
+          disabled={number === now.phases.length || !isOpen(number + 1)}
           onClick={() => void learning.goTo(number + 1)}
         >
           {t("design.phase.next")}

@@ -1,6 +1,6 @@
 /** The robot that walks on this page. */
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import type { RobotReply, SentFile } from "../../../core/wire";
 import type { Gateway } from "../gateway";
 
@@ -15,10 +15,10 @@ export interface ReadRobot {
 
 export class RobotInUse {
   /** null: not known yet. */
-  readonly robot = signal<RobotReply | null>(null);
+  readonly used = signal<ReadRobot | null>(null);
+  readonly robot = computed<RobotReply | null>(() => this.used.value?.reply ?? null);
   /** Name of the robot's file; "": the workshop's hexapod. */
-  readonly name = signal("");
-  private text: string | null = null;
+  readonly name = computed(() => this.used.value?.name ?? "");
 
   constructor(private readonly gateway: Gateway) {}
 
@@ -29,15 +29,14 @@ export class RobotInUse {
     return { name: text === null ? "" : name, text, reply };
   }
 
-  use({ name, text, reply }: ReadRobot): void {
-    this.text = text;
-    this.name.value = name;
-    this.robot.value = reply;
+  use(robot: ReadRobot): void {
+    this.used.value = robot;
   }
 
   /** The robot as a request sends it; null: the workshop's hexapod. */
   sent(): SentFile | null {
-    if (this.text === null) return null;
-    return { name: this.name.peek(), data: new TextEncoder().encode(this.text) };
+    const text = this.used.peek()?.text ?? null;
+    if (text === null) return null;
+    return { name: this.name.peek(), data: new TextEncoder().encode(text) };
   }
 }

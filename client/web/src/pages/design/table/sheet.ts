@@ -29,10 +29,20 @@ export interface Followers {
   before(by?: By): void;
   /** The table has changed. */
   changed(by: By, size: string | null): void;
+  /** The table got another kind or another number of legs. */
+  turned(before: Table, now: Table): void;
   /** Another table with another number of legs was opened. */
   legsChanged(): void;
   /** Somebody works on the table, and looks at a posture. */
   worked(): void;
+}
+
+/** A step that changed the keys' sequences too: the table and the sequences on both sides of it. */
+interface KeyStep {
+  readonly from: Table;
+  readonly to: Table;
+  readonly fromKeys: readonly string[];
+  readonly toKeys: readonly string[];
 }
 
 const FORWARD = 2;
@@ -67,6 +77,9 @@ export class Sheet {
   /** Whether the second half of the key's sequence follows the first as its mirror. */
   readonly mirrors = signal(false);
 
+  /** Steps that changed the keys' sequences too. */
+  private readonly keySteps: KeyStep[] = [];
+
   constructor(private readonly followers: Followers) {}
 
   /** Begin with another table. Versions go on, so that trials stay with their tables. */
@@ -85,7 +98,9 @@ export class Sheet {
 
   /** Take the table over to another robot of as many legs. */
   refit(columns: Columns): void {
+    this.followers.before();
     this.history.peek()?.refit(columns);
+    this.followers.changed("tool", null);
   }
 
   /**
@@ -118,6 +133,38 @@ export class Sheet {
       this.followers.worked();
     });
     if (this.version.peek() !== version) this.followers.changed(by, size);
+  }
+
+  /**
+   * Put another table in place of this one: one step, whatever its kind and legs.
+   *
+   * @param keys The digits of each key of level B; null: they stay as they are.
+   * @returns Whether anything has changed.
+   */
+  put(name: string, table: Table, by: By, keys: readonly string[] | null = null): boolean {
+    const history = this.history.peek();
+    const from = this.table.peek();
+    if (!history || !from) return false;
+    this.followers.before(by);
+    const fromKeys = sequences.peek();
+    batch(() => {
+      this.unpasted.value = [];
+      history.apply(name, () => table);
+      const to = this.table.peek()!;
+      if (keys) sequences.value = keys;
+      if (keys && to !== from) this.keySteps.push({ from, to, fromKeys, toKeys: keys });
+      this.turn(from);
+    });
+    const isChanged = this.table.peek() !== from || keys !== null;
+    if (isChanged) this.followers.changed(by, null);
+    return isChanged;
+  }
+
+  /** Give the keys of level B other sequences. */
+  setKeys(keys: readonly string[]): void {
+    this.followers.before();
+    sequences.value = keys;
+    this.followers.changed("tool", null);
   }
 
   undo(): void {
@@ -156,12 +203,30 @@ export class Sheet {
     const history = this.history.peek();
     if (!history) return;
     this.followers.before();
+    const from = this.table.peek()!;
     batch(() => {
       step(history);
-      this.stayInside();
-      this.followers.worked();
+      const to = this.table.peek();
+      for (const one of this.keySteps) {
+        if (one.to === from && one.from === to) sequences.value = one.fromKeys;
+        else if (one.from === from && one.to === to) sequences.value = one.toKeys;
+      }
+      this.turn(from);
     });
     this.followers.changed(null, null);
+  }
+
+  /** Take in that a step may have led to a table of another shape. */
+  private turn(from: Table): void {
+    const to = this.table.peek()!;
+    const isOther = to.legs.length !== from.legs.length;
+    if (isOther || to.kind !== from.kind) this.followers.turned(from, to);
+    if (isOther) this.followers.legsChanged();
+    if (!this.sequence.peek()) {
+      this.key.value = sequenceOf(to, FORWARD, sequences.peek()) ? FORWARD : 0;
+    }
+    this.stayInside();
+    this.followers.worked();
   }
 
   private inside({ row, col }: Place): Place {

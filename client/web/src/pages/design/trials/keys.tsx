@@ -86,7 +86,7 @@ function Sequence({ sheet, digit }: { sheet: Sheet; digit: number }) {
         while (changed.length <= digit) changed.push("");
         changed[digit] = digitsOf(event.currentTarget.value);
         while (changed.length > 1 && !changed.at(-1)) changed.pop();
-        sequences.value = changed;
+        sheet.setKeys(changed);
       }}
     />
   );

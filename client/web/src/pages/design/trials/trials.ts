@@ -120,7 +120,7 @@ export class Trials {
   /** Put the table of a trial back, in one step. */
   restore(tried: Tried): void {
     const name = t("design.step.restore", { number: tried.number });
-    this.sheet.edit(name, () => tried.table, null, null);
+    this.sheet.put(name, tried.table, null);
   }
 
   /** Forget all trials: they are of another robot. */

@@ -1,0 +1,33 @@
+/** The table that the teacher handed out last. */
+
+import { computed, signal } from "@preact/signals";
+import type { HandedTable } from "../../../core/wire";
+import { t } from "../../../i18n";
+import type { Files } from "../files/files";
+import type { Membership } from "./membership";
+
+export class Handed {
+  /** The newest; null: none. */
+  readonly newest = signal<HandedTable | null>(null);
+  /** The one that the student has not answered yet; null: none. */
+  readonly offered = computed(() => {
+    const { value } = this.newest;
+    return value && value.number > this.membership.answered ? value : null;
+  });
+
+  constructor(
+    private readonly membership: Membership,
+    private readonly files: Files,
+  ) {}
+
+  /** Put it in place of the student's table, in one step. */
+  take({ number, title, table, sequences }: HandedTable): void {
+    this.files.take(t("design.step.take", { name: title }), table, sequences, "paste");
+    this.membership.answer(number);
+  }
+
+  /** Go on with one's own table. */
+  putOff({ number }: HandedTable): void {
+    this.membership.answer(number);
+  }
+}

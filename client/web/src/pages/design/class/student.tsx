@@ -1,0 +1,47 @@
+/** Who works on this page, whether all is kept, and the raised hand. */
+
+import { t } from "../../../i18n";
+import { Icon } from "../../../ui/icons";
+import { isNarrow } from "../../../ui/screen";
+import type { Learning } from "../learning/learning";
+import "./class.css";
+
+interface Props {
+  name: string;
+  learning: Learning;
+  isOpen: boolean;
+  onFiles: () => void;
+}
+
+export function StudentName({ name, learning, isOpen, onFiles }: Props) {
+  // A change that is on its way is as good as kept.
+  const isKept = learning.isTold.value || (isOpen && learning.gait() !== null);
+  return (
+    <button class="button name" type="button" title={t("design.files")} onClick={onFiles}>
+      <b>{name}</b>
+      <small class={isKept ? "" : "unsaved"}>
+        {t(isKept ? "design.class.kept" : "design.class.notKept")}
+      </small>
+    </button>
+  );
+}
+
+export function HandButton({ learning }: { learning: Learning }) {
+  const isUp = learning.phases.value?.hand_up ?? false;
+  const text = t(isUp ? "design.hand.up" : "design.hand.raise");
+  return (
+    <button
+      class="button hand"
+      type="button"
+      aria-pressed={isUp}
+      aria-label={isNarrow.value ? text : undefined}
+      title={t("design.hand.hint")}
+      onClick={() => void learning.send("hand", { up: !isUp })}
+    >
+      <span class="drawn">
+        <Icon name="hand" />
+      </span>
+      {!isNarrow.value && text}
+    </button>
+  );
+}

@@ -1,0 +1,245 @@
+"""A student of a class on /design, and what comes back of a table that nobody saved."""
+
+import json
+import os
+import signal
+import struct
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from chromium import OpenPage
+from class_room import ClassRoom
+from contestant import start_own_page
+from playwright.sync_api import expect
+from show import violations
+from test_design import TIMEOUT_MS, Designer, write_sample
+
+pytestmark = pytest.mark.slow
+
+TOLD = "window.__studio.learning.isTold.value"
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the folder of the class."""
+    return tmp_path_factory.mktemp("class")
+
+
+@pytest.fixture(scope="module")
+def room(folder: Path, built_pages: Path) -> Iterator[ClassRoom]:
+    """Give a class that the tests of this file share, each with students of its own."""
+    room = ClassRoom(folder)
+    yield room
+    room.close()
+
+
+class Pupil(Designer):
+    """A student of a class, in a browser of its own."""
+
+    def joins(self, room: ClassRoom, name: str) -> None:
+        """Come in with the class code by keyboard alone, and wait for the table."""
+        self.open("/design")
+        self.sees(".join form")
+        self.page.keyboard.type(room.code.lower())
+        self.press("Tab")
+        self.page.keyboard.type(name)
+        self.press("Enter")
+        self.is_in(name)
+
+    def is_in(self, name: str) -> None:
+        self.sees("#gait-grid td")
+        self.sees(".bar .name b", name)
+        expect(self.find(".try")).to_be_enabled(timeout=TIMEOUT_MS)
+
+    def changes(self, text: str) -> None:
+        """Change the first number, and wait until the gateway has it."""
+        self.go(0, 0)
+        self.type(text)
+        self.cell_is(0, 0, text)
+        self.until(TOLD)
+
+
+def test_joins_by_keyboard_and_the_table_stays(open_page: OpenPage, room: ClassRoom) -> None:
+    """A phone refuses a wrong code in words and keeps the focus; a reload keeps the table."""
+    page = Pupil(open_page, room.url, **PHONE)
+    page.open("/design")
+    page.sees(".join form")
+    assert violations(page.page) == []
+    assert page.page.evaluate("document.scrollingElement.scrollWidth") == 390
+    page.page.keyboard.type("wrong1")
+    page.press("Tab")
+    page.page.keyboard.type("Mia")
+    page.press("Enter")
+    page.sees(".join-why", "not the code of this class")
+    assert page.page.evaluate("document.activeElement.value") == "Mia"
+    page.press("Shift+Tab", "Control+a")
+    wide = "".join(chr(ord(letter) + 0xFEE0) for letter in room.code)  # as an input method types
+    page.page.keyboard.insert_text(wide)
+    page.press("Enter")
+    page.is_in("Mia")
+    page.sees(".bar .name small", "everything is kept")
+    page.misses(".bar >> text=Save")
+    assert violations(page.page) == []
+    assert page.page.evaluate("document.scrollingElement.scrollWidth") == 390
+
+    page.changes("33")
+    page.find(".keys input").nth(2).fill("12")
+    page.press("Enter")
+    page.until(TOLD)
+    page.page.evaluate("sessionStorage.clear()")
+    page.page.reload()
+    page.is_in("Mia")
+    page.cell_is(0, 0, "33")
+    expect(page.find(".keys input").nth(2)).to_have_value("1 2")
+
+
+def test_hand_rules_and_the_handed_out_table(open_page: OpenPage, room: ClassRoom) -> None:
+    """The teacher sees the hand, closes a phase and the coach, and hands out a table."""
+    with ExitStack() as closing:
+        teacher = room.teacher()
+        closing.callback(teacher.close)
+        page = Pupil(open_page, room.url)
+        page.joins(room, "Ken")
+        page.page.click(".hand")
+        page.sees(".hand[aria-pressed=true]", "Hand is up")
+        teacher.until(lambda: teacher.card("Ken").get("hand_up_s"))
+
+        rules = {"closed": [2], "coach": "matters", "explain_first": True}
+        teacher.ask("rules", rules=rules)
+        page.find(".phase-dots button[aria-disabled=true]").focus()
+        page.press("Enter")
+        page.is_toasted("has not opened phase 2")
+        page.page.click(".phase-dots button:nth-child(1)")
+        page.sees(".learn details[open] + .learn-task")
+        page.page.click("#tab-coach")
+        page.sees(".coach", "has closed the other searches")
+        page.misses(".coach .sizes button")
+        teacher.ask("rules", rules={"closed": [], "coach": "table", "explain_first": False})
+        expect(page.find(".coach .sizes button")).to_have_count(3, timeout=TIMEOUT_MS)
+
+        page.changes("31")
+        teacher.ask("hand_out", title="Step 1", sample=True)
+        page.sees(".banner", "Step 1")
+        assert violations(page.page) == []
+        page.page.click(".banner >> text=Take it")
+        page.cell_is(0, 0, "45")
+        page.misses(".banner")
+        page.press("Control+z")
+        page.cell_is(0, 0, "31")
+        page.until(TOLD)
+        page.page.reload()
+        page.is_in("Ken")
+        page.cell_is(0, 0, "31")
+        page.misses(".banner")
+
+        other = page.page.context.new_page()
+        other.goto(f"{room.url}/design?q=low")
+        expect(other.locator("#cell-0-0")).to_have_text("31", timeout=TIMEOUT_MS)
+        page.sees("dialog.elsewhere", "another page")
+        assert violations(page.page) == []
+        page.press("Escape", "Escape")
+        page.page.click("text=Work here")
+        page.is_in("Ken")
+        expect(other.locator("dialog.elsewhere")).to_be_visible(timeout=TIMEOUT_MS)
+        other.close()
+
+        teacher.ask("forget", student="Ken")
+        page.sees("dialog.elsewhere", "has deleted this name")
+        page.page.click("button:text-is('Come in again')")
+        page.sees(".join form")
+
+
+def test_goes_on_after_the_gateway_was_killed(
+    open_page: OpenPage, room: ClassRoom, folder: Path, console: Any
+) -> None:
+    """After kill -9 the page goes on by itself, and what was typed meanwhile is told."""
+    console.expect("ERR_CONNECTION|WebSocket")
+    page = Pupil(open_page, room.url)
+    page.joins(room, "Zoe")
+    page.changes("20.375")
+    until_kept(folder, 20.375)
+    kill(room.process)
+    page.sees(".banner")
+    page.go(0, 1)
+    page.type("21")
+    page.sees(".bar .name small", "not kept yet")
+    again = ClassRoom(folder, room.listen)
+    room.process = again.process
+    expect(page.find(".bar .name small")).to_have_text("everything is kept", timeout=TIMEOUT_MS)
+    page.until(TOLD)
+    own = json.loads(page.page.evaluate("localStorage.getItem('lacoc.class')"))
+    other = again.student("Zoe", own["token"])
+    first = other.hello["draft"]["table"]["rows"][0]["angles_deg"]
+    other.close()
+    assert first[:2] == [20.375, 21.0]
+
+
+def until_kept(folder: Path, angle_deg: float) -> None:
+    """Wait until a table with an angle is on the disk, which is about a second after it came."""
+    wanted = struct.pack(">d", angle_deg)  # as in a table that is kept
+    deadline_s = time.monotonic() + TIMEOUT_MS / 1000
+    while not any(wanted in path.read_bytes() for path in folder.glob("lacoc-*.sqlite*")):
+        assert time.monotonic() < deadline_s
+        time.sleep(0.05)
+
+
+def kill(process: Any) -> None:
+    """End a gateway and its studio at once, as a power cut does."""
+    children = psutil.Process(process.pid).children(recursive=True)
+    os.kill(process.pid, signal.SIGKILL)
+    for child in children:
+        child.kill()
+    process.communicate(timeout=60)
+
+
+def test_alone_changes_come_back_after_a_kill(
+    open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
+) -> None:
+    """After kill -9 of `lacoc design` the unsaved table is one step from the file's."""
+    console.expect("ERR_CONNECTION|WebSocket")
+    write_sample(tmp_path)
+    process, url, key = start_own_page(tmp_path, "design")
+    page = Designer(open_page, url)
+    page.begin(key)
+    page.go(0, 0)
+    page.type("12.375")
+    page.until(TOLD)
+    until_kept(tmp_path, 12.375)
+    kill(process)
+    page.page.close()
+
+    process, url, key = start_own_page(tmp_path, "design")
+    try:
+        page = Designer(open_page, url)
+        page.begin(key)
+        page.cell_is(0, 0, "12.375")
+        page.is_toasted("changes that were not saved are back")
+        page.sees(".bar .name", "not saved")
+        page.press("Control+z")
+        page.cell_is(0, 0, "45")
+        page.sees(".bar .name small", "saved")
+        page.press("Control+y")
+        page.cell_is(0, 0, "12.375")
+        page.until(TOLD)
+
+        file = tmp_path / "Loco-data.txt"
+        text = file.read_text(encoding="utf-8")
+        other = Designer(open_page, url)
+        file.write_text(text.replace("1 Key\t0", "1 Key\t7"), encoding="utf-8")
+        page.sees("dialog[open]", "was saved by another program")
+        other.begin(key)
+        other.sees("dialog[open]", "was saved by another program")
+        other.cell_is(0, 0, "12.375")
+        other.page.click("dialog >> text=Take the file's table")
+        other.cell_is(1, 0, "7")
+        other.press("Control+z")
+        other.cell_is(0, 0, "12.375")
+    finally:
+        process.terminate()
+        process.communicate(timeout=60)
