@@ -1,6 +1,7 @@
 """A running `lacoc class`, and pages of its students and teacher without a browser."""
 
 import json
+import struct
 import subprocess
 import time
 from pathlib import Path
@@ -100,9 +101,10 @@ class TeacherPage(PageConnection):
         return self.cards.get(name, {})
 
 
-def until_kept(folder: Path, data: bytes) -> None:
-    """Wait until something stands in the class file, which is at most about a second later."""
+def until_kept(folder: Path, angle_deg: float) -> None:
+    """Wait until a table with an angle is on the disk, which is about a second after it came."""
+    wanted = struct.pack(">d", angle_deg)  # as in a table that is kept
     deadline_s = time.monotonic() + 60
-    while not any(data in path.read_bytes() for path in folder.glob("lacoc-class.sqlite*")):
+    while not any(wanted in path.read_bytes() for path in folder.glob("lacoc-*.sqlite*")):
         assert time.monotonic() < deadline_s
         time.sleep(0.05)

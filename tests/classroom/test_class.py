@@ -287,11 +287,11 @@ def test_kill_9_loses_nothing(tmp_path: Path, closing: ExitStack) -> None:
     student, teacher = room.student("Jo"), room.teacher()
     token = student.hello["token"]
     table = edit(student, student.sample(), 1.0)
-    table = edit(student, table, 2.0)
+    table = edit(student, table, 20.375)
     student.ask("hand", up=True)
     teacher.ask("rules", rules={"closed": [6], "coach": "three"})
     teacher.ask("hand_out", title="The sample")
-    until_kept(tmp_path, b"The sample")
+    until_kept(tmp_path, 20.375)
     children = psutil.Process(room.process.pid).children(recursive=True)
     os.kill(room.process.pid, signal.SIGKILL)
     room.process.communicate()

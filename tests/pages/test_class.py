@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from chromium import OpenPage
-from class_room import ClassRoom, StudentPage, until_kept
+from class_room import ClassRoom, StudentPage
 from contestant import Contestant
 from playwright.sync_api import expect
 from show import violations
@@ -210,7 +210,6 @@ def test_the_page_goes_on_after_the_gateways_end(
         edits(comes(closing, room, name))
     desk = Desk(open_page, room.url)
     desk.begin(room.key)
-    until_kept(tmp_path, room.key.encode())
     os.kill(room.process.pid, signal.SIGKILL)
     room.process.communicate()
     desk.sees(".banner")

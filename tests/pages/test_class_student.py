@@ -3,8 +3,6 @@
 import json
 import os
 import signal
-import struct
-import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -13,7 +11,7 @@ from typing import Any
 import psutil
 import pytest
 from chromium import OpenPage
-from class_room import ClassRoom
+from class_room import ClassRoom, until_kept
 from contestant import start_own_page
 from playwright.sync_api import expect
 from show import violations
@@ -178,15 +176,6 @@ def test_goes_on_after_the_gateway_was_killed(
     first = other.hello["draft"]["table"]["rows"][0]["angles_deg"]
     other.close()
     assert first[:2] == [20.375, 21.0]
-
-
-def until_kept(folder: Path, angle_deg: float) -> None:
-    """Wait until a table with an angle is on the disk, which is about a second after it came."""
-    wanted = struct.pack(">d", angle_deg)  # as in a table that is kept
-    deadline_s = time.monotonic() + TIMEOUT_MS / 1000
-    while not any(wanted in path.read_bytes() for path in folder.glob("lacoc-*.sqlite*")):
-        assert time.monotonic() < deadline_s
-        time.sleep(0.05)
 
 
 def kill(process: Any) -> None:

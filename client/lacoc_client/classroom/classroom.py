@@ -3,7 +3,7 @@
 import asyncio
 import time
 from collections.abc import AsyncIterator, Iterable, Sequence
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -113,7 +113,7 @@ class Classroom:
         kept = {(table.student, table.name): table for table in store.tables()}
         state = kept.pop((NOBODY, NAME), None)
         self.state = (state and read_state(state)) or self.state
-        store.keep(self.state.kept())
+        await asyncio.wrap_future(store.write(self.state.kept()))
         evidence = await asyncio.wrap_future(store.evidence())
         for name in dict.fromkeys((*(one.student for one in evidence), *(key[0] for key in kept))):
             student = self._new(name)
@@ -133,7 +133,7 @@ class Classroom:
         else:
             student, token = await self._newcomer(hello, where), new_token()
             student.token_hash = hash_token(token)
-            await student.diary.keep_table(student.kept_token())
+            await student.diary.write(student.kept_token())
         if self.students.get(same_name(student.name)) is not student:
             raise UserError(say("class.enter"))  # forgotten while it came in
         return Entered(student, token)
@@ -211,7 +211,7 @@ class Classroom:
     async def admit(self, student: ClassStudent) -> None:
         """Let the next browser that shows the class code in under this student's name."""
         student.token_hash = ""
-        await student.diary.keep_table(student.kept_token())
+        await student.diary.write(student.kept_token())
 
     async def forget(self, student: ClassStudent) -> None:
         """Delete all that is kept of a student.
@@ -302,7 +302,8 @@ class Classroom:
     async def _set(self, **changes: Any) -> None:
         """Change and keep settings of the class, and tell the teacher."""
         self.state = msgspec.structs.replace(self.state, **changes)
-        (await self._store()).keep(self.state.kept())
+        with suppress(UserError):  # the message has the reason as `trouble`
+            await asyncio.wrap_future((await self._store()).write(self.state.kept()))
         self._tell(self._class_message())
 
     async def _store(self) -> ClassStore:

@@ -109,13 +109,15 @@ class Diary:
             version: name of the table's content.
         """
         self.draft = draft
-        await self.keep_table(draft.kept(self._student, version, time.time()))
-
-    async def keep_table(self, table: KeptTable) -> None:
-        """Keep something else of the student; it is on the disk about a second later."""
         store = await self._opened()
         if store is not None and not self._is_forgotten:
-            store.keep(table)
+            store.keep(draft.kept(self._student, version, time.time()))
+
+    async def write(self, table: KeptTable) -> None:
+        """Write something else of the student; it is on the disk when this returns."""
+        store = await self._opened()
+        if store is not None and not self._is_forgotten:
+            await _kept(asyncio.wrap_future(store.write(table)))
 
     async def forget(self) -> None:
         """Delete all that is kept of the student; nothing more is kept from now on.
